@@ -1,0 +1,22 @@
+//! The ground of the house: what a joint test bench can feel and do.
+//!
+//! Units, samples, run tables, instrument roles, limits, faults and clocks. No I/O, no threads, no async: every other
+//! crate stands on this one, and this one stands on nothing but serde.
+
+pub mod bench;
+pub mod clock;
+pub mod fault;
+pub mod limits;
+pub mod meta;
+pub mod roles;
+pub mod table;
+pub mod trace;
+pub mod units;
+
+pub use bench::Bench;
+pub use clock::{Clock, SystemClock};
+pub use fault::{Fault, FaultKind};
+pub use limits::{Breach, Limits};
+pub use meta::{Kind, Meta, Motion};
+pub use table::{RunTable, TableFault};
+pub use trace::{Channel, Trace};

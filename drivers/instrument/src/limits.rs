@@ -1,0 +1,121 @@
+//! What a bench must never exceed. The guard checks every command and every sample against these.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Hard limits of one bench. Motor side for speed and current, link side for torque.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// |motor velocity|.
+    pub motor_velocity_rad_s: f64,
+    /// |motor current|.
+    pub motor_current_a: f64,
+    /// |link torque|.
+    pub link_torque_nm: f64,
+    pub temperature_c: f64,
+    pub brake_current_a: f64,
+    /// Heat that the brake takes up: |link torque · link velocity|.
+    pub brake_power_w: f64,
+}
+
+/// The quantities that a limit can hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limited {
+    MotorVelocity,
+    MotorCurrent,
+    LinkTorque,
+    Temperature,
+    BrakeCurrent,
+    BrakePower,
+}
+
+impl Limited {
+    pub const ALL: [Limited; 6] = [
+        Limited::MotorVelocity,
+        Limited::MotorCurrent,
+        Limited::LinkTorque,
+        Limited::Temperature,
+        Limited::BrakeCurrent,
+        Limited::BrakePower,
+    ];
+
+    pub fn unit(self) -> &'static str {
+        match self {
+            Limited::MotorVelocity => "rad/s",
+            Limited::MotorCurrent | Limited::BrakeCurrent => "A",
+            Limited::LinkTorque => "Nm",
+            Limited::Temperature => "°C",
+            Limited::BrakePower => "W",
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Limited::MotorVelocity => "motor velocity",
+            Limited::MotorCurrent => "motor current",
+            Limited::LinkTorque => "link torque",
+            Limited::Temperature => "temperature",
+            Limited::BrakeCurrent => "brake current",
+            Limited::BrakePower => "brake power",
+        }
+    }
+}
+
+/// A limit that a command or a sample would break or has broken.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Breach {
+    pub quantity: Limited,
+    pub value: f64,
+    pub limit: f64,
+}
+
+impl fmt::Display for Breach {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, unit) = (self.quantity.name(), self.quantity.unit());
+        write!(f, "{name} {:.4} {unit} is beyond the limit of {:.4} {unit}", self.value, self.limit)
+    }
+}
+
+impl std::error::Error for Breach {}
+
+impl Limits {
+    pub fn of(&self, quantity: Limited) -> f64 {
+        match quantity {
+            Limited::MotorVelocity => self.motor_velocity_rad_s,
+            Limited::MotorCurrent => self.motor_current_a,
+            Limited::LinkTorque => self.link_torque_nm,
+            Limited::Temperature => self.temperature_c,
+            Limited::BrakeCurrent => self.brake_current_a,
+            Limited::BrakePower => self.brake_power_w,
+        }
+    }
+
+    /// A value that is not a number breaks every limit: what cannot be read cannot be trusted.
+    pub fn check(&self, quantity: Limited, value: f64) -> Result<(), Breach> {
+        let limit = self.of(quantity);
+        if value.abs() <= limit { Ok(()) } else { Err(Breach { quantity, value, limit }) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_signs_and_nan_break_a_limit() {
+        let limits = Limits {
+            motor_velocity_rad_s: 100.0,
+            motor_current_a: 5.0,
+            link_torque_nm: 20.0,
+            temperature_c: 70.0,
+            brake_current_a: 0.6,
+            brake_power_w: 350.0,
+        };
+        assert!(limits.check(Limited::MotorVelocity, -100.0).is_ok());
+        let breach = limits.check(Limited::MotorVelocity, -100.1).unwrap_err();
+        assert_eq!(breach.to_string(), "motor velocity -100.1000 rad/s is beyond the limit of 100.0000 rad/s");
+        assert!(limits.check(Limited::Temperature, f64::NAN).is_err());
+    }
+}

@@ -1,0 +1,109 @@
+//! What an instrument can be for a bench. Narrow on purpose: a role holds what every instrument of its kind can do.
+//!
+//! Calls block until the instrument has answered or its deadline has passed; none blocks for ever. After a missed or
+//! garbled reply a driver returns the fault; the caller may [`Instrument::recover`] and try again.
+
+use crate::Fault;
+use crate::units::{Amperes, Celsius, NewtonMetres, RadPerSec, Radians, Volts};
+use serde::{Deserialize, Serialize};
+
+/// Who answers on a port.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    pub maker: String,
+    pub model: String,
+    pub serial: String,
+    pub firmware: String,
+}
+
+pub trait Instrument: Send {
+    /// The name in the bench description (`joint`, `brake_a`).
+    fn name(&self) -> &str;
+    fn port(&self) -> &str;
+    fn identify(&mut self) -> Result<Identity, Fault>;
+    /// Drains the link and identifies the instrument again. Nothing is commanded.
+    fn recover(&mut self) -> Result<Identity, Fault> {
+        self.identify()
+    }
+}
+
+/// One reading of a joint, taken together. Positions and velocity in output units of the encoders: motor side, link side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointReading {
+    /// Moment of the reading on the bench's clock.
+    pub at_s: f64,
+    pub motor_position: Radians,
+    pub motor_velocity: RadPerSec,
+    pub motor_current: Amperes,
+    /// Where a link encoder is wired to the controller.
+    pub link_position: Option<Radians>,
+}
+
+/// The state of a drive, as it reports it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DriveHealth {
+    pub armed: bool,
+    pub errors: Vec<String>,
+    pub bus_voltage: Volts,
+    pub temperature: Option<Celsius>,
+}
+
+/// Drives the joint under test.
+pub trait JointController: Instrument {
+    /// Sets limits and watchdog, zeroes the set-points and closes the velocity loop.
+    fn arm(&mut self, speed_limit: RadPerSec, current_limit: Amperes) -> Result<(), Fault>;
+    /// Motor-side velocity set-point.
+    fn set_velocity(&mut self, velocity: RadPerSec) -> Result<(), Fault>;
+    fn read(&mut self) -> Result<JointReading, Fault>;
+    fn health(&mut self) -> Result<DriveHealth, Fault>;
+    /// Drive torque off. Returns when the command is on the wire; [`JointController::health`] tells whether it took effect.
+    fn disarm(&mut self) -> Result<(), Fault>;
+    /// The smallest steps of the readings.
+    fn resolution(&self) -> JointResolution;
+}
+
+/// The smallest steps that a joint controller can report.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointResolution {
+    pub motor_position: Option<Radians>,
+    pub motor_velocity: Option<RadPerSec>,
+    pub motor_current: Option<Amperes>,
+    pub link_position: Option<Radians>,
+    pub temperature: Option<Celsius>,
+}
+
+/// Feels the torque between the joint and its load.
+pub trait TorqueSensor: Instrument {
+    fn read(&mut self) -> Result<NewtonMetres, Fault>;
+    /// Full scale of the range in use; a reading beyond it is a fault, never a number.
+    fn range(&self) -> NewtonMetres;
+    fn resolution(&self) -> Option<NewtonMetres>;
+}
+
+/// How a supply holds its output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Regulation {
+    ConstantCurrent,
+    ConstantVoltage,
+    Unregulated,
+    Off,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SupplyReading {
+    pub current: Amperes,
+    pub voltage: Volts,
+    pub regulation: Regulation,
+}
+
+/// Feeds the coil of a brake.
+pub trait CurrentSource: Instrument {
+    /// Output off, current zero, compliance voltage set and read back, then output on.
+    fn prepare(&mut self, compliance: Volts) -> Result<(), Fault>;
+    fn set_current(&mut self, current: Amperes) -> Result<(), Fault>;
+    fn read(&mut self) -> Result<SupplyReading, Fault>;
+    /// Output off. The coil current decays with its own time constant.
+    fn output_off(&mut self) -> Result<(), Fault>;
+    fn resolution(&self) -> Option<Amperes>;
+}

@@ -1,0 +1,206 @@
+//! A run table: one run's samples with the facts about the set-up, checked once at the door.
+
+use crate::{Kind, Meta, Trace};
+
+/// One run, ready for a model: the required columns are there, all values of the time are finite and rising.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunTable {
+    kind: Kind,
+    meta: Meta,
+    trace: Trace,
+}
+
+/// Why a table is refused. Rows count from 0 behind the header; the file readers turn them into lines.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TableFault {
+    #[error(
+        "the kind of the run is not known: expected \"kind\": friction, encoder, stiffness or brake in the meta file"
+    )]
+    UnknownKind,
+    #[error("column {column} is missing: a {kind} table needs {}", .kind.required_columns().join(", "))]
+    MissingColumn { kind: Kind, column: &'static str },
+    #[error("column {found}: the unit is not the expected one, expected {expected}")]
+    WrongUnit { found: String, expected: String },
+    #[error("column {0} is there twice")]
+    DuplicateColumn(String),
+    #[error("column {column}: expected a finite number, found {value}")]
+    NotFinite { column: String, row: usize, value: f64 },
+    #[error("column time_s: expected a time after {before} s, found {after} s")]
+    TimeNotRising { row: usize, before: f64, after: f64 },
+    #[error("column {column}: expected a whole number, found {value}")]
+    NotWhole { column: String, row: usize, value: f64 },
+    #[error("the table has no rows: expected at least one sample")]
+    Empty,
+}
+
+impl TableFault {
+    /// The row at fault, counted from 0 behind the header, where one row is.
+    pub fn row(&self) -> Option<usize> {
+        match self {
+            TableFault::NotFinite { row, .. }
+            | TableFault::TimeNotRising { row, .. }
+            | TableFault::NotWhole { row, .. } => Some(*row),
+            _ => None,
+        }
+    }
+
+    /// The column at fault, where one is.
+    pub fn column(&self) -> Option<&str> {
+        match self {
+            TableFault::MissingColumn { column, .. } => Some(column),
+            TableFault::WrongUnit { found, .. } => Some(found),
+            TableFault::DuplicateColumn(column) => Some(column),
+            TableFault::NotFinite { column, .. } | TableFault::NotWhole { column, .. } => Some(column),
+            TableFault::TimeNotRising { .. } => Some("time_s"),
+            TableFault::UnknownKind | TableFault::Empty => None,
+        }
+    }
+}
+
+impl RunTable {
+    /// Checks a trace against its kind: required columns, units, finite values, rising time, whole segment numbers.
+    ///
+    /// Unknown columns may hold anything finite. Cost: one pass over the columns.
+    pub fn new(meta: Meta, trace: Trace) -> Result<Self, TableFault> {
+        let kind = meta.kind.ok_or(TableFault::UnknownKind)?;
+        check_names(kind, &trace)?;
+        if trace.is_empty() {
+            return Err(TableFault::Empty);
+        }
+        for (channel, column) in trace.channels().iter().zip(trace.columns()) {
+            if let Some(row) = column.iter().position(|v| !v.is_finite()) {
+                return Err(TableFault::NotFinite { column: channel.name.clone(), row, value: column[row] });
+            }
+            if matches!(channel.name.as_str(), "segment" | "repeat")
+                && let Some(row) = column.iter().position(|v| v.fract() != 0.0)
+            {
+                return Err(TableFault::NotWhole { column: channel.name.clone(), row, value: column[row] });
+            }
+        }
+        let time_s = trace.column("time_s").unwrap_or_default();
+        if let Some(row) = time_s.windows(2).position(|w| w[1] <= w[0]) {
+            return Err(TableFault::TimeNotRising { row: row + 1, before: time_s[row], after: time_s[row + 1] });
+        }
+        Ok(Self { kind, meta, trace })
+    }
+
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    pub fn meta(&self) -> &Meta {
+        &self.meta
+    }
+
+    pub fn trace(&self) -> &Trace {
+        &self.trace
+    }
+
+    pub fn len(&self) -> usize {
+        self.trace.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.trace.is_empty()
+    }
+
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.trace.column(name)
+    }
+
+    pub fn into_parts(self) -> (Meta, Trace) {
+        (self.meta, self.trace)
+    }
+}
+
+fn check_names(kind: Kind, trace: &Trace) -> Result<(), TableFault> {
+    let names: Vec<&str> = trace.channels().iter().map(|c| c.name.as_str()).collect();
+    for (i, name) in names.iter().enumerate() {
+        if names[..i].contains(name) {
+            return Err(TableFault::DuplicateColumn((*name).to_owned()));
+        }
+    }
+    // `motor_position_deg` where `motor_position_rad` is known: a unit to convert, not a column to ignore.
+    let known = || kind.required_columns().iter().chain(kind.optional_columns());
+    for name in names.iter().filter(|name| !known().any(|k| k == *name)) {
+        let expected = known().find(|k| {
+            let Some(unit) = crate::units::unit_of(k) else { return false };
+            let quantity = &k[..k.len() - unit_suffix(k, unit)];
+            name.strip_prefix(quantity).is_some_and(|rest| is_unit_suffix(rest))
+        });
+        if let Some(expected) = expected {
+            return Err(TableFault::WrongUnit { found: (*name).to_owned(), expected: (*expected).to_owned() });
+        }
+    }
+    match kind.required_columns().iter().find(|required| !names.contains(required)) {
+        Some(column) => Err(TableFault::MissingColumn { kind, column }),
+        None => Ok(()),
+    }
+}
+
+/// Length of the unit suffix of a known column name, its underscore included.
+fn unit_suffix(name: &str, unit: &str) -> usize {
+    match unit {
+        "rad/s" => "_rad_s".len(),
+        "rad" => "_rad".len(),
+        "Nm" => "_nm".len(),
+        _ => name.len() - name.rfind('_').unwrap_or(name.len()),
+    }
+}
+
+/// Suffixes by which other tools name the same quantities in another unit.
+fn is_unit_suffix(rest: &str) -> bool {
+    const OTHERS: [&str; 26] = [
+        "", "_deg", "_deg_s", "_degrees", "_turns", "_turns_s", "_rev", "_rev_s", "_rpm", "_counts", "_mrad", "_rad",
+        "_rad_s", "_ms", "_us", "_ns", "_min", "_ma", "_mnm", "_ncm", "_kelvin", "_k", "_f", "_mm", "_m", "_n",
+    ];
+    OTHERS.contains(&rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Channel;
+
+    fn table(names: &[&str], rows: &[&[f64]]) -> Result<RunTable, TableFault> {
+        let mut trace = Trace::new(names.iter().map(|n| Channel::new(*n)).collect());
+        rows.iter().for_each(|row| trace.push_row(row));
+        RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace)
+    }
+
+    const NAMES: [&str; 3] = ["time_s", "motor_position_rad", "motor_current_a"];
+
+    #[test]
+    fn a_complete_table_is_taken() {
+        let table =
+            table(&[NAMES[0], NAMES[1], NAMES[2], "kp"], &[&[0.0, 0.0, 0.1, 5.0], &[0.1, 0.0, 0.1, 5.0]]).unwrap();
+        assert_eq!(table.len(), 2);
+        assert_eq!(table.column("kp"), Some(&[5.0, 5.0][..]));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let missing = table(&["time_s", "motor_position_rad"], &[&[0.0, 0.0]]).unwrap_err();
+        assert_eq!(missing.column(), Some("motor_current_a"));
+
+        let unit = table(&["time_s", "motor_position_deg", "motor_current_a"], &[&[0.0, 0.0, 0.0]]).unwrap_err();
+        assert_eq!(
+            unit,
+            TableFault::WrongUnit { found: "motor_position_deg".into(), expected: "motor_position_rad".into() }
+        );
+
+        let nan = table(&NAMES, &[&[0.0, 0.0, 0.0], &[0.1, f64::NAN, 0.0]]).unwrap_err();
+        assert_eq!((nan.row(), nan.column()), (Some(1), Some("motor_position_rad")));
+
+        let back = table(&NAMES, &[&[0.1, 0.0, 0.0], &[0.1, 0.0, 0.0]]).unwrap_err();
+        assert_eq!((back.row(), back.column()), (Some(1), Some("time_s")));
+
+        assert_eq!(table(&NAMES, &[]).unwrap_err(), TableFault::Empty);
+    }
+
+    #[test]
+    fn a_segment_is_a_whole_number() {
+        let fault = table(&[NAMES[0], NAMES[1], NAMES[2], "segment"], &[&[0.0, 0.0, 0.0, 0.5]]).unwrap_err();
+        assert_eq!(fault.column(), Some("segment"));
+    }
+}

@@ -1,0 +1,105 @@
+//! Units at the doors: a newtype for every quantity that crosses a role. Inside a module plain `f64` with a unit suffix.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+macro_rules! unit {
+    ($(#[$doc:meta])* $name:ident, $symbol:literal) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default, Serialize, Deserialize)]
+        #[serde(transparent)]
+        pub struct $name(pub f64);
+
+        impl $name {
+            pub const SYMBOL: &'static str = $symbol;
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                if let Some(digits) = f.precision() {
+                    write!(f, "{:.*} {}", digits, self.0, $symbol)
+                } else {
+                    write!(f, "{} {}", self.0, $symbol)
+                }
+            }
+        }
+    };
+}
+
+unit!(/// Angle.
+    Radians, "rad");
+unit!(/// Angular velocity.
+    RadPerSec, "rad/s");
+unit!(/// Torque.
+    NewtonMetres, "Nm");
+unit!(/// Electric current.
+    Amperes, "A");
+unit!(/// Electric potential.
+    Volts, "V");
+unit!(/// Temperature.
+    Celsius, "°C");
+unit!(/// Duration, or a moment on the bench's clock.
+    Seconds, "s");
+unit!(/// Power.
+    Watts, "W");
+
+/// The unit that a column or channel name carries as its suffix (`motor_velocity_rad_s` → `rad/s`), in SI symbols.
+///
+/// `None` for names without a unit suffix (`segment`, `repeat`, `kp`).
+pub fn unit_of(name: &str) -> Option<&'static str> {
+    // Longest suffix first: `_rad_s` before `_s`, `_nm_per_a` before `_a`.
+    const SUFFIXES: [(&str, &str); 14] = [
+        ("_nm_per_rad", "Nm/rad"),
+        ("_nm_per_a", "Nm/A"),
+        ("_kg_m2", "kg·m²"),
+        ("_rad_s2", "rad/s²"),
+        ("_rad_s", "rad/s"),
+        ("_rad", "rad"),
+        ("_nm", "Nm"),
+        ("_ms", "ms"),
+        ("_hz", "Hz"),
+        ("_c", "°C"),
+        ("_a", "A"),
+        ("_v", "V"),
+        ("_w", "W"),
+        ("_s", "s"),
+    ];
+    SUFFIXES.iter().find(|(suffix, _)| name.ends_with(suffix)).map(|(_, unit)| *unit)
+}
+
+/// The same unit on a linear axis (`"motion": "linear"` in the meta file): rad → m, Nm → N, kg·m² → kg.
+pub fn linear_unit(unit: &str) -> String {
+    unit.replace("kg·m²", "kg").replace("Nm", "N").replace("rad", "m")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suffixes_name_their_unit() {
+        for (name, unit) in [
+            ("time_s", Some("s")),
+            ("motor_position_rad", Some("rad")),
+            ("motor_velocity_rad_s", Some("rad/s")),
+            ("link_torque_nm", Some("Nm")),
+            ("temperature_c", Some("°C")),
+            ("motor_current_a", Some("A")),
+            ("torque_constant_nm_per_a", Some("Nm/A")),
+            ("segment", None),
+        ] {
+            assert_eq!(unit_of(name), unit, "{name}");
+        }
+    }
+
+    #[test]
+    fn linear_motion_changes_every_label() {
+        assert_eq!(linear_unit("Nm·s/rad"), "N·s/m");
+        assert_eq!(linear_unit("kg·m²"), "kg");
+    }
+
+    #[test]
+    fn a_quantity_prints_with_its_unit() {
+        assert_eq!(format!("{:.2}", NewtonMetres(0.0306)), "0.03 Nm");
+    }
+}
