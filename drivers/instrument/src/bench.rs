@@ -19,6 +19,9 @@ pub struct JointConstants {
     pub brake_rated_current_a: f64,
     /// Torque of the brake at rated current, link side.
     pub brake_rated_torque_nm: f64,
+    /// The link may turn this far to either side of the zero of its encoder. Empty: unlimited.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link_range_rad: Option<f64>,
 }
 
 /// The instruments that a bench has. Absence is an empty slot, never a dummy.
