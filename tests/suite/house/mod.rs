@@ -1,0 +1,42 @@
+//! The house keeps its shape: which crate may lean on which, what is absent where, licences, file sizes.
+
+mod arrows;
+mod licences;
+mod sizes;
+
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::LazyLock;
+
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the workspace root")
+}
+
+/// What cargo resolved for this workspace. Needs no network: everything was fetched to build the tests.
+static METADATA: LazyLock<Value> = LazyLock::new(|| {
+    // Libraries of other platforms are not on this machine: only what this one builds can be asked for offline.
+    let version = Command::new("rustc").arg("-vV").output().expect("rustc runs").stdout;
+    let version = String::from_utf8_lossy(&version).into_owned();
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("rustc names its host");
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--offline", "--locked", "--filter-platform", host])
+        .current_dir(root())
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("cargo metadata prints JSON")
+});
+
+/// The packages of the whole dependency graph, by id.
+fn packages() -> impl Iterator<Item = (&'static str, &'static Value)> {
+    METADATA["packages"].as_array().expect("packages").iter().map(|p| (p["id"].as_str().expect("id"), p))
+}
+
+/// Ids of what a package needs to be built and run, without its tests.
+fn normal_dependencies(id: &str) -> Vec<&'static str> {
+    let nodes = METADATA["resolve"]["nodes"].as_array().expect("nodes");
+    let node = nodes.iter().find(|n| n["id"] == id).expect("a node for every package");
+    let is_normal = |dep: &&Value| dep["dep_kinds"].as_array().is_some_and(|kinds| kinds.iter().any(|k| k["kind"].is_null()));
+    node["deps"].as_array().expect("deps").iter().filter(is_normal).map(|d| d["pkg"].as_str().expect("pkg")).collect()
+}
