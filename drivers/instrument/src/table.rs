@@ -126,7 +126,7 @@ fn check_names(kind: Kind, trace: &Trace) -> Result<(), TableFault> {
         let expected = known().find(|k| {
             let Some(unit) = crate::units::unit_of(k) else { return false };
             let quantity = &k[..k.len() - unit_suffix(k, unit)];
-            name.strip_prefix(quantity).is_some_and(|rest| is_unit_suffix(rest))
+            name.strip_prefix(quantity).is_some_and(is_unit_suffix)
         });
         if let Some(expected) = expected {
             return Err(TableFault::WrongUnit { found: (*name).to_owned(), expected: (*expected).to_owned() });

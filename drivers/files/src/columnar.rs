@@ -1,0 +1,105 @@
+//! Parquet and Arrow in: columns of any number type, without gaps.
+
+use crate::error::{FileError, FileFault};
+use crate::facts::{self, EMBEDDED};
+use crate::raw::RawTable;
+use arrow_array::cast::AsArray;
+use arrow_array::types::{
+    Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+};
+use arrow_array::{Array, ArrowPrimitiveType, RecordBatch};
+use arrow_schema::{ArrowError, DataType, Schema};
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use std::io::Cursor;
+
+/// Rows decoded at a time.
+const BATCH_ROWS: usize = 1 << 16;
+/// Whole numbers up to here are exact as doubles.
+const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
+
+pub(crate) fn read_parquet(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
+    let fault = |fault: String| FileFault::Columnar(fault).in_file(name);
+    let file = bytes::Bytes::copy_from_slice(bytes);
+    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|f| fault(f.to_string()))?;
+    let schema = builder.schema().clone();
+    let reader = builder.with_batch_size(BATCH_ROWS).build().map_err(|f| fault(f.to_string()))?;
+    collect(name, &schema, reader)
+}
+
+pub(crate) fn read_arrow(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
+    let reader = arrow_ipc::reader::FileReader::try_new(Cursor::new(bytes), None)
+        .map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
+    let schema = reader.schema();
+    collect(name, &schema, reader)
+}
+
+fn collect(
+    name: &str,
+    schema: &Schema,
+    batches: impl Iterator<Item = Result<RecordBatch, ArrowError>>,
+) -> Result<RawTable, FileError> {
+    let embedded = schema.metadata().get(EMBEDDED);
+    let meta =
+        embedded.map(|json| facts::parse_meta(&format!("{name}, embedded meta"), json.as_bytes())).transpose()?;
+    let names: Vec<String> = schema.fields().iter().map(|field| field.name().clone()).collect();
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+    for batch in batches {
+        let batch = batch.map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
+        for ((array, column), column_name) in batch.columns().iter().zip(&mut columns).zip(&names) {
+            let first = column.len();
+            append(array.as_ref(), column).map_err(|(row, fault)| {
+                let mut error = fault.in_file(name).in_column(column_name);
+                error.place.row = row.map(|row| (first + row) as u64 + 1);
+                error
+            })?;
+        }
+    }
+    Ok(RawTable { names, columns, meta })
+}
+
+/// A fault, and the row in the batch where one row is at fault.
+type At<T> = Result<T, (Option<usize>, FileFault)>;
+
+fn append(array: &dyn Array, column: &mut Vec<f64>) -> At<()> {
+    if let Some(row) = (array.null_count() > 0).then(|| (0..array.len()).find(|row| array.is_null(*row))).flatten() {
+        return Err((Some(row), FileFault::NotNumber { found: String::new() }));
+    }
+    match array.data_type() {
+        DataType::Float64 => column.extend_from_slice(array.as_primitive::<Float64Type>().values()),
+        DataType::Float32 => widen::<Float32Type>(array, column),
+        DataType::Int8 => widen::<Int8Type>(array, column),
+        DataType::Int16 => widen::<Int16Type>(array, column),
+        DataType::Int32 => widen::<Int32Type>(array, column),
+        DataType::UInt8 => widen::<UInt8Type>(array, column),
+        DataType::UInt16 => widen::<UInt16Type>(array, column),
+        DataType::UInt32 => widen::<UInt32Type>(array, column),
+        DataType::Int64 => {
+            let values = array.as_primitive::<Int64Type>().values();
+            exact(values.iter().map(|v| (v.unsigned_abs(), *v as f64)), column)?;
+        }
+        DataType::UInt64 => {
+            let values = array.as_primitive::<UInt64Type>().values();
+            exact(values.iter().map(|v| (*v, *v as f64)), column)?;
+        }
+        DataType::Boolean => column.extend(array.as_boolean().values().iter().map(|on| f64::from(u8::from(on)))),
+        other => return Err((None, FileFault::NotNumeric { found: other.to_string() })),
+    }
+    Ok(())
+}
+
+fn widen<T: ArrowPrimitiveType>(array: &dyn Array, column: &mut Vec<f64>)
+where
+    T::Native: Into<f64>,
+{
+    column.extend(array.as_primitive::<T>().values().iter().map(|value| (*value).into()));
+}
+
+fn exact(values: impl Iterator<Item = (u64, f64)>, column: &mut Vec<f64>) -> At<()> {
+    for (row, (magnitude, value)) in values.enumerate() {
+        if magnitude > LARGEST_EXACT {
+            return Err((Some(row), FileFault::TooLong { found: value.to_string() }));
+        }
+        column.push(value);
+    }
+    Ok(())
+}

@@ -1,0 +1,107 @@
+//! Why a file is refused, and where in it.
+
+use jointbench_instrument::TableFault;
+use std::{fmt, io};
+
+/// A file that is refused: where, and what was expected.
+#[derive(Debug, thiserror::Error)]
+#[error("{place}: {fault}")]
+pub struct FileError {
+    pub place: Box<Place>,
+    #[source]
+    pub fault: FileFault,
+}
+
+/// Where in a file. Lines count from 1 as an editor shows them; columnar files have rows, counted from 1, instead.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Place {
+    pub file: String,
+    pub line: Option<u64>,
+    pub row: Option<u64>,
+    pub column: Option<String>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.file)?;
+        if let Some(line) = self.line {
+            write!(f, ", line {line}")?;
+        }
+        if let Some(row) = self.row {
+            write!(f, ", row {row}")?;
+        }
+        match &self.column {
+            Some(column) => write!(f, ", column {column}"),
+            None => Ok(()),
+        }
+    }
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum FileFault {
+    #[error("{0}")]
+    Io(io::Error),
+    #[error("expected a file that ends in .csv, .csv.gz, .parquet or .arrow")]
+    UnknownForm,
+    #[error("the file is empty: expected a line of column names, then one line for each sample")]
+    Empty,
+    #[error("not a whole gzip file ({0}): copy or pack it again")]
+    Gzip(String),
+    #[error("expected text in UTF-8, found the byte 0x{0:02x}: save the table as UTF-8")]
+    NotText(u8),
+    #[error(
+        "expected commas between the columns, found {found}: save the table with commas, and points in its numbers"
+    )]
+    Separator { found: &'static str },
+    #[error("column {number} has no name: expected a name with its unit, such as time_s")]
+    NoName { number: usize },
+    #[error("expected {expected} values as in the line of column names, found {found}")]
+    Width { expected: usize, found: usize },
+    #[error("expected a number, found {}", shown(.found))]
+    NotNumber { found: String },
+    #[error("expected numbers, found {found}")]
+    NotNumeric { found: String },
+    #[error("expected a whole number that fits in 53 bits, found {found}")]
+    TooLong { found: String },
+    #[error("not readable: {0}")]
+    Columnar(String),
+    #[error("{what}: expected one object of facts, such as {{\"kind\": \"friction\", \"gear_ratio\": 50}}")]
+    Meta { what: String },
+    #[error("the mapping names column {wanted}, which is not in the file: it has {}", .there.join(", "))]
+    Unmapped { wanted: String, there: Vec<String> },
+    #[error("the scale names column {wanted}, which is not in the table: it has {}", .there.join(", "))]
+    Unscaled { wanted: String, there: Vec<String> },
+    #[error("{0}")]
+    Table(TableFault),
+}
+
+fn shown(found: &str) -> String {
+    match found {
+        "" => "nothing".to_owned(),
+        text if text.chars().count() > 40 => format!("“{}…”", text.chars().take(40).collect::<String>()),
+        text => format!("“{text}”"),
+    }
+}
+
+impl FileFault {
+    pub(crate) fn in_file(self, file: &str) -> FileError {
+        FileError { place: Box::new(Place { file: file.to_owned(), ..Place::default() }), fault: self }
+    }
+
+    pub(crate) fn at_line(self, file: &str, line: u64) -> FileError {
+        let place = Place { file: file.to_owned(), line: Some(line), ..Place::default() };
+        FileError { place: Box::new(place), fault: self }
+    }
+}
+
+impl FileError {
+    pub(crate) fn in_column(mut self, column: &str) -> Self {
+        self.place.column = Some(column.to_owned());
+        self
+    }
+
+    /// The machine's trouble (a disk, a permission), not a table that is wrong.
+    pub fn is_io(&self) -> bool {
+        matches!(&self.fault, FileFault::Io(fault) if fault.kind() != io::ErrorKind::NotFound)
+    }
+}

@@ -1,0 +1,79 @@
+//! The facts beside a table: one JSON object, in a file or embedded.
+
+use crate::error::{FileError, FileFault};
+use jointbench_instrument::{Channel, Meta};
+use serde_json::{Map, Value};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Under this key a Parquet or Arrow file carries the facts as JSON.
+pub(crate) const EMBEDDED: &str = "meta";
+/// In the facts: the smallest step of each column that has one. The tool's own, for tables that it wrote itself.
+const RESOLUTION: &str = "resolution";
+
+/// Reads the facts from JSON. `name` stands in messages.
+pub fn parse_meta(name: &str, json: &[u8]) -> Result<Meta, FileError> {
+    serde_json::from_slice(json).map_err(|fault| {
+        let text = fault.to_string();
+        // serde_json appends the place, which the message already leads with.
+        let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what).to_owned();
+        match fault.line() {
+            0 => FileFault::Meta { what }.in_file(name),
+            line => FileFault::Meta { what }.at_line(name, line as u64),
+        }
+    })
+}
+
+pub(crate) fn read_meta(path: &Path) -> Result<Meta, FileError> {
+    let name = path.display().to_string();
+    let json = fs::read(path).map_err(|fault| FileFault::Io(fault).in_file(&name))?;
+    parse_meta(&name, &json)
+}
+
+/// `run-12.csv.gz` → `run-12.meta.json` in the same folder: where [`crate::write`] puts the facts of a CSV.
+pub fn meta_path_of(table: &Path) -> PathBuf {
+    let name = table.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.split('.').next().unwrap_or_default();
+    table.with_file_name(format!("{stem}.meta.json"))
+}
+
+pub(crate) fn beside(table: &Path) -> Option<PathBuf> {
+    [meta_path_of(table), table.with_file_name("meta.json")].into_iter().find(|path| path.is_file())
+}
+
+/// The facts of a run as JSON, its columns' resolutions with them.
+pub fn meta_json(meta: &Meta, channels: &[Channel]) -> String {
+    let mut meta = meta.clone();
+    let steps: Map<String, Value> =
+        channels.iter().filter_map(|c| Some((c.name.clone(), Value::from(c.resolution?)))).collect();
+    if !steps.is_empty() {
+        meta.other.insert(RESOLUTION.to_owned(), Value::Object(steps));
+    }
+    serde_json::to_string_pretty(&meta).expect("facts are plain JSON")
+}
+
+/// Takes the resolutions of the named columns out of the facts. Anything else under that key stays where it is.
+pub(crate) fn take_resolutions(meta: &mut Meta, names: &[String]) -> Vec<Channel> {
+    let mut steps = match meta.other.get_mut(RESOLUTION) {
+        Some(Value::Object(steps)) => std::mem::take(steps),
+        _ => Map::new(),
+    };
+    let channels = names
+        .iter()
+        .map(|name| match steps.get(name).and_then(Value::as_f64).filter(|step| *step > 0.0) {
+            Some(step) => {
+                steps.remove(name);
+                Channel::counted(name, step)
+            }
+            None => Channel::new(name),
+        })
+        .collect();
+    match meta.other.get_mut(RESOLUTION) {
+        Some(Value::Object(left)) if !steps.is_empty() => *left = steps,
+        Some(Value::Object(_)) => {
+            meta.other.remove(RESOLUTION);
+        }
+        _ => {}
+    }
+    channels
+}

@@ -1,0 +1,150 @@
+//! A malformed file is refused with file, line, column and what was expected.
+
+use arrow_array::{ArrayRef, Float32Array, Float64Array, Int64Array, RecordBatch, StringArray};
+use jointbench_files::{FileError, ReadOptions, parse_meta, read, read_bytes};
+use jointbench_instrument::{Kind, Meta, RunTable};
+use std::io::Write;
+use std::sync::Arc;
+
+const NAMES: &str = "time_s,motor_position_rad,motor_current_a";
+
+fn take(name: &str, bytes: &[u8]) -> Result<RunTable, FileError> {
+    let meta = Some(Meta { kind: Some(Kind::Friction), ..Meta::default() });
+    read_bytes(name, bytes, &ReadOptions { meta, ..ReadOptions::default() })
+}
+
+#[track_caller]
+fn check_refused(text: &[u8], expected: &str) {
+    let refused = take("run.csv", text).unwrap_err();
+    assert_eq!(refused.to_string(), expected);
+}
+
+#[test]
+fn text_is_refused_where_it_is_wrong() {
+    let with = |rows: &str| format!("{NAMES}\n{rows}").into_bytes();
+    check_refused(b"", "run.csv: the file is empty: expected a line of column names, then one line for each sample");
+    check_refused(&with(""), "run.csv: the table has no rows: expected at least one sample");
+    check_refused(
+        &with("0,1,2\n\n1,1,fast\n"),
+        "run.csv, line 4, column motor_current_a: expected a number, found “fast”",
+    );
+    check_refused(&with("0,1,\n"), "run.csv, line 2, column motor_current_a: expected a number, found nothing");
+    check_refused(
+        &with("0,1,2\r\n1,1\r\n"),
+        "run.csv, line 3: expected 3 values as in the line of column names, found 2",
+    );
+    check_refused(
+        &with("0,1,2\n\r\n1,NaN,2\n"),
+        "run.csv, line 4: column motor_position_rad: expected a finite number, found NaN",
+    );
+    check_refused(
+        &with("0,1,2\n1,1,2\n0.5,1,2\n"),
+        "run.csv, line 4: column time_s: expected a time after 1 s, found 0.5 s",
+    );
+    check_refused(
+        b"time_s,motor_position_rad\n0,1\n",
+        "run.csv: column motor_current_a is missing: a friction table needs time_s, motor_position_rad, motor_current_a",
+    );
+    check_refused(
+        b"time_s,motor_position_deg,motor_current_a\n0,1,2\n",
+        "run.csv: column motor_position_deg: the unit is not the expected one, expected motor_position_rad",
+    );
+    check_refused(
+        b"time_s;motor_position_rad;motor_current_a\n0;1,5;2\n",
+        "run.csv, line 1: expected commas between the columns, found semicolons: save the table with commas, and points in its numbers",
+    );
+    check_refused(
+        b"time_s,,motor_current_a\n0,1,2\n",
+        "run.csv, line 1: column 2 has no name: expected a name with its unit, such as time_s",
+    );
+    check_refused(
+        b"time_s,note\n0,Dr\xe4hen\n",
+        "run.csv, line 2: expected text in UTF-8, found the byte 0xe4: save the table as UTF-8",
+    );
+}
+
+#[test]
+fn editors_marks_and_line_ends_are_let_pass() {
+    let text = format!("\u{feff}{NAMES}\r\n0, 1 ,2e0\r\n1,1,+2\r\n");
+    assert_eq!(take("run.csv", text.as_bytes()).unwrap().column("motor_current_a"), Some(&[2.0, 2.0][..]));
+}
+
+#[test]
+fn a_packed_file_is_whole_or_refused() {
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    packed.write_all(format!("{NAMES}\n0,1,2\n1,1,x\n").as_bytes()).unwrap();
+    let packed = packed.finish().unwrap();
+    let inside = take("run.csv.gz", &packed).unwrap_err().to_string();
+    assert!(inside.starts_with("run.csv.gz, line 3, column motor_current_a: expected a number"), "{inside}");
+    for broken in [&packed[..packed.len() - 9], &packed[1..], b"plain"] {
+        let refused = take("run.csv.gz", broken).unwrap_err().to_string();
+        assert!(refused.starts_with("run.csv.gz: not a whole gzip file"), "{refused}");
+    }
+}
+
+fn parquet(columns: Vec<(&str, ArrayRef)>) -> Vec<u8> {
+    let batch = RecordBatch::try_from_iter(columns).unwrap();
+    let mut bytes = Vec::new();
+    let mut writer = parquet::arrow::ArrowWriter::try_new(&mut bytes, batch.schema(), None).unwrap();
+    writer.write(&batch).unwrap();
+    writer.close().unwrap();
+    bytes
+}
+
+fn arrow(columns: Vec<(&str, ArrayRef)>) -> Vec<u8> {
+    let batch = RecordBatch::try_from_iter(columns).unwrap();
+    let mut writer = arrow_ipc::writer::FileWriter::try_new(Vec::new(), &batch.schema()).unwrap();
+    writer.write(&batch).unwrap();
+    writer.into_inner().unwrap()
+}
+
+#[test]
+fn columnar_files_of_other_tools_are_read_and_checked() {
+    let good: Vec<(&str, ArrayRef)> = vec![
+        ("time_s", Arc::new(Float64Array::from(vec![0.0, 0.5]))),
+        ("motor_position_rad", Arc::new(Float32Array::from(vec![1.5, -2.0]))),
+        ("motor_current_a", Arc::new(Int64Array::from(vec![3, -4]))),
+    ];
+    for (name, bytes) in [("run.parquet", parquet(good.clone())), ("run.arrow", arrow(good.clone()))] {
+        let table = take(name, &bytes).unwrap();
+        assert_eq!(table.column("motor_position_rad"), Some(&[1.5, -2.0][..]), "{name}");
+        assert_eq!(table.column("motor_current_a"), Some(&[3.0, -4.0][..]), "{name}");
+        let cut = take(name, &bytes[..bytes.len() / 2]).unwrap_err().to_string();
+        assert!(cut.starts_with(&format!("{name}: not readable")), "{cut}");
+    }
+    for (column, expected) in [
+        (
+            Arc::new(Int64Array::from(vec![Some(1), None])) as ArrayRef,
+            ", row 2, column motor_current_a: expected a number",
+        ),
+        (
+            Arc::new(Int64Array::from(vec![1, (1 << 53) + 1])),
+            ", row 2, column motor_current_a: expected a whole number",
+        ),
+        (Arc::new(StringArray::from(vec!["1", "2"])), ", column motor_current_a: expected numbers, found Utf8"),
+        (Arc::new(Float64Array::from(vec![1.0, f64::INFINITY])), ", row 2: column motor_current_a: expected a finite"),
+    ] {
+        let columns = vec![good[0].clone(), good[1].clone(), ("motor_current_a", column)];
+        for (name, bytes) in [("run.parquet", parquet(columns.clone())), ("run.arrow", arrow(columns.clone()))] {
+            let refused = take(name, &bytes).unwrap_err().to_string();
+            assert!(refused.starts_with(&format!("{name}{expected}")), "{refused}");
+        }
+    }
+}
+
+#[test]
+fn other_files_and_facts_are_refused() {
+    let refused = take("run.xlsx", b"").unwrap_err();
+    assert_eq!(refused.to_string(), "run.xlsx: expected a file that ends in .csv, .csv.gz, .parquet or .arrow");
+    assert!(!refused.is_io());
+
+    let missing = read("/no/such/run.csv".as_ref(), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(missing.starts_with("/no/such/run.csv: "), "{missing}");
+
+    let facts = parse_meta("meta.json", b"{\"kind\": \"friction\",\n \"gear_ratio\": \"fifty\"}").unwrap_err();
+    assert_eq!(facts.place.line, Some(2));
+    assert!(facts.to_string().starts_with("meta.json, line 2: invalid type: string \"fifty\""), "{facts}");
+
+    let unknown = read_bytes("run.csv", format!("{NAMES}\n0,1,2\n").as_bytes(), &ReadOptions::default()).unwrap_err();
+    assert!(unknown.to_string().contains("expected \"kind\": friction, encoder, stiffness or brake"), "{unknown}");
+}
