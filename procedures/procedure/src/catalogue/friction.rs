@@ -1,0 +1,223 @@
+//! Friction over velocity, load, link angle and temperature (seed-facts, section 4).
+//!
+//! A repeat goes through the loads from none to the highest, so that the brake is always on its ascending branch, and
+//! is demagnetised while turning at its end. At each load the joint makes one *tour*: fast legs out in shuffled order,
+//! the same speeds back in another order, and slow pairs at shuffled places in between. A slow leg covers little of a
+//! link turn, so the tours spread them over the link's angle; the fastest leg covers a whole turn, the next a third.
+//! Order and places differ from tour to tour: neither time and temperature nor the link's angle follow speed or load.
+//!
+//! The warm-up before it is part of the table, as segments of its own in repeat 0 (`warm_up_segments` of the meta
+//! facts counts them): it is where temperature changes most, which is what shows an effect of temperature.
+
+use super::Procedure;
+use super::legs::{Legs, friction_meta, turn_s};
+use super::warm_up;
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Plan, PlanFault, Steady};
+use crate::profile::Profile;
+use jointbench_instrument::Kind;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+
+pub(super) struct Friction;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::number("top_speed_rad_s", "Highest speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
+    Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
+    Parameter::count("fast_speeds", "Speeds above the Stribeck velocity", 5, [2, 20]),
+    Parameter::count("load_levels", "Load levels, no load included", 3, [1, 10]),
+    Parameter::number("top_load", "Highest brake current, share of rated", "", 0.65, [0.05, 1.0]),
+    Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
+    Parameter::number("dwell_s", "Constant speed at each point", "s", 1.1, [0.3, 60.0]),
+    Parameter::number("warm_up_s", "Longest warm-up", "s", 20.0, [1.0, 3600.0]),
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+];
+
+/// Speeds below the expected Stribeck velocity, as shares of it: at least four, or its exponent stays open
+/// (diagnosis, pitfalls).
+const SLOW_SHARES: [f64; 4] = [0.15, 0.3, 0.5, 0.75];
+/// The lowest of the speeds above it.
+const FAST_FROM: f64 = 1.3;
+/// The torque of the brake grows slowly at first (bench-physics, section 2): even torques need uneven currents.
+const LOAD_EXPONENT: f64 = 0.7;
+/// A rising brake current: the ramp, and the time that supply and coil lag behind (118 ms and 80 ms, same place).
+const RAISE_S: f64 = 0.8;
+const LAG_S: f64 = 0.6;
+/// A falling one is spread over at least this time and a whole link turn (bench-physics, section 3).
+const UNLOAD_S: f64 = 2.0;
+
+impl Procedure for Friction {
+    fn id(&self) -> &'static str {
+        "friction"
+    }
+
+    fn title(&self) -> &'static str {
+        "Friction"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Measures the torque at constant speeds, dense near zero, in both directions and under several loads. What the model misses shows in speed, load, angle or temperature."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Friction
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let speeds = Speeds::new(values, bench)?;
+        let loads_a = loads(values, bench)?;
+        let rate_hz = values.number("sample_rate_hz");
+        let mut rng = ChaCha8Rng::seed_from_u64(u64::from(values.count("order_seed")));
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        warm_up::work(&mut legs, speeds.top_rad_s, values.number("warm_up_s"), bench);
+        let warm_up_segments = legs.steps.len();
+        for repeat in 0..values.count("repeats") {
+            legs.repeat = repeat;
+            let mut before_a = 0.0;
+            for (level, brake_a) in loads_a.iter().copied().enumerate() {
+                if brake_a > before_a {
+                    raise(&mut legs, &speeds, before_a, brake_a);
+                }
+                let outwards = if (repeat as usize + level).is_multiple_of(2) { 1.0 } else { -1.0 };
+                tour(&mut legs, &speeds, brake_a, outwards, &mut rng);
+                before_a = brake_a;
+            }
+            if before_a > 0.0 {
+                unload(&mut legs, &speeds, before_a, bench);
+            }
+        }
+        let mut meta = friction_meta(bench, rate_hz);
+        meta.other.insert("warm_up_segments".into(), warm_up_segments.into());
+        if loads_a.len() > 1 {
+            let history = "each load approached from below, demagnetised while turning after each repeat";
+            meta.other.insert("brake_history".into(), history.into());
+        }
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta,
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: Some(Steady {
+                cycle_steps: warm_up::CYCLE_STEPS,
+                temperature_c_per_min: 0.3,
+                current_share_per_min: 0.01,
+            }),
+        })
+    }
+}
+
+/// The speeds of a tour, motor side, with the time at each.
+struct Speeds {
+    slow: Vec<(f64, f64)>,
+    fast: Vec<(f64, f64)>,
+    top_rad_s: f64,
+}
+
+impl Speeds {
+    fn new(values: &Values, bench: &BenchFacts) -> Result<Self, PlanFault> {
+        let stribeck_rad_s = values.number("stribeck_speed_rad_s") * bench.constants.gear_ratio;
+        let (top_rad_s, dwell_s) = (values.number("top_speed_rad_s"), values.number("dwell_s"));
+        let from_rad_s = FAST_FROM * stribeck_rad_s;
+        if top_rad_s < 2.0 * from_rad_s {
+            return Err(PlanFault::Contradiction {
+                what: format!(
+                    "top_speed_rad_s = {top_rad_s} is not well above the Stribeck velocity, {stribeck_rad_s:.1} rad/s on the motor"
+                ),
+                cure: "raise top_speed_rad_s or lower stribeck_speed_rad_s",
+            });
+        }
+        let count = values.count("fast_speeds");
+        let fast = |i: u32| {
+            let speed_rad_s = from_rad_s * (top_rad_s / from_rad_s).powf(f64::from(i) / f64::from(count - 1));
+            let turn_share = match count - 1 - i {
+                0 => 1.0,
+                1 => 1.0 / 3.0,
+                _ => 0.0,
+            };
+            (speed_rad_s, turn_s(turn_share, speed_rad_s, bench, dwell_s))
+        };
+        Ok(Self {
+            slow: SLOW_SHARES.iter().map(|share| (share * stribeck_rad_s, dwell_s)).collect(),
+            fast: (0..count).map(fast).collect(),
+            top_rad_s,
+        })
+    }
+
+    /// For a change of load: fast enough to turn, slow enough to stay near.
+    fn middle_rad_s(&self) -> f64 {
+        self.fast[self.fast.len() / 2].0
+    }
+}
+
+/// Brake currents in rising order, the first 0.
+fn loads(values: &Values, bench: &BenchFacts) -> Result<Vec<f64>, PlanFault> {
+    let levels = values.count("load_levels");
+    if levels > 1 {
+        let cure = "choose load_levels = 1, or connect it";
+        let missing = |role| PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure };
+        if !bench.has_brake {
+            return Err(missing("brake"));
+        }
+        if !bench.has_torque_sensor {
+            return Err(missing("torque sensor"));
+        }
+    }
+    let top_a = values.number("top_load") * bench.constants.brake_rated_current_a;
+    let share = |level: u32| f64::from(level) / f64::from((levels - 1).max(1));
+    Ok((0..levels).map(|level| top_a * share(level).powf(LOAD_EXPONENT)).collect())
+}
+
+fn tour(legs: &mut Legs, speeds: &Speeds, brake_a: f64, outwards: f64, rng: &mut ChaCha8Rng) {
+    let mut out: Vec<(f64, f64)> = speeds.fast.clone();
+    let mut back = out.clone();
+    out.shuffle(rng);
+    back.shuffle(rng);
+    let route: Vec<(f64, f64)> = out
+        .into_iter()
+        .map(|(speed_rad_s, dwell_s)| (outwards * speed_rad_s, dwell_s))
+        .chain(back.into_iter().map(|(speed_rad_s, dwell_s)| (-outwards * speed_rad_s, dwell_s)))
+        .collect();
+    // Slow pair number i stands before fast leg `places[i]`.
+    let mut places: Vec<usize> = (0..route.len()).collect();
+    places.shuffle(rng);
+    for (place, (speed_rad_s, dwell_s)) in route.into_iter().enumerate() {
+        for pair in (0..speeds.slow.len()).filter(|pair| places[pair % places.len()] == place) {
+            let (slow_rad_s, slow_dwell_s) = speeds.slow[pair];
+            legs.leg(outwards * slow_rad_s, slow_dwell_s, brake_a);
+            legs.leg(-outwards * slow_rad_s, slow_dwell_s, brake_a);
+        }
+        legs.leg(speed_rad_s, dwell_s, brake_a);
+    }
+}
+
+/// More brake current while the shaft turns, out and back.
+fn raise(legs: &mut Legs, speeds: &Speeds, from_a: f64, to_a: f64) {
+    let speed_rad_s = speeds.middle_rad_s();
+    let dwell_s = RAISE_S + LAG_S;
+    let velocity = |sign: f64| Profile::plateau(sign * speed_rad_s, legs.acceleration_rad_s2, dwell_s);
+    let (out, back) = (velocity(1.0), velocity(-1.0));
+    let turning_s = speed_rad_s / legs.acceleration_rad_s2;
+    let brake = Profile::from(from_a).hold(turning_s).to(to_a, RAISE_S);
+    legs.push(format!("brake to {to_a:.2} A"), out, brake);
+    legs.push(format!("{:+.1} rad/s at {to_a:.2} A", -speed_rad_s), back, Profile::constant(to_a));
+}
+
+/// The brake current goes to zero over at least one link turn, as fast as the joint turns, and back without load.
+fn unload(legs: &mut Legs, speeds: &Speeds, from_a: f64, bench: &BenchFacts) {
+    let ramp_s = turn_s(1.0, speeds.top_rad_s, bench, UNLOAD_S);
+    let turning_s = speeds.top_rad_s / legs.acceleration_rad_s2;
+    let velocity = Profile::plateau(speeds.top_rad_s, legs.acceleration_rad_s2, ramp_s + LAG_S);
+    let brake = Profile::from(from_a).hold(turning_s).to(0.0, ramp_s);
+    legs.push("demagnetise the brake while turning".into(), velocity, brake);
+    legs.leg(-speeds.top_rad_s, ramp_s + LAG_S, 0.0);
+}

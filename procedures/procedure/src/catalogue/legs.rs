@@ -1,0 +1,107 @@
+//! What the procedures of a joint share: numbered steps, legs of constant speed, the facts of a friction run.
+
+use crate::plan::{BenchFacts, Phase, Step};
+use crate::profile::Profile;
+use jointbench_instrument::{Kind, Meta};
+use std::f64::consts::TAU;
+
+/// A leg that should cover a part of a link turn is cut off here: a very slow gear has to do with less.
+const LONGEST_LEG_S: f64 = 15.0;
+
+/// Collects steps and numbers their segments.
+pub(super) struct Legs {
+    pub acceleration_rad_s2: f64,
+    pub steps: Vec<Step>,
+    pub phase: Phase,
+    pub repeat: u32,
+}
+
+impl Legs {
+    pub fn new(acceleration_rad_s2: f64) -> Self {
+        Self { acceleration_rad_s2, steps: Vec::new(), phase: Phase::Measure, repeat: 0 }
+    }
+
+    /// A plateau at a constant brake current.
+    pub fn leg(&mut self, speed_rad_s: f64, dwell_s: f64, brake_a: f64) {
+        let label = if brake_a > 0.0 {
+            format!("{speed_rad_s:+.1} rad/s at {brake_a:.2} A")
+        } else {
+            format!("{speed_rad_s:+.1} rad/s")
+        };
+        self.push(label, Profile::plateau(speed_rad_s, self.acceleration_rad_s2, dwell_s), Profile::constant(brake_a));
+    }
+
+    pub fn push(&mut self, label: String, velocity: Profile, brake: Profile) {
+        let segment = self.steps.len() as u32;
+        self.steps.push(Step { label, phase: self.phase, segment, repeat: self.repeat, velocity, brake });
+    }
+}
+
+/// How long a plateau has to be to cover a share of a link turn, and at least `least_s`.
+pub(super) fn turn_s(share: f64, speed_rad_s: f64, bench: &BenchFacts, least_s: f64) -> f64 {
+    (share * TAU * bench.constants.gear_ratio / speed_rad_s.abs()).min(LONGEST_LEG_S).max(least_s)
+}
+
+/// The facts that a friction table needs, and the model to start from.
+pub(super) fn friction_meta(bench: &BenchFacts, rate_hz: f64) -> Meta {
+    let constants = &bench.constants;
+    let mut baseline = vec!["inertia", "load_transmission", "coulomb", "viscous"];
+    if !bench.has_torque_sensor {
+        baseline.retain(|effect| *effect != "load_transmission");
+    }
+    Meta {
+        kind: Some(Kind::Friction),
+        baseline: baseline.into_iter().map(str::to_owned).collect(),
+        sample_rate_hz: Some(rate_hz),
+        torque_constant_nm_per_a: Some(constants.torque_constant_nm_per_a),
+        gear_ratio: Some(constants.gear_ratio),
+        rotor_inertia_kg_m2: Some(constants.rotor_inertia_kg_m2),
+        rated_current_a: bench.has_brake.then_some(constants.brake_rated_current_a),
+        ..Meta::default()
+    }
+}
+
+#[cfg(test)]
+pub(super) mod testing {
+    use crate::plan::BenchFacts;
+    use jointbench_instrument::Limits;
+    use jointbench_instrument::bench::JointConstants;
+    use std::f64::consts::TAU;
+
+    /// Joint A of the thesis (seed-facts, section 2) with brake A.
+    pub fn joint_a() -> BenchFacts {
+        BenchFacts {
+            name: "a".into(),
+            simulated: true,
+            limits: Limits {
+                motor_velocity_rad_s: 250.0,
+                motor_current_a: 10.0,
+                link_torque_nm: 18.0,
+                temperature_c: 80.0,
+                brake_current_a: 0.6,
+                brake_power_w: 350.0,
+            },
+            constants: JointConstants {
+                torque_constant_nm_per_a: 0.0406,
+                gear_ratio: 177.8,
+                rotor_inertia_kg_m2: 1.0e-5,
+                brake_compliance_v: 45.0,
+                brake_rated_current_a: 0.6,
+                brake_rated_torque_nm: 13.0,
+                link_range_rad: Some(5.0 * TAU),
+            },
+            has_torque_sensor: true,
+            has_brake: true,
+        }
+    }
+
+    pub fn joint_b() -> BenchFacts {
+        let mut facts = joint_a();
+        facts.name = "b".into();
+        facts.constants.torque_constant_nm_per_a = 0.0798;
+        facts.constants.gear_ratio = 50.0;
+        facts.constants.rotor_inertia_kg_m2 = 4.0e-5;
+        facts.constants.link_range_rad = None;
+        facts
+    }
+}

@@ -1,0 +1,57 @@
+//! The procedures that the product knows.
+
+mod friction;
+mod legs;
+mod warm_up;
+
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use jointbench_instrument::Kind;
+use serde_json::{Map, Value};
+
+/// Decides what a bench shall do; the engine does it. Pure and deterministic: the same choices on the same bench give
+/// the same plan.
+pub trait Procedure: Sync {
+    fn id(&self) -> &'static str;
+    fn title(&self) -> &'static str;
+    /// One or two plain sentences.
+    fn summary(&self) -> &'static str;
+    /// The kind of run table that it brings.
+    fn kind(&self) -> Kind;
+    fn schema(&self) -> &'static [Parameter];
+    /// Plans with checked values.
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault>;
+
+    /// Checks the choices against the schema, fills in the defaults and plans. Nothing moves.
+    fn plan(&self, parameters: &Map<String, Value>, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        self.build(&Values::parse(self.schema(), parameters)?, bench)
+    }
+}
+
+/// Every procedure, in the order in which a list shows them.
+pub fn catalogue() -> &'static [&'static dyn Procedure] {
+    &[&friction::Friction, &warm_up::WarmUp]
+}
+
+pub fn procedure(id: &str) -> Option<&'static dyn Procedure> {
+    catalogue().iter().copied().find(|procedure| procedure.id() == id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_unique_and_defaults_lie_in_their_range() {
+        for procedure in catalogue() {
+            assert_eq!(super::procedure(procedure.id()).unwrap().title(), procedure.title());
+            for parameter in procedure.schema() {
+                let inside = (parameter.min..=parameter.max).contains(&parameter.default);
+                assert!(inside, "{} of {}", parameter.name, procedure.id());
+            }
+        }
+        let mut ids: Vec<_> = catalogue().iter().map(|procedure| procedure.id()).collect();
+        ids.dedup();
+        assert_eq!(ids.len(), catalogue().len());
+    }
+}

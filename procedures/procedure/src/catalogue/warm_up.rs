@@ -1,0 +1,108 @@
+//! Work the joint until temperature and friction are steady, or the time is up.
+
+use super::Procedure;
+use super::legs::{Legs, friction_meta, turn_s};
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
+use jointbench_instrument::Kind;
+
+pub(super) struct WarmUp;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::number("top_speed_rad_s", "Speed (motor)", "rad/s", 180.0, [1.0, 1000.0]),
+    Parameter::number("longest_s", "Longest duration", "s", 900.0, [20.0, 7200.0]),
+    Parameter::number("steady_c_per_min", "Steady below this drift of temperature", "°C/min", 0.3, [0.01, 10.0]),
+    Parameter::number(
+        "steady_share_per_min",
+        "Steady below this relative drift of current",
+        "1/min",
+        0.01,
+        [1e-4, 1.0],
+    ),
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+];
+
+/// Steps of one cycle: fast and slow, out and back.
+pub(super) const CYCLE_STEPS: usize = 4;
+/// The slow pair of a cycle: viscous friction shows apart from Coulomb friction while both change with temperature.
+const SLOW_SHARE: f64 = 0.25;
+
+impl Procedure for WarmUp {
+    fn id(&self) -> &'static str {
+        "warm_up"
+    }
+
+    fn title(&self) -> &'static str {
+        "Warm-up"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Works the joint without load until temperature and current no longer drift. Do it before anything that is to be compared."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Friction
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let rate_hz = values.number("sample_rate_hz");
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        work(&mut legs, values.number("top_speed_rad_s"), values.number("longest_s"), bench);
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: friction_meta(bench, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: Some(Steady {
+                cycle_steps: CYCLE_STEPS,
+                temperature_c_per_min: values.number("steady_c_per_min"),
+                current_share_per_min: values.number("steady_share_per_min"),
+            }),
+        })
+    }
+}
+
+/// Whole cycles of warm-up steps that take at most `longest_s`, but one at least.
+pub(super) fn work(legs: &mut Legs, top_speed_rad_s: f64, longest_s: f64, bench: &BenchFacts) {
+    legs.phase = Phase::WarmUp;
+    let mut cycle_s = 0.0;
+    while legs.steps.is_empty() || legs.steps.len() as f64 / CYCLE_STEPS as f64 * cycle_s + cycle_s <= longest_s {
+        let first = legs.steps.len();
+        for (speed_rad_s, dwell_s) in
+            [(top_speed_rad_s, turn_s(1.0, top_speed_rad_s, bench, 2.0)), (SLOW_SHARE * top_speed_rad_s, 2.0)]
+        {
+            legs.leg(speed_rad_s, dwell_s, 0.0);
+            legs.leg(-speed_rad_s, dwell_s, 0.0);
+        }
+        cycle_s = legs.steps[first..].iter().map(crate::plan::Step::duration_s).sum();
+    }
+    legs.phase = Phase::Measure;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::legs::testing::{joint_a, joint_b};
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn it_is_bounded_and_returns_to_where_it_began() {
+        for facts in [joint_a(), joint_b()] {
+            let given = json!({"longest_s": 100.0});
+            let plan = WarmUp.plan(given.as_object().unwrap(), &facts).unwrap();
+            assert!((60.0..=100.0).contains(&plan.duration_s()), "{} s", plan.duration_s());
+            let (lowest, highest) = plan.travel_rad();
+            assert!(lowest > -1e-6 && highest / facts.constants.gear_ratio < 2.0 * std::f64::consts::TAU);
+            assert!(plan.preview(&facts).is_allowed());
+            assert_eq!(plan.steps.len() % CYCLE_STEPS, 0);
+        }
+    }
+}

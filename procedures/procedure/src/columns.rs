@@ -1,0 +1,98 @@
+//! The columns of a run table: which ones a bench fills, and one row of them.
+
+use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::roles::{DriveHealth, JointReading};
+use jointbench_instrument::{Bench, Channel, Trace};
+
+/// Time is kept in whole microseconds: finer than any serial instrument can tell, and exact to store.
+const TIME_STEP_S: f64 = 1e-6;
+/// Velocity set-points are sent, and kept, in these steps.
+pub(crate) const VELOCITY_STEP_RAD_S: f64 = 1e-4;
+
+/// What one tick knows, measured and commanded. Slow quantities hold their last reading.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moment {
+    pub time_s: f64,
+    pub joint: JointReading,
+    pub link_torque_nm: Option<f64>,
+    pub temperature_c: Option<f64>,
+    /// Measured, and commanded.
+    pub brake_a: Option<(f64, f64)>,
+    pub velocity_setpoint_rad_s: f64,
+}
+
+/// The columns that this bench can fill. An instrument that is not there has no column.
+///
+/// Twelve where all are there: time_s, motor_position_rad, motor_velocity_rad_s, motor_current_a, link_position_rad,
+/// link_torque_nm, temperature_c, brake_current_a, brake_torque_command_nm, velocity_setpoint_rad_s, segment, repeat.
+#[derive(Debug, Clone)]
+pub(crate) struct Columns {
+    channels: Vec<Channel>,
+    brake_nm_per_a: f64,
+    row: Vec<f64>,
+}
+
+impl Columns {
+    pub fn of(bench: &Bench, reading: &JointReading, health: &DriveHealth) -> Self {
+        let steps = bench.joint.resolution();
+        let mut channels = vec![
+            channel("time_s", Some(TIME_STEP_S)),
+            channel("motor_position_rad", steps.motor_position.map(|step| step.0)),
+            channel("motor_velocity_rad_s", steps.motor_velocity.map(|step| step.0)),
+            channel("motor_current_a", steps.motor_current.map(|step| step.0)),
+        ];
+        if reading.link_position.is_some() {
+            channels.push(channel("link_position_rad", steps.link_position.map(|step| step.0)));
+        }
+        if let Some(sensor) = &bench.torque_sensor {
+            channels.push(channel("link_torque_nm", sensor.resolution().map(|step| step.0)));
+        }
+        if health.temperature.is_some() {
+            channels.push(channel("temperature_c", steps.temperature.map(|step| step.0)));
+        }
+        let brake_nm_per_a = nominal_brake_nm_per_a(&bench.constants);
+        if let Some(source) = &bench.brake {
+            let step_a = source.resolution().map(|step| step.0);
+            channels.push(channel("brake_current_a", step_a));
+            channels.push(channel("brake_torque_command_nm", step_a.map(|step| step * brake_nm_per_a)));
+        }
+        channels.push(channel("velocity_setpoint_rad_s", Some(VELOCITY_STEP_RAD_S)));
+        channels.push(channel("segment", Some(1.0)));
+        channels.push(channel("repeat", Some(1.0)));
+        Self { row: Vec::with_capacity(channels.len()), channels, brake_nm_per_a }
+    }
+
+    pub fn empty_trace(&self) -> Trace {
+        Trace::new(self.channels.clone())
+    }
+
+    /// The row of a moment, in the order of the channels.
+    pub fn row(&mut self, moment: &Moment, segment: u32, repeat: u32) -> &[f64] {
+        let row = &mut self.row;
+        row.clear();
+        row.extend([moment.time_s, moment.joint.motor_position.0, moment.joint.motor_velocity.0]);
+        row.push(moment.joint.motor_current.0);
+        row.extend(moment.joint.link_position.map(|position| position.0));
+        row.extend(moment.link_torque_nm);
+        row.extend(moment.temperature_c);
+        if let Some((measured_a, commanded_a)) = moment.brake_a {
+            row.extend([measured_a, commanded_a * self.brake_nm_per_a]);
+        }
+        row.extend([moment.velocity_setpoint_rad_s, f64::from(segment), f64::from(repeat)]);
+        row
+    }
+}
+
+/// Whole microseconds.
+pub(crate) fn to_time_step(t_s: f64) -> f64 {
+    (t_s / TIME_STEP_S).round() * TIME_STEP_S
+}
+
+/// The data sheet's proportionality of torque and current: what a commanded current stands for, not what it gives.
+fn nominal_brake_nm_per_a(constants: &JointConstants) -> f64 {
+    constants.brake_rated_torque_nm / constants.brake_rated_current_a
+}
+
+fn channel(name: &str, resolution: Option<f64>) -> Channel {
+    Channel { name: name.to_owned(), resolution }
+}

@@ -1,0 +1,104 @@
+//! Before anything moves: who is there, is it healthy, may this plan run here.
+
+use super::ending::Ending;
+use super::session::{Session, reported};
+use crate::columns::Columns;
+use crate::event::EventKind;
+use crate::guard::Refusal;
+use crate::plan::BenchFacts;
+use jointbench_instrument::roles::JointReading;
+use jointbench_instrument::units::{Amperes, RadPerSec, Volts};
+
+impl Session<'_> {
+    pub(super) fn arm(&mut self) -> Result<(), Ending> {
+        if let Some(reason) = self.journal.blocked()? {
+            let name = &self.bench.name;
+            return Err(Ending::NotReady(format!("bench {name} is blocked ({reason}): look at it, then acknowledge")));
+        }
+        self.check_plan()?;
+        self.identify()?;
+        let health = self.ask_joint(|joint| joint.health())?;
+        if !health.errors.is_empty() {
+            let what = format!("{}; clear it before the run", health.errors.join(", "));
+            return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
+        }
+        let reading = self.ask_joint(|joint| joint.read())?;
+        self.check_range(&reading)?;
+
+        let compliance = Volts(self.bench.constants.brake_compliance_v);
+        self.ask_brake(|brake| brake.prepare(compliance))?;
+        let (speed, current) = (self.bench.limits.motor_velocity_rad_s, self.bench.limits.motor_current_a);
+        // From here on securing has torque to take away, even if the reply to this request is lost.
+        self.armed = true;
+        self.ask_joint(|joint| joint.arm(RadPerSec(speed), Amperes(current)))?;
+        let health = self.ask_joint(|joint| joint.health())?;
+        if !health.armed {
+            let what = format!("the drive did not arm: {}", health.errors.join(", "));
+            return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
+        }
+
+        let columns = Columns::of(self.bench, &reading, &health);
+        self.journal.set_columns(columns.empty_trace());
+        self.columns = Some(columns);
+        if health.temperature.is_none() {
+            self.note("the joint reports no temperature: its limit is not watched");
+        }
+        if self.bench.torque_sensor.is_none() {
+            self.note("no torque sensor: link torque and brake power are not watched");
+        }
+        self.beat.next_s = self.bench.clock.now_s();
+        Ok(())
+    }
+
+    fn check_plan(&self) -> Result<(), Ending> {
+        let checks = self.plan.preview(&BenchFacts::of(self.bench)).checks;
+        match checks.iter().find(|check| !check.ok) {
+            None => Ok(()),
+            Some(check) => {
+                let cure = check.cure.as_ref().map(|cure| format!(": {cure}")).unwrap_or_default();
+                Err(Ending::NotReady(format!("{}, {}{cure}", check.name, check.detail)))
+            }
+        }
+    }
+
+    fn identify(&mut self) -> Result<(), Ending> {
+        let mut found = Vec::new();
+        let identity = self.ask_joint(|joint| joint.identify())?;
+        found.push((self.bench.joint.name().to_owned(), self.bench.joint.port().to_owned(), identity));
+        if let Some(identity) = self.ask_torque_sensor(|sensor| sensor.identify())? {
+            let sensor = self.bench.torque_sensor.as_ref();
+            found.extend(sensor.map(|sensor| (sensor.name().to_owned(), sensor.port().to_owned(), identity)));
+        }
+        if let Some(identity) = self.ask_brake(|brake| brake.identify())? {
+            let brake = self.bench.brake.as_ref();
+            found.extend(brake.map(|brake| (brake.name().to_owned(), brake.port().to_owned(), identity)));
+        }
+        let now_s = self.bench.clock.now_s();
+        for (instrument, port, identity) in found {
+            self.journal.tell(now_s, EventKind::Identified { instrument, port, identity });
+        }
+        Ok(())
+    }
+
+    /// The plan starts where the joint stands: the whole travel has to fit from there.
+    fn check_range(&self, reading: &JointReading) -> Result<(), Ending> {
+        let constants = &self.bench.constants;
+        let Some(range_rad) = constants.link_range_rad else { return Ok(()) };
+        let here_rad = link_position_rad(reading, constants.gear_ratio);
+        let (lowest, highest) = self.plan.travel_rad();
+        for travel_rad in [lowest, highest] {
+            let position_rad = here_rad + travel_rad / constants.gear_ratio;
+            // A position that is not a number does not fit either.
+            let fits = position_rad.abs() <= range_rad;
+            if !fits {
+                return Err(Ending::NotReady(Refusal::BeyondRange { position_rad, range_rad }.to_string()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// From the link's own encoder, or through the gear where it has none.
+pub(super) fn link_position_rad(reading: &JointReading, gear_ratio: f64) -> f64 {
+    reading.link_position.map_or(reading.motor_position.0 / gear_ratio, |position| position.0)
+}

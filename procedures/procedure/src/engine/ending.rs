@@ -1,0 +1,105 @@
+//! Why a run ends, how fast it has to be secured, and what a person reads about it.
+
+use crate::event::EventKind;
+use crate::guard::Refusal;
+use crate::recorder::RecorderFault;
+use crate::state::{IllegalMove, Outcome};
+use jointbench_instrument::Fault;
+use std::fmt;
+
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Ending {
+    Completed,
+    Stopped,
+    /// Nobody holds the sender of the controls any more.
+    Abandoned,
+    Aborted,
+    EStopped,
+    /// Arming found a reason not to move.
+    NotReady(String),
+    /// The guard stopped a command before it was sent.
+    CommandRefused(Refusal),
+    /// The guard saw a sample that must not be.
+    SampleRefused(Refusal),
+    JointFault(Fault),
+    /// Of any other instrument: the joint still obeys.
+    OtherFault(Fault),
+    Unrecorded(RecorderFault),
+    Panicked(String),
+    Illegal(IllegalMove),
+}
+
+/// How much time securing may take, from most to least.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Urgency {
+    /// Unload the brake while the shaft turns, then come to rest.
+    Orderly,
+    /// Shaft and brake ramp down together.
+    Quick,
+    /// Drive torque off first.
+    Cut,
+}
+
+impl Ending {
+    pub fn outcome(&self) -> Outcome {
+        match self {
+            Ending::Completed => Outcome::Completed,
+            Ending::Stopped | Ending::Abandoned => Outcome::Stopped,
+            Ending::Aborted | Ending::EStopped => Outcome::Aborted,
+            _ => Outcome::Failed,
+        }
+    }
+
+    pub fn urgency(&self) -> Urgency {
+        match self {
+            Ending::Completed | Ending::Stopped | Ending::Abandoned | Ending::Unrecorded(_) => Urgency::Orderly,
+            Ending::Aborted | Ending::CommandRefused(_) | Ending::OtherFault(_) => Urgency::Quick,
+            Ending::EStopped
+            | Ending::NotReady(_)
+            | Ending::SampleRefused(_)
+            | Ending::JointFault(_)
+            | Ending::Panicked(_)
+            | Ending::Illegal(_) => Urgency::Cut,
+        }
+    }
+
+    pub fn reason(&self) -> Option<String> {
+        (!matches!(self, Ending::Completed)).then(|| self.to_string())
+    }
+
+    /// What the journal says about it. Faults have told of themselves where they happened.
+    pub fn event(&self) -> Option<EventKind> {
+        match self {
+            Ending::Completed | Ending::JointFault(_) | Ending::OtherFault(_) => None,
+            Ending::CommandRefused(Refusal::Breach(breach)) | Ending::SampleRefused(Refusal::Breach(breach)) => {
+                Some(EventKind::Breach { breach: *breach })
+            }
+            other => Some(EventKind::Note { text: other.to_string() }),
+        }
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Ending::Completed => f.write_str("completed"),
+            Ending::Stopped => f.write_str("stopped by a person"),
+            Ending::Abandoned => f.write_str("stopped because nobody was left to control the run"),
+            Ending::Aborted => f.write_str("aborted by a person"),
+            Ending::EStopped => f.write_str("software stop by a person"),
+            Ending::NotReady(why) => write!(f, "not started: {why}"),
+            Ending::CommandRefused(refusal) => write!(f, "command refused: {refusal}"),
+            Ending::SampleRefused(refusal) => write!(f, "limit broken: {refusal}"),
+            Ending::JointFault(fault) | Ending::OtherFault(fault) => fault.fmt(f),
+            Ending::Unrecorded(fault) => fault.fmt(f),
+            Ending::Panicked(what) => write!(f, "internal error, please report it: {what}"),
+            Ending::Illegal(illegal) => write!(f, "internal error, please report it: {illegal}"),
+        }
+    }
+}
+
+impl From<RecorderFault> for Ending {
+    fn from(fault: RecorderFault) -> Self {
+        Ending::Unrecorded(fault)
+    }
+}

@@ -1,0 +1,89 @@
+//! Carries a plan out on a bench: arm, run, secure. One thread, one ordinary loop, no exit without the safe state.
+
+mod arm;
+mod ask;
+mod ending;
+mod journal;
+mod pace;
+mod pause;
+mod safe_state;
+mod securing;
+mod session;
+mod steps;
+mod tick;
+
+use crate::event::{Control, EventKind, Safe};
+use crate::plan::Plan;
+use crate::recorder::{Recorder, RunId};
+use crate::state::{RunState, Transition};
+use ending::Ending;
+use jointbench_instrument::Bench;
+pub use safe_state::{Secured, secure};
+use session::Session;
+use std::sync::mpsc::Receiver;
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunEnd {
+    /// Final.
+    pub state: RunState,
+    pub safe: Safe,
+    /// Why, where the run was not completed.
+    pub reason: Option<String>,
+    /// Rows that the recorder has acknowledged.
+    pub rows: u64,
+    pub duration_s: f64,
+}
+
+/// Runs a plan to its end, whatever the end is. Never panics and never returns before securing was tried.
+///
+/// The caller owns the bench on this thread. A dropped sender of `controls` is an orderly stop: nobody could stop the
+/// run any more. The recorder sees every state from `arming` to the final one; where it fails, the run fails.
+pub fn run(
+    bench: &mut Bench,
+    plan: &Plan,
+    run: RunId,
+    controls: &Receiver<Control>,
+    recorder: &mut dyn Recorder,
+) -> RunEnd {
+    let mut session = Session::new(bench, plan, run, controls, recorder);
+    let ending = match session.caught(Session::execute) {
+        Ok(()) => Ending::Completed,
+        Err(ending) => ending,
+    };
+    session.finish(ending)
+}
+
+impl Session<'_> {
+    fn execute(&mut self) -> Result<(), Ending> {
+        self.enter(Transition::Arm)?;
+        self.arm()?;
+        self.enter(Transition::Start)?;
+        self.run_steps()
+    }
+
+    fn finish(&mut self, mut ending: Ending) -> RunEnd {
+        let now_s = self.bench.clock.now_s();
+        self.journal.tell(now_s, ending.event());
+        // Rows that this commit cannot keep are lost: such a run is not complete.
+        if let Err(unkept) = self.enter(Transition::Secure)
+            && matches!(ending, Ending::Completed)
+        {
+            ending = unkept;
+        }
+        let safe = self.make_safe(&ending);
+        let now_s = self.bench.clock.now_s();
+        self.journal.tell(now_s, Some(EventKind::Safe { safe }));
+        if let Err(unkept) = self.enter(Transition::End(ending.outcome())) {
+            tracing::error!(run.id = self.journal.run, "the end of the run was not kept: {unkept}");
+            if matches!(ending, Ending::Completed) {
+                ending = unkept;
+            }
+        }
+        let reason = ending.reason();
+        let duration_s = self.bench.clock.now_s() - self.journal.started_s;
+        let state = ending.outcome().state();
+        tracing::info!(run.id = self.journal.run, %state, %safe, duration_s, reason, "run ended");
+        RunEnd { state, safe, reason, rows: self.journal.kept_rows, duration_s }
+    }
+}

@@ -1,0 +1,77 @@
+//! A pause: ramp to rest, hold, go back to where the interrupted step began.
+
+use super::ending::Ending;
+use super::session::{Session, Wish};
+use crate::plan::Step;
+use crate::profile::Profile;
+use crate::state::Transition;
+
+/// Gain of the way back: the approach is exponential with a quarter of a second.
+const RETURN_PER_S: f64 = 4.0;
+/// Close enough to the start of the step, motor side.
+const RETURNED_RAD: f64 = 0.2;
+/// The way back is given up after twice the time that it should take, and this.
+const RETURN_GRACE_S: f64 = 5.0;
+
+impl Session<'_> {
+    /// Returns when the step may begin again; the brake current is the one that the pause began with [A].
+    pub(super) fn pause(&mut self, step: &Step, start_rad: Option<f64>) -> Result<f64, Ending> {
+        self.enter(Transition::Pause)?;
+        // A constant current through standstill and restart leaves no cogging behind (bench-physics, section 3).
+        let brake_a = self.commanded.brake_a;
+        self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))?;
+        while self.wish.take() != Some(Wish::Resume) {
+            let now_s = self.wait();
+            self.tick(now_s, 0.0, brake_a, None)?;
+        }
+        self.enter(Transition::Resume)?;
+        if let Some(start_rad) = start_rad {
+            self.go_back(step, start_rad, brake_a)?;
+        }
+        Ok(brake_a)
+    }
+
+    /// Set-points over their time; the rows are shown, not kept.
+    pub(super) fn drive(&mut self, velocity: &Profile, brake: &Profile) -> Result<(), Ending> {
+        let start_s = self.beat.next_s.max(self.bench.clock.now_s());
+        let duration_s = velocity.duration_s().max(brake.duration_s());
+        loop {
+            let now_s = self.wait();
+            let t_s = now_s - start_s;
+            self.tick(now_s, velocity.at(t_s), brake.at(t_s), None)?;
+            if t_s >= duration_s {
+                return Ok(());
+            }
+        }
+    }
+
+    /// From the commanded velocity to another, with the acceleration of the plan.
+    pub(super) fn ramp_to(&self, velocity_rad_s: f64) -> Profile {
+        let from_rad_s = self.commanded.velocity_rad_s;
+        let seconds = (velocity_rad_s - from_rad_s).abs() / self.plan.acceleration_rad_s2;
+        Profile::from(from_rad_s).to(velocity_rad_s, seconds)
+    }
+
+    /// The step's travel was planned from its start, and so was the range that it needs.
+    fn go_back(&mut self, step: &Step, start_rad: f64, brake_a: f64) -> Result<(), Ending> {
+        let speed_rad_s = step.velocity.largest().max(0.25 * self.plan.top_speed_rad_s());
+        let away_rad = |session: &Self| session.joint.map_or(0.0, |reading| start_rad - reading.motor_position.0);
+        let give_up_s = self.bench.clock.now_s() + 2.0 * away_rad(self).abs() / speed_rad_s + RETURN_GRACE_S;
+        let change_rad_s = self.plan.acceleration_rad_s2 * self.beat.period_s;
+        while away_rad(self).abs() > RETURNED_RAD {
+            let now_s = self.wait();
+            if now_s > give_up_s {
+                let left_rad = away_rad(self);
+                self.note(format!(
+                    "the way back after the pause ended {left_rad:.2} rad (motor) from the start of the step"
+                ));
+                break;
+            }
+            let wanted_rad_s = (RETURN_PER_S * away_rad(self)).clamp(-speed_rad_s, speed_rad_s);
+            let before_rad_s = self.commanded.velocity_rad_s;
+            let velocity_rad_s = wanted_rad_s.clamp(before_rad_s - change_rad_s, before_rad_s + change_rad_s);
+            self.tick(now_s, velocity_rad_s, brake_a, None)?;
+        }
+        self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))
+    }
+}

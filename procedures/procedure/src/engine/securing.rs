@@ -1,0 +1,82 @@
+//! The way from wherever a run is to the safe state: as gently as its ending allows.
+
+use super::ending::{Ending, Urgency};
+use super::safe_state::secure;
+use super::session::Session;
+use crate::event::Safe;
+use crate::profile::Profile;
+use std::f64::consts::TAU;
+
+/// The brake is unloaded over at least this time and one link turn, so that every pole is reached (bench-physics,
+/// section 3).
+const UNLOAD_S: f64 = 2.0;
+/// Fastest link speed for it: 60 rpm (same place).
+const UNLOAD_LINK_RAD_S: f64 = TAU;
+/// The supply's dead time and the coil's lag, before the shaft may stop behind a falling current.
+const BRAKE_LAG_S: f64 = 0.5;
+/// Shortest ramp of an abort.
+const QUICK_S: f64 = 0.3;
+
+impl Session<'_> {
+    /// Never fails: what cannot be done gently is done hard, and what was reached is told.
+    pub(super) fn make_safe(&mut self, ending: &Ending) -> Safe {
+        let mut urgency = if self.armed { ending.urgency() } else { Urgency::Cut };
+        if urgency == Urgency::Orderly {
+            match self.caught(Session::unload) {
+                Ok(()) => {}
+                Err(hurry) => {
+                    self.note(format!("securing goes on harder: {hurry}"));
+                    urgency = hurry.urgency().max(Urgency::Quick);
+                }
+            }
+        }
+        if urgency == Urgency::Quick
+            && let Err(hurry) = self.caught(Session::come_to_rest)
+        {
+            self.note(format!("securing goes on harder: {hurry}"));
+        }
+        let secured = secure(self.bench);
+        secured.notes.into_iter().for_each(|note| self.note(note));
+        secured.safe
+    }
+
+    /// Takes the brake current away while the shaft turns, then lets it come to rest.
+    fn unload(&mut self) -> Result<(), Ending> {
+        let brake_a = self.commanded.brake_a;
+        if brake_a > 0.0 {
+            let speed_rad_s = self.unload_speed_rad_s();
+            let turn_s = TAU * self.bench.constants.gear_ratio / speed_rad_s.abs();
+            let unload_s = UNLOAD_S.max(turn_s);
+            let up = self.ramp_to(speed_rad_s);
+            let up_s = up.duration_s();
+            let velocity = up.hold(unload_s + BRAKE_LAG_S);
+            let brake = Profile::from(brake_a).hold(up_s).to(0.0, unload_s);
+            self.drive(&velocity, &brake)?;
+        }
+        self.drive(&self.ramp_to(0.0), &Profile::constant(0.0))
+    }
+
+    /// No faster than the plan was allowed to be; towards the middle of the range where there is one.
+    fn unload_speed_rad_s(&self) -> f64 {
+        let constants = &self.bench.constants;
+        let speed_rad_s = self.plan.top_speed_rad_s().min(UNLOAD_LINK_RAD_S * constants.gear_ratio);
+        let position_rad = self.joint.map_or(0.0, |reading| reading.motor_position.0);
+        let ahead = match constants.link_range_rad {
+            Some(_) if position_rad != 0.0 => -position_rad,
+            _ => self.commanded.velocity_rad_s,
+        };
+        speed_rad_s.copysign(ahead)
+    }
+
+    /// Shaft and brake go down together, the brake a little sooner. Nothing is sped up for it.
+    fn come_to_rest(&mut self) -> Result<(), Ending> {
+        let velocity_rad_s = self.commanded.velocity_rad_s;
+        let rest_s = QUICK_S.max(velocity_rad_s.abs() / self.plan.acceleration_rad_s2);
+        let velocity = Profile::from(velocity_rad_s).to(0.0, rest_s);
+        let turning =
+            velocity_rad_s.abs() / self.bench.constants.gear_ratio > 2.0 * crate::guard::STANDSTILL_LINK_RAD_S;
+        let brake = Profile::from(self.commanded.brake_a);
+        let brake = if turning { brake.to(0.0, 0.5 * rest_s) } else { brake };
+        self.drive(&velocity, &brake)
+    }
+}

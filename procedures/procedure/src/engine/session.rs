@@ -1,0 +1,171 @@
+//! The state of one run while it lasts.
+
+use super::ask::{Trouble, ask};
+use super::ending::Ending;
+use super::journal::Journal;
+use super::pace::Pace;
+use crate::columns::Columns;
+use crate::event::{Control, EventKind};
+use crate::guard::Guard;
+use crate::plan::Plan;
+use crate::recorder::{Recorder, RunId};
+use crate::state::Transition;
+use crate::steady::SteadyWatch;
+use jointbench_instrument::roles::{CurrentSource, Instrument, JointController, JointReading, TorqueSensor};
+use jointbench_instrument::{Bench, Fault};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::Receiver;
+
+pub(super) struct Session<'a> {
+    pub bench: &'a mut Bench,
+    pub plan: &'a Plan,
+    pub journal: Journal<'a>,
+    pub controls: &'a Receiver<Control>,
+    pub guard: Guard,
+    pub pace: Pace,
+    pub warm: Option<SteadyWatch>,
+    /// Decided at arming, when it is known what the bench can measure.
+    pub columns: Option<Columns>,
+    pub commanded: Commanded,
+    pub held: Held,
+    pub beat: Beat,
+    pub wish: Option<Wish>,
+    /// Whether the drive may hold torque: securing has something to ramp down.
+    pub armed: bool,
+    /// The latest reading of the joint.
+    pub joint: Option<JointReading>,
+    /// Time of the newest row, which the next one has to exceed.
+    pub row_s: f64,
+    pub next_segment: u32,
+    /// Replies that were missed and asked for again in this step.
+    pub recoveries: u32,
+}
+
+/// What the instruments were told last.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Commanded {
+    pub velocity_rad_s: f64,
+    pub brake_a: f64,
+    pub brake_at_s: f64,
+}
+
+/// Readings that are taken seldom and held.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Held {
+    pub temperature_c: Option<f64>,
+    pub brake_a: Option<f64>,
+    pub next_s: f64,
+    /// Readings in a row that found the supply unable to hold the commanded current.
+    pub unregulated: u32,
+}
+
+/// The control period.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beat {
+    pub period_s: f64,
+    pub next_s: f64,
+    pub late: u64,
+}
+
+/// What a person asked for that a step cannot do by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wish {
+    Pause,
+    Resume,
+}
+
+impl<'a> Session<'a> {
+    pub fn new(
+        bench: &'a mut Bench,
+        plan: &'a Plan,
+        run: RunId,
+        controls: &'a Receiver<Control>,
+        recorder: &'a mut dyn Recorder,
+    ) -> Self {
+        let now_s = bench.clock.now_s();
+        Self {
+            plan,
+            journal: Journal::new(run, now_s, recorder),
+            controls,
+            guard: Guard::new(bench.limits, bench.constants),
+            pace: Pace::new(plan),
+            warm: plan.steady.map(SteadyWatch::new),
+            columns: None,
+            commanded: Commanded::default(),
+            held: Held::default(),
+            beat: Beat { period_s: 1.0 / plan.rate_hz, next_s: now_s, late: 0 },
+            wish: None,
+            armed: false,
+            joint: None,
+            row_s: f64::NEG_INFINITY,
+            next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
+            recoveries: 0,
+            bench,
+        }
+    }
+
+    pub fn enter(&mut self, transition: Transition) -> Result<(), Ending> {
+        self.journal.enter(self.bench.clock.now_s(), transition)
+    }
+
+    pub fn note(&mut self, text: impl Into<String>) {
+        let now_s = self.bench.clock.now_s();
+        self.journal.tell(now_s, EventKind::Note { text: text.into() });
+    }
+
+    /// Work that may panic: what it leaves behind is only looked at by securing, which trusts nothing.
+    pub fn caught(&mut self, work: impl FnOnce(&mut Self) -> Result<(), Ending>) -> Result<(), Ending> {
+        catch_unwind(AssertUnwindSafe(|| work(self))).unwrap_or_else(|panic| Err(Ending::Panicked(panic_text(&*panic))))
+    }
+
+    pub fn ask_joint<T>(
+        &mut self,
+        request: impl FnMut(&mut (dyn JointController + 'static)) -> Result<T, Fault>,
+    ) -> Result<T, Ending> {
+        let now_s = self.bench.clock.now_s();
+        let Self { bench, journal, recoveries, .. } = self;
+        ask(bench.joint.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble))
+            .map_err(Ending::JointFault)
+    }
+
+    /// `None` where the bench has no brake.
+    pub fn ask_brake<T>(
+        &mut self,
+        request: impl FnMut(&mut (dyn CurrentSource + 'static)) -> Result<T, Fault>,
+    ) -> Result<Option<T>, Ending> {
+        let now_s = self.bench.clock.now_s();
+        let Self { bench, journal, recoveries, .. } = self;
+        let Some(brake) = &mut bench.brake else { return Ok(None) };
+        ask(brake.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble))
+            .map(Some)
+            .map_err(Ending::OtherFault)
+    }
+
+    /// `None` where the bench has no torque sensor.
+    pub fn ask_torque_sensor<T>(
+        &mut self,
+        request: impl FnMut(&mut (dyn TorqueSensor + 'static)) -> Result<T, Fault>,
+    ) -> Result<Option<T>, Ending> {
+        let now_s = self.bench.clock.now_s();
+        let Self { bench, journal, recoveries, .. } = self;
+        let Some(sensor) = &mut bench.torque_sensor else { return Ok(None) };
+        ask(sensor.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble))
+            .map(Some)
+            .map_err(Ending::OtherFault)
+    }
+}
+
+fn tell(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, trouble: Trouble) {
+    *recoveries += u32::from(trouble.recovered);
+    journal.tell(now_s, EventKind::Fault { fault: trouble.fault, recovered: trouble.recovered });
+}
+
+pub(super) fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".to_owned())
+}
+
+/// Name and port of an instrument, for a fault that the engine itself finds.
+pub(super) fn reported<I: Instrument + ?Sized>(instrument: &I, what: impl Into<String>) -> Fault {
+    jointbench_instrument::FaultKind::Reported { what: what.into() }.at(instrument.name(), instrument.port())
+}

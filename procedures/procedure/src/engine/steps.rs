@@ -1,0 +1,99 @@
+//! The steps of a plan, one after the other. A step's end is a checkpoint.
+
+use super::ending::Ending;
+use super::session::{Session, Wish};
+use crate::event::EventKind;
+use crate::plan::{Phase, Step};
+
+/// How a step was left.
+enum Left {
+    Done,
+    Paused,
+}
+
+impl Session<'_> {
+    pub(super) fn run_steps(&mut self) -> Result<(), Ending> {
+        let plan = self.plan;
+        for (index, step) in plan.steps.iter().enumerate() {
+            if step.phase == Phase::WarmUp && self.warm.as_ref().is_some_and(|watch| watch.is_steady()) {
+                self.pace.step_skipped();
+                continue;
+            }
+            self.run_step(index, step)?;
+            if step.phase == Phase::WarmUp {
+                self.tell_warmth(index);
+            }
+        }
+        Ok(())
+    }
+
+    /// Once through the step, and again from its beginning after every pause.
+    fn run_step(&mut self, index: usize, step: &Step) -> Result<(), Ending> {
+        let start_rad = self.joint.map(|reading| reading.motor_position.0);
+        let mut segment = step.segment;
+        // The brake keeps what a pause has left, until the repeated step asks for more: it is approached from below.
+        let mut least_brake_a = 0.0;
+        while let Left::Paused = self.attempt(index, step, segment, least_brake_a)? {
+            least_brake_a = self.pause(step, start_rad)?;
+            // A segment is one unbroken stretch of the run table.
+            segment = self.next_segment;
+            self.next_segment += 1;
+        }
+        Ok(())
+    }
+
+    fn attempt(&mut self, index: usize, step: &Step, segment: u32, mut least_brake_a: f64) -> Result<Left, Ending> {
+        let start_s = self.beat.next_s.max(self.bench.clock.now_s());
+        (self.beat.late, self.recoveries) = (0, 0);
+        let rows_before = self.journal.rows();
+        self.pace.step_started(index, &step.label, start_s);
+        let label = step.label.clone();
+        self.journal.tell(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
+        let (duration_s, plateau_rad_s) = (step.duration_s(), step.velocity.largest());
+        loop {
+            let now_s = self.wait();
+            let t_s = now_s - start_s;
+            if t_s >= duration_s - 0.5 * self.beat.period_s {
+                break;
+            }
+            let planned_a = step.brake.at(t_s);
+            least_brake_a = if planned_a >= least_brake_a { 0.0 } else { least_brake_a };
+            let velocity_rad_s = step.velocity.at(t_s);
+            self.tick(now_s, velocity_rad_s, planned_a.max(least_brake_a), Some((segment, step.repeat)))?;
+            if let (Some(watch), Some(joint)) = (&mut self.warm, self.joint)
+                && step.phase == Phase::WarmUp
+                && velocity_rad_s.abs() >= plateau_rad_s
+            {
+                watch.sample(now_s, joint.motor_current.0, self.held.temperature_c);
+            }
+            if self.wish.take() == Some(Wish::Pause) {
+                return Ok(Left::Paused);
+            }
+        }
+        // The tick that was waited for belongs to the next step.
+        self.beat.next_s -= self.beat.period_s;
+        let now_s = self.bench.clock.now_s();
+        self.pace.step_done(now_s);
+        let (rows, late_ticks) = (self.journal.rows() - rows_before, self.beat.late);
+        self.journal.tell(now_s, EventKind::StepFinished { step: index, segment, rows, late_ticks });
+        self.journal.commit(now_s)?;
+        Ok(Left::Done)
+    }
+
+    fn tell_warmth(&mut self, index: usize) {
+        let Some(watch) = &mut self.warm else { return };
+        watch.step_done();
+        let Some(drift) = watch.drift() else { return };
+        let drift = format!(
+            "temperature drifts by {:.2} °C/min, current by {:.1} %/min",
+            drift.temperature_c_per_min,
+            100.0 * drift.current_share_per_min
+        );
+        let last = self.plan.steps.get(index + 1).is_none_or(|next| next.phase != Phase::WarmUp);
+        match (watch.is_steady(), last) {
+            (true, _) => self.note(format!("warm: {drift}")),
+            (false, true) => self.note(format!("not yet steady at the end of the warm-up: {drift}")),
+            (false, false) => {}
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! One control period: obey, command, feel, check, keep.
+
+use super::arm::link_position_rad;
+use super::ending::Ending;
+use super::session::{Session, Wish, reported};
+use crate::columns::{Moment, VELOCITY_STEP_RAD_S, to_time_step};
+use crate::event::{Control, EventKind};
+use crate::guard::Sample;
+use crate::state::{RunState, Transition};
+use jointbench_instrument::FaultKind;
+use jointbench_instrument::roles::Regulation;
+use jointbench_instrument::units::{Amperes, RadPerSec};
+use std::sync::mpsc::TryRecvError;
+
+/// A supply needs up to 118 ms for a new current (scpi-current-source, timing): more commands would only queue.
+const BRAKE_EVERY_S: f64 = 0.1;
+/// Temperature and supply are read this often and held in between.
+const SLOW_EVERY_S: f64 = 0.5;
+/// Readings in a row that find the supply out of regulation before it counts: CV for more than 0.5 s at a commanded
+/// CC (bench-physics, section 5); a rising current needs the full voltage for a moment.
+const UNREGULATED_READINGS: u32 = 3;
+/// A link that has to be recovered more often than this in one step is not worth trusting.
+const RECOVERIES_PER_STEP: u32 = 3;
+
+impl Session<'_> {
+    /// Waits for the next tick and tells its time.
+    pub(super) fn wait(&mut self) -> f64 {
+        self.bench.clock.sleep_until_s(self.beat.next_s);
+        let now_s = self.bench.clock.now_s();
+        if now_s > self.beat.next_s + self.beat.period_s {
+            self.beat.late += 1;
+        }
+        self.beat.next_s = (self.beat.next_s + self.beat.period_s).max(now_s);
+        now_s
+    }
+
+    /// `keep` names segment and repeat of the row; without it the row is shown and forgotten.
+    pub(super) fn tick(
+        &mut self,
+        now_s: f64,
+        velocity_rad_s: f64,
+        brake_a: f64,
+        keep: Option<(u32, u32)>,
+    ) -> Result<(), Ending> {
+        self.obey(now_s)?;
+        self.command_brake(now_s, brake_a)?;
+        self.command_velocity(velocity_rad_s)?;
+        let moment = self.feel(now_s)?;
+        self.check(now_s, &moment)?;
+        self.keep(now_s, &moment, keep);
+        if self.journal.state() != RunState::Securing {
+            self.journal.commit_if_due(now_s)?;
+        }
+        Ok(())
+    }
+
+    fn obey(&mut self, now_s: f64) -> Result<(), Ending> {
+        loop {
+            let control = match self.controls.try_recv() {
+                Ok(control) => control,
+                Err(TryRecvError::Empty) => return Ok(()),
+                Err(TryRecvError::Disconnected) if self.journal.state() == RunState::Securing => return Ok(()),
+                Err(TryRecvError::Disconnected) => return Err(Ending::Abandoned),
+            };
+            self.journal.tell(now_s, EventKind::Control { control });
+            match control {
+                Control::EStop => return Err(Ending::EStopped),
+                Control::Abort => return Err(Ending::Aborted),
+                Control::Stop if self.journal.state() == RunState::Securing => {}
+                Control::Stop => return Err(Ending::Stopped),
+                Control::Pause => self.wish_for(Wish::Pause, Transition::Pause),
+                Control::Resume => self.wish_for(Wish::Resume, Transition::Resume),
+            }
+        }
+    }
+
+    /// A wish that the state does not allow is told and forgotten.
+    fn wish_for(&mut self, wish: Wish, transition: Transition) {
+        match self.journal.state().after(transition) {
+            Ok(_) => self.wish = Some(wish),
+            Err(illegal) => self.note(illegal.to_string()),
+        }
+    }
+
+    fn command_velocity(&mut self, velocity_rad_s: f64) -> Result<(), Ending> {
+        let velocity_rad_s = (velocity_rad_s / VELOCITY_STEP_RAD_S).round() * VELOCITY_STEP_RAD_S;
+        self.guard.check_velocity(velocity_rad_s).map_err(Ending::CommandRefused)?;
+        let recovered_before = self.recoveries;
+        // Sent on every tick: it feeds the drive's own watchdog.
+        self.ask_joint(|joint| joint.set_velocity(RadPerSec(velocity_rad_s)))?;
+        self.commanded.velocity_rad_s = velocity_rad_s;
+        self.trust_joint(recovered_before)
+    }
+
+    fn command_brake(&mut self, now_s: f64, brake_a: f64) -> Result<(), Ending> {
+        let Some(brake) = &self.bench.brake else { return Ok(()) };
+        let brake_a = match brake.resolution() {
+            Some(step) => (brake_a / step.0).round() * step.0,
+            None => brake_a,
+        };
+        let before = self.commanded;
+        if brake_a == before.brake_a || now_s < before.brake_at_s + BRAKE_EVERY_S {
+            return Ok(());
+        }
+        self.guard.check_brake(before.brake_a, brake_a).map_err(Ending::CommandRefused)?;
+        self.commanded.brake_a = brake_a;
+        self.commanded.brake_at_s = now_s;
+        self.ask_brake(|brake| brake.set_current(Amperes(brake_a)))?;
+        Ok(())
+    }
+
+    fn feel(&mut self, now_s: f64) -> Result<Moment, Ending> {
+        let recovered_before = self.recoveries;
+        let joint = self.ask_joint(|joint| joint.read())?;
+        self.trust_joint(recovered_before)?;
+        let link_torque_nm = self.ask_torque_sensor(|sensor| sensor.read())?.map(|torque| torque.0);
+        if now_s >= self.held.next_s {
+            self.held.next_s = now_s + SLOW_EVERY_S;
+            self.feel_slowly()?;
+        }
+        self.joint = Some(joint);
+        Ok(Moment {
+            time_s: to_time_step(joint.at_s - self.journal.started_s),
+            joint,
+            link_torque_nm,
+            temperature_c: self.held.temperature_c,
+            brake_a: self.held.brake_a.map(|measured_a| (measured_a, self.commanded.brake_a)),
+            velocity_setpoint_rad_s: self.commanded.velocity_rad_s,
+        })
+    }
+
+    fn feel_slowly(&mut self) -> Result<(), Ending> {
+        self.check_drive()?;
+        if let Some(reading) = self.ask_brake(|brake| brake.read())? {
+            self.held.brake_a = Some(reading.current.0);
+            let loaded = self.commanded.brake_a > 0.02 * self.bench.constants.brake_rated_current_a;
+            let holds = !loaded || reading.regulation == Regulation::ConstantCurrent;
+            self.held.unregulated = if holds { 0 } else { self.held.unregulated + 1 };
+            if let Some(brake) = &self.bench.brake
+                && self.held.unregulated >= UNREGULATED_READINGS
+            {
+                let what = format!(
+                    "the supply does not hold {:.3} A ({:?} at {:.1} V): is the coil too hot or disconnected?",
+                    self.commanded.brake_a, reading.regulation, reading.voltage.0
+                );
+                return Err(Ending::OtherFault(reported(brake.as_ref(), what)));
+            }
+        }
+        Ok(())
+    }
+
+    /// The drive still holds torque and reports no error.
+    fn check_drive(&mut self) -> Result<(), Ending> {
+        let health = self.ask_joint(|joint| joint.health())?;
+        if !health.armed || !health.errors.is_empty() {
+            let what = format!("the drive gave up in mid-run: {}", health.errors.join(", "));
+            return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
+        }
+        self.held.temperature_c = health.temperature.map(|temperature| temperature.0);
+        Ok(())
+    }
+
+    /// While a link was being recovered nobody fed the drive's watchdog.
+    fn trust_joint(&mut self, recovered_before: u32) -> Result<(), Ending> {
+        if self.recoveries == recovered_before {
+            return Ok(());
+        }
+        if self.recoveries > RECOVERIES_PER_STEP {
+            let what = format!("{} replies missed within one step; check cable and shield", self.recoveries);
+            return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
+        }
+        self.check_drive()
+    }
+
+    fn check(&mut self, now_s: f64, moment: &Moment) -> Result<(), Ending> {
+        let joint = &moment.joint;
+        if !joint.motor_position.0.is_finite() || !joint.link_position.is_none_or(|position| position.0.is_finite()) {
+            let kind = FaultKind::Garbled { what: "a position that is not a number".into() };
+            return Err(Ending::JointFault(kind.at(self.bench.joint.name(), self.bench.joint.port())));
+        }
+        let sample = Sample {
+            at_s: now_s,
+            motor_velocity_rad_s: joint.motor_velocity.0,
+            motor_current_a: joint.motor_current.0,
+            link_position_rad: link_position_rad(joint, self.bench.constants.gear_ratio),
+            link_torque_nm: moment.link_torque_nm,
+            temperature_c: moment.temperature_c,
+            brake_current_a: moment.brake_a.map(|(measured_a, _)| measured_a),
+        };
+        self.guard.check_sample(&sample).map_err(Ending::SampleRefused)
+    }
+
+    fn keep(&mut self, now_s: f64, moment: &Moment, keep: Option<(u32, u32)>) {
+        // A reading that is not newer than the row before is that row again.
+        let Some(columns) = self.columns.as_mut().filter(|_| moment.time_s > self.row_s) else { return };
+        self.row_s = moment.time_s;
+        let (segment, repeat) = keep.unwrap_or_default();
+        let row = columns.row(moment, segment, repeat);
+        if keep.is_some() {
+            self.journal.keep(row);
+        }
+        let (pace, started_s) = (&self.pace, self.journal.started_s);
+        self.journal.show(now_s, row, || pace.progress(started_s, now_s, keep.is_some()));
+    }
+}

@@ -1,0 +1,98 @@
+//! The journal of a run: what happened, in order, beside the rows that it tells of.
+
+use crate::state::RunState;
+use jointbench_instrument::roles::Identity;
+use jointbench_instrument::{Breach, Fault};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What securing has reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Safe {
+    /// Commanded and read back: drive disarmed, shaft at rest, no brake current.
+    SafeVerified,
+    /// Every command was accepted, but not all of it could be read back.
+    SafeCommanded,
+    /// An instrument took no command or contradicts it. A person has to look before the next run.
+    UnsafeUnknown,
+}
+
+/// What a person can ask of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Control {
+    /// Ramp to rest and hold.
+    Pause,
+    /// Repeat the interrupted step and go on.
+    Resume,
+    /// Orderly end: the brake is ramped down while the shaft turns, then the shaft comes to rest.
+    Stop,
+    /// End at once: shaft and brake ramp down together, as fast as the ramps of the plan allow.
+    Abort,
+    /// Drive torque off before anything else.
+    #[serde(rename = "estop")]
+    EStop,
+}
+
+/// One entry of the journal. The store adds the sequence number.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// Since the start of the run, on the bench's clock; the same zero as `time_s` of the rows.
+    pub at_s: f64,
+    #[serde(flatten)]
+    pub kind: EventKind,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum EventKind {
+    State {
+        state: RunState,
+    },
+    Identified {
+        instrument: String,
+        port: String,
+        identity: Identity,
+    },
+    /// `step` counts from 0. A step that is repeated after a pause gets a new `segment`.
+    StepStarted {
+        step: usize,
+        segment: u32,
+        repeat: u32,
+        label: String,
+    },
+    /// `late_ticks`: set-points that came more than one period after their time.
+    StepFinished {
+        step: usize,
+        segment: u32,
+        rows: u64,
+        late_ticks: u64,
+    },
+    Control {
+        control: Control,
+    },
+    Fault {
+        fault: Fault,
+        recovered: bool,
+    },
+    Breach {
+        breach: Breach,
+    },
+    Note {
+        text: String,
+    },
+    Safe {
+        safe: Safe,
+    },
+}
+
+impl fmt::Display for Safe {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Safe::SafeVerified => "safe, verified by reading back",
+            Safe::SafeCommanded => "safe as commanded, not read back",
+            Safe::UnsafeUnknown => "not known to be safe",
+        })
+    }
+}

@@ -1,0 +1,255 @@
+//! The last word: no command and no sample passes the engine without it.
+
+use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::limits::Limited;
+use jointbench_instrument::{Breach, Limits};
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+/// A measured current or speed may exceed its set limit by this before it trips, so that noise at the set limit does
+/// not: 0.62 A over 0.60 A (bench-physics, section 5).
+const TRIP_OVER_SET: f64 = 0.62 / 0.60;
+/// The brake may take more than its continuous power for a moment: 1200 W over 350 W (HB-1750M, bench-physics, section 1).
+const PEAK_OVER_CONTINUOUS: f64 = 1200.0 / 350.0;
+/// The continuous power is judged on this average (bench-physics, section 5).
+const POWER_WINDOW_S: f64 = 10.0;
+/// Below this link speed a falling brake current freezes poles into the rotor: 1 rpm (bench-physics, section 3).
+pub const STANDSTILL_LINK_RAD_S: f64 = TAU / 60.0;
+/// The largest share by which the brake current may fall at standstill.
+const STANDSTILL_DECREASE: f64 = 0.2;
+
+/// Why the guard ends a run.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    #[error(transparent)]
+    Breach(#[from] Breach),
+    #[error(
+        "brake current from {from_a:.3} A to {to_a:.3} A at standstill would leave the brake cogging: turn the shaft first"
+    )]
+    BrakeAtStandstill { from_a: f64, to_a: f64 },
+    #[error(
+        "link position {position_rad:.3} rad is beyond the range of ±{range_rad:.3} rad: turn the joint back by hand or with its own tool"
+    )]
+    BeyondRange { position_rad: f64, range_rad: f64 },
+}
+
+/// What is checked of one tick. Quantities that nobody measures are `None`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// On the bench's clock.
+    pub at_s: f64,
+    pub motor_velocity_rad_s: f64,
+    pub motor_current_a: f64,
+    pub link_position_rad: f64,
+    pub link_torque_nm: Option<f64>,
+    pub temperature_c: Option<f64>,
+    pub brake_current_a: Option<f64>,
+}
+
+/// Watches one run.
+#[derive(Debug, Clone)]
+pub struct Guard {
+    limits: Limits,
+    constants: JointConstants,
+    power: Power,
+    link_speed_rad_s: f64,
+    brake_a: f64,
+    /// The strongest brake current since the link last turned: what its poles remember.
+    magnetised_a: f64,
+}
+
+impl Guard {
+    pub fn new(limits: Limits, constants: JointConstants) -> Self {
+        let power = Power { samples: VecDeque::new(), energy_j: 0.0, last_s: None };
+        Self { limits, constants, power, link_speed_rad_s: 0.0, brake_a: 0.0, magnetised_a: 0.0 }
+    }
+
+    /// Asked before a velocity set-point is sent.
+    pub fn check_velocity(&self, motor_velocity_rad_s: f64) -> Result<(), Refusal> {
+        Ok(self.limits.check(Limited::MotorVelocity, motor_velocity_rad_s)?)
+    }
+
+    /// Asked before a brake current is sent.
+    pub fn check_brake(&mut self, from_a: f64, to_a: f64) -> Result<(), Refusal> {
+        self.limits.check(Limited::BrakeCurrent, to_a)?;
+        self.magnetised_a = self.magnetised_a.max(from_a);
+        if !self.is_turning() && to_a < (1.0 - STANDSTILL_DECREASE) * self.magnetised_a {
+            return Err(Refusal::BrakeAtStandstill { from_a: self.magnetised_a, to_a });
+        }
+        self.brake_a = to_a;
+        self.magnetised_a = if self.is_turning() { to_a } else { self.magnetised_a.max(to_a) };
+        Ok(())
+    }
+
+    /// Asked with every sample.
+    pub fn check_sample(&mut self, sample: &Sample) -> Result<(), Refusal> {
+        self.check_trip(Limited::MotorVelocity, sample.motor_velocity_rad_s, TRIP_OVER_SET)?;
+        self.check_trip(Limited::MotorCurrent, sample.motor_current_a, 1.0)?;
+        if let Some(torque_nm) = sample.link_torque_nm {
+            self.check_trip(Limited::LinkTorque, torque_nm, 1.0)?;
+        }
+        if let Some(temperature_c) = sample.temperature_c {
+            self.check_trip(Limited::Temperature, temperature_c, 1.0)?;
+        }
+        if let Some(current_a) = sample.brake_current_a {
+            self.check_trip(Limited::BrakeCurrent, current_a, TRIP_OVER_SET)?;
+        }
+        if let Some(range_rad) = self.constants.link_range_rad {
+            let position_rad = sample.link_position_rad;
+            // A position that is not a number breaks the range, too.
+            let inside = position_rad.abs() <= range_rad;
+            if !inside {
+                return Err(Refusal::BeyondRange { position_rad, range_rad });
+            }
+        }
+        self.link_speed_rad_s = sample.motor_velocity_rad_s / self.constants.gear_ratio;
+        if self.is_turning() {
+            self.magnetised_a = self.brake_a;
+        }
+        if let Some(torque_nm) = sample.link_torque_nm {
+            let power_w = (torque_nm * self.link_speed_rad_s).abs();
+            self.check_trip(Limited::BrakePower, power_w, PEAK_OVER_CONTINUOUS)?;
+            let average_w = self.power.average_w(sample.at_s, power_w);
+            self.check_trip(Limited::BrakePower, average_w, 1.0)?;
+        }
+        Ok(())
+    }
+
+    fn is_turning(&self) -> bool {
+        self.link_speed_rad_s.abs() >= STANDSTILL_LINK_RAD_S
+    }
+
+    fn check_trip(&self, quantity: Limited, value: f64, margin: f64) -> Result<(), Breach> {
+        let limit = margin * self.limits.of(quantity);
+        if value.abs() <= limit { Ok(()) } else { Err(Breach { quantity, value, limit }) }
+    }
+}
+
+/// The mean power of the last ten seconds; before they are full, as if nothing had been before.
+#[derive(Debug, Clone)]
+struct Power {
+    /// When, and how much energy since the sample before.
+    samples: VecDeque<(f64, f64)>,
+    energy_j: f64,
+    last_s: Option<f64>,
+}
+
+impl Power {
+    fn average_w(&mut self, at_s: f64, power_w: f64) -> f64 {
+        let energy_j = power_w * (at_s - self.last_s.unwrap_or(at_s));
+        self.last_s = Some(at_s);
+        self.samples.push_back((at_s, energy_j));
+        self.energy_j += energy_j;
+        while let Some((_, old_j)) = self.samples.pop_front_if(|(then_s, _)| *then_s < at_s - POWER_WINDOW_S) {
+            self.energy_j -= old_j;
+        }
+        self.energy_j / POWER_WINDOW_S
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        motor_velocity_rad_s: 200.0,
+        motor_current_a: 5.0,
+        link_torque_nm: 18.0,
+        temperature_c: 70.0,
+        brake_current_a: 0.6,
+        brake_power_w: 350.0,
+    };
+    const CONSTANTS: JointConstants = JointConstants {
+        torque_constant_nm_per_a: 0.08,
+        gear_ratio: 2.0,
+        rotor_inertia_kg_m2: 1e-5,
+        brake_compliance_v: 45.0,
+        brake_rated_current_a: 0.6,
+        brake_rated_torque_nm: 13.0,
+        link_range_rad: Some(30.0),
+    };
+    const QUIET: Sample = Sample {
+        at_s: 0.0,
+        motor_velocity_rad_s: 0.0,
+        motor_current_a: 0.0,
+        link_position_rad: 0.0,
+        link_torque_nm: Some(0.0),
+        temperature_c: Some(25.0),
+        brake_current_a: Some(0.0),
+    };
+
+    fn guard() -> Guard {
+        Guard::new(LIMITS, CONSTANTS)
+    }
+
+    fn turning(guard: &mut Guard, motor_velocity_rad_s: f64) {
+        guard.check_sample(&Sample { motor_velocity_rad_s, ..QUIET }).unwrap();
+    }
+
+    #[test]
+    fn every_quantity_trips_on_both_sides_and_on_nan() {
+        type Set = fn(&mut Sample, f64);
+        let quantities: [(Set, f64); 6] = [
+            (|s, v| s.motor_velocity_rad_s = v, 200.0 * TRIP_OVER_SET),
+            (|s, v| s.motor_current_a = v, 5.0),
+            (|s, v| s.link_torque_nm = Some(v), 18.0),
+            (|s, v| s.temperature_c = Some(v), 70.0),
+            (|s, v| s.brake_current_a = Some(v), 0.6 * TRIP_OVER_SET),
+            (|s, v| s.link_position_rad = v, 30.0),
+        ];
+        for (set, limit) in quantities {
+            for (value, passes) in [
+                (0.999 * limit, true),
+                (-0.999 * limit, true),
+                (1.001 * limit, false),
+                (-1.001 * limit, false),
+                (f64::NAN, false),
+            ] {
+                let mut sample = QUIET;
+                set(&mut sample, value);
+                assert_eq!(guard().check_sample(&sample).is_ok(), passes, "{sample:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn commands_are_held_to_the_set_limit() {
+        assert!(guard().check_velocity(-200.0).is_ok());
+        assert!(guard().check_velocity(200.1).is_err());
+        assert!(guard().check_velocity(f64::NAN).is_err());
+        assert!(guard().check_brake(0.0, 0.61).is_err());
+        assert!(guard().check_brake(0.0, f64::NAN).is_err());
+    }
+
+    /// Torque and link speed give 17.5 Nm · 40 rad/s = 700 W: twice the continuous rating, allowed for five seconds.
+    #[test]
+    fn the_power_hyperbola_trips_on_its_average() {
+        let mut guard = guard();
+        let hot = Sample { motor_velocity_rad_s: 80.0, link_torque_nm: Some(17.5), ..QUIET };
+        let tripped_s = (0..4000)
+            .map(|tick| f64::from(tick) * 0.004)
+            .find(|at_s| guard.check_sample(&Sample { at_s: *at_s, ..hot }).is_err());
+        assert!(tripped_s.is_some_and(|s| (s - 5.0).abs() < 0.02), "{tripped_s:?}");
+    }
+
+    #[test]
+    fn a_power_peak_trips_at_once() {
+        let strong = Limits { link_torque_nm: 100.0, ..LIMITS };
+        let peak = Sample { motor_velocity_rad_s: 190.0, link_torque_nm: Some(12.7), ..QUIET };
+        let refused = Guard::new(strong, CONSTANTS).check_sample(&peak).unwrap_err();
+        assert!(matches!(refused, Refusal::Breach(Breach { quantity: Limited::BrakePower, .. })), "{refused}");
+    }
+
+    #[test]
+    fn a_brake_falls_only_while_the_shaft_turns() {
+        let mut guard = guard();
+        assert!(guard.check_brake(0.0, 0.5).is_ok());
+        assert!(guard.check_brake(0.5, 0.41).is_ok(), "within 20 %");
+        let refused = guard.check_brake(0.41, 0.39).unwrap_err();
+        assert_eq!(refused, Refusal::BrakeAtStandstill { from_a: 0.5, to_a: 0.39 }, "small steps do not add up unseen");
+        turning(&mut guard, 2.0);
+        assert!(guard.check_brake(0.41, 0.1).is_ok());
+        turning(&mut guard, 0.1);
+        assert!(guard.check_brake(0.1, 0.09).is_ok(), "what was magnetised before turning is forgotten");
+    }
+}

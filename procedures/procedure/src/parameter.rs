@@ -1,0 +1,140 @@
+//! What a user may choose about a procedure: the form of the dashboard, the check of a request.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+
+/// One choice of a procedure, in SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Parameter {
+    pub name: &'static str,
+    pub title: &'static str,
+    /// SI symbol; empty for a share or a count.
+    pub unit: &'static str,
+    pub default: f64,
+    pub min: f64,
+    pub max: f64,
+    #[serde(rename = "type")]
+    pub kind: ParameterKind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParameterKind {
+    Number,
+    Integer,
+}
+
+impl Parameter {
+    /// A quantity within `[min, max]`.
+    pub const fn number(
+        name: &'static str,
+        title: &'static str,
+        unit: &'static str,
+        default: f64,
+        [min, max]: [f64; 2],
+    ) -> Self {
+        Self { name, title, unit, default, min, max, kind: ParameterKind::Number }
+    }
+
+    /// A whole number within `[min, max]`.
+    pub const fn count(name: &'static str, title: &'static str, default: u32, [min, max]: [u32; 2]) -> Self {
+        let kind = ParameterKind::Integer;
+        Self { name, title, unit: "", default: default as f64, min: min as f64, max: max as f64, kind }
+    }
+
+    fn check(&self, given: &Value) -> Result<f64, ParameterFault> {
+        let fault = || ParameterFault::OutOfRange {
+            name: self.name,
+            given: given.to_string(),
+            kind: match self.kind {
+                ParameterKind::Number => "a number",
+                ParameterKind::Integer => "a whole number",
+            },
+            range: format!("{} to {} {}", self.min, self.max, self.unit).trim_end().to_owned(),
+        };
+        let value = given.as_f64().ok_or_else(fault)?;
+        let whole = self.kind == ParameterKind::Number || value.fract() == 0.0;
+        if whole && (self.min..=self.max).contains(&value) { Ok(value) } else { Err(fault()) }
+    }
+}
+
+/// Why a choice is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ParameterFault {
+    #[error("parameter {name} = {given}: expected {kind} from {range}")]
+    OutOfRange { name: &'static str, given: String, kind: &'static str, range: String },
+    #[error("parameter {name} is not known: expected one of {}", .known.join(", "))]
+    Unknown { name: String, known: Vec<&'static str> },
+}
+
+/// Checked values: every parameter of the schema is there and within its range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values(BTreeMap<&'static str, f64>);
+
+impl Values {
+    /// Fills in the defaults and checks what was given.
+    pub fn parse(schema: &[Parameter], given: &Map<String, Value>) -> Result<Self, ParameterFault> {
+        if let Some(name) = given.keys().find(|name| schema.iter().all(|p| p.name != *name)) {
+            let known = schema.iter().map(|p| p.name).collect();
+            return Err(ParameterFault::Unknown { name: name.clone(), known });
+        }
+        let value = |p: &Parameter| given.get(p.name).map_or(Ok(p.default), |v| p.check(v)).map(|v| (p.name, v));
+        Ok(Self(schema.iter().map(value).collect::<Result<_, _>>()?))
+    }
+
+    /// # Panics
+    /// Where the schema has no such parameter: a programming error of the procedure.
+    pub fn number(&self, name: &str) -> f64 {
+        self.0[name]
+    }
+
+    /// # Panics
+    /// Where the schema has no such parameter: a programming error of the procedure.
+    pub fn count(&self, name: &str) -> u32 {
+        self.0[name] as u32
+    }
+
+    /// For the run's provenance: what was used, defaults included.
+    pub fn to_json(&self) -> Map<String, Value> {
+        self.0.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCHEMA: [Parameter; 2] = [
+        Parameter::number("top_speed_rad_s", "Highest motor speed", "rad/s", 180.0, [1.0, 1000.0]),
+        Parameter::count("repeats", "Repeats of the profile", 2, [2, 20]),
+    ];
+
+    fn parse(text: &str) -> Result<Values, String> {
+        Values::parse(&SCHEMA, &serde_json::from_str(text).unwrap()).map_err(|fault| fault.to_string())
+    }
+
+    #[test]
+    fn defaults_fill_what_is_not_given() {
+        let values = parse(r#"{"repeats": 3}"#).unwrap();
+        assert_eq!((values.number("top_speed_rad_s"), values.count("repeats")), (180.0, 3));
+    }
+
+    #[test]
+    fn a_refusal_names_parameter_value_and_range() {
+        for (given, said) in [
+            (r#"{"repeats": 2.5}"#, "parameter repeats = 2.5: expected a whole number from 2 to 20"),
+            (
+                r#"{"top_speed_rad_s": 2000}"#,
+                "parameter top_speed_rad_s = 2000: expected a number from 1 to 1000 rad/s",
+            ),
+            (
+                r#"{"top_speed_rad_s": "fast"}"#,
+                "parameter top_speed_rad_s = \"fast\": expected a number from 1 to 1000 rad/s",
+            ),
+            (r#"{"speed": 1}"#, "parameter speed is not known: expected one of top_speed_rad_s, repeats"),
+        ] {
+            assert_eq!(parse(given).unwrap_err(), said);
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! What a procedure decides: a list of steps with their set-points over time. Pure data; the engine acts on it.
+
+use crate::profile::Profile;
+use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::{Bench, Kind, Limits, Meta};
+use serde_json::{Map, Value};
+
+/// What a procedure may know about a bench before anything moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BenchFacts {
+    pub name: String,
+    pub simulated: bool,
+    pub limits: Limits,
+    pub constants: JointConstants,
+    pub has_torque_sensor: bool,
+    pub has_brake: bool,
+}
+
+impl BenchFacts {
+    pub fn of(bench: &Bench) -> Self {
+        Self {
+            name: bench.name.clone(),
+            simulated: bench.simulated,
+            limits: bench.limits,
+            constants: bench.constants,
+            has_torque_sensor: bench.torque_sensor.is_some(),
+            has_brake: bench.brake.is_some(),
+        }
+    }
+}
+
+/// Which part of a plan a step belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Skipped as soon as the joint is steady ([`Plan::steady`]).
+    WarmUp,
+    Measure,
+}
+
+/// One step: a checkpoint at its end, repeated from its beginning after a pause.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    pub label: String,
+    pub phase: Phase,
+    /// Number of the step in the run table, unique in a plan.
+    pub segment: u32,
+    /// Number of the repetition of the whole profile.
+    pub repeat: u32,
+    /// Motor-side velocity [rad/s] over the time of the step. Starts and ends at rest.
+    pub velocity: Profile,
+    /// Brake current [A] over the time of the step.
+    pub brake: Profile,
+}
+
+impl Step {
+    pub fn duration_s(&self) -> f64 {
+        self.velocity.duration_s().max(self.brake.duration_s())
+    }
+}
+
+/// When a joint counts as warm: judged over whole cycles of warm-up steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steady {
+    /// Steps that make one cycle; every cycle has the same speeds.
+    pub cycle_steps: usize,
+    /// Largest drift of the temperature.
+    pub temperature_c_per_min: f64,
+    /// Largest drift of the mean |motor current| as a share of itself.
+    pub current_share_per_min: f64,
+}
+
+/// A validated procedure, ready to run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Id of the procedure.
+    pub procedure: &'static str,
+    /// What was chosen, defaults included.
+    pub parameters: Map<String, Value>,
+    pub kind: Kind,
+    /// Facts for the run table, the baseline model among them.
+    pub meta: Meta,
+    /// Control rate: one row of the run table per tick.
+    pub rate_hz: f64,
+    /// Motor-side acceleration of the ramps that the engine adds (pause, resume, securing) [rad/s²].
+    pub acceleration_rad_s2: f64,
+    pub steps: Vec<Step>,
+    /// Ends the warm-up early. `None`: every step is run.
+    pub steady: Option<Steady>,
+}
+
+impl Plan {
+    /// Longest duration: without pauses, and with the whole warm-up.
+    pub fn duration_s(&self) -> f64 {
+        self.steps.iter().map(Step::duration_s).sum()
+    }
+
+    /// Highest motor-side speed [rad/s].
+    pub fn top_speed_rad_s(&self) -> f64 {
+        self.steps.iter().map(|step| step.velocity.largest()).fold(0.0, f64::max)
+    }
+
+    pub fn top_brake_current_a(&self) -> f64 {
+        self.steps.iter().map(|step| step.brake.largest()).fold(0.0, f64::max)
+    }
+
+    /// How far the motor goes from where it started: lowest and highest position [rad].
+    pub fn travel_rad(&self) -> (f64, f64) {
+        let (mut at, mut lowest, mut highest) = (0.0, 0.0_f64, 0.0_f64);
+        for step in &self.steps {
+            let integral = step.velocity.integral();
+            for moved in &integral {
+                lowest = lowest.min(at + moved);
+                highest = highest.max(at + moved);
+            }
+            at += integral.last().unwrap_or(&0.0);
+        }
+        (lowest, highest)
+    }
+}
+
+/// Why a procedure cannot be planned for a bench.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlanFault {
+    #[error(transparent)]
+    Parameter(#[from] crate::parameter::ParameterFault),
+    #[error("bench {bench} has no {role}: {cure}")]
+    MissingInstrument { bench: String, role: &'static str, cure: &'static str },
+    #[error("{what}: {cure}")]
+    Contradiction { what: String, cure: &'static str },
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    use super::*;
+
+    /// A plan of plateaus at 20 rad/s, alternating, each of the given length.
+    pub fn plan_of(durations_s: &[f64]) -> Plan {
+        let step = |(index, duration_s): (usize, &f64)| Step {
+            label: format!("step {index}"),
+            phase: Phase::Measure,
+            segment: index as u32,
+            repeat: 0,
+            velocity: Profile::plateau(if index % 2 == 0 { 20.0 } else { -20.0 }, 200.0, duration_s - 0.2),
+            brake: Profile::constant(0.0),
+        };
+        Plan {
+            procedure: "test",
+            parameters: Map::new(),
+            kind: Kind::Friction,
+            meta: Meta::default(),
+            rate_hz: 250.0,
+            acceleration_rad_s2: 200.0,
+            steps: durations_s.iter().enumerate().map(step).collect(),
+            steady: None,
+        }
+    }
+
+    #[test]
+    fn travel_and_duration_add_up() {
+        let plan = plan_of(&[1.0, 1.0, 2.0]);
+        assert!((plan.duration_s() - 4.0).abs() < 1e-12);
+        let (lowest, highest) = plan.travel_rad();
+        assert!(lowest.abs() < 1e-9 && (highest - 38.0).abs() < 1e-9, "{lowest} to {highest}");
+    }
+}

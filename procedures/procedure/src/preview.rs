@@ -1,0 +1,175 @@
+//! The dry run: what a plan would do to a bench, before anything moves.
+
+use crate::plan::{BenchFacts, Plan};
+use jointbench_instrument::limits::Limited;
+use serde::Serialize;
+
+/// What a person sees before a run is started.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Preview {
+    /// Longest duration, without pauses.
+    pub duration_s: f64,
+    pub steps: Vec<StepPreview>,
+    pub extremes: Vec<Extreme>,
+    pub setpoints: Setpoints,
+    pub checks: Vec<Check>,
+}
+
+impl Preview {
+    /// Whether the engine would start this plan.
+    pub fn is_allowed(&self) -> bool {
+        self.checks.iter().all(|check| check.ok)
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StepPreview {
+    pub label: String,
+    pub duration_s: f64,
+}
+
+/// The largest value that a plan commands, or is estimated to cause.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Extreme {
+    pub quantity: &'static str,
+    pub unit: &'static str,
+    pub value: f64,
+    /// `None`: the bench sets none.
+    pub limit: Option<f64>,
+    pub ok: bool,
+}
+
+/// The set-points as lines between points, exact.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Setpoints {
+    pub time_s: Vec<f64>,
+    pub motor_velocity_rad_s: Vec<f64>,
+    pub brake_current_a: Vec<f64>,
+}
+
+/// One condition of the start.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    pub name: &'static str,
+    pub ok: bool,
+    pub detail: String,
+    /// What to do where it is not met.
+    pub cure: Option<String>,
+}
+
+impl Plan {
+    pub fn preview(&self, facts: &BenchFacts) -> Preview {
+        Preview {
+            duration_s: self.duration_s(),
+            steps: self
+                .steps
+                .iter()
+                .map(|step| StepPreview { label: step.label.clone(), duration_s: step.duration_s() })
+                .collect(),
+            extremes: self.extremes(facts),
+            setpoints: self.setpoints(),
+            checks: self.checks(facts),
+        }
+    }
+
+    /// Speed, brake current and travel as commanded; link torque, brake power and motor current as estimated.
+    pub fn extremes(&self, facts: &BenchFacts) -> Vec<Extreme> {
+        let constants = &facts.constants;
+        let limited = |quantity: Limited, value: f64| Extreme {
+            quantity: quantity.name(),
+            unit: quantity.unit(),
+            value,
+            limit: Some(facts.limits.of(quantity)),
+            ok: facts.limits.check(quantity, value).is_ok(),
+        };
+        let (lowest, highest) = self.travel_rad();
+        let travel_rad = lowest.abs().max(highest.abs()) / constants.gear_ratio;
+        let mut power_w = 0.0_f64;
+        let mut torque_nm = 0.0_f64;
+        for step in &self.steps {
+            let brake_nm = brake_torque_bound_nm(step.brake.largest(), facts);
+            torque_nm = torque_nm.max(brake_nm);
+            power_w = power_w.max(brake_nm * step.velocity.largest() / constants.gear_ratio);
+        }
+        let steepest = self.steps.iter().map(|step| step.velocity.steepest()).fold(self.acceleration_rad_s2, f64::max);
+        let motor_nm = torque_nm / constants.gear_ratio + constants.rotor_inertia_kg_m2 * steepest;
+        let mut extremes = vec![
+            limited(Limited::MotorVelocity, self.top_speed_rad_s()),
+            limited(Limited::BrakeCurrent, self.top_brake_current_a()),
+            limited(Limited::LinkTorque, torque_nm),
+            limited(Limited::BrakePower, power_w),
+            limited(Limited::MotorCurrent, motor_nm / constants.torque_constant_nm_per_a),
+        ];
+        extremes.push(Extreme {
+            quantity: "link travel",
+            unit: "rad",
+            value: travel_rad,
+            limit: constants.link_range_rad,
+            ok: constants.link_range_rad.is_none_or(|range_rad| travel_rad <= range_rad),
+        });
+        extremes
+    }
+
+    fn checks(&self, facts: &BenchFacts) -> Vec<Check> {
+        let broken: Vec<String> = self
+            .extremes(facts)
+            .iter()
+            .filter(|extreme| !extreme.ok)
+            .map(|e| format!("{} {:.3} {} over {:.3}", e.quantity, e.value, e.unit, e.limit.unwrap_or(f64::INFINITY)))
+            .collect();
+        let needs_brake = self.top_brake_current_a() > 0.0;
+        vec![
+            Check {
+                name: "limits",
+                ok: broken.is_empty(),
+                detail: if broken.is_empty() { "all within the limits of the bench".into() } else { broken.join("; ") },
+                cure: (!broken.is_empty()).then(|| "choose lower speeds or loads, or another bench".into()),
+            },
+            Check {
+                name: "brake",
+                ok: facts.has_brake || !needs_brake,
+                detail: match (needs_brake, facts.has_brake) {
+                    (false, _) => "not needed",
+                    (true, true) => "there",
+                    (true, false) => "missing",
+                }
+                .into(),
+                cure: (needs_brake && !facts.has_brake).then(|| "connect a brake or plan without load".into()),
+            },
+            Check {
+                name: "rest",
+                ok: self.steps.iter().all(|step| step.velocity.at(0.0) == 0.0 && step.velocity.end() == 0.0),
+                detail: format!("{} steps, each from rest to rest", self.steps.len()),
+                cure: None,
+            },
+        ]
+    }
+
+    fn setpoints(&self) -> Setpoints {
+        let mut setpoints =
+            Setpoints { time_s: Vec::new(), motor_velocity_rad_s: Vec::new(), brake_current_a: Vec::new() };
+        let mut start_s = 0.0;
+        for step in &self.steps {
+            let knots = step.velocity.knots().iter().chain(step.brake.knots());
+            let mut times: Vec<f64> = knots.map(|(t_s, _)| *t_s).chain([step.duration_s()]).collect();
+            times.sort_by(f64::total_cmp);
+            times.dedup();
+            for t_s in times {
+                setpoints.time_s.push(start_s + t_s);
+                setpoints.motor_velocity_rad_s.push(step.velocity.at(t_s));
+                setpoints.brake_current_a.push(step.brake.at(t_s));
+            }
+            start_s += step.duration_s();
+        }
+        setpoints
+    }
+}
+
+/// An upper bound of the braking torque at a current [Nm].
+///
+/// The torque curve of a hysteresis brake lies up to 4.4 % above the straight line to its rating (at 0.9 of the rated
+/// current), its descending branch up to 8 % higher (bench-physics, section 2); 1.15 covers both.
+fn brake_torque_bound_nm(current_a: f64, facts: &BenchFacts) -> f64 {
+    let constants = &facts.constants;
+    1.15 * constants.brake_rated_torque_nm * current_a / constants.brake_rated_current_a
+}

@@ -1,0 +1,111 @@
+//! When a joint is warm: temperature and current no longer drift from one cycle of the warm-up to the next.
+
+use crate::plan::Steady;
+
+/// Watches the warm-up of one run. Only the settled part of each step counts.
+#[derive(Debug, Clone)]
+pub(crate) struct SteadyWatch {
+    rule: Steady,
+    current: Mean,
+    cycles: Vec<Mean>,
+    steps: usize,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    samples: f64,
+    time_s: f64,
+    current_a: f64,
+    temperature_c: f64,
+}
+
+impl Mean {
+    fn of(self, sum: f64) -> f64 {
+        sum / self.samples.max(1.0)
+    }
+}
+
+/// How fast the joint still changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Drift {
+    pub temperature_c_per_min: f64,
+    pub current_share_per_min: f64,
+}
+
+impl SteadyWatch {
+    pub fn new(rule: Steady) -> Self {
+        Self { rule, current: Mean::default(), cycles: Vec::new(), steps: 0 }
+    }
+
+    pub fn sample(&mut self, time_s: f64, motor_current_a: f64, temperature_c: Option<f64>) {
+        self.current.samples += 1.0;
+        self.current.time_s += time_s;
+        self.current.current_a += motor_current_a.abs();
+        self.current.temperature_c += temperature_c.unwrap_or(0.0);
+    }
+
+    pub fn step_done(&mut self) {
+        self.steps += 1;
+        if self.steps.is_multiple_of(self.rule.cycle_steps.max(1)) {
+            self.cycles.push(std::mem::take(&mut self.current));
+        }
+    }
+
+    /// The drift over the last two intervals between cycles; `None` before three cycles are done.
+    pub fn drift(&self) -> Option<Drift> {
+        let [.., first, _, last] = self.cycles[..] else { return None };
+        let minutes = (last.of(last.time_s) - first.of(first.time_s)) / 60.0;
+        let (before_a, after_a) = (first.of(first.current_a), last.of(last.current_a));
+        Some(Drift {
+            temperature_c_per_min: (last.of(last.temperature_c) - first.of(first.temperature_c)) / minutes,
+            current_share_per_min: (after_a - before_a) / after_a / minutes,
+        })
+    }
+
+    pub fn is_steady(&self) -> bool {
+        self.drift().is_some_and(|drift| {
+            drift.temperature_c_per_min.abs() <= self.rule.temperature_c_per_min
+                && drift.current_share_per_min.abs() <= self.rule.current_share_per_min
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A joint that warms up with a time constant of one minute, its friction falling by a fifth.
+    #[test]
+    fn an_exponential_warm_up_ends_where_its_slope_falls_below_the_bound() {
+        let rule = Steady { cycle_steps: 2, temperature_c_per_min: 1.0, current_share_per_min: 0.02 };
+        let mut watch = SteadyWatch::new(rule);
+        let mut ended_s = None;
+        for step in 0..60 {
+            for tick in 0..100 {
+                let time_s = f64::from(step) * 10.0 + f64::from(tick) * 0.1;
+                let cold = (-time_s / 60.0).exp();
+                let sign = if step % 2 == 0 { 1.0 } else { -1.0 };
+                watch.sample(time_s, sign * (0.8 + 0.2 * cold), Some(45.0 - 20.0 * cold));
+            }
+            watch.step_done();
+            if watch.is_steady() {
+                ended_s = Some(f64::from(step + 1) * 10.0);
+                break;
+            }
+        }
+        // 20 °C/min · exp(−t/60 s) is 1 °C/min at t = 180 s; the mean over three cycles looks 30 s back.
+        let ended_s = ended_s.unwrap();
+        assert!((180.0..=240.0).contains(&ended_s), "{ended_s}");
+    }
+
+    #[test]
+    fn two_cycles_say_nothing() {
+        let rule = Steady { cycle_steps: 1, temperature_c_per_min: 1.0, current_share_per_min: 1.0 };
+        let mut watch = SteadyWatch::new(rule);
+        for cycle in 0..2 {
+            watch.sample(f64::from(cycle), 1.0, None);
+            watch.step_done();
+        }
+        assert!(!watch.is_steady());
+    }
+}
