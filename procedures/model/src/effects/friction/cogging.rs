@@ -1,0 +1,37 @@
+//! Cogging.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Cogging;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "cogging",
+    kind: Kind::Friction,
+    title: "Cogging",
+    sentence: "The magnets of the rotor are drawn to the teeth of the stator: a torque that repeats with the motor's angle.",
+    formula: "a·cos(h·θ_m) + b·sin(h·θ_m), h found",
+    source: "Hanselman, Brushless Permanent Magnet Motor Design, ch. 7",
+    looks: "waves over the motor's angle, the same in both directions, gone at high speed",
+    parameters: &[
+        parameter("a", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("b", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("harmonic", "1/turn", 1.0, 120.0),
+    ],
+    needs: &[],
+};
+
+impl Effect for Cogging {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        crate::effects::harmonic_form(view, Signal::Position, 1..=120)
+    }
+
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        view.harmonic(Signal::Position, shape[0]).into()
+    }
+}

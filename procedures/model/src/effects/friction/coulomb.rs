@@ -1,0 +1,33 @@
+//! Coulomb friction.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Coulomb;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "coulomb",
+    kind: Kind::Friction,
+    title: "Coulomb friction",
+    sentence: "A constant drag against the motion, however slow or fast.",
+    formula: "τ_c·sgn ω",
+    source: "thesis on joint test benches, eq. 2.5",
+    looks: "a step at zero speed",
+    parameters: &[parameter("tau_c", "Nm", 0.0, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for Coulomb {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["tau_c"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.get(Signal::Direction).to_vec()]
+    }
+}

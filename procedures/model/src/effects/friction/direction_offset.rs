@@ -1,0 +1,33 @@
+//! Direction offset.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::View;
+use jointbench_instrument::Kind;
+
+pub struct DirectionOffset;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "direction_offset",
+    kind: Kind::Friction,
+    title: "Direction offset",
+    sentence: "Friction is stronger one way than the other; on a moving joint this is the same as a constant torque, such as an offset of the current sensor.",
+    formula: "τ_0, that is τ_c⁺ = τ_c + τ_0 and τ_c⁻ = τ_c − τ_0",
+    source: "Puma chapter, f⁺ ≠ f⁻; Janot, Gautier, Brunot 2019, eq. 2",
+    looks: "the same constant at every speed in both directions",
+    parameters: &[parameter("tau_0", "Nm", f64::NEG_INFINITY, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for DirectionOffset {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["tau_0"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![vec![1.0; view.len()]]
+    }
+}

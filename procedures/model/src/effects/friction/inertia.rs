@@ -1,0 +1,37 @@
+//! Rotor inertia.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Inertia;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "inertia",
+    kind: Kind::Friction,
+    title: "Rotor inertia",
+    sentence: "The motor must accelerate its own rotor and everything that turns with it.",
+    formula: "J·α",
+    source: "Newton; contract section 1",
+    looks: "follows the acceleration: large in ramps, nothing at constant speed",
+    parameters: &[parameter("j", "kg·m²", 0.0, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for Inertia {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["j"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.get(Signal::Acceleration).to_vec()]
+    }
+
+    fn stage(&self) -> crate::effect::Stage {
+        crate::effect::Stage::Ramp
+    }
+}

@@ -1,0 +1,37 @@
+//! Load through the gear.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct LoadTransmission;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "load_transmission",
+    kind: Kind::Friction,
+    title: "Load through the gear",
+    sentence: "What the link delivers to its load, the motor must supply, divided by the gear ratio.",
+    formula: "τ_link/N",
+    source: "contract section 1, power balance of an ideal gear",
+    looks: "proportional to the link torque",
+    parameters: &[],
+    needs: &["link_torque_nm"],
+};
+
+impl Effect for LoadTransmission {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["one"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.get(Signal::Load).to_vec()]
+    }
+
+    fn is_given(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,37 @@
+//! Delay between torque and velocity.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct SignalDelay;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "signal_delay",
+    kind: Kind::Friction,
+    title: "Delay between torque and velocity",
+    sentence: "The torque is recorded earlier or later than the motion that it causes: a delay of the drive, a filter or a flexible shaft.",
+    formula: "k_j·dα/dt; divided by the inertia it is the delay",
+    source: "Janot, Gautier, Brunot 2019, section 5 (flexibility); Taylor series of J·α(t + δ)",
+    looks: "follows the change of the acceleration: spikes at the beginning and end of every ramp",
+    parameters: &[parameter("k_j", "kg·m²·s", f64::NEG_INFINITY, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for SignalDelay {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["k_j"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.get(Signal::Jerk).to_vec()]
+    }
+
+    fn stage(&self) -> crate::effect::Stage {
+        crate::effect::Stage::Ramp
+    }
+}

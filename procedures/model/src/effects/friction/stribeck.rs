@@ -1,0 +1,59 @@
+//! Stribeck effect.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Stribeck;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "stribeck",
+    kind: Kind::Friction,
+    title: "Stribeck effect",
+    sentence: "Near standstill the oil film breaks down and friction rises again, so slow motion needs more torque.",
+    formula: "τ_s·exp(−(|ω|/ω_s)^δ)·sgn ω",
+    source: "thesis on joint test benches, eq. 2.6 (τ_h − τ_c, θ̇_s, δ_s); Stribeck 1902; Bo and Pavelescu 1982",
+    looks: "an upturn at the lowest speeds, odd in direction",
+    parameters: &[
+        parameter("tau_s", "Nm", 0.0, f64::INFINITY),
+        parameter("omega_s", "rad/s", 0.0, f64::INFINITY),
+        parameter("delta", "1", 0.5, 3.0),
+    ],
+    needs: &[],
+};
+
+/// exp(−(|ω|/ω_s)^δ)
+pub(super) fn fading(velocity_rad_s: f64, shape: &[f64]) -> f64 {
+    (-(velocity_rad_s.abs() / shape[0]).powf(shape[1])).exp()
+}
+
+/// Speeds and exponents that this data can tell apart: between its slowest motion and a third of its fastest.
+pub(super) fn search(view: &View) -> Option<(Vec<Shape>, Vec<Vec<f64>>)> {
+    let (slow, fast) = crate::effects::speed_range(view)?;
+    let (low, high) = (slow * 0.7, fast / 3.0);
+    if high < 2.0 * low {
+        return None;
+    }
+    let shape = vec![
+        Shape { name: "omega_s", min: low, max: high, whole: false },
+        Shape { name: "delta", min: 0.5, max: 3.0, whole: false },
+    ];
+    let speeds = crate::effects::log_grid(low, high, 6);
+    let grid = speeds.iter().flat_map(|s| [vec![*s, 0.9], vec![*s, 1.8]]).collect();
+    Some((shape, grid))
+}
+
+impl Effect for Stribeck {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        let Some((shape, grid)) = search(view) else { return Vec::new() };
+        vec![Form { name: "exponential", linear: &["tau_s"], shape, grid }]
+    }
+
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        vec![view.map2(Signal::Velocity, Signal::Direction, |w, d| fading(w, shape) * d)]
+    }
+}

@@ -1,0 +1,39 @@
+//! Stribeck effect that grows with the load.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct StribeckLoad;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "stribeck_load",
+    kind: Kind::Friction,
+    title: "Load-dependent Stribeck effect",
+    sentence: "Under load the oil film breaks down sooner: the extra friction at low speed grows with the transmitted torque.",
+    formula: "μ_s·|τ_link/N|·exp(−(|ω|/ω_s)^δ)·sgn ω",
+    source: "Duclusaud et al. 2025, M4",
+    looks: "an upturn at the lowest speeds that is there only under load",
+    parameters: &[
+        parameter("mu_s", "1", 0.0, f64::INFINITY),
+        parameter("omega_s", "rad/s", 0.0, f64::INFINITY),
+        parameter("delta", "1", 0.5, 3.0),
+    ],
+    needs: &["link_torque_nm"],
+};
+
+impl Effect for StribeckLoad {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        let Some((shape, grid)) = super::stribeck::search(view) else { return Vec::new() };
+        vec![Form { name: "exponential", linear: &["mu_s"], shape, grid }]
+    }
+
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        let fading = view.map2(Signal::Velocity, Signal::Direction, |w, d| super::stribeck::fading(w, shape) * d);
+        vec![fading.iter().zip(view.get(Signal::Load)).map(|(f, l)| f * l.abs()).collect()]
+    }
+}

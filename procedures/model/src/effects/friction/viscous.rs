@@ -1,0 +1,33 @@
+//! Viscous friction.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Viscous;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "viscous",
+    kind: Kind::Friction,
+    title: "Viscous friction",
+    sentence: "Oil and grease drag more the faster the joint turns.",
+    formula: "c_v·ω",
+    source: "thesis on joint test benches, eq. 2.5",
+    looks: "a line through zero over speed",
+    parameters: &[parameter("c_v", "Nm·s/rad", 0.0, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for Viscous {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["c_v"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.get(Signal::Velocity).to_vec()]
+    }
+}

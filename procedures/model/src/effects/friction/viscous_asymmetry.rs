@@ -1,0 +1,33 @@
+//! Viscous asymmetry.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct ViscousAsymmetry;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "viscous_asymmetry",
+    kind: Kind::Friction,
+    title: "Viscous asymmetry",
+    sentence: "The speed-dependent drag is stronger one way than the other.",
+    formula: "c_a·|ω|, that is c⁺ = c_v + c_a and c⁻ = c_v − c_a",
+    source: "Puma chapter, B⁺ ≠ B⁻; Janot, Gautier, Brunot 2019, section 5",
+    looks: "a V over speed: grows with speed to the same side in both directions",
+    parameters: &[parameter("c_a", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for ViscousAsymmetry {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["c_a"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.map(Signal::Velocity, f64::abs)]
+    }
+}

@@ -1,0 +1,33 @@
+//! Quadratic drag.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct ViscousQuadratic;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "viscous_quadratic",
+    kind: Kind::Friction,
+    title: "Quadratic drag",
+    sentence: "At high speed the drag grows faster than the speed, as stirred oil and fanned air do.",
+    formula: "c_2·ω·|ω|",
+    source: "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994",
+    looks: "a curve over speed, odd in direction, steepest at top speed",
+    parameters: &[parameter("c_2", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for ViscousQuadratic {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["c_2"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.map(Signal::Velocity, |w| w * w.abs())]
+    }
+}

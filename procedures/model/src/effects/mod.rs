@@ -1,0 +1,81 @@
+//! The library: one small file for each effect.
+
+mod friction;
+
+use crate::ModelError;
+use crate::effect::{Effect, Form, Shape};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+use std::ops::RangeInclusive;
+
+/// All effects of a kind, in the order of the contract.
+pub fn effects(kind: Kind) -> &'static [&'static dyn Effect] {
+    match kind {
+        Kind::Friction => friction::ALL,
+        Kind::Encoder | Kind::Stiffness | Kind::Brake => &[],
+    }
+}
+
+/// The effect with an id. [`ModelError::UnknownEffect`] names those that are known.
+pub fn find(kind: Kind, id: &str) -> Result<&'static dyn Effect, ModelError> {
+    effects(kind).iter().copied().find(|e| e.info().id == id).ok_or_else(|| ModelError::UnknownEffect {
+        id: id.to_owned(),
+        kind,
+        known: effects(kind).iter().map(|e| e.info().id.to_owned()).collect(),
+    })
+}
+
+/// `count` values from `low` to `high`, each the same factor above the last.
+fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
+    let ratio = (high / low).ln();
+    (0..count).map(|i| low * (ratio * i as f64 / (count - 1).max(1) as f64).exp()).collect()
+}
+
+/// Slow and fast ends of the motion [rad/s]: the 2nd and the 98th percentile of |ω|. `None` where nothing moves.
+fn speed_range(view: &View) -> Option<(f64, f64)> {
+    let mut speed = view.map(Signal::Velocity, f64::abs);
+    speed.sort_by(f64::total_cmp);
+    let at = |share: f64| speed.get((share * speed.len().saturating_sub(1) as f64) as usize).copied();
+    let (slow, fast) = (at(0.02)?, at(0.98)?);
+    (fast > 0.0).then(|| (slow.max(1e-3 * fast), fast))
+}
+
+/// Lengths over which a reversal can be remembered and seen: from a thousandth of the motion between two reversals to
+/// all of it. `None` where the motion never turns.
+fn reversal_range(view: &View) -> Option<(f64, f64)> {
+    let position = view.samples.find(Signal::Position)?;
+    let direction = view.samples.find(Signal::Direction)?;
+    let mut turns = vec![position[0]];
+    let mut last = direction[0];
+    for (q, d) in position.iter().zip(direction) {
+        if *d != 0.0 && *d != last {
+            turns.push(*q);
+            last = *d;
+        }
+    }
+    let mut ways: Vec<f64> = turns.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|w| *w > 0.0).collect();
+    ways.sort_by(f64::total_cmp);
+    let typical = *ways.get(ways.len() / 2)?;
+    Some((1e-3 * typical, typical))
+}
+
+/// A harmonic of an angle, searched over whole orders. Orders that turn further than half a wave between two samples
+/// at the slowest motion cannot be told from lower ones and are left out.
+fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form> {
+    let (Some(values), Some(samples)) = (view.find(angle), view.samples.find(angle)) else { return Vec::new() };
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let mut steps: Vec<f64> = samples.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    let Some(slow) = steps.get(steps.len() / 10) else { return Vec::new() };
+    let highest = std::f64::consts::PI / slow;
+    // A wave of which less than half is seen is a slope, not a wave.
+    let lowest = std::f64::consts::PI / (high - low).max(1e-12);
+    let (first, last) = (f64::from(*orders.start()), f64::from(*orders.end()));
+    let grid: Vec<Vec<f64>> =
+        orders.map(f64::from).filter(|h| *h >= lowest && *h <= highest).map(|h| vec![h]).collect();
+    if grid.is_empty() {
+        return Vec::new();
+    }
+    let shape = vec![Shape { name: "harmonic", min: first, max: last, whole: true }];
+    vec![Form { name: "harmonic", linear: &["a", "b"], shape, grid }]
+}

@@ -1,0 +1,33 @@
+//! Why a model cannot be fitted or a run cannot be diagnosed. What the data merely cannot show is a verdict, not an error.
+
+use jointbench_instrument::Kind;
+
+/// Every message says what to do next.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    #[error("effect {id} is not known for {kind} runs; known are {}", .known.join(", "))]
+    UnknownEffect { id: String, kind: Kind, known: Vec<String> },
+    #[error("effect {0} is named twice; name each effect once")]
+    TwiceNamed(String),
+    #[error("the model has no effects: name some with --model, or give a baseline in the meta file")]
+    EmptyModel,
+    #[error("a {run} run cannot be explained by a {model} model; choose effects of the kind {run}")]
+    WrongKind { run: Kind, model: Kind },
+    #[error("{needed} is missing in the meta file; add it")]
+    MissingConstant { needed: &'static str },
+    #[error("too few samples: {usable} usable {what}, at least {needed} are needed; record a longer run")]
+    TooFewSamples { usable: usize, needed: usize, what: &'static str },
+    #[error("effect {effect} is not visible in this data: {why}; leave it out of the model, or measure what it needs")]
+    NotVisible { effect: String, why: String },
+    #[error(
+        "{first} and {second} cannot be told apart in this data: their columns are proportional; \
+         leave one out, or record a run in which they differ"
+    )]
+    Collinear { first: String, second: String },
+    #[error("{column} never changes: nothing can be identified; record a run in which it does")]
+    Constant { column: String },
+    #[error("the option {option} is out of range: {why}")]
+    BadOption { option: &'static str, why: String },
+    #[error("the stored fit has no form {form} of effect {effect}: it was made by another version; fit the run again")]
+    UnknownForm { effect: String, form: String },
+}

@@ -1,0 +1,159 @@
+//! Zero-phase filters: forwards and backwards, so that nothing is delayed against anything else.
+//!
+//! Analogue prototypes and bilinear transform after Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7; as
+//! second-order sections, because a transfer function of order 8 loses its digits.
+
+use std::f64::consts::PI;
+
+/// One second-order section, a₀ = 1.
+#[derive(Debug, Clone, Copy)]
+struct Section {
+    b: [f64; 3],
+    a: [f64; 2],
+}
+
+/// A low-pass filter, to be applied in both directions.
+#[derive(Debug, Clone)]
+pub struct LowPass {
+    sections: Vec<Section>,
+}
+
+impl LowPass {
+    /// Butterworth of even order. `corner` is the share of half the sample rate, within (0, 1).
+    pub fn butterworth(order: usize, corner: f64) -> Self {
+        let poles = |k: usize| {
+            let angle = PI * (2 * k + 1) as f64 / (2 * order) as f64;
+            (-angle.sin(), angle.cos())
+        };
+        Self::from_poles((0..order / 2).map(poles), corner)
+    }
+
+    /// Chebyshev of the first kind, even order, with a ripple in the pass band, scaled to keep a constant.
+    pub fn chebyshev(order: usize, ripple_db: f64, corner: f64) -> Self {
+        let epsilon = (10f64.powf(ripple_db / 10.0) - 1.0).sqrt();
+        let mu = (1.0 / epsilon).asinh() / order as f64;
+        let poles = |k: usize| {
+            let angle = PI * (2 * k + 1) as f64 / (2 * order) as f64;
+            (-mu.sinh() * angle.sin(), mu.cosh() * angle.cos())
+        };
+        Self::from_poles((0..order / 2).map(poles), corner)
+    }
+
+    /// Sections from one pole of each conjugate pair, all zeros at half the sample rate.
+    fn from_poles(poles: impl Iterator<Item = (f64, f64)>, corner: f64) -> Self {
+        let warped = 2.0 * (PI * corner / 2.0).tan();
+        let sections = poles.map(|(re, im)| {
+            let (re, im) = (re * warped / 2.0, im * warped / 2.0);
+            // z = (1 + s)/(1 − s) with s in units of twice the sample rate.
+            let scale = (1.0 - re) * (1.0 - re) + im * im;
+            let a1 = -2.0 * (1.0 - re * re - im * im) / scale;
+            let a2 = ((1.0 + re) * (1.0 + re) + im * im) / scale;
+            let k = (1.0 + a1 + a2) / 4.0;
+            Section { b: [k, 2.0 * k, k], a: [a1, a2] }
+        });
+        Self { sections: sections.collect() }
+    }
+
+    /// Filters forwards and backwards. The ends are continued point-symmetrically by `pad` samples.
+    pub fn both_ways(&self, values: &[f64], pad: usize) -> Vec<f64> {
+        let n = values.len();
+        if n < 2 {
+            return values.to_vec();
+        }
+        let pad = pad.min(n - 1);
+        let (first, last) = (values[0], values[n - 1]);
+        let mut x = Vec::with_capacity(n + 2 * pad);
+        x.extend((1..=pad).rev().map(|i| 2.0 * first - values[i]));
+        x.extend_from_slice(values);
+        x.extend((1..=pad).map(|i| 2.0 * last - values[n - 1 - i]));
+        for _ in 0..2 {
+            self.one_way(&mut x);
+            x.reverse();
+        }
+        x[pad..pad + n].to_vec()
+    }
+
+    /// One pass from rest at the first value.
+    fn one_way(&self, x: &mut [f64]) {
+        for section in &self.sections {
+            let Section { b, a } = section;
+            // Steady state for a constant at the first value (all sections have unit gain at zero frequency).
+            let rest = x[0];
+            let mut s1 = rest * (1.0 - b[0]);
+            let mut s2 = rest * (b[2] - a[1]);
+            for v in x.iter_mut() {
+                let input = *v;
+                let output = b[0] * input + s1;
+                s1 = b[1] * input - a[0] * output + s2;
+                s2 = b[2] * input - a[1] * output;
+                *v = output;
+            }
+        }
+    }
+}
+
+/// Derivative by central differences on unevenly timed samples, one-sided at the ends.
+pub fn derivative(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    if n < 2 {
+        return vec![0.0; n];
+    }
+    (0..n)
+        .map(|i| {
+            let (low, high) = (i.saturating_sub(1), (i + 1).min(n - 1));
+            (values[high] - values[low]) / (time_s[high] - time_s[low])
+        })
+        .collect()
+}
+
+/// Applies a function to every recording on its own and joins the results.
+pub fn by_recording(
+    values: &[f64],
+    starts: &[usize],
+    f: impl Fn(std::ops::Range<usize>, &[f64]) -> Vec<f64>,
+) -> Vec<f64> {
+    let ends = starts.iter().skip(1).copied().chain([values.len()]);
+    starts.iter().zip(ends).flat_map(|(s, e)| f(*s..e, &values[*s..e])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(n: usize, share_of_nyquist: f64) -> Vec<f64> {
+        (0..n).map(|i| (PI * share_of_nyquist * i as f64).sin()).collect()
+    }
+
+    fn check_gain(filter: &LowPass, share: f64, expected: f64, budget: f64) {
+        let x = wave(4000, share);
+        let y = filter.both_ways(&x, 100);
+        let rms = |v: &[f64]| (v[1000..3000].iter().map(|a| a * a).sum::<f64>() / 2000.0).sqrt();
+        let gain = rms(&y) / rms(&x);
+        assert!((gain - expected).abs() < budget, "at {share}: {gain}, expected {expected}");
+    }
+
+    #[test]
+    fn butterworth_passes_halves_and_stops() {
+        let filter = LowPass::butterworth(4, 0.2);
+        check_gain(&filter, 0.02, 1.0, 1e-3);
+        check_gain(&filter, 0.2, 0.5, 1e-3);
+        check_gain(&filter, 0.6, 0.0, 1e-3);
+    }
+
+    #[test]
+    fn chebyshev_is_flat_then_steep() {
+        let filter = LowPass::chebyshev(8, 0.05, 0.08);
+        check_gain(&filter, 0.04, 1.0, 0.02);
+        check_gain(&filter, 0.16, 0.0, 1e-4);
+    }
+
+    #[test]
+    fn a_constant_stays_and_a_line_is_not_delayed() {
+        let filter = LowPass::butterworth(4, 0.1);
+        let y = filter.both_ways(&[3.0; 50], 12);
+        assert!(y.iter().all(|v| (v - 3.0).abs() < 1e-9));
+        let line: Vec<f64> = (0..200).map(f64::from).collect();
+        let y = filter.both_ways(&line, 12);
+        assert!((y[100] - 100.0).abs() < 1e-9);
+    }
+}

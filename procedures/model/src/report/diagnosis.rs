@@ -1,0 +1,140 @@
+//! Where a model fails and what is missing.
+
+use super::fit::{Fit, Parameter, ResidualKind};
+use jointbench_instrument::Kind;
+use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Nothing reproducible is left that the library or the maps could name.
+    Adequate,
+    /// At least one effect of the library is missing.
+    MissingEffect,
+    /// Structure remains that no effect of the library explains.
+    UnexplainedStructure,
+}
+
+/// The answer of `diagnose`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Diagnosis {
+    pub kind: Kind,
+    pub model: Vec<String>,
+    pub fit: Fit,
+    pub residual: ResidualKind,
+    /// Repeatability of the run, of the same kind as the RMS figures. `None` without repeats.
+    pub noise_floor_rms: Option<f64>,
+    pub noise_floor: NoiseFloor,
+    pub verdict: Verdict,
+    /// One plain sentence.
+    pub summary: String,
+    /// Regions in which the model errs, the worst first.
+    #[serde(rename = "where")]
+    pub regions: Vec<Region>,
+    /// Missing effects, the most important first. Empty unless the verdict is `missing_effect`.
+    pub suggestions: Vec<Suggestion>,
+    pub experiment: Option<Experiment>,
+    /// Effects that were looked for and not found, with what would have been seen.
+    pub silent: Vec<Silent>,
+    /// Effects that this data cannot show.
+    pub not_visible: Vec<Invisible>,
+}
+
+/// How well the measurement repeats itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NoiseFloor {
+    pub rms: Option<f64>,
+    pub ci95: Option<[f64; 2]>,
+    /// Where the figure comes from, in words.
+    pub source: String,
+    /// Share of the remaining squared error that is the same in every repeat.
+    pub repeatable_share: Option<f64>,
+}
+
+/// A stretch of an axis (and a direction or a second axis) in which the residual is not noise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Region {
+    pub axis: String,
+    pub from: f64,
+    pub to: f64,
+    pub mean_residual: f64,
+    /// Simultaneous over all regions of all maps.
+    pub ci95: [f64; 2],
+    pub samples: usize,
+    /// `positive` or `negative` motion, or both where empty.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<String>,
+    /// The same in one sentence with figures.
+    pub sentence: String,
+}
+
+/// One missing effect with its evidence.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Suggestion {
+    pub effect: String,
+    /// Held-out error of the model with this effect.
+    pub validation_rms: f64,
+    /// 1 − validation_rms / validation_rms of the present model.
+    pub error_reduction: f64,
+    /// Family-wise, from sign flips of whole blocks.
+    pub p_value: f64,
+    pub parameters: Vec<Parameter>,
+    /// Effects that explain this data as well.
+    pub confounded_with: Vec<String>,
+    pub why: String,
+}
+
+/// A run that would decide what this one leaves open.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Experiment {
+    pub procedure: String,
+    pub parameters: serde_json::Map<String, serde_json::Value>,
+    pub why: String,
+    /// Expected separation of the rivals in standard deviations, before it is run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_z: Option<f64>,
+}
+
+/// An effect that was looked for and not found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Silent {
+    pub effect: String,
+    /// RMS of the smallest effect of this kind that would have been found with 80 % probability, in the fit's unit.
+    pub minimum_detectable_rms: f64,
+}
+
+/// An effect that this data cannot show.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Invisible {
+    pub effect: String,
+    pub why: String,
+}
+
+/// One step of `discover`. The first is the model that was given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    pub added: Option<String>,
+    /// An effect that lost its reason when others came in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub removed: Option<String>,
+    pub model: Vec<String>,
+    pub rms: f64,
+    pub validation_rms: f64,
+}
+
+/// The answer of `discover`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Discovery {
+    pub kind: Kind,
+    pub steps: Vec<Step>,
+    pub residual: ResidualKind,
+    pub noise_floor_rms: Option<f64>,
+    pub noise_floor: NoiseFloor,
+    pub verdict: Verdict,
+    pub summary: String,
+    pub model: Vec<String>,
+    pub fit: Fit,
+    #[serde(rename = "where")]
+    pub regions: Vec<Region>,
+    pub experiment: Option<Experiment>,
+}

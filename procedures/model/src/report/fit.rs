@@ -1,0 +1,118 @@
+//! A fitted model.
+
+use jointbench_instrument::Kind;
+use serde::{Deserialize, Serialize};
+
+/// What RMS figures and residuals are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ResidualKind {
+    /// Filtered and decimated samples.
+    Raw,
+    /// Means over short chunks of settled motion.
+    PlateauMean,
+}
+
+/// A model with the parameters that fit one run best.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    pub kind: Kind,
+    pub effects: Vec<String>,
+    /// Root mean square of the residual on the data that was fitted, in `unit`.
+    pub rms: f64,
+    /// The same on data that did not take part in the fit: every condition is predicted by the others.
+    pub validation_rms: f64,
+    pub unit: String,
+    pub residual: ResidualKind,
+    /// ‖residual‖ / ‖measured‖.
+    pub relative_error: f64,
+    pub parameters: Vec<Parameter>,
+    /// Pairs of parameters that trade off against each other.
+    pub trade_offs: Vec<TradeOff>,
+    /// Condition number of the scaled columns.
+    pub condition: f64,
+    /// What a user should know, in plain sentences.
+    pub notes: Vec<String>,
+    pub preparation: Preparation,
+    /// The same parameters as the effects hold them, to compute the model again.
+    pub terms: Vec<Term>,
+}
+
+/// One number of the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    pub effect: String,
+    pub name: String,
+    pub value: f64,
+    pub unit: String,
+    /// 95 % interval over segments or repeats (delete-group jackknife, t with G − 1 degrees of freedom).
+    pub ci95: [f64; 2],
+    pub state: ParameterState,
+    /// The state in words, where it is not `ok`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParameterState {
+    Ok,
+    /// Given, not fitted.
+    Fixed,
+    /// The best value lies at the edge of what is physically sensible.
+    AtBound,
+    /// The data does not decide it: the interval is as wide as the value.
+    Unidentified,
+}
+
+/// Two parameters of which the data decides only a combination.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TradeOff {
+    /// `effect.parameter`.
+    pub first: String,
+    pub second: String,
+    pub correlation: f64,
+}
+
+/// How the run was prepared for the fit. A run is prepared in the same way when the fit is evaluated on it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Preparation {
+    pub residual: ResidualKind,
+    pub sample_rate_hz: f64,
+    /// `None` where nothing was filtered.
+    pub cutoff_hz: Option<f64>,
+    pub decimation: usize,
+    pub chunk_s: Option<f64>,
+    pub samples: usize,
+    /// Rows of the fit: chunks or decimated samples.
+    pub rows: usize,
+    /// Independent pieces for validation, intervals and tests.
+    pub blocks: usize,
+    /// Where the segments came from: `column` or `found`.
+    pub segments_from: String,
+    /// Where the repeats came from: `column`, `found` or `none`.
+    pub repeats_from: String,
+}
+
+/// One effect of the model, as numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Term {
+    pub effect: String,
+    /// Which form of the effect fits best.
+    pub form: String,
+    /// Parameters that the effect is not linear in.
+    pub shape: Vec<f64>,
+    /// Factors of the effect's columns.
+    pub linear: Vec<f64>,
+}
+
+/// A fit on a run that took no part in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Evaluation {
+    pub rms: f64,
+    pub unit: String,
+    pub residual: ResidualKind,
+    /// ‖residual‖ / ‖measured‖.
+    pub relative_error: f64,
+    pub rows: usize,
+}

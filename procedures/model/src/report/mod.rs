@@ -1,0 +1,11 @@
+//! What comes out: the objects of the contract, ready to be written as JSON.
+
+mod diagnosis;
+mod fit;
+mod residuals;
+
+pub use diagnosis::{
+    Diagnosis, Discovery, Experiment, Invisible, NoiseFloor, Region, Silent, Step, Suggestion, Verdict,
+};
+pub use fit::{Evaluation, Fit, Parameter, ParameterState, Preparation, ResidualKind, Term, TradeOff};
+pub use residuals::{Axis, ResidualSet};

@@ -1,0 +1,213 @@
+//! The signals of a run as the effects see them: prepared, in SI units, one value for each point.
+//!
+//! A point is a chunk of settled motion or a filtered sample. Memory effects are simulated on the samples behind the
+//! points and averaged over them.
+
+use std::ops::Range;
+
+/// What a signal means to the models, whatever its column is called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Signal {
+    /// Since the first sample [s].
+    Time,
+    /// Motor, reference encoder or brake shaft [rad].
+    Position,
+    /// The same [rad/s].
+    Velocity,
+    Acceleration,
+    /// Change of the acceleration [rad/s³].
+    Jerk,
+    /// +1 or −1, the sign of the velocity, denoised.
+    Direction,
+    /// Link side [rad].
+    Link,
+    /// Friction: link torque on the motor side, τ_link/N [Nm]. Stiffness: link torque [Nm].
+    Load,
+    Temperature,
+    /// Coil current of a brake [A].
+    Current,
+    /// Smooth estimate of the motor torque, made without the noise of the measured one [Nm].
+    Drive,
+    /// Number of the repeat, from 0.
+    Repeat,
+}
+
+impl Signal {
+    pub const COUNT: usize = 12;
+    pub const ALL: [Signal; Signal::COUNT] = [
+        Signal::Time,
+        Signal::Position,
+        Signal::Velocity,
+        Signal::Acceleration,
+        Signal::Jerk,
+        Signal::Direction,
+        Signal::Link,
+        Signal::Load,
+        Signal::Temperature,
+        Signal::Current,
+        Signal::Drive,
+        Signal::Repeat,
+    ];
+
+    /// The signal that a column of the run table becomes.
+    pub fn of_column(column: &str) -> Option<Signal> {
+        Some(match column {
+            "time_s" => Signal::Time,
+            "motor_position_rad" | "reference_position_rad" | "position_rad" => Signal::Position,
+            "motor_velocity_rad_s" | "velocity_rad_s" | "link_velocity_rad_s" => Signal::Velocity,
+            "link_position_rad" => Signal::Link,
+            "link_torque_nm" => Signal::Load,
+            "temperature_c" => Signal::Temperature,
+            "brake_current_a" => Signal::Current,
+            "repeat" => Signal::Repeat,
+            _ => return None,
+        })
+    }
+}
+
+/// Signals of equal length. Absent ones are `None`.
+#[derive(Debug, Clone, Default)]
+pub struct Signals {
+    columns: [Option<Vec<f64>>; Signal::COUNT],
+    len: usize,
+}
+
+impl Signals {
+    pub fn new(len: usize) -> Self {
+        Self { columns: Default::default(), len }
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    pub fn set(&mut self, signal: Signal, values: Vec<f64>) {
+        debug_assert_eq!(values.len(), self.len);
+        self.columns[signal as usize] = Some(values);
+    }
+
+    pub fn find(&self, signal: Signal) -> Option<&[f64]> {
+        self.columns[signal as usize].as_deref()
+    }
+}
+
+/// Signals at the points, and the samples behind them.
+#[derive(Debug, Clone, Default)]
+pub struct View {
+    pub points: Signals,
+    pub samples: Signals,
+    /// The samples of each point. Empty where points are samples.
+    pub chunks: Vec<Range<usize>>,
+    /// Samples at which the past is forgotten: first ones of recordings.
+    pub starts: Vec<usize>,
+    pub sample_s: f64,
+    zeros: Vec<f64>,
+}
+
+impl View {
+    pub fn new(
+        points: Signals,
+        samples: Signals,
+        chunks: Vec<Range<usize>>,
+        starts: Vec<usize>,
+        sample_s: f64,
+    ) -> Self {
+        let zeros = vec![0.0; points.len()];
+        Self { points, samples, chunks, starts, sample_s, zeros }
+    }
+
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    pub fn find(&self, signal: Signal) -> Option<&[f64]> {
+        self.points.find(signal)
+    }
+
+    /// The signal at the points, zeros where it is absent: an effect whose needs are not met is never asked.
+    pub fn get(&self, signal: Signal) -> &[f64] {
+        self.points.find(signal).unwrap_or(&self.zeros)
+    }
+
+    /// One column from one signal.
+    pub fn map(&self, signal: Signal, f: impl Fn(f64) -> f64) -> Vec<f64> {
+        self.get(signal).iter().map(|x| f(*x)).collect()
+    }
+
+    /// One column from two signals.
+    pub fn map2(&self, a: Signal, b: Signal, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        self.get(a).iter().zip(self.get(b)).map(|(a, b)| f(*a, *b)).collect()
+    }
+
+    /// Largest absolute value.
+    pub fn peak(&self, signal: Signal) -> f64 {
+        self.get(signal).iter().fold(0.0, |m, x| x.abs().max(m))
+    }
+
+    /// The samples' column averaged over the points.
+    pub fn average(&self, samples: Vec<f64>) -> Vec<f64> {
+        if self.chunks.is_empty() {
+            return samples;
+        }
+        self.chunks.iter().map(|c| samples[c.clone()].iter().sum::<f64>() / c.len().max(1) as f64).collect()
+    }
+
+    /// Mean of cos(h·angle) and sin(h·angle) over each point.
+    ///
+    /// At constant speed the mean over a chunk of n samples, each δ further, is the value at the middle times the
+    /// Dirichlet kernel sin(n·h·δ/2)/(n·sin(h·δ/2)): a periodic effect fades at speed as it does in the data.
+    pub fn harmonic(&self, signal: Signal, order: f64) -> [Vec<f64>; 2] {
+        let angle = self.get(signal);
+        let mut cos = Vec::with_capacity(angle.len());
+        let mut sin = Vec::with_capacity(angle.len());
+        let steps = self.samples.find(signal);
+        for (i, a) in angle.iter().enumerate() {
+            let fade = match (self.chunks.get(i), steps) {
+                (Some(chunk), Some(samples)) if chunk.len() > 1 => {
+                    let step = (samples[chunk.end - 1] - samples[chunk.start]) / (chunk.len() - 1) as f64;
+                    dirichlet(chunk.len() as f64, order * step)
+                }
+                _ => 1.0,
+            };
+            let (s, c) = (order * a).sin_cos();
+            cos.push(c * fade);
+            sin.push(s * fade);
+        }
+        [cos, sin]
+    }
+}
+
+fn dirichlet(n: f64, step: f64) -> f64 {
+    let below = (0.5 * step).sin();
+    if below.abs() < 1e-9 { 1.0 } else { (0.5 * n * step).sin() / (n * below) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_harmonic_fades_as_its_samples_do() {
+        let angle: Vec<f64> = (0..40).map(|i| 0.3 + 0.17 * f64::from(i)).collect();
+        let chunks: Vec<_> = (0..4).map(|c| c * 10..(c + 1) * 10).collect();
+        let mut samples = Signals::new(40);
+        samples.set(Signal::Link, angle.clone());
+        let mean = |c: &Range<usize>| angle[c.clone()].iter().sum::<f64>() / 10.0;
+        let mut points = Signals::new(4);
+        points.set(Signal::Link, chunks.iter().map(mean).collect());
+        let view = View::new(points, samples, chunks, vec![0], 0.004);
+        let [cos, _] = view.harmonic(Signal::Link, 3.0);
+        let truth = view.average(angle.iter().map(|a| (3.0 * a).cos()).collect());
+        for (c, t) in cos.iter().zip(truth) {
+            assert!((c - t).abs() < 1e-12, "{c} {t}");
+        }
+    }
+}
