@@ -1,0 +1,53 @@
+//! The dashboard's files, from the binary itself.
+
+use super::problem::Problem;
+use axum::body::Body;
+use axum::extract::Request;
+use axum::http::{HeaderValue, Method, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use jointbench_ui::Asset;
+
+/// A file of the dashboard, or its page for every other address.
+pub async fn serve(request: Request) -> Response {
+    if !request.method().is_safe() {
+        return Problem::no_route(request.uri().path()).into_response();
+    }
+    let path = request.uri().path().trim_start_matches('/');
+    match jointbench_ui::asset(path) {
+        Some(asset) => answer(asset, &request),
+        None if path.starts_with("assets/") => Problem::no_route(request.uri().path()).into_response(),
+        None => answer(jointbench_ui::page(), &request),
+    }
+}
+
+fn answer(asset: Asset, request: &Request) -> Response {
+    let etag = format!("\"{}\"", asset.sha256);
+    let cache = if asset.immutable { "public, max-age=31536000, immutable" } else { "no-cache" };
+    let known = request.headers().get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok());
+    let headers = [
+        (header::ETAG, etag.clone()),
+        (header::CACHE_CONTROL, cache.to_owned()),
+        (header::VARY, "Accept-Encoding".to_owned()),
+        (header::CONTENT_TYPE, asset.mime),
+    ];
+    if known.is_some_and(|known| known.split(',').any(|tag| tag.trim() == etag)) {
+        return (StatusCode::NOT_MODIFIED, headers).into_response();
+    }
+    let body = if request.method() == Method::HEAD { Body::empty() } else { Body::from(asset.bytes.into_owned()) };
+    (headers, body).into_response()
+}
+
+/// Middleware: what every answer says to a browser.
+pub async fn security_headers(request: Request, next: Next) -> Response {
+    let mut response = next.run(request).await;
+    let headers = response.headers_mut();
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, jointbench_ui::CONTENT_SECURITY_POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+    ] {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    response
+}

@@ -1,0 +1,33 @@
+//! The daemon about itself.
+
+use super::extract::{Answer, Json};
+use super::problem::{Problem, Refusals};
+use axum::extract::Request;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Health {
+    pub version: String,
+    /// Why the dashboard is not part of this build, where it is not.
+    pub dashboard_missing: Option<String>,
+}
+
+/// Whether the daemon is there
+#[utoipa::path(get, path = "/health", tag = "daemon",
+    responses((status = 200, description = "It is", body = Health), Refusals))]
+pub async fn health() -> Answer<Health> {
+    let dashboard_missing = jointbench_ui::missing().map(str::to_owned);
+    Ok(Json(Health { version: env!("CARGO_PKG_VERSION").to_owned(), dashboard_missing }))
+}
+
+/// This description
+#[utoipa::path(get, path = "/openapi.json", tag = "daemon",
+    responses((status = 200, description = "OpenAPI 3.1", body = serde_json::Value), Refusals))]
+pub async fn specification() -> Json<utoipa::openapi::OpenApi> {
+    Json(super::specification())
+}
+
+pub async fn no_such_route(request: Request) -> Problem {
+    Problem::no_route(request.uri().path())
+}

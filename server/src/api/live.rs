@@ -1,0 +1,18 @@
+//! The live stream: JSON text frames and binary sample frames on one WebSocket.
+
+use super::problem::Refusals;
+use crate::lab::Lab;
+use axum::extract::State;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::response::Response;
+
+/// Live stream (WebSocket)
+///
+/// Text frames are `LiveMessage`s. Binary frames carry samples, little endian: u32 sequence, u32 dropped frames, u32 rows,
+/// u32 channels, f64 t0 [s], then one f32 column after the other in the order of the last `channels` message; `time_s` is
+/// relative to t0. At most 30 frames a second; a slow client gets larger frames, never older ones.
+#[utoipa::path(get, path = "/events", tag = "live",
+    responses((status = 101, description = "The stream", body = crate::view::LiveMessage), Refusals))]
+pub async fn stream(State(lab): State<Lab>, upgrade: WebSocketUpgrade) -> Response {
+    upgrade.on_upgrade(move |socket| crate::live::serve(socket, lab))
+}

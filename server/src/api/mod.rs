@@ -1,0 +1,106 @@
+//! HTTP: the router is the table of contents. Handlers only translate; the work is done in [`crate::lab`].
+
+mod bench;
+mod dashboard;
+mod door;
+mod extract;
+mod health;
+mod live;
+mod models;
+mod problem;
+mod procedures;
+mod runs;
+#[cfg(test)]
+mod specification;
+mod transfer;
+
+pub use door::Door;
+pub use problem::Problem;
+
+use crate::lab::Lab;
+use crate::view::LiveMessage;
+use axum::extract::DefaultBodyLimit;
+use axum::routing::get;
+use axum::{Router, middleware};
+use tower_http::trace::TraceLayer;
+use utoipa::OpenApi;
+use utoipa_axum::{router::OpenApiRouter, routes};
+
+/// Largest body of an ordinary request; an upload may have [`UPLOAD_LIMIT_BYTES`].
+const BODY_LIMIT_BYTES: usize = 1 << 20;
+const UPLOAD_LIMIT_BYTES: usize = 1 << 30;
+
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "jointbench",
+        description = "Test bench for robot joints: measure, fit, find what the model lacks.\n\nSI units; the unit is the \
+                       suffix of a name. Errors are problem documents (RFC 9457).",
+        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
+    ),
+    components(schemas(Problem, LiveMessage)),
+    tags(
+        (name = "bench", description = "Benches and instruments"),
+        (name = "procedures", description = "What a bench can be asked to do"),
+        (name = "runs", description = "Measurements, running and kept"),
+        (name = "samples", description = "Windows of samples"),
+        (name = "effects", description = "The library of physical causes"),
+        (name = "models", description = "Fitted versions, a tree for each run"),
+        (name = "diagnoses", description = "Where a model fails and what it lacks"),
+        (name = "live", description = "State, progress, events and samples as they come"),
+        (name = "daemon", description = "The daemon itself"),
+    )
+)]
+struct Description;
+
+fn operations() -> OpenApiRouter<Lab> {
+    let uploads =
+        OpenApiRouter::new().routes(routes!(transfer::import)).layer(DefaultBodyLimit::max(UPLOAD_LIMIT_BYTES));
+    let rest = OpenApiRouter::new()
+        .routes(routes!(bench::list))
+        .routes(routes!(bench::get))
+        .routes(routes!(bench::stop))
+        .routes(routes!(bench::acknowledge))
+        .routes(routes!(bench::instruments))
+        .routes(routes!(procedures::list))
+        .routes(routes!(procedures::preview))
+        .routes(routes!(runs::list, runs::start))
+        .routes(routes!(runs::get))
+        .routes(routes!(runs::pause))
+        .routes(routes!(runs::resume))
+        .routes(routes!(runs::stop))
+        .routes(routes!(runs::abort))
+        .routes(routes!(runs::events))
+        .routes(routes!(runs::samples))
+        .routes(routes!(transfer::export))
+        .routes(routes!(models::effects))
+        .routes(routes!(models::list, models::create))
+        .routes(routes!(models::get))
+        .routes(routes!(models::residuals))
+        .routes(routes!(models::fit))
+        .routes(routes!(models::diagnoses, models::diagnose))
+        .routes(routes!(models::diagnosis))
+        .routes(routes!(live::stream))
+        .routes(routes!(health::health))
+        .routes(routes!(health::specification))
+        .layer(DefaultBodyLimit::max(BODY_LIMIT_BYTES));
+    OpenApiRouter::with_openapi(Description::openapi()).nest("/api/v1", rest.merge(uploads))
+}
+
+/// The OpenAPI 3.1 description of all operations.
+pub fn specification() -> utoipa::openapi::OpenApi {
+    operations().to_openapi()
+}
+
+/// Everything that the daemon serves. `/api` never falls back to the dashboard.
+pub fn router(lab: Lab, door: Door) -> Router {
+    let (rest, _) = operations().split_for_parts();
+    rest.route("/api", get(health::no_such_route))
+        .route("/api/{*rest}", axum::routing::any(health::no_such_route))
+        .fallback(dashboard::serve)
+        .with_state(lab)
+        .layer(middleware::from_fn_with_state(door, door::guard))
+        .layer(middleware::from_fn(problem::name_instance))
+        .layer(middleware::from_fn(dashboard::security_headers))
+        .layer(TraceLayer::new_for_http())
+}

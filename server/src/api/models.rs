@@ -1,0 +1,96 @@
+//! Effects, model versions and what they leave unexplained.
+
+use super::extract::{Answer, Created, Json, Path, Query, created};
+use super::problem::Refusals;
+use crate::lab::Lab;
+use crate::view::{Diagnosis, Effect, Fit, Model, NewDiagnosis, NewModel, ResidualSet};
+use axum::extract::State;
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct EffectQuery {
+    /// `friction`, `encoder`, `stiffness` or `brake`; all where left out.
+    pub kind: Option<String>,
+}
+
+/// The library of effects
+#[utoipa::path(get, path = "/effects", tag = "effects", params(EffectQuery),
+    responses((status = 200, description = "The effects", body = Vec<Effect>), Refusals))]
+pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -> Answer<Vec<Effect>> {
+    Ok(Json(lab.effects(query.kind.as_deref())?))
+}
+
+/// Fits a set of effects to a run and keeps it as a version
+#[utoipa::path(post, path = "/models", tag = "models", request_body = NewModel,
+    responses((status = 201, description = "The version", body = Model), Refusals))]
+pub async fn create(State(lab): State<Lab>, Json(new): Json<NewModel>) -> Created<Model> {
+    created(lab.create_model(new.run, &new.effects, new.parent).await?)
+}
+
+#[derive(Debug, Clone, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct ModelQuery {
+    pub run: i64,
+}
+
+/// All model versions of a run, oldest first
+#[utoipa::path(get, path = "/models", tag = "models", params(ModelQuery),
+    responses((status = 200, description = "The versions", body = Vec<Model>), Refusals))]
+pub async fn list(State(lab): State<Lab>, Query(query): Query<ModelQuery>) -> Answer<Vec<Model>> {
+    Ok(Json(lab.models(query.run).await?))
+}
+
+/// One model version
+#[utoipa::path(get, path = "/models/{id}", tag = "models", params(("id" = i64, Path, description = "Model version")),
+    responses((status = 200, description = "The version", body = Model), Refusals))]
+pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Model> {
+    Ok(Json(lab.model(id).await?))
+}
+
+/// The fit of a model version alone
+#[utoipa::path(get, path = "/fits/{id}", tag = "models", params(("id" = i64, Path, description = "Model version")),
+    responses((status = 200, description = "The fit", body = Fit), Refusals))]
+pub async fn fit(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Fit> {
+    Ok(Json(lab.model(id).await?.fit))
+}
+
+/// Measured, predicted and residual of a model version, with the coordinates of each point
+#[utoipa::path(get, path = "/models/{id}/residuals", tag = "models",
+    params(("id" = i64, Path, description = "Model version")),
+    responses((status = 200, description = "The residuals", body = ResidualSet), Refusals))]
+pub async fn residuals(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<ResidualSet> {
+    Ok(Json(lab.residuals(id).await?))
+}
+
+/// Finds where a model version fails and what it lacks, and keeps the answer
+#[utoipa::path(post, path = "/diagnoses", tag = "diagnoses", request_body = NewDiagnosis,
+    responses((status = 201, description = "The diagnosis", body = Diagnosis), Refusals))]
+pub async fn diagnose(State(lab): State<Lab>, Json(new): Json<NewDiagnosis>) -> Created<Diagnosis> {
+    created(lab.diagnose(new.model).await?)
+}
+
+/// One diagnosis
+#[utoipa::path(get, path = "/diagnoses/{id}", tag = "diagnoses",
+    params(("id" = i64, Path, description = "Diagnosis")),
+    responses((status = 200, description = "The diagnosis", body = Diagnosis), Refusals))]
+pub async fn diagnosis(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Diagnosis> {
+    Ok(Json(lab.diagnosis(id).await?))
+}
+
+#[derive(Debug, Clone, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct DiagnosisQuery {
+    pub model: i64,
+}
+
+/// The diagnoses of a model version, oldest first
+#[utoipa::path(get, path = "/diagnoses", tag = "diagnoses", params(DiagnosisQuery),
+    responses((status = 200, description = "The diagnoses", body = Vec<Diagnosis>), Refusals))]
+pub async fn diagnoses(State(lab): State<Lab>, Query(query): Query<DiagnosisQuery>) -> Answer<Vec<Diagnosis>> {
+    Ok(Json(lab.diagnoses(query.model).await?))
+}

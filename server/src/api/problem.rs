@@ -1,0 +1,153 @@
+//! Errors as they leave over HTTP: RFC 9457 problem documents. The one `From` decides the HTTP meaning of a refusal.
+
+use crate::lab::LabError;
+use axum::extract::Request;
+use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
+use axum::http::{StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use utoipa::openapi::{Content, RefOr, ResponseBuilder, schema::Ref};
+use utoipa::{IntoResponses, ToSchema};
+
+/// RFC 9457 problem document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Problem {
+    /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `file_refused`, `conflict`, `bench_fault`, `malformed`,
+    /// `forbidden`, `unauthorized`, `too_large`, `internal`.
+    #[serde(rename = "type")]
+    pub type_: String,
+    pub title: String,
+    pub status: u16,
+    /// What is wrong and what to do about it.
+    pub detail: String,
+    /// The path that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instance: Option<String>,
+    /// Line of the uploaded file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<u64>,
+    /// Column of the uploaded file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column: Option<String>,
+}
+
+impl Problem {
+    pub fn new(status: StatusCode, kind: &str, title: &str, detail: impl Into<String>) -> Self {
+        Self {
+            type_: format!("urn:jointbench:{kind}"),
+            title: title.to_owned(),
+            status: status.as_u16(),
+            detail: detail.into(),
+            instance: None,
+            line: None,
+            column: None,
+        }
+    }
+
+    pub fn malformed(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::BAD_REQUEST, "malformed", "The request cannot be read", detail)
+    }
+
+    pub fn forbidden(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::FORBIDDEN, "forbidden", "Not from there", detail)
+    }
+
+    pub fn unauthorized() -> Self {
+        let detail = "this daemon listens beyond loopback: send the token as `Authorization: Bearer TOKEN`";
+        Self::new(StatusCode::UNAUTHORIZED, "unauthorized", "A token is needed", detail)
+    }
+
+    pub fn too_large(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "The request is too large", detail)
+    }
+
+    pub fn no_route(path: &str) -> Self {
+        let detail = format!("nothing is served at {path}; /api/v1/openapi.json lists every operation");
+        Self::new(StatusCode::NOT_FOUND, "not_found", "Not there", detail)
+    }
+}
+
+impl From<LabError> for Problem {
+    fn from(error: LabError) -> Self {
+        let detail = error.to_string();
+        match error {
+            LabError::NotFound(_) => Self::new(StatusCode::NOT_FOUND, "not_found", "Not there", detail),
+            LabError::Invalid(_) => {
+                Self::new(StatusCode::UNPROCESSABLE_ENTITY, "invalid", "The values do not fit", detail)
+            }
+            LabError::File { line, column, .. } => Self {
+                line,
+                column,
+                ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "file_refused", "The file is refused", detail)
+            },
+            LabError::Conflict(_) => Self::new(StatusCode::CONFLICT, "conflict", "Not at this moment", detail),
+            LabError::Bench(_) => {
+                Self::new(StatusCode::SERVICE_UNAVAILABLE, "bench_fault", "The bench does not answer", detail)
+            }
+            LabError::Setup(_) | LabError::Internal(_) => {
+                tracing::error!(%detail, "request failed inside");
+                Self::new(StatusCode::INTERNAL_SERVER_ERROR, "internal", "The daemon failed", detail)
+            }
+        }
+    }
+}
+
+impl From<JsonRejection> for Problem {
+    fn from(rejection: JsonRejection) -> Self {
+        match rejection.status() {
+            StatusCode::PAYLOAD_TOO_LARGE => Self::too_large(rejection.body_text()),
+            StatusCode::UNPROCESSABLE_ENTITY => Self::malformed(rejection.body_text()),
+            _ => Self::malformed(format!("{}; send JSON with `Content-Type: application/json`", rejection.body_text())),
+        }
+    }
+}
+
+impl From<QueryRejection> for Problem {
+    fn from(rejection: QueryRejection) -> Self {
+        Self::malformed(rejection.body_text())
+    }
+}
+
+impl From<PathRejection> for Problem {
+    fn from(rejection: PathRejection) -> Self {
+        Self::malformed(rejection.body_text())
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let status = StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let body = serde_json::to_vec(&self).unwrap_or_default();
+        let mut response = (status, [(header::CONTENT_TYPE, "application/problem+json")], body).into_response();
+        if status == StatusCode::UNAUTHORIZED {
+            response.headers_mut().insert(header::WWW_AUTHENTICATE, header::HeaderValue::from_static("Bearer"));
+        }
+        response.extensions_mut().insert(self);
+        response
+    }
+}
+
+/// Middleware: a problem names the path that was asked for.
+pub async fn name_instance(request: Request, next: Next) -> Response {
+    let path = request.uri().path().to_owned();
+    let mut response = next.run(request).await;
+    match response.extensions_mut().remove::<Problem>() {
+        Some(problem) => Problem { instance: Some(path), ..problem }.into_response(),
+        None => response,
+    }
+}
+
+/// The documented form of every refusal.
+pub struct Refusals;
+
+impl IntoResponses for Refusals {
+    fn responses() -> BTreeMap<String, RefOr<utoipa::openapi::Response>> {
+        let response = ResponseBuilder::new()
+            .description("Refused: a problem document (RFC 9457) that says what is wrong and what to do")
+            .content("application/problem+json", Content::new(Some(Ref::from_schema_name("Problem"))))
+            .build();
+        BTreeMap::from([("default".to_owned(), RefOr::T(response))])
+    }
+}

@@ -1,0 +1,26 @@
+//! What a bench can be asked to do.
+
+use super::extract::{Answer, Json, Path};
+use super::problem::Refusals;
+use crate::lab::Lab;
+use crate::view::{Preview, PreviewRequest, Procedure};
+use axum::extract::State;
+
+/// All procedures with their parameters
+#[utoipa::path(get, path = "/procedures", tag = "procedures",
+    responses((status = 200, description = "The procedures", body = Vec<Procedure>), Refusals))]
+pub async fn list(State(lab): State<Lab>) -> Answer<Vec<Procedure>> {
+    Ok(Json(lab.procedures()))
+}
+
+/// Dry run: duration, steps, extremes against the limits, checks; nothing moves
+#[utoipa::path(post, path = "/procedures/{id}/preview", tag = "procedures",
+    params(("id" = String, Path, description = "Procedure")), request_body = PreviewRequest,
+    responses((status = 200, description = "What the procedure would do", body = Preview), Refusals))]
+pub async fn preview(
+    State(lab): State<Lab>,
+    Path(id): Path<String>,
+    Json(request): Json<PreviewRequest>,
+) -> Answer<Preview> {
+    Ok(Json(lab.preview(&request.bench, &id, &request.parameters)?))
+}

@@ -1,0 +1,115 @@
+//! Runs: start, watch, steer.
+
+use super::extract::{Answer, Created, Json, Path, Query, created};
+use super::problem::Refusals;
+use crate::lab::Lab;
+use crate::view::{NewRun, Run, RunEvent, RunList, Samples};
+use axum::extract::State;
+use jointbench_procedure::Control;
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct RunQuery {
+    /// At most so many; 50 where left out, 500 at most.
+    #[param(maximum = 500)]
+    pub limit: Option<u32>,
+    pub offset: Option<u32>,
+    /// Part of the bench, procedure, kind, state or reason.
+    pub search: Option<String>,
+}
+
+/// Runs, newest first
+#[utoipa::path(get, path = "/runs", tag = "runs", params(RunQuery),
+    responses((status = 200, description = "A page of runs", body = RunList), Refusals))]
+pub async fn list(State(lab): State<Lab>, Query(query): Query<RunQuery>) -> Answer<RunList> {
+    let limit = query.limit.unwrap_or(50).min(500);
+    Ok(Json(lab.runs(limit, query.offset.unwrap_or(0), query.search.as_deref()).await?))
+}
+
+/// Plans a procedure, checks it against the limits and starts it
+#[utoipa::path(post, path = "/runs", tag = "runs", request_body = NewRun,
+    responses((status = 201, description = "The run, queued", body = Run), Refusals))]
+pub async fn start(State(lab): State<Lab>, Json(new): Json<NewRun>) -> Created<Run> {
+    created(lab.start_run(&new.bench, &new.procedure, &new.parameters).await?)
+}
+
+/// One run
+#[utoipa::path(get, path = "/runs/{id}", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "The run", body = Run), Refusals))]
+pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.run(id).await?))
+}
+
+/// Brings the joint to rest between two steps and waits
+#[utoipa::path(post, path = "/runs/{id}/pause", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
+pub async fn pause(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.control(id, Control::Pause).await?))
+}
+
+/// Goes on after a pause
+#[utoipa::path(post, path = "/runs/{id}/resume", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
+pub async fn resume(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.control(id, Control::Resume).await?))
+}
+
+/// Ends the run after the step at hand; what was measured counts
+#[utoipa::path(post, path = "/runs/{id}/stop", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
+pub async fn stop(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.control(id, Control::Stop).await?))
+}
+
+/// Ends the run now; the bench is secured
+#[utoipa::path(post, path = "/runs/{id}/abort", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
+pub async fn abort(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.control(id, Control::Abort).await?))
+}
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct EventQuery {
+    /// Only events with a larger sequence number.
+    pub after: Option<u64>,
+}
+
+/// The run's journal
+#[utoipa::path(get, path = "/runs/{id}/events", tag = "runs",
+    params(("id" = i64, Path, description = "Run"), EventQuery),
+    responses((status = 200, description = "Events in order", body = Vec<RunEvent>), Refusals))]
+pub async fn events(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Query(query): Query<EventQuery>,
+) -> Answer<Vec<RunEvent>> {
+    Ok(Json(lab.events(id, query.after).await?))
+}
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct SampleQuery {
+    /// Names with commas between; all where left out.
+    pub channels: Option<String>,
+    pub from_s: Option<f64>,
+    pub to_s: Option<f64>,
+    /// Width of the view in pixels; 2000 where left out.
+    #[param(minimum = 1, maximum = 20_000)]
+    pub px: Option<u32>,
+}
+
+/// Samples of a window, at most one minimum and maximum for each pixel
+#[utoipa::path(get, path = "/runs/{id}/samples", tag = "samples",
+    params(("id" = i64, Path, description = "Run"), SampleQuery),
+    responses((status = 200, description = "The window", body = Samples), Refusals))]
+pub async fn samples(State(lab): State<Lab>, Path(id): Path<i64>, Query(query): Query<SampleQuery>) -> Answer<Samples> {
+    let channels: Option<Vec<String>> =
+        query.channels.map(|names| names.split(',').map(|name| name.trim().to_owned()).collect());
+    Ok(Json(lab.samples(id, channels.as_deref(), query.from_s, query.to_s, query.px.unwrap_or(2000)).await?))
+}

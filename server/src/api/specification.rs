@@ -1,0 +1,36 @@
+//! The specification is kept in the tree: the dashboard's types come from it before the server is built.
+
+/// Set to write `openapi.json` anew after a wanted change of the API.
+const BLESS: &str = "JOINTBENCH_BLESS";
+
+#[test]
+fn the_kept_specification_is_the_routers() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/openapi.json");
+    let now = super::specification().to_pretty_json().unwrap() + "\n";
+    if std::env::var_os(BLESS).is_some() {
+        std::fs::write(path, &now).unwrap();
+    }
+    let kept = std::fs::read_to_string(path).unwrap_or_default();
+    assert!(
+        kept == now,
+        "server/openapi.json differs from the router: run the tests once with {BLESS}=1 and commit it"
+    );
+}
+
+#[test]
+fn every_response_is_described() {
+    let document = serde_json::to_value(super::specification()).unwrap();
+    assert_eq!(document["openapi"], "3.1.0");
+    let mut operations = 0;
+    for (path, item) in document["paths"].as_object().unwrap() {
+        for (method, operation) in item.as_object().unwrap().iter().filter(|(_, o)| o.get("responses").is_some()) {
+            operations += 1;
+            assert!(operation["summary"].is_string() && operation["tags"].is_array(), "{method} {path}");
+            for (status, response) in operation["responses"].as_object().unwrap() {
+                let described = response["description"].as_str().is_some_and(|text| !text.is_empty());
+                assert!(described, "{method} {path}: response {status} has no description");
+            }
+        }
+    }
+    assert!(operations >= 27, "{operations} operations");
+}

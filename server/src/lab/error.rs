@@ -1,0 +1,47 @@
+//! Every way in which the lab refuses, and which one to use where.
+//!
+//! * [`LabError::NotFound`]: what was named is not there.
+//! * [`LabError::Invalid`]: the request is understood, but its values make no sense here; say what to do instead.
+//! * [`LabError::File`]: a measurement file or description was refused; carries file, line and column where known.
+//! * [`LabError::Conflict`]: right request, wrong moment (bench busy, bench blocked, run already over).
+//! * [`LabError::Bench`]: an instrument does not do what it should.
+//! * [`LabError::Setup`]: the daemon cannot start as it was asked to (port taken, folder unwritable, old database).
+//! * [`LabError::Internal`]: ours; the detail goes to the log as well.
+//!
+//! `api::problem` decides what each means in HTTP, [`LabError::exit_code`] what it means to a shell.
+
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum LabError {
+    #[error("{0}")]
+    NotFound(String),
+    #[error("{0}")]
+    Invalid(String),
+    #[error("{detail}")]
+    File { detail: String, line: Option<u64>, column: Option<String> },
+    #[error("{0}")]
+    Conflict(String),
+    #[error("{0}")]
+    Bench(String),
+    #[error("{0}")]
+    Setup(String),
+    #[error("{0}")]
+    Internal(String),
+}
+
+impl LabError {
+    pub fn no_run(id: i64) -> Self {
+        LabError::NotFound(format!("there is no run {id}; GET /api/v1/runs lists those that are there"))
+    }
+
+    pub fn no_model(id: i64) -> Self {
+        LabError::NotFound(format!("there is no model version {id}; GET /api/v1/models?run= lists those of a run"))
+    }
+
+    /// 0 done, 1 the run failed or a limit was broken, 2 bad arguments or bad input, 3 could not be decided.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            LabError::Conflict(_) | LabError::Bench(_) | LabError::Internal(_) => 1,
+            LabError::NotFound(_) | LabError::Invalid(_) | LabError::File { .. } | LabError::Setup(_) => 2,
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! A bench as it stands now.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BenchState {
+    Idle,
+    Running,
+    Paused,
+    /// Drive torque goes off and the brake current to zero.
+    Securing,
+    /// An instrument does not do what it should.
+    Fault,
+    /// The instruments could not be opened.
+    Offline,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Bench {
+    pub name: String,
+    /// True where the instruments are simulated.
+    pub simulated: bool,
+    pub state: BenchState,
+    /// Why no run may start until a person acknowledges.
+    pub blocked: Option<Blocked>,
+    /// The run in progress.
+    pub run: Option<i64>,
+    pub instruments: Vec<Instrument>,
+    pub limits: Vec<Limit>,
+    pub constants: Constants,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Blocked {
+    pub reason: String,
+    #[schema(format = DateTime)]
+    pub since: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Instrument {
+    pub bench: String,
+    /// `joint`, `torque_sensor` or `brake`.
+    pub role: String,
+    pub name: String,
+    pub driver: String,
+    pub port: String,
+    pub ready: bool,
+    pub identity: Option<InstrumentIdentity>,
+    /// What is wrong and what to do about it.
+    pub fault: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct InstrumentIdentity {
+    pub maker: String,
+    pub model: String,
+    pub serial: String,
+    pub firmware: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Limit {
+    pub quantity: String,
+    pub unit: String,
+    pub limit: f64,
+    /// The newest reading, where a run is on.
+    pub value: Option<f64>,
+}
+
+/// Constants of the joint under test.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Constants {
+    pub torque_constant_nm_per_a: f64,
+    pub gear_ratio: f64,
+    pub rotor_inertia_kg_m2: f64,
+    pub brake_compliance_v: f64,
+    pub brake_rated_current_a: f64,
+    pub brake_rated_torque_nm: f64,
+    /// The link may turn this far to either side; `null` where it is not limited.
+    pub link_range_rad: Option<f64>,
+}
+
+/// A person's word that the bench was looked at and is safe.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Acknowledgement {
+    /// What was found and done; kept with the bench.
+    #[schema(min_length = 1)]
+    pub reason: String,
+}

@@ -1,0 +1,45 @@
+//! Text frames of the live stream. The binary frames are in [`crate::live::frame`].
+
+use super::{Bench, ChannelInfo, Progress, RunEvent, RunState, Safe};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// One text frame of `GET /api/v1/events`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum LiveMessage {
+    /// A bench has changed; sent for every bench on connection.
+    Bench {
+        bench: Box<Bench>,
+    },
+    /// A run has changed its state.
+    State {
+        bench: String,
+        run: i64,
+        state: RunState,
+        safe: Option<Safe>,
+        reason: Option<String>,
+    },
+    Progress {
+        bench: String,
+        run: i64,
+        progress: Progress,
+    },
+    /// A new line in a run's journal.
+    Event {
+        bench: String,
+        run: i64,
+        event: RunEvent,
+    },
+    /// The columns of the binary frames that follow, `time_s` among them.
+    Channels {
+        bench: String,
+        run: i64,
+        channels: Vec<ChannelInfo>,
+    },
+    /// A model version was fitted.
+    Model {
+        run: i64,
+        model: i64,
+    },
+}

@@ -1,0 +1,23 @@
+//! What leaves the daemon: the same serialisable types for REST, the live stream, the demo and `--json`.
+//!
+//! SI units with the unit as suffix of the name. No number here is ever NaN or infinite: [`finite`] turns what is not
+//! known into `null`, and types that come from the model crate are re-read, which refuses a `null` for a number.
+
+mod bench;
+mod diagnosis;
+mod live;
+mod model;
+mod procedure;
+mod run;
+
+pub use bench::*;
+pub use diagnosis::*;
+pub use live::*;
+pub use model::*;
+pub use procedure::*;
+pub use run::*;
+
+/// `None` for NaN and infinity, which JSON cannot carry.
+pub fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

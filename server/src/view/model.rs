@@ -1,0 +1,186 @@
+//! Effects, model versions, fits and residuals.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+/// One physical cause that a model can hold.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Effect {
+    pub id: String,
+    pub kind: String,
+    pub title: String,
+    /// One sentence a technician understands.
+    pub sentence: String,
+    pub formula: String,
+    pub parameters: Vec<EffectParameter>,
+    /// Columns without which the effect cannot be computed.
+    pub needs: Vec<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct EffectParameter {
+    pub name: String,
+    pub unit: String,
+    pub min: Option<f64>,
+    pub max: Option<f64>,
+}
+
+/// A model to be fitted: a run and a set of effects.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewModel {
+    pub run: i64,
+    pub effects: Vec<String>,
+    /// The version that this one grew from.
+    #[serde(default)]
+    pub parent: Option<i64>,
+}
+
+/// One version of a model: a node of a tree that only grows. Going back means going to the parent.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Model {
+    pub id: i64,
+    pub run: i64,
+    pub kind: String,
+    pub parent: Option<i64>,
+    /// Effects that the parent did not have; all of them where there is no parent.
+    pub added: Vec<String>,
+    pub removed: Vec<String>,
+    pub effects: Vec<String>,
+    pub fit: Fit,
+    pub residual: ResidualKind,
+    /// On data that took no part in the fit.
+    pub validation_rms: f64,
+    pub rms: f64,
+    pub noise_floor_rms: Option<f64>,
+    #[schema(format = DateTime)]
+    pub created_at: String,
+    /// Filter and decimation settings of the fit.
+    #[schema(value_type = Object)]
+    pub options: Map<String, Value>,
+}
+
+/// A model with the parameters that fit one run best.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Fit {
+    pub kind: String,
+    pub effects: Vec<String>,
+    /// On the data that was fitted.
+    pub rms: f64,
+    /// On data that took no part in the fit.
+    pub validation_rms: f64,
+    pub unit: String,
+    pub residual: ResidualKind,
+    /// ‖residual‖ / ‖measured‖.
+    pub relative_error: f64,
+    pub parameters: Vec<FittedParameter>,
+    /// Pairs of parameters that trade off against each other.
+    pub trade_offs: Vec<TradeOff>,
+    /// Condition number of the scaled columns.
+    pub condition: Option<f64>,
+    /// What a user should know, in plain sentences.
+    pub notes: Vec<String>,
+    pub preparation: Preparation,
+    /// The same parameters as the effects hold them, to compute the model again.
+    pub terms: Vec<Term>,
+}
+
+/// What RMS figures and residuals are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ResidualKind {
+    /// Filtered and decimated samples.
+    Raw,
+    /// Means over short chunks of settled motion.
+    PlateauMean,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FittedParameter {
+    pub effect: String,
+    pub name: String,
+    pub value: f64,
+    pub unit: String,
+    /// 95 % confidence interval over segments or repeats; `null` where this data sets no bound.
+    #[schema(value_type = Vec<Option<f64>>, min_items = 2, max_items = 2)]
+    pub ci95: [Option<f64>; 2],
+    pub state: ParameterState,
+    /// The state in words, where it is not `ok`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ParameterState {
+    Ok,
+    /// Given, not fitted.
+    Fixed,
+    /// The best value lies at the edge of what is physically sensible.
+    AtBound,
+    /// The interval is as wide as the value.
+    Unidentified,
+}
+
+/// Two parameters of which the data decides only a combination.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TradeOff {
+    /// `effect.parameter`.
+    pub first: String,
+    pub second: String,
+    pub correlation: f64,
+}
+
+/// How the run was prepared for the fit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Preparation {
+    pub residual: ResidualKind,
+    pub sample_rate_hz: f64,
+    pub cutoff_hz: Option<f64>,
+    pub decimation: u64,
+    pub chunk_s: Option<f64>,
+    pub samples: u64,
+    /// Rows of the fit: chunks or decimated samples.
+    pub rows: u64,
+    /// Independent pieces for validation, intervals and tests.
+    pub blocks: u64,
+    /// `column` or `found`.
+    pub segments_from: String,
+    /// `column`, `found` or `none`.
+    pub repeats_from: String,
+}
+
+/// One effect of the model, as numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Term {
+    pub effect: String,
+    pub form: String,
+    pub shape: Vec<f64>,
+    pub linear: Vec<f64>,
+}
+
+/// What is left of a run once a model version is taken away. All lists have the same length.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ResidualSet {
+    pub residual: ResidualKind,
+    pub unit: String,
+    /// Coordinates of the points: velocity, position, load, temperature, time, direction, …
+    pub axes: Vec<ResidualAxis>,
+    pub measured: Vec<f64>,
+    pub predicted: Vec<f64>,
+    /// measured − predicted.
+    pub error: Vec<f64>,
+    /// Points that are not part of the fit (ramps, reversals): shown, not judged.
+    pub held_out: Vec<bool>,
+    pub segment: Vec<i64>,
+    pub repeat: Vec<i64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ResidualAxis {
+    /// Column of the run table, or `direction`, `run_order`.
+    pub name: String,
+    pub unit: String,
+    pub values: Vec<f64>,
+}

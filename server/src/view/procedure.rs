@@ -1,0 +1,89 @@
+//! Procedures and what they would do.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Procedure {
+    pub id: String,
+    pub title: String,
+    pub summary: String,
+    /// The kind of run table that comes out.
+    pub kind: String,
+    pub parameters: Vec<ProcedureParameter>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ProcedureParameter {
+    pub name: String,
+    pub title: String,
+    /// SI symbol; empty for a share or a count.
+    pub unit: String,
+    pub default: f64,
+    pub min: f64,
+    pub max: f64,
+    #[serde(rename = "type")]
+    pub type_: ParameterType,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ParameterType {
+    Number,
+    Integer,
+}
+
+/// A procedure on a bench, to be looked at first or to be run. Parameters left out take their defaults.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PreviewRequest {
+    pub bench: String,
+    #[serde(default)]
+    #[schema(value_type = Object)]
+    pub parameters: Map<String, Value>,
+}
+
+/// A dry run: nothing moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Preview {
+    pub duration_s: f64,
+    pub steps: Vec<PlannedStep>,
+    /// The most that the plan will ask of the bench, against its limits.
+    pub extremes: Vec<Extreme>,
+    pub setpoints: Setpoints,
+    /// What must be true before a start; a failed one names its cure.
+    pub checks: Vec<Check>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PlannedStep {
+    pub label: String,
+    pub duration_s: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Extreme {
+    pub quantity: String,
+    pub unit: String,
+    pub value: f64,
+    /// `null` where the bench sets none.
+    pub limit: Option<f64>,
+    pub ok: bool,
+}
+
+/// The commanded profile, as corner points.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
+pub struct Setpoints {
+    pub time_s: Vec<f64>,
+    pub motor_velocity_rad_s: Vec<f64>,
+    pub brake_current_a: Vec<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Check {
+    pub name: String,
+    pub ok: bool,
+    pub detail: String,
+    pub cure: Option<String>,
+}
