@@ -72,7 +72,8 @@ impl Plan {
         }
     }
 
-    /// Speed, brake current and travel as commanded; link torque, brake power and motor current as estimated.
+    /// Speed, brake current and travel as commanded; link torque, brake power and motor current as estimated: the brake's
+    /// bound, and the current that load and inertia take before friction.
     pub fn extremes(&self, facts: &BenchFacts) -> Vec<Extreme> {
         let constants = &facts.constants;
         let limited = |quantity: Limited, value: f64| Extreme {

@@ -10,7 +10,7 @@
 //! facts counts them): it is where temperature changes most, which is what shows an effect of temperature.
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta, turn_s};
+use super::legs::{LONGEST_LEG_S, Legs, friction_meta, turn_s};
 use super::warm_up;
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault, Steady};
@@ -39,6 +39,9 @@ const SCHEMA: &[Parameter] = &[
 /// Speeds below the expected Stribeck velocity, as shares of it: at least four, or its exponent stays open
 /// (diagnosis, pitfalls).
 const SLOW_SHARES: [f64; 4] = [0.15, 0.3, 0.5, 0.75];
+/// Motor-side travel of a slow leg: after a reversal under load the joint winds up first, joint B by 2 · 9.7 Nm over
+/// 684 Nm/rad, which is 1.4 rad on the motor (seed-facts, section 6).
+const SLOW_TRAVEL_RAD: f64 = 1.6;
 /// The lowest of the speeds above it.
 const FAST_FROM: f64 = 1.3;
 /// The torque of the brake grows slowly at first (bench-physics, section 2): even torques need uneven currents.
@@ -146,8 +149,9 @@ impl Speeds {
             };
             (speed_rad_s, turn_s(turn_share, speed_rad_s, bench, dwell_s))
         };
+        let slow = |speed_rad_s: f64| (speed_rad_s, dwell_s.max((SLOW_TRAVEL_RAD / speed_rad_s).min(LONGEST_LEG_S)));
         Ok(Self {
-            slow: SLOW_SHARES.iter().map(|share| (share * stribeck_rad_s, dwell_s)).collect(),
+            slow: SLOW_SHARES.iter().map(|share| slow(share * stribeck_rad_s)).collect(),
             fast: (0..count).map(fast).collect(),
             top_rad_s,
         })
@@ -190,13 +194,16 @@ fn tour(legs: &mut Legs, speeds: &Speeds, brake_a: f64, outwards: f64, rng: &mut
     // Slow pair number i stands before fast leg `places[i]`.
     let mut places: Vec<usize> = (0..route.len()).collect();
     places.shuffle(rng);
+    // The first slow leg goes on in the direction of the leg before it: the joint is wound up that way.
+    let mut direction = outwards;
     for (place, (speed_rad_s, dwell_s)) in route.into_iter().enumerate() {
         for pair in (0..speeds.slow.len()).filter(|pair| places[pair % places.len()] == place) {
             let (slow_rad_s, slow_dwell_s) = speeds.slow[pair];
-            legs.leg(outwards * slow_rad_s, slow_dwell_s, brake_a);
-            legs.leg(-outwards * slow_rad_s, slow_dwell_s, brake_a);
+            legs.leg(direction * slow_rad_s, slow_dwell_s, brake_a);
+            legs.leg(-direction * slow_rad_s, slow_dwell_s, brake_a);
         }
         legs.leg(speed_rad_s, dwell_s, brake_a);
+        direction = speed_rad_s.signum();
     }
 }
 
@@ -221,3 +228,6 @@ fn unload(legs: &mut Legs, speeds: &Speeds, from_a: f64, bench: &BenchFacts) {
     legs.push("demagnetise the brake while turning".into(), velocity, brake);
     legs.leg(-speeds.top_rad_s, ramp_s + LAG_S, 0.0);
 }
+
+#[cfg(test)]
+mod tests;

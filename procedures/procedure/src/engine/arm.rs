@@ -4,7 +4,6 @@ use super::ending::Ending;
 use super::session::{Session, reported};
 use crate::columns::Columns;
 use crate::event::EventKind;
-use crate::guard::Refusal;
 use crate::plan::BenchFacts;
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::units::{Amperes, RadPerSec, Volts};
@@ -24,6 +23,7 @@ impl Session<'_> {
         }
         let reading = self.ask_joint(|joint| joint.read())?;
         self.check_range(&reading)?;
+        self.joint = Some(reading);
 
         let compliance = Volts(self.bench.constants.brake_compliance_v);
         self.ask_brake(|brake| brake.prepare(compliance))?;
@@ -91,7 +91,10 @@ impl Session<'_> {
             // A position that is not a number does not fit either.
             let fits = position_rad.abs() <= range_rad;
             if !fits {
-                return Err(Ending::NotReady(Refusal::BeyondRange { position_rad, range_rad }.to_string()));
+                return Err(Ending::NotReady(format!(
+                    "from here the link would turn to {position_rad:.2} rad, beyond its range of ±{range_rad:.2} rad: \
+                     turn it nearer to the middle"
+                )));
             }
         }
         Ok(())

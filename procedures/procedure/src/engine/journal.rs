@@ -89,7 +89,8 @@ impl<'a> Journal<'a> {
     }
 
     pub fn commit_if_due(&mut self, now_s: f64) -> Result<(), RecorderFault> {
-        if now_s - self.committed_s >= COMMIT_EVERY_S { self.commit(now_s) } else { Ok(()) }
+        let waiting = !self.rows.is_empty() || !self.events.is_empty();
+        if waiting && now_s - self.committed_s >= COMMIT_EVERY_S { self.commit(now_s) } else { Ok(()) }
     }
 
     pub fn commit(&mut self, now_s: f64) -> Result<(), RecorderFault> {

@@ -4,12 +4,15 @@ use super::ending::{Ending, Urgency};
 use super::safe_state::secure;
 use super::session::Session;
 use crate::event::Safe;
+use crate::guard::STANDSTILL_LINK_RAD_S;
 use crate::profile::Profile;
 use std::f64::consts::TAU;
 
 /// The brake is unloaded over at least this time and one link turn, so that every pole is reached (bench-physics,
 /// section 3).
 const UNLOAD_S: f64 = 2.0;
+/// A plan that only creeps does not get a whole turn.
+const LONGEST_UNLOAD_S: f64 = 15.0;
 /// Fastest link speed for it: 60 rpm (same place).
 const UNLOAD_LINK_RAD_S: f64 = TAU;
 /// The supply's dead time and the coil's lag, before the shaft may stop behind a falling current.
@@ -43,17 +46,17 @@ impl Session<'_> {
     /// Takes the brake current away while the shaft turns, then lets it come to rest.
     fn unload(&mut self) -> Result<(), Ending> {
         let brake_a = self.commanded.brake_a;
-        if brake_a > 0.0 {
-            let speed_rad_s = self.unload_speed_rad_s();
-            let turn_s = TAU * self.bench.constants.gear_ratio / speed_rad_s.abs();
-            let unload_s = UNLOAD_S.max(turn_s);
+        let speed_rad_s = self.unload_speed_rad_s();
+        let link_rad_s = speed_rad_s.abs() / self.bench.constants.gear_ratio;
+        if brake_a > 0.0 && link_rad_s > STANDSTILL_LINK_RAD_S {
+            let unload_s = (TAU / link_rad_s).clamp(UNLOAD_S, LONGEST_UNLOAD_S);
             let up = self.ramp_to(speed_rad_s);
             let up_s = up.duration_s();
             let velocity = up.hold(unload_s + BRAKE_LAG_S);
             let brake = Profile::from(brake_a).hold(up_s).to(0.0, unload_s);
             self.drive(&velocity, &brake)?;
         }
-        self.drive(&self.ramp_to(0.0), &Profile::constant(0.0))
+        self.drive(&self.ramp_to(0.0), &Profile::constant(self.commanded.brake_a))
     }
 
     /// No faster than the plan was allowed to be; towards the middle of the range where there is one.
@@ -73,8 +76,7 @@ impl Session<'_> {
         let velocity_rad_s = self.commanded.velocity_rad_s;
         let rest_s = QUICK_S.max(velocity_rad_s.abs() / self.plan.acceleration_rad_s2);
         let velocity = Profile::from(velocity_rad_s).to(0.0, rest_s);
-        let turning =
-            velocity_rad_s.abs() / self.bench.constants.gear_ratio > 2.0 * crate::guard::STANDSTILL_LINK_RAD_S;
+        let turning = velocity_rad_s.abs() / self.bench.constants.gear_ratio > 2.0 * STANDSTILL_LINK_RAD_S;
         let brake = Profile::from(self.commanded.brake_a);
         let brake = if turning { brake.to(0.0, 0.5 * rest_s) } else { brake };
         self.drive(&velocity, &brake)

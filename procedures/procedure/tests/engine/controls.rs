@@ -1,0 +1,107 @@
+//! Stop, abort and software stop at every step and at any time.
+
+use crate::fakes::Call;
+use crate::ledger::{Done, loaded_plan, middles_s, play_controlled};
+use jointbench_procedure::profile::Profile;
+use jointbench_procedure::*;
+use proptest::prelude::*;
+
+/// Bench time from the control to the last set-point that was not zero.
+fn moved_on_s(done: &Done, from_s: f64) -> f64 {
+    let moving = done.world.commands(|call| matches!(call, Call::SetVelocity(v) if *v != 0.0));
+    moving.last().map_or(0.0, |(at_s, _)| at_s - 100.0 - from_s)
+}
+
+#[test]
+fn stop_unloads_the_brake_while_turning() {
+    for at_s in middles_s(&loaded_plan()) {
+        let done = play_controlled(&[(at_s, Control::Stop)]);
+        done.check_safe(RunState::Stopped).check_no_cogging();
+        assert_eq!(done.end.reason.as_deref(), Some("stopped by a person"));
+        assert!(!done.ledger.notes().iter().any(|note| note.contains("demagnetise")), "{:?}", done.ledger.notes());
+    }
+}
+
+#[test]
+fn abort_comes_to_rest_within_its_ramp() {
+    for at_s in middles_s(&loaded_plan()) {
+        let done = play_controlled(&[(at_s, Control::Abort)]);
+        done.check_safe(RunState::Aborted).check_no_cogging();
+        assert!(moved_on_s(&done, at_s) <= 0.5, "{} s", moved_on_s(&done, at_s));
+    }
+}
+
+#[test]
+fn the_software_stop_disarms_at_once() {
+    for at_s in middles_s(&loaded_plan()) {
+        let done = play_controlled(&[(at_s, Control::EStop)]);
+        done.check_safe(RunState::Aborted);
+        let disarmed = done.world.commands(|call| *call == Call::Disarm);
+        assert!(disarmed[0].0 - 100.0 - at_s <= 0.01, "{disarmed:?} after {at_s}");
+    }
+}
+
+#[test]
+fn an_abort_hurries_a_stop() {
+    let at_s = middles_s(&loaded_plan())[2];
+    let done = play_controlled(&[(at_s, Control::Stop), (at_s + 0.5, Control::Abort)]);
+    done.check_safe(RunState::Stopped).check_no_cogging();
+    assert!(moved_on_s(&done, at_s) <= 1.2, "{} s", moved_on_s(&done, at_s));
+}
+
+#[test]
+fn a_control_that_does_not_fit_is_told_and_changes_nothing() {
+    let done = play_controlled(&[(0.5, Control::Resume)]);
+    done.check_safe(RunState::Completed);
+    assert!(done.ledger.notes().contains(&"a run that is running cannot resume"));
+}
+
+#[test]
+fn nobody_left_to_control_is_a_stop() {
+    let (fakes, mut bench) = crate::fakes::Fakes::quiet();
+    let (sender, controls) = std::sync::mpsc::channel();
+    drop(sender);
+    let done = crate::ledger::play_with(&fakes, &mut bench, &loaded_plan(), &controls, |_| {});
+    done.check_safe(RunState::Stopped);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Any sequence of controls at any times: the run ends, secured, its states legal and its table valid.
+    #[test]
+    fn any_history_ends_safely(history in prop::collection::vec((0.0..20.0, 0usize..5), 0..8)) {
+        let all = [Control::Pause, Control::Resume, Control::Stop, Control::Abort, Control::EStop];
+        let mut controls: Vec<_> = history.iter().map(|(at_s, pick)| (*at_s, all[*pick])).collect();
+        // Nobody may be left waiting in a pause.
+        controls.push((21.0, Control::Resume));
+        controls.push((60.0, Control::Abort));
+        let done = play_controlled(&controls);
+        prop_assert!(done.end.state.is_final());
+        prop_assert_eq!(done.end.safe, Safe::SafeVerified);
+        prop_assert!(done.world.is_safe());
+        if !controls.iter().any(|(_, control)| *control == Control::EStop) {
+            done.check_no_cogging();
+        }
+        if done.end.rows > 0 {
+            prop_assert_eq!(done.ledger.table().len() as u64, done.end.rows);
+        }
+    }
+}
+
+/// Too slow to demagnetise: the brake is not let go at standstill while the drive could still turn it, and no time is
+/// spent on a turn that never ends.
+#[test]
+fn a_creeping_plan_is_stopped_without_speeding_up() {
+    let (fakes, mut bench) = crate::fakes::Fakes::quiet();
+    let mut plan = loaded_plan();
+    plan.steps.truncate(1);
+    plan.steps[0].velocity = Profile::plateau(4.0, 400.0, 3.0);
+    plan.steps[0].brake = Profile::from(0.0).to(0.3, 1.0);
+    let done = crate::ledger::play(&fakes, &mut bench, &plan, |_| {});
+    done.check_safe(RunState::Completed).check_no_cogging();
+    assert!(done.end.duration_s < 6.0, "{} s", done.end.duration_s);
+    let fastest = done.world.commands(|call| matches!(call, Call::SetVelocity(v) if v.abs() > 4.0));
+    assert!(fastest.is_empty(), "{fastest:?}");
+    assert!(done.ledger.notes().iter().any(|note| note.contains("demagnetise")));
+}

@@ -1,0 +1,107 @@
+//! Limits in the engine: nothing that breaks one is sent, nothing that is seen to break one goes on.
+
+use crate::fakes::{Call, Fakes, World};
+use crate::ledger::{loaded_plan, play};
+use jointbench_instrument::limits::Limited;
+use jointbench_instrument::roles::Regulation;
+use jointbench_procedure::profile::Profile;
+use jointbench_procedure::*;
+
+/// Two seconds into the run the world shows something that must not be.
+fn check_trips(what: &str, show: fn(&mut World)) -> crate::ledger::Done {
+    let (fakes, mut bench) = Fakes::new(move |_, world| {
+        if (102.0..103.0).contains(&world.now_s) {
+            show(world);
+        }
+        Ok(())
+    });
+    let done = play(&fakes, &mut bench, &loaded_plan(), |_| {});
+    assert_eq!(done.end.state, RunState::Failed, "{what}");
+    let reason = done.end.reason.as_deref().unwrap();
+    assert!(reason.contains(what), "{what}: {reason}");
+    assert!(done.end.duration_s < 8.0, "{what}: {} s", done.end.duration_s);
+    assert_eq!(done.end.safe, Safe::SafeVerified, "{what}: {:?}", done.ledger.notes());
+    done
+}
+
+#[test]
+fn every_limit_trips_in_mid_run() {
+    type Show = fn(&mut World);
+    let cases: [(Limited, Show); 4] = [
+        (Limited::MotorVelocity, |world| world.velocity_rad_s = 210.0),
+        (Limited::MotorCurrent, |world| world.current_a = -8.1),
+        (Limited::LinkTorque, |world| world.torque_nm = f64::NAN),
+        (Limited::Temperature, |world| world.temperature_c = 81.0),
+    ];
+    for (quantity, show) in cases {
+        let done = check_trips(quantity.name(), show);
+        let told = done
+            .ledger
+            .events()
+            .any(|event| matches!(event.kind, EventKind::Breach { breach } if breach.quantity == quantity));
+        assert!(told, "{}", quantity.name());
+        // Drive torque off before anything else.
+        let tripped = done.world.log.iter().position(|(at_s, _)| *at_s >= 102.5);
+        let disarmed = done.world.log.iter().position(|(_, call)| *call == Call::Disarm);
+        assert!(disarmed <= tripped.or(disarmed), "{}", quantity.name());
+    }
+}
+
+#[test]
+fn a_joint_that_leaves_its_range_is_stopped() {
+    check_trips("beyond the range", |world| world.position_rad = 31.0 * crate::fakes::RATIO);
+}
+
+#[test]
+fn a_supply_that_cannot_hold_the_current_is_noticed() {
+    let (fakes, mut bench) = Fakes::new(|_, world| {
+        world.regulation = if world.now_s > 101.0 { Regulation::ConstantVoltage } else { Regulation::ConstantCurrent };
+        Ok(())
+    });
+    let done = play(&fakes, &mut bench, &loaded_plan(), |_| {});
+    done.check_safe(RunState::Failed);
+    assert!(done.end.reason.unwrap().contains("does not hold 0.400 A"));
+}
+
+#[test]
+fn a_plan_beyond_a_limit_never_arms() {
+    let too_fast = |plan: &mut Plan| plan.steps[3].velocity = Profile::plateau(201.0, 400.0, 1.0);
+    let too_strong = |plan: &mut Plan| plan.steps[1].brake = Profile::constant(0.61);
+    let too_far = |plan: &mut Plan| plan.steps[3].velocity = Profile::plateau(150.0, 400.0, 11.0);
+    let from_speed = |plan: &mut Plan| plan.steps[0].velocity = Profile::constant(10.0);
+    for (spoil, said) in [
+        (&too_fast as &dyn Fn(&mut Plan), "motor velocity 201.000 rad/s over 200.000"),
+        (&too_strong, "brake current 0.610 A over 0.600"),
+        (&too_far, "link travel"),
+        (&from_speed, "rest"),
+    ] {
+        let mut plan = loaded_plan();
+        spoil(&mut plan);
+        let (fakes, mut bench) = Fakes::quiet();
+        let done = play(&fakes, &mut bench, &plan, |_| {});
+        done.check_safe(RunState::Failed);
+        let reason = done.end.reason.unwrap();
+        assert!(reason.starts_with("not started") && reason.contains(said), "{reason}");
+        assert!(done.world.commands(|call| matches!(call, Call::Arm)).is_empty());
+    }
+}
+
+#[test]
+fn a_start_too_near_the_stop_is_refused() {
+    let (fakes, mut bench) = Fakes::quiet();
+    fakes.change(|world| world.position_rad = 25.0 * crate::fakes::RATIO);
+    let done = play(&fakes, &mut bench, &loaded_plan(), |_| {});
+    assert!(done.end.reason.unwrap().contains("nearer to the middle"));
+}
+
+/// The plan lets the brake fall before the shaft turns: the guard refuses, and the command is never sent.
+#[test]
+fn the_brake_does_not_fall_at_standstill() {
+    let mut plan = loaded_plan();
+    plan.steps[2].brake = Profile::constant(0.1);
+    let (fakes, mut bench) = Fakes::quiet();
+    let done = play(&fakes, &mut bench, &plan, |_| {});
+    done.check_safe(RunState::Failed).check_no_cogging();
+    assert!(done.end.reason.unwrap().contains("cogging"));
+    assert!(done.world.commands(|call| *call == Call::SetCurrent(0.1)).is_empty());
+}

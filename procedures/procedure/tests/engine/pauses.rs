@@ -1,0 +1,70 @@
+//! Pause and resume at every step.
+
+use crate::fakes::{Call, RATIO};
+use crate::ledger::{loaded_plan, middles_s, play_controlled};
+use jointbench_procedure::*;
+
+#[test]
+fn every_step_survives_a_pause() {
+    let plan = loaded_plan();
+    for (step, at_s) in middles_s(&plan).into_iter().enumerate() {
+        let done = play_controlled(&[(at_s, Control::Pause), (at_s + 3.0, Control::Resume)]);
+        done.check_safe(RunState::Completed).check_no_cogging();
+        let paused = [RunState::Running, RunState::Paused, RunState::Running];
+        assert!(done.ledger.states().windows(3).any(|states| states == paused));
+
+        // The interrupted attempt keeps its number, the repeated one has its own and is whole.
+        let table = done.ledger.table();
+        let rows = |segment: usize| {
+            table.column("segment").unwrap().iter().filter(|found| **found == segment as f64).count() as f64
+        };
+        let whole = plan.steps[step].duration_s() * plan.rate_hz;
+        let repeated = plan.steps.len();
+        assert!((rows(repeated) - whole).abs() <= 2.0, "step {step}: {} of {whole} rows", rows(repeated));
+        assert!((rows(step) - 0.5 * whole).abs() <= 4.0, "step {step}: {} of half {whole} rows", rows(step));
+
+        // It begins where the step began, and so the run ends where it would have.
+        let segments = table.column("segment").unwrap();
+        let first_of = |number: usize| segments.iter().position(|found| *found == number as f64).unwrap();
+        let position_rad = table.column("motor_position_rad").unwrap();
+        let off_rad = position_rad[first_of(repeated)] - position_rad[first_of(step)];
+        assert!(off_rad.abs() < 0.5, "step {step} begins {off_rad} rad off");
+        assert!(done.world.position_rad.abs() < 0.1 * RATIO, "ends at {}", done.world.position_rad);
+    }
+}
+
+#[test]
+fn a_pause_holds_still_and_keeps_the_brake() {
+    let at_s = middles_s(&loaded_plan())[2];
+    let done = play_controlled(&[(at_s, Control::Pause), (at_s + 5.0, Control::Resume)]);
+    let during = |at_s: f64, from_s: f64| (100.0 + from_s + 0.5..100.0 + from_s + 4.9).contains(&at_s);
+    for (moment_s, call) in &done.world.log {
+        if during(*moment_s, at_s) {
+            assert!(matches!(call, Call::SetVelocity(0.0)), "{call:?} at {moment_s}");
+        }
+    }
+    let seen = done.ledger.table();
+    let gap_s = seen.column("time_s").unwrap().windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    assert!(gap_s > 4.5, "rows of the pause are not kept: {gap_s}");
+}
+
+#[test]
+fn a_paused_run_can_be_stopped_or_aborted() {
+    for (control, state) in
+        [(Control::Stop, RunState::Stopped), (Control::Abort, RunState::Aborted), (Control::EStop, RunState::Aborted)]
+    {
+        let at_s = middles_s(&loaded_plan())[1];
+        let done = play_controlled(&[(at_s, Control::Pause), (at_s + 2.0, control)]);
+        done.check_safe(state);
+        assert_eq!(done.ledger.states()[2], RunState::Paused);
+    }
+}
+
+#[test]
+fn the_estimate_of_the_rest_leaves_the_pause_out() {
+    let plan = loaded_plan();
+    let at_s = middles_s(&plan)[1];
+    let done = play_controlled(&[(at_s, Control::Pause), (at_s + 60.0, Control::Resume)]);
+    let most_s = done.ledger.progress.iter().map(|progress| progress.remaining_s).fold(0.0, f64::max);
+    assert!(most_s <= plan.duration_s() + 0.1, "{most_s} s remaining of {} s", plan.duration_s());
+}
