@@ -7,14 +7,14 @@ use crate::view::{Acknowledgement, Bench, Instrument};
 use axum::extract::State;
 
 /// All benches of this daemon
-#[utoipa::path(get, path = "/bench", tag = "bench",
+#[utoipa::path(get, path = "/bench", operation_id = "list_benches", tag = "bench",
     responses((status = 200, description = "The benches", body = Vec<Bench>), Refusals))]
 pub async fn list(State(lab): State<Lab>) -> Answer<Vec<Bench>> {
     Ok(Json(lab.benches()))
 }
 
 /// One bench
-#[utoipa::path(get, path = "/bench/{bench}", tag = "bench", params(("bench" = String, Path, description = "Name")),
+#[utoipa::path(get, path = "/bench/{bench}", operation_id = "get_bench", tag = "bench", params(("bench" = String, Path, description = "Name")),
     responses((status = 200, description = "The bench", body = Bench), Refusals))]
 pub async fn get(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Bench> {
     Ok(Json(lab.bench(&bench)?))
@@ -23,7 +23,7 @@ pub async fn get(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Be
 /// Software stop: ends the run at once and secures the bench
 ///
 /// Answers when the bench thread has taken the command. It is no replacement for a hardware stop.
-#[utoipa::path(post, path = "/bench/{bench}/stop", tag = "bench",
+#[utoipa::path(post, path = "/bench/{bench}/stop", operation_id = "stop_bench", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
     responses((status = 200, description = "Taken; the bench as it is now", body = Bench), Refusals))]
 pub async fn stop(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Bench> {

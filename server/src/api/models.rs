@@ -38,14 +38,14 @@ pub struct ModelQuery {
 }
 
 /// All model versions of a run, oldest first
-#[utoipa::path(get, path = "/models", tag = "models", params(ModelQuery),
+#[utoipa::path(get, path = "/models", operation_id = "list_models", tag = "models", params(ModelQuery),
     responses((status = 200, description = "The versions", body = Vec<Model>), Refusals))]
 pub async fn list(State(lab): State<Lab>, Query(query): Query<ModelQuery>) -> Answer<Vec<Model>> {
     Ok(Json(lab.models(query.run).await?))
 }
 
 /// One model version
-#[utoipa::path(get, path = "/models/{id}", tag = "models", params(("id" = i64, Path, description = "Model version")),
+#[utoipa::path(get, path = "/models/{id}", operation_id = "get_model", tag = "models", params(("id" = i64, Path, description = "Model version")),
     responses((status = 200, description = "The version", body = Model), Refusals))]
 pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Model> {
     Ok(Json(lab.model(id).await?))

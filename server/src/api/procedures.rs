@@ -7,7 +7,7 @@ use crate::view::{Preview, PreviewRequest, Procedure};
 use axum::extract::State;
 
 /// All procedures with their parameters
-#[utoipa::path(get, path = "/procedures", tag = "procedures",
+#[utoipa::path(get, path = "/procedures", operation_id = "list_procedures", tag = "procedures",
     responses((status = 200, description = "The procedures", body = Vec<Procedure>), Refusals))]
 pub async fn list(State(lab): State<Lab>) -> Answer<Vec<Procedure>> {
     Ok(Json(lab.procedures()))

@@ -22,7 +22,7 @@ pub struct RunQuery {
 }
 
 /// Runs, newest first
-#[utoipa::path(get, path = "/runs", tag = "runs", params(RunQuery),
+#[utoipa::path(get, path = "/runs", operation_id = "list_runs", tag = "runs", params(RunQuery),
     responses((status = 200, description = "A page of runs", body = RunList), Refusals))]
 pub async fn list(State(lab): State<Lab>, Query(query): Query<RunQuery>) -> Answer<RunList> {
     let limit = query.limit.unwrap_or(50).min(500);
@@ -37,7 +37,7 @@ pub async fn start(State(lab): State<Lab>, Json(new): Json<NewRun>) -> Created<R
 }
 
 /// One run
-#[utoipa::path(get, path = "/runs/{id}", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(get, path = "/runs/{id}", operation_id = "get_run", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "The run", body = Run), Refusals))]
 pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.run(id).await?))
@@ -58,7 +58,7 @@ pub async fn resume(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> 
 }
 
 /// Ends the run after the step at hand; what was measured counts
-#[utoipa::path(post, path = "/runs/{id}/stop", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(post, path = "/runs/{id}/stop", operation_id = "stop_run", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
 pub async fn stop(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Stop).await?))

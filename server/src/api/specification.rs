@@ -22,9 +22,12 @@ fn every_response_is_described() {
     let document = serde_json::to_value(super::specification()).unwrap();
     assert_eq!(document["openapi"], "3.1.0");
     let mut operations = 0;
+    let mut names = std::collections::HashSet::new();
     for (path, item) in document["paths"].as_object().unwrap() {
         for (method, operation) in item.as_object().unwrap().iter().filter(|(_, o)| o.get("responses").is_some()) {
             operations += 1;
+            let name = operation["operationId"].as_str().unwrap();
+            assert!(names.insert(name.to_owned()), "{method} {path}: two operations are called {name}; name one with operation_id");
             assert!(operation["summary"].is_string() && operation["tags"].is_array(), "{method} {path}");
             for (status, response) in operation["responses"].as_object().unwrap() {
                 let described = response["description"].as_str().is_some_and(|text| !text.is_empty());
