@@ -1,0 +1,60 @@
+import createClient from 'openapi-fetch';
+import type { paths } from '../../gen/schema';
+import { Refusal, asRefusal } from './problem';
+
+export const BASE = '/api/v1';
+
+const client = createClient<paths>({ baseUrl: '' });
+
+/** The answer's body, or a refusal that a page can show. */
+async function body<T>(answer: Promise<{ data?: T; error?: unknown; response: Response }>): Promise<T> {
+	try {
+		const { data, error, response } = await answer;
+		if (data !== undefined) return data;
+		const known = typeof error === 'object' && error !== null ? error : { detail: String(error ?? '') };
+		throw new Refusal({ title: response.statusText || 'Refused', ...known, status: response.status });
+	} catch (failure) {
+		if (failure instanceof DOMException && failure.name === 'AbortError') throw failure;
+		throw asRefusal(failure);
+	}
+}
+
+type Signal = AbortSignal | undefined;
+type Values = Record<string, unknown>;
+
+/** Every call of the dashboard; each is a documented operation of the REST interface. */
+export const api = {
+	benches: (signal?: Signal) => body(client.GET('/api/v1/bench', { signal })),
+	acknowledge: (bench: string, reason: string) =>
+		body(client.POST('/api/v1/bench/{bench}/acknowledge', { params: { path: { bench } }, body: { reason } })),
+	stopBench: (bench: string, signal?: Signal) =>
+		body(client.POST('/api/v1/bench/{bench}/stop', { params: { path: { bench } }, signal })),
+
+	procedures: (signal?: Signal) => body(client.GET('/api/v1/procedures', { signal })),
+	preview: (id: string, bench: string, parameters: Values, signal?: Signal) =>
+		body(client.POST('/api/v1/procedures/{id}/preview', { params: { path: { id } }, body: { bench, parameters }, signal })),
+
+	runs: (query: { limit?: number; offset?: number; search?: string }, signal?: Signal) =>
+		body(client.GET('/api/v1/runs', { params: { query }, signal })),
+	run: (id: number, signal?: Signal) => body(client.GET('/api/v1/runs/{id}', { params: { path: { id } }, signal })),
+	start: (bench: string, procedure: string, parameters: Values) =>
+		body(client.POST('/api/v1/runs', { body: { bench, procedure, parameters } })),
+	control: (id: number, what: 'pause' | 'resume' | 'stop' | 'abort') =>
+		body(client.POST(`/api/v1/runs/{id}/${what}`, { params: { path: { id } } })),
+	events: (id: number, after?: number, signal?: Signal) =>
+		body(client.GET('/api/v1/runs/{id}/events', { params: { path: { id }, query: { after } }, signal })),
+	samples: (id: number, query: { channels?: string; from_s?: number; to_s?: number; px?: number }, signal?: Signal) =>
+		body(client.GET('/api/v1/runs/{id}/samples', { params: { path: { id }, query }, signal })),
+
+	effects: (kind?: string, signal?: Signal) => body(client.GET('/api/v1/effects', { params: { query: { kind } }, signal })),
+	models: (run: number, signal?: Signal) => body(client.GET('/api/v1/models', { params: { query: { run } }, signal })),
+	fit: (run: number, effects: string[], parent?: number) => body(client.POST('/api/v1/models', { body: { run, effects, parent } })),
+	residuals: (id: number, signal?: Signal) =>
+		body(client.GET('/api/v1/models/{id}/residuals', { params: { path: { id } }, signal })),
+	diagnoses: (model: number, signal?: Signal) => body(client.GET('/api/v1/diagnoses', { params: { query: { model } }, signal })),
+	diagnose: (model: number, signal?: Signal) => body(client.POST('/api/v1/diagnoses', { body: { model }, signal })),
+};
+
+export function exportHref(run: number, format: 'csv' | 'parquet'): string {
+	return `${BASE}/runs/${run}/export?format=${format}`;
+}

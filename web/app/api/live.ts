@@ -1,0 +1,48 @@
+import { BASE } from './client';
+import { type Frame, decodeFrame } from './frame';
+import type { LiveMessage } from './types';
+
+export interface LiveHandlers {
+	message: (message: LiveMessage) => void;
+	frame: (frame: Frame) => void;
+	/** The line is up (true) or lost (false). */
+	line: (up: boolean) => void;
+}
+
+const FIRST_RETRY_MS = 300;
+const LAST_RETRY_MS = 3000;
+
+/** Keeps one WebSocket to the daemon open for as long as the page lives. Returns the end of it. */
+export function connectLive(handlers: LiveHandlers): () => void {
+	let socket: WebSocket | null = null;
+	let wait_ms = FIRST_RETRY_MS;
+	let timer: ReturnType<typeof setTimeout> | undefined;
+	let over = false;
+
+	const open = () => {
+		const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
+		socket = new WebSocket(`${scheme}://${location.host}${BASE}/events`);
+		socket.binaryType = 'arraybuffer';
+		socket.onopen = () => {
+			wait_ms = FIRST_RETRY_MS;
+			handlers.line(true);
+		};
+		socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
+			if (typeof data === 'string') return handlers.message(JSON.parse(data) as LiveMessage);
+			const frame = decodeFrame(data);
+			if (frame) handlers.frame(frame);
+		};
+		socket.onclose = () => {
+			if (over) return;
+			handlers.line(false);
+			timer = setTimeout(open, wait_ms);
+			wait_ms = Math.min(LAST_RETRY_MS, wait_ms * 1.6);
+		};
+	};
+	open();
+	return () => {
+		over = true;
+		clearTimeout(timer);
+		socket?.close();
+	};
+}

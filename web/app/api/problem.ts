@@ -1,0 +1,30 @@
+import type { Problem } from './types';
+
+/** What a page shows when a request failed: the daemon's problem document, or why there is none. */
+export class Refusal extends Error {
+	readonly status: number;
+	readonly title: string;
+	readonly line: number | null;
+	readonly column: string | null;
+
+	constructor(problem: Partial<Problem>) {
+		super(problem.detail ?? problem.title ?? 'the daemon gave no reason');
+		this.status = problem.status ?? 0;
+		this.title = problem.title ?? 'Refused';
+		this.line = problem.line ?? null;
+		this.column = problem.column ?? null;
+	}
+
+	/** Nobody answered: worth waiting for, nothing to correct. */
+	get offline(): boolean {
+		return this.status === 0;
+	}
+}
+
+export function asRefusal(error: unknown): Refusal {
+	if (error instanceof Refusal) return error;
+	if (error instanceof TypeError) {
+		return new Refusal({ title: 'No contact', detail: 'The daemon does not answer. Is `jointbench serve` still running?' });
+	}
+	return new Refusal({ title: 'Not understood', detail: error instanceof Error ? error.message : String(error), status: 500 });
+}

@@ -1,0 +1,24 @@
+/** The daemon's types, generated from its specification, under the names that the pages use. */
+import type { components } from '../../gen/schema';
+
+type Schemas = components['schemas'];
+
+export type Bench = Schemas['Bench'];
+export type Channel = Schemas['ChannelInfo'];
+export type Diagnosis = Schemas['Diagnosis'];
+export type Effect = Schemas['Effect'];
+export type LiveMessage = Schemas['LiveMessage'];
+export type Model = Schemas['Model'];
+export type Parameter = Schemas['FittedParameter'];
+export type Preview = Schemas['Preview'];
+export type Problem = Schemas['Problem'];
+export type Procedure = Schemas['Procedure'];
+export type ProcedureParameter = Schemas['ProcedureParameter'];
+export type Progress = Schemas['Progress'];
+export type Region = Schemas['Region'];
+export type ResidualSet = Schemas['ResidualSet'];
+export type Run = Schemas['Run'];
+export type RunEvent = Schemas['RunEvent'];
+export type RunState = Schemas['RunState'];
+export type Samples = Schemas['Samples'];
+export type Suggestion = Schemas['Suggestion'];

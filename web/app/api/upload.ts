@@ -1,0 +1,30 @@
+import { BASE } from './client';
+import { Refusal, asRefusal } from './problem';
+import type { Problem, Run } from './types';
+
+/** A run table and, beside it, its `meta.json`. */
+export interface Upload {
+	file: File;
+	meta: File | null;
+}
+
+/** Puts the files that were dropped together into pairs: one `.json` serves all tables of the drop. */
+export function pair(files: readonly File[]): Upload[] {
+	const meta = files.find((file) => file.name.endsWith('.json')) ?? null;
+	return files.filter((file) => !file.name.endsWith('.json')).map((file) => ({ file, meta }));
+}
+
+/** Sent as a form, which the typed client does not build. */
+export async function importRun({ file, meta }: Upload): Promise<Run> {
+	const form = new FormData();
+	form.append('file', file, file.name);
+	if (meta) form.append('meta', await meta.text());
+	try {
+		const response = await fetch(`${BASE}/runs/import`, { method: 'POST', body: form });
+		const body: unknown = await response.json();
+		if (!response.ok) throw new Refusal({ ...(body as Problem), status: response.status });
+		return body as Run;
+	} catch (failure) {
+		throw asRefusal(failure);
+	}
+}

@@ -1,0 +1,51 @@
+/** Column names as people read them. The unit is the suffix of the name. */
+
+const SUFFIXES: [string, string][] = [
+	['_nm_per_rad', 'Nm/rad'],
+	['_nm_per_a', 'Nm/A'],
+	['_kg_m2', 'kg·m²'],
+	['_rad_s2', 'rad/s²'],
+	['_rad_s', 'rad/s'],
+	['_rad', 'rad'],
+	['_nm', 'Nm'],
+	['_hz', 'Hz'],
+	['_w', 'W'],
+	['_v', 'V'],
+	['_a', 'A'],
+	['_c', '°C'],
+	['_s', 's'],
+];
+
+const SAID: Record<string, string> = {
+	link_torque_nm: 'load (link torque)',
+	run_order: 'order in the run',
+	direction: 'direction of motion',
+};
+
+export interface Label {
+	title: string;
+	unit: string;
+}
+
+export function label(column: string, unit?: string | null): Label {
+	const suffix = SUFFIXES.find(([end]) => column.endsWith(end));
+	const bare = suffix ? column.slice(0, -suffix[0].length) : column;
+	return { title: SAID[column] ?? bare.replaceAll('_', ' '), unit: unit ?? suffix?.[1] ?? '' };
+}
+
+/** `motor velocity [rad/s]` */
+export function axisTitle(column: string, unit?: string | null): string {
+	const { title, unit: known } = label(column, unit);
+	return known && known !== '1' ? `${title} [${known}]` : title;
+}
+
+const WORDS: Record<string, string> = {
+	joint: 'joint drive',
+	torque_sensor: 'torque sensor',
+	brake: 'brake current source',
+};
+
+/** Ids as words: `viscous_asymmetry` → `viscous asymmetry`. */
+export function words(id: string): string {
+	return WORDS[id] ?? id.replaceAll('_', ' ');
+}

@@ -1,0 +1,73 @@
+/** Numbers as an instrument shows them: few digits, true minus, units apart. */
+
+const MINUS = '−';
+
+/** `digits` significant digits, no exponent between 1e-4 and 1e6. */
+export function figure(value: number | null | undefined, digits = 4): string {
+	if (value == null || !Number.isFinite(value)) return '–';
+	if (value === 0) return '0';
+	const size = Math.abs(value);
+	if (size < 1e-4 || size >= 1e6) return exponent(value, Math.max(0, digits - 1));
+	const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+	return value.toFixed(Math.min(decimals, 8)).replace('-', MINUS);
+}
+
+function exponent(value: number, decimals: number): string {
+	const [mantissa = '', power = ''] = value.toExponential(decimals).split('e');
+	return `${mantissa.replace('-', MINUS)}·10${superscript(Number(power))}`;
+}
+
+const RAISED = '⁰¹²³⁴⁵⁶⁷⁸⁹';
+
+export function superscript(power: number): string {
+	const digits = String(Math.abs(power)).replace(/\d/g, (digit) => RAISED[Number(digit)] ?? '');
+	return power < 0 ? `⁻${digits}` : digits;
+}
+
+export interface Scale {
+	factor: number;
+	unit: string;
+}
+
+const SCALABLE = new Set(['Nm', 'rad', 'N', 'm', 'A', 'rad/s', 'm/s']);
+
+/** One prefix for everything that is shown together, chosen by its largest magnitude. */
+export function scaleFor(unit: string, largest: number): Scale {
+	const size = Math.abs(largest);
+	if (!SCALABLE.has(unit) || size === 0 || size >= 0.1) return { factor: 1, unit };
+	return size >= 1e-4 ? { factor: 1e3, unit: `m${unit}` } : { factor: 1e6, unit: `µ${unit}` };
+}
+
+export function quantity(value: number | null | undefined, unit: string, digits = 3): string {
+	if (value == null || !Number.isFinite(value)) return '–';
+	const scale = scaleFor(unit, value);
+	return `${figure(value * scale.factor, digits)} ${scale.unit}`.trim();
+}
+
+export function percent(share: number, digits = 0): string {
+	return `${(share * 100).toFixed(digits).replace('-', MINUS)} %`;
+}
+
+/** `p < 10⁻⁹` rather than a row of zeros. */
+export function chance(p: number): string {
+	if (p <= 0) return 'p < 10⁻¹⁶';
+	if (p < 1e-3) return `p < 10${superscript(Math.ceil(Math.log10(p)))}`;
+	return `p = ${p.toFixed(p < 0.1 ? 3 : 2)}`;
+}
+
+/** Ends of an interval; `null` where the data sets no bound. */
+export type Interval = readonly (number | null)[];
+
+/** A value (or an end of its interval) with as many digits as the interval deserves. */
+export function estimate(value: number | null, interval: Interval): string {
+	const [low, high] = interval;
+	const width = low == null || high == null ? 0 : Math.abs(high - low) / 2;
+	if (value === null || !(width > 0) || value === 0) return figure(value, 4);
+	const needed = Math.floor(Math.log10(Math.abs(value))) - Math.floor(Math.log10(width)) + 2;
+	return figure(value, Math.min(7, Math.max(2, needed)));
+}
+
+/** `[0.097, 0.105]` */
+export function bounds(interval: Interval): string {
+	return `[${interval.map((edge) => (edge === null ? '?' : estimate(edge, interval))).join(', ')}]`;
+}

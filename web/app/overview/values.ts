@@ -1,0 +1,28 @@
+import { figure } from '../format/number';
+import type { ProcedureParameter } from '../api/types';
+
+export interface Parsed {
+	value: number;
+	/** Why the text cannot be sent. */
+	error: string | null;
+}
+
+/** What a person typed, as the number that the procedure wants. A decimal comma is understood. */
+export function parse({ type, min, max }: ProcedureParameter, text: string): Parsed {
+	const plain = text.trim().replace(',', '.');
+	const value = plain === '' ? Number.NaN : Number(plain);
+	return { value, error: wrong() };
+
+	function wrong(): string | null {
+		if (!Number.isFinite(value)) return 'a number';
+		if (type === 'integer' && !Number.isInteger(value)) return 'a whole number';
+		if (value < min) return `at least ${figure(min)}`;
+		return value > max ? `at most ${figure(max)}` : null;
+	}
+}
+
+/** A value as the text of its field. */
+export function asText(value: unknown): string {
+	if (value === null || value === undefined) return '';
+	return Array.isArray(value) ? value.join(', ') : String(value);
+}

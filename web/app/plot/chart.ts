@@ -1,0 +1,160 @@
+import uPlot from 'uplot';
+import { colour } from './colour';
+import { type Asked, type View, gestures } from './gestures';
+
+/** `line` joins the points; the others mark each point by itself. */
+export type Mark = 'line' | 'dot' | 'ring' | 'dash';
+
+export interface Curve {
+	label: string;
+	unit: string;
+	mark: Mark;
+	/** Custom property of the colour. */
+	stroke: string;
+	dash?: number[];
+}
+
+export interface Frame {
+	xTitle: string;
+	yTitle: string;
+	curves: Curve[];
+	/** Plots of one key share a cursor. */
+	sync?: string;
+	height: number;
+	/** The axis below says it already. */
+	bareX?: boolean;
+}
+
+/** Behind the curves: stretches of x, and a band of y about zero. */
+export interface Backdrop {
+	gaps: readonly (readonly [number, number])[];
+	region: readonly [number, number] | null;
+	band: number | null;
+}
+
+export interface Chart {
+	draw: (data: uPlot.AlignedData, view: View | null, backdrop: Backdrop) => void;
+	resize: (width: number, height: number) => void;
+	destroy: () => void;
+}
+
+const NOTHING: Backdrop = { gaps: [], region: null, band: null };
+
+/** The one place that knows uPlot. The zoom is ours: data never moves it (uPlot issues 505 and 942). */
+export function makeChart(
+	host: HTMLElement,
+	frame: Frame,
+	asked: Asked,
+	pointed: (index: number | null) => void,
+): Chart {
+	let view: View | null = null;
+	let backdrop = NOTHING;
+	const hands = gestures(asked);
+	const plot = new uPlot(
+		{
+			width: Math.max(80, host.clientWidth),
+			height: frame.height,
+			legend: { show: false },
+			scales: { x: { time: false, range: (_u, low, high) => view ?? padded(low, high) } },
+			axes: [axis(frame.bareX ? '' : frame.xTitle, frame.bareX), axis(frame.yTitle, false, 58)],
+			series: [{}, ...frame.curves.map((curve) => series(curve, () => backdrop))],
+			cursor: {
+				...hands.cursor,
+				points: { size: 6 },
+				sync: frame.sync ? { key: frame.sync, setSeries: false, scales: ['x', null] } : undefined,
+			},
+			hooks: {
+				...hands.hooks,
+				drawAxes: [(u) => paintBackdrop(u, backdrop)],
+				setCursor: [(u) => pointed(u.cursor.idx ?? null)],
+			},
+		},
+		[[], ...frame.curves.map(() => [])] as unknown as uPlot.AlignedData,
+		host,
+	);
+	return {
+		draw: (data, next, behind) => {
+			view = next;
+			backdrop = behind;
+			plot.setData(data, true);
+		},
+		resize: (width, height) => plot.setSize({ width, height }),
+		destroy: () => plot.destroy(),
+	};
+}
+
+function padded(low: number, high: number): View {
+	if (low == null || high == null) return [0, 1];
+	return low === high ? [low - 0.5, high + 0.5] : [low, high];
+}
+
+function axis(title: string, bare = false, size?: number): uPlot.Axis {
+	return {
+		label: title || undefined,
+		labelSize: title ? 18 : 0,
+		labelFont: '11px system-ui, sans-serif',
+		labelGap: 2,
+		font: '11px system-ui, sans-serif',
+		stroke: () => colour('--soft'),
+		grid: { stroke: () => colour('--hair'), width: 1 },
+		ticks: { stroke: () => colour('--line'), width: 1, size: 4 },
+		gap: 4,
+		size: bare ? 8 : (size ?? 28),
+		values: bare ? (_u, splits) => splits.map(() => '') : undefined,
+	};
+}
+
+function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
+	const stroke = () => colour(curve.stroke);
+	if (curve.mark === 'line') {
+		return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, gaps: (u) => gapPixels(u, backdrop().gaps) };
+	}
+	if (curve.mark === 'dash') return { stroke, width: 2, points: { show: false }, paths: dashes };
+	const filled = curve.mark === 'dot';
+	return {
+		stroke,
+		paths: () => null,
+		points: { show: true, size: filled ? 5 : 6, width: 1, stroke, fill: filled ? stroke : () => 'transparent' },
+	};
+}
+
+function gapPixels(u: uPlot, gaps: Backdrop['gaps']): [number, number][] {
+	return gaps.map(([from, to]) => [u.valToPos(from, 'x', true), u.valToPos(to, 'x', true)]);
+}
+
+/** A short level stroke at each point: where the model says the point should be. */
+function dashes(u: uPlot, index: number, from: number, to: number): uPlot.Series.Paths {
+	const path = new Path2D();
+	const half = 5 * devicePixelRatio;
+	for (let i = from; i <= to; i++) {
+		const value = u.data[index]![i];
+		if (value == null) continue;
+		const x = u.valToPos(u.data[0]![i]!, 'x', true);
+		const y = u.valToPos(value, 'y', true);
+		path.moveTo(x - half, y);
+		path.lineTo(x + half, y);
+	}
+	return { stroke: path };
+}
+
+function paintBackdrop(u: uPlot, { region, band }: Backdrop): void {
+	const { left, top, width, height } = u.bbox;
+	const { ctx } = u;
+	ctx.save();
+	ctx.beginPath();
+	ctx.rect(left, top, width, height);
+	ctx.clip();
+	if (region) {
+		const from = u.valToPos(region[0], 'x', true);
+		const to = u.valToPos(region[1], 'x', true);
+		ctx.fillStyle = colour('--accent-wash');
+		ctx.fillRect(Math.min(from, to), top, Math.max(2, Math.abs(to - from)), height);
+	}
+	if (band !== null) {
+		const high = u.valToPos(band, 'y', true);
+		const low = u.valToPos(-band, 'y', true);
+		ctx.fillStyle = colour('--sunk');
+		ctx.fillRect(left, high, width, low - high);
+	}
+	ctx.restore();
+}

@@ -1,0 +1,45 @@
+/** Colours for canvases: the custom properties of the style sheet, looked up once for each theme. */
+const known = new Map<string, string>();
+
+export function colour(property: string): string {
+	let value = known.get(property);
+	if (value === undefined) {
+		value = getComputedStyle(document.documentElement).getPropertyValue(property).trim();
+		known.set(property, value);
+	}
+	return value;
+}
+
+/** After a change of theme. */
+export function forgetColours(): void {
+	known.clear();
+}
+
+/** Colour and dash for the i-th curve: never colour alone. */
+const CURVES: [string, number[]][] = [
+	['--oi-blue', []],
+	['--oi-vermillion', [7, 4]],
+	['--oi-green', [2, 3]],
+	['--oi-purple', [9, 3, 2, 3]],
+	['--oi-orange', [4, 2]],
+	['--oi-sky', [1, 2]],
+];
+
+export function curveStyle(i: number): { stroke: string; dash: number[] } {
+	const [stroke, dash] = CURVES[i % CURVES.length]!;
+	return { stroke, dash };
+}
+
+export function rgb(hex: string): [number, number, number] {
+	const value = Number.parseInt(hex.replace('#', ''), 16);
+	return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
+}
+
+/** Diverging: −1 is `low`, 0 `middle`, +1 `high`. */
+export function diverging(at: number, low: string, middle: string, high: string): string {
+	const from = rgb(middle);
+	const to = rgb(at < 0 ? low : high);
+	const share = Math.min(1, Math.abs(at));
+	const mixed = from.map((value, i) => Math.round(value + (to[i]! - value) * share));
+	return `rgb(${mixed.join(' ')})`;
+}

@@ -1,0 +1,26 @@
+import type { Samples } from '../api/types';
+
+export interface Drawn {
+	time: number[];
+	columns: (number | null)[][];
+	gaps: [number, number][];
+}
+
+/**
+ * The daemon's smallest and largest value of each pixel as one line: down and up at the same time, so that a spike of a
+ * single sample is seen. A pause much longer than the others is a gap.
+ */
+export function envelope(samples: Samples): Drawn {
+	const gaps = findGaps(samples.time_s);
+	if (samples.exact) return { time: samples.time_s, columns: samples.channels.map((c) => c.min), gaps };
+	const time = samples.time_s.flatMap((t) => [t, t]);
+	const columns = samples.channels.map((c) => c.min.flatMap((low, i) => [low, c.max[i] ?? low]));
+	return { time, columns, gaps };
+}
+
+export function findGaps(time_s: readonly number[]): [number, number][] {
+	if (time_s.length < 8) return [];
+	const steps = time_s.slice(1).map((t, i) => t - time_s[i]!);
+	const typical = [...steps].sort((a, b) => a - b)[Math.floor(steps.length * 0.9)]!;
+	return steps.flatMap((step, i) => (step > 5 * typical ? [[time_s[i]!, time_s[i + 1]!] as [number, number]] : []));
+}

@@ -1,0 +1,65 @@
+import type uPlot from 'uplot';
+
+export type View = [from: number, to: number];
+/** How a view was asked for: a live plot goes on following after a zoom, but not after the others. */
+export type Hand = 'zoom' | 'box' | 'pan' | 'all';
+export type Asked = (view: View | null, hand: Hand) => void;
+
+/**
+ * The hands on a plot: wheel zooms about the pointer, drag chooses a stretch, shift-drag moves, double click shows all.
+ * The chart keeps no zoom of its own; it says which view was asked for.
+ */
+export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> {
+	return {
+		cursor: {
+			drag: { x: true, y: false, setScale: false, dist: 4 },
+			bind: {
+				mousedown: (u, _target, handler) => (event) => {
+					if (event.button === 0 && event.shiftKey) pan(u, event, asked);
+					else handler(event);
+					return null;
+				},
+				dblclick: () => () => {
+					asked(null, 'all');
+					return null;
+				},
+			},
+		},
+		hooks: {
+			setSelect: [
+				(u) => {
+					if (u.select.width < 4) return;
+					asked([u.posToVal(u.select.left, 'x'), u.posToVal(u.select.left + u.select.width, 'x')], 'box');
+					u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+				},
+			],
+			ready: [(u) => u.over.addEventListener('wheel', (event) => zoom(u, event, asked), { passive: false })],
+		},
+	};
+}
+
+function zoom(u: uPlot, event: WheelEvent, asked: Asked): void {
+	event.preventDefault();
+	const { min, max } = u.scales.x!;
+	if (min == null || max == null) return;
+	const factor = Math.exp(Math.max(-60, Math.min(60, event.deltaY)) * 0.004);
+	const at = u.posToVal(event.clientX - u.over.getBoundingClientRect().left, 'x');
+	asked([at - (at - min) * factor, at + (max - at) * factor], 'zoom');
+}
+
+function pan(u: uPlot, begin: MouseEvent, asked: Asked): void {
+	begin.preventDefault();
+	const { min, max } = u.scales.x!;
+	if (min == null || max == null) return;
+	const each = (max - min) / u.over.clientWidth;
+	const move = (event: MouseEvent) => {
+		const shift = (begin.clientX - event.clientX) * each;
+		asked([min + shift, max + shift], 'pan');
+	};
+	const up = () => {
+		removeEventListener('mousemove', move);
+		removeEventListener('mouseup', up);
+	};
+	addEventListener('mousemove', move);
+	addEventListener('mouseup', up);
+}

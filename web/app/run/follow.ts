@@ -1,0 +1,30 @@
+import type { Hand, View } from '../plot/gestures';
+
+/** What a live plot shows: the newest `width_s` seconds, or a stretch that stands still. */
+export type Look = { follow: true; width_s: number } | { follow: false; view: View | null };
+
+/** The look after a person's hand on the plot. Zooming keeps following with a new width; the others hold still. */
+export function afterHand(look: Look, asked: View | null, hand: Hand): Look {
+	if (asked === null) return { follow: false, view: null };
+	if (look.follow && hand === 'zoom') return { follow: true, width_s: Math.max(0.05, asked[1] - asked[0]) };
+	return { follow: false, view: asked };
+}
+
+export function viewOf(look: Look, newest_s: number): View | null {
+	return look.follow ? [newest_s - look.width_s, newest_s] : look.view;
+}
+
+/** `follow:10` or `from:to`, for the address. */
+export function writeLook(look: Look): string {
+	if (look.follow) return `follow:${Number(look.width_s.toPrecision(4))}`;
+	return look.view ? look.view.map((edge) => Number(edge.toPrecision(7))).join(':') : 'all';
+}
+
+export function readLook(text: string | null, live: boolean): Look {
+	if (text === null) return live ? { follow: true, width_s: 10 } : { follow: false, view: null };
+	const [first = '', second = ''] = text.split(':');
+	if (first === 'follow' && Number(second) > 0) return { follow: true, width_s: Number(second) };
+	const [from, to] = [Number(first), Number(second)];
+	const whole = second !== '' && Number.isFinite(from) && Number.isFinite(to) && from < to;
+	return { follow: false, view: whole ? [from, to] : null };
+}

@@ -1,0 +1,39 @@
+/** One map of keys for the whole page. The help sheet is drawn from it, so it cannot tell of a key that does nothing. */
+export interface Key {
+	/** As `KeyboardEvent.key` gives it. */
+	key: string;
+	/** What it does, for the help sheet. */
+	does: string;
+	run: () => void;
+}
+
+class Keys {
+	groups: { name: string; keys: Key[] }[] = $state.raw([]);
+
+	/** Adds a group until the returned function is called. A later group wins over an earlier one. */
+	bind(name: string, keys: Key[]): () => void {
+		const group = { name, keys };
+		this.groups = [...this.groups, group];
+		return () => {
+			this.groups = this.groups.filter((other) => other !== group);
+		};
+	}
+
+	press(event: KeyboardEvent): void {
+		if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+		if (isTyping(event.target)) return;
+		for (const group of [...this.groups].reverse()) {
+			const key = group.keys.find((candidate) => candidate.key === event.key);
+			if (!key) continue;
+			event.preventDefault();
+			return key.run();
+		}
+	}
+}
+
+function isTyping(target: EventTarget | null): boolean {
+	const element = target instanceof HTMLElement ? target : null;
+	return !!element && (element.isContentEditable || ['INPUT', 'TEXTAREA', 'SELECT'].includes(element.tagName));
+}
+
+export const keys = new Keys();

@@ -1,0 +1,130 @@
+import { api } from '../api/client';
+import { connectLive } from '../api/live';
+import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
+import type { Frame } from '../api/frame';
+import { Tape } from '../plot/tape';
+import { router } from './router.svelte';
+
+/** With nothing heard for so long, the page asks. */
+const QUIET_MS = 1500;
+/** Older than this is no contact. */
+export const STALE_MS = 4000;
+
+/** What the daemon last said: the one state that every page draws. */
+class LabState {
+	benches: Bench[] | null = $state.raw(null);
+	progress: Record<number, Progress> = $state({});
+	runStates: Record<number, RunState> = $state({});
+	events: RunEvent[] = $state.raw([]);
+	/** Run that `events` and `tape` belong to. */
+	liveRun: number | null = $state(null);
+	channels: Channel[] = $state.raw([]);
+	/** Raised with every frame, for plots to redraw. */
+	frames = $state(0);
+	dropped = $state(0);
+	/** Raised when a model version was made anywhere. */
+	models = $state(0);
+	line = $state(false);
+	heard_ms = $state(performance.now());
+	now_ms = $state(performance.now());
+	tape: Tape | null = null;
+
+	bench: Bench | null = $derived.by(() => {
+		const wanted = router.query.get('bench');
+		return this.benches?.find((bench) => bench.name === wanted) ?? this.benches?.[0] ?? null;
+	});
+	/** Milliseconds since the daemon was last heard. */
+	silence_ms = $derived(Math.max(0, this.now_ms - this.heard_ms));
+	lost = $derived(!this.line || this.silence_ms > STALE_MS);
+
+	start(): () => void {
+		const hangUp = connectLive({
+			message: (message) => this.take(message),
+			frame: (frame) => this.takeFrame(frame),
+			line: (up) => this.setLine(up),
+		});
+		const clock = setInterval(() => this.tick(), 250);
+		void this.ask();
+		return () => {
+			hangUp();
+			clearInterval(clock);
+		};
+	}
+
+	private tick(): void {
+		this.now_ms = performance.now();
+		if (this.now_ms - this.heard_ms > QUIET_MS && !this.asking) void this.ask();
+	}
+
+	private asking = false;
+
+	private async ask(): Promise<void> {
+		this.asking = true;
+		try {
+			this.benches = await api.benches(AbortSignal.timeout(2500));
+			this.hear();
+		} catch {
+			// Silence is shown by its age.
+		}
+		this.asking = false;
+	}
+
+	private hear(): void {
+		this.heard_ms = performance.now();
+		this.now_ms = this.heard_ms;
+	}
+
+	private setLine(up: boolean): void {
+		this.line = up;
+		if (up) void this.ask();
+	}
+
+	private take(message: LiveMessage): void {
+		this.hear();
+		switch (message.type) {
+			case 'bench': {
+				const others = (this.benches ?? []).filter((bench) => bench.name !== message.bench.name);
+				this.benches = [...others, message.bench].sort((a, b) => a.name.localeCompare(b.name));
+				break;
+			}
+			case 'state':
+				this.runStates[message.run] = message.state;
+				break;
+			case 'progress':
+				this.progress[message.run] = message.progress;
+				break;
+			case 'event':
+				this.follow(message.run);
+				if (this.events.some((event) => event.sequence === message.event.sequence)) break;
+				this.events = [...this.events, message.event];
+				break;
+			case 'channels':
+				this.follow(message.run);
+				this.channels = message.channels;
+				if (this.tape?.names.join() !== message.channels.map((c) => c.name).join()) {
+					this.tape = new Tape(message.channels.map((channel) => channel.name));
+				}
+				break;
+			case 'model':
+				this.models += 1;
+				break;
+		}
+	}
+
+	private follow(run: number): void {
+		if (run === this.liveRun) return;
+		this.liveRun = run;
+		this.events = [];
+		this.tape = null;
+		this.dropped = 0;
+	}
+
+	private takeFrame(frame: Frame): void {
+		this.hear();
+		this.tape?.push(frame);
+		this.dropped = frame.dropped;
+		this.frames += 1;
+	}
+}
+
+export const lab = new LabState();

@@ -1,0 +1,64 @@
+import { Refusal, asRefusal } from '../api/problem';
+
+export interface Resource<T> {
+	readonly data: T | undefined;
+	readonly error: Refusal | null;
+	readonly loading: boolean;
+	reload: () => void;
+	/** Puts a newer value in place, as the answer of a change. */
+	put: (value: T) => void;
+}
+
+/**
+ * What a page asks the daemon for. Asked again when the key changes; the former answer stays on the screen until the
+ * next is there, so that nothing jumps. A `null` key asks nothing.
+ */
+export function resource<K, T>(key: () => K | null, load: (key: K, signal: AbortSignal) => Promise<T>): Resource<T> {
+	let data: T | undefined = $state.raw();
+	let error: Refusal | null = $state.raw(null);
+	let loading = $state(false);
+	let turn = $state(0);
+
+	$effect(() => {
+		void turn;
+		const wanted = key();
+		if (wanted === null) {
+			data = undefined;
+			loading = false;
+			return;
+		}
+		const abort = new AbortController();
+		loading = true;
+		load(wanted, abort.signal).then(
+			(value) => {
+				if (abort.signal.aborted) return;
+				data = value;
+				error = null;
+				loading = false;
+			},
+			(failure: unknown) => {
+				if (abort.signal.aborted) return;
+				error = asRefusal(failure);
+				loading = false;
+			},
+		);
+		return () => abort.abort();
+	});
+
+	return {
+		get data() {
+			return data;
+		},
+		get error() {
+			return error;
+		},
+		get loading() {
+			return loading;
+		},
+		reload: () => (turn += 1),
+		put: (value: T) => {
+			data = value;
+			error = null;
+		},
+	};
+}

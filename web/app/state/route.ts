@@ -1,0 +1,30 @@
+/** The address is the view: which page, of what, and how it is set. Pure; the router holds the present one. */
+export type Page = 'bench' | 'run' | 'runs' | 'workbench' | 'lost';
+
+export interface Route {
+	page: Page;
+	/** Run of the page, where it has one. */
+	run: number | null;
+}
+
+export function parseRoute(path: string): Route {
+	const [first = '', second, ...rest] = path.split('/').filter(Boolean);
+	const run = second === undefined ? null : Number(second);
+	const whole = run === null || (Number.isInteger(run) && run > 0);
+	if (rest.length || !whole) return { page: 'lost', run: null };
+	if (first === '' && run === null) return { page: 'bench', run };
+	if (first === 'runs') return { page: run === null ? 'runs' : 'run', run };
+	if (first === 'workbench') return { page: 'workbench', run };
+	return { page: 'lost', run: null };
+}
+
+/** The query with some values set; `null` and empty take a value away, so that addresses stay short. */
+export function withQuery(query: URLSearchParams, changes: Record<string, string | number | null>): string {
+	const next = new URLSearchParams(query);
+	for (const [key, value] of Object.entries(changes)) {
+		if (value === null || value === '') next.delete(key);
+		else next.set(key, String(value));
+	}
+	const text = next.toString().replaceAll('%3A', ':').replaceAll('%2C', ',');
+	return text ? `?${text}` : '';
+}

@@ -1,0 +1,42 @@
+import { api } from '../api/client';
+import { asRefusal } from '../api/problem';
+
+/** A software stop that is not acknowledged within this time sends people to the hardware stop. */
+export const PATIENCE_MS = 300;
+const AGAIN_MS = 400;
+
+class SoftwareStop {
+	/** Time from the press to the daemon's word that the bench has taken it. */
+	acknowledged_ms: number | null = $state(null);
+	/** Nobody has acknowledged in time: the page says so, as large as it can. */
+	overdue = $state(false);
+	pressed = $state(false);
+	fault: string | null = $state(null);
+
+	/** Without a question. Tries again until somebody answers or the person closes the warning. */
+	async press(bench: string): Promise<void> {
+		const begin = performance.now();
+		this.acknowledged_ms = null;
+		this.fault = null;
+		this.pressed = true;
+		const late = setTimeout(() => (this.overdue = true), PATIENCE_MS);
+		while (this.pressed) {
+			try {
+				await api.stopBench(bench);
+				this.acknowledged_ms = performance.now() - begin;
+				this.pressed = false;
+			} catch (failure) {
+				this.fault = asRefusal(failure).message;
+				await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
+			}
+		}
+		clearTimeout(late);
+	}
+
+	dismiss(): void {
+		this.overdue = false;
+		this.pressed = false;
+	}
+}
+
+export const softwareStop = new SoftwareStop();

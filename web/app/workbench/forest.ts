@@ -1,0 +1,27 @@
+import type { Parameter } from '../api/types';
+
+/** A parameter on a scale of its own value: 0 is zero, 1 is the estimate. */
+export interface Row {
+	parameter: Parameter;
+	/** Ends of the interval in multiples of the value; `null` where the data gives none. */
+	interval: [number, number] | null;
+	flags: string[];
+}
+
+const SAID: Record<string, string> = { at_bound: 'at its bound', unidentified: 'not decided by this data', fixed: 'given' };
+
+export function forest(parameters: readonly Parameter[]): Row[] {
+	return parameters.map((parameter) => {
+		const { value, ci95 } = parameter;
+		const [low, high] = [ci95[0] ?? Number.NaN, ci95[1] ?? Number.NaN];
+		const known = Number.isFinite(low) && Number.isFinite(high);
+		const flags: string[] = [];
+		const state = SAID[parameter.state];
+		if (state) flags.push(state);
+		if (!known && parameter.state !== 'fixed') flags.push('no interval');
+		if (known && low < 0 && high > 0) flags.push('may be zero');
+		if (value === 0 || !known) return { parameter, interval: null, flags };
+		const ends = [low / value, high / value].sort((a, b) => a - b) as [number, number];
+		return { parameter, interval: ends, flags };
+	});
+}

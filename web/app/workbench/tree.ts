@@ -1,0 +1,54 @@
+import type { Model } from '../api/types';
+
+/** From the root of the tree to a version: the story that the waterfall tells. */
+export function chain(models: readonly Model[], id: number): Model[] {
+	const byId = new Map(models.map((model) => [model.id, model]));
+	const path: Model[] = [];
+	for (let at = byId.get(id); at && !path.includes(at); at = at.parent == null ? undefined : byId.get(at.parent)) {
+		path.unshift(at);
+	}
+	return path;
+}
+
+/** A child that already holds these effects: going there again needs no new fit. */
+export function childWith(models: readonly Model[], parent: number | null, effects: readonly string[]): Model | undefined {
+	const wanted = [...effects].sort().join();
+	return models.find((model) => (model.parent ?? null) === parent && [...model.effects].sort().join() === wanted);
+}
+
+/** What a version did to its parent, in a few words. */
+export function stepName(model: Model): string {
+	if (model.parent == null) return 'start';
+	const parts = [...model.added.map((id) => `+ ${id}`), ...model.removed.map((id) => `− ${id}`)];
+	return parts.join(', ').replaceAll('_', ' ') || 'same effects';
+}
+
+export interface Branch {
+	model: Model;
+	depth: number;
+}
+
+/** All versions, children under their parents. Depth grows only where the tree forks, so that a long chain stays flat. */
+export function branches(models: readonly Model[]): Branch[] {
+	const known = new Set(models.map((model) => model.id));
+	const children = new Map<number | null, Model[]>();
+	for (const model of models) {
+		const parent = model.parent != null && known.has(model.parent) ? model.parent : null;
+		children.set(parent, [...(children.get(parent) ?? []), model]);
+	}
+	const list: Branch[] = [];
+	const walk = (parent: number | null, depth: number) => {
+		const here = children.get(parent) ?? [];
+		for (const model of here) {
+			list.push({ model, depth });
+			walk(model.id, depth + (here.length > 1 || parent === null ? 1 : 0));
+		}
+	};
+	walk(null, 0);
+	return list;
+}
+
+/** Share of the held-out error that a version took away from its parent; negative where it got worse. */
+export function gain(before: Model, after: Model): number {
+	return before.validation_rms > 0 ? 1 - after.validation_rms / before.validation_rms : 0;
+}

@@ -1,0 +1,14 @@
+/// <reference types="vitest/config" />
+import { svelte } from '@sveltejs/vite-plugin-svelte';
+import { defineConfig } from 'vite';
+
+export default defineConfig({
+	plugins: [svelte()],
+	build: { target: 'es2022', modulePreload: false, assetsInlineLimit: 0, cssCodeSplit: false, outDir: 'dist' },
+	// `npm run dev` beside a daemon: pages from Vite, everything else from the daemon.
+	server: {
+		proxy: { '/api': { target: process.env.JB_DAEMON ?? 'http://127.0.0.1:8080', ws: true, changeOrigin: true } },
+	},
+	test: { environment: 'happy-dom', include: ['app/**/*.test.ts'] },
+	resolve: process.env.VITEST ? { conditions: ['browser'] } : {},
+});
