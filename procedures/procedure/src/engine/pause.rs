@@ -16,19 +16,23 @@ const RETURN_GRACE_S: f64 = 5.0;
 impl Session<'_> {
     /// Returns when the step may begin again; the brake current is the one that the pause began with [A].
     pub(super) fn pause(&mut self, step: &Step, start_rad: Option<f64>) -> Result<f64, Ending> {
-        self.enter(Transition::Pause)?;
         // A constant current through standstill and restart leaves no cogging behind (bench-physics, section 3).
         let brake_a = self.commanded.brake_a;
-        self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))?;
-        while self.wish.take() != Some(Wish::Resume) {
-            let now_s = self.wait();
-            self.tick(now_s, 0.0, brake_a, None)?;
+        loop {
+            self.enter(Transition::Pause)?;
+            self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))?;
+            while self.wish.take() != Some(Wish::Resume) {
+                let now_s = self.wait();
+                self.tick(now_s, 0.0, brake_a, None)?;
+            }
+            self.enter(Transition::Resume)?;
+            if let Some(start_rad) = start_rad {
+                self.go_back(step, start_rad, brake_a)?;
+            }
+            if self.wish.take() != Some(Wish::Pause) {
+                return Ok(brake_a);
+            }
         }
-        self.enter(Transition::Resume)?;
-        if let Some(start_rad) = start_rad {
-            self.go_back(step, start_rad, brake_a)?;
-        }
-        Ok(brake_a)
     }
 
     /// Set-points over their time; the rows are shown, not kept.
@@ -58,7 +62,7 @@ impl Session<'_> {
         let away_rad = |session: &Self| session.joint.map_or(0.0, |reading| start_rad - reading.motor_position.0);
         let give_up_s = self.bench.clock.now_s() + 2.0 * away_rad(self).abs() / speed_rad_s + RETURN_GRACE_S;
         let change_rad_s = self.plan.acceleration_rad_s2 * self.beat.period_s;
-        while away_rad(self).abs() > RETURNED_RAD {
+        while away_rad(self).abs() > RETURNED_RAD && self.wish != Some(Wish::Pause) {
             let now_s = self.wait();
             if now_s > give_up_s {
                 let left_rad = away_rad(self);

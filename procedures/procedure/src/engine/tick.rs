@@ -74,8 +74,12 @@ impl Session<'_> {
         }
     }
 
-    /// A wish that the state does not allow is told and forgotten.
+    /// A wish takes back the opposite one that was not yet granted. One that the state does not allow is told and
+    /// forgotten.
     fn wish_for(&mut self, wish: Wish, transition: Transition) {
+        if self.wish.take_if(|pending| *pending != wish).is_some() {
+            return;
+        }
         match self.journal.state().after(transition) {
             Ok(_) => self.wish = Some(wish),
             Err(illegal) => self.note(illegal.to_string()),
@@ -102,7 +106,7 @@ impl Session<'_> {
         if brake_a == before.brake_a || now_s < before.brake_at_s + BRAKE_EVERY_S {
             return Ok(());
         }
-        self.guard.check_brake(before.brake_a, brake_a).map_err(Ending::CommandRefused)?;
+        self.guard.check_brake(brake_a).map_err(Ending::CommandRefused)?;
         self.commanded.brake_a = brake_a;
         self.commanded.brake_at_s = now_s;
         self.ask_brake(|brake| brake.set_current(Amperes(brake_a)))?;

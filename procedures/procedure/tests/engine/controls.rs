@@ -28,6 +28,19 @@ fn abort_comes_to_rest_within_its_ramp() {
         let done = play_controlled(&[(at_s, Control::Abort)]);
         done.check_safe(RunState::Aborted).check_no_cogging();
         assert!(moved_on_s(&done, at_s) <= 0.5, "{} s", moved_on_s(&done, at_s));
+        let setpoints = done.world.commands(|call| matches!(call, Call::SetVelocity(_)));
+        let values: Vec<f64> = setpoints.iter().map(|(_, call)| speed_of(call)).collect();
+        let jump = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        // A step may end one and a half ticks before its last set-point, at rest.
+        assert!(jump <= 2.41, "a ramp of 400 rad/s² moves 1.6 rad/s in a tick, not {jump}");
+        assert_eq!(values.last(), Some(&0.0));
+    }
+}
+
+fn speed_of(call: &Call) -> f64 {
+    match call {
+        Call::SetVelocity(velocity_rad_s) => *velocity_rad_s,
+        other => panic!("{other:?} sets no velocity"),
     }
 }
 

@@ -59,6 +59,8 @@ pub struct World {
     pub brake_on: bool,
     pub regulation: Regulation,
     pub errors: Vec<String>,
+    /// Readings of the joint carry this time instead of the clock's.
+    pub stuck_at_s: Option<f64>,
     /// Every command, with its time.
     pub log: Vec<(f64, Call)>,
     /// Largest share by which the brake current fell while the armed joint stood still.
@@ -94,6 +96,7 @@ impl Fakes {
             brake_on: false,
             regulation: Regulation::ConstantCurrent,
             errors: Vec::new(),
+            stuck_at_s: None,
             log: Vec::new(),
             standstill_drop: 0.0,
         };
@@ -247,7 +250,7 @@ impl JointController for FakeJoint {
 
     fn read(&mut self) -> Result<JointReading, Fault> {
         self.0.call(Call::ReadJoint, |world| JointReading {
-            at_s: world.now_s,
+            at_s: world.stuck_at_s.unwrap_or(world.now_s),
             motor_position: Radians(world.position_rad),
             motor_velocity: RadPerSec(world.velocity_rad_s),
             motor_current: Amperes(world.current_a),

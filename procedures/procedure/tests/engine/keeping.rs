@@ -56,6 +56,7 @@ fn a_step_and_its_rows_become_durable_together() {
         for event in &kept.events {
             if let EventKind::StepFinished { segment, rows, late_ticks, .. } = event.kind {
                 assert_eq!((rows_of[&segment], late_ticks), (rows, 0), "segment {segment}");
+                assert!(kept.at_s - 100.0 - event.at_s < 0.001, "the end of a step is durable at once");
                 finished += 1;
             }
         }
@@ -114,4 +115,26 @@ fn a_blocked_bench_is_not_touched() {
     done.check_safe(RunState::Failed);
     assert!(done.end.reason.unwrap().contains("acknowledge"));
     assert!(done.world.commands(|call| matches!(call, crate::fakes::Call::Arm)).is_empty());
+}
+
+/// All steps are done, but their last rows cannot be kept: that is not a complete run.
+#[test]
+fn a_run_whose_end_is_not_kept_is_not_completed() {
+    for state in [RunState::Securing, RunState::Completed] {
+        let (fakes, mut bench) = Fakes::quiet();
+        let done = play(&fakes, &mut bench, &loaded_plan(), |ledger| ledger.refuses = Some(state));
+        assert_eq!((done.end.state, done.end.safe), (RunState::Failed, Safe::SafeVerified), "{state}");
+    }
+}
+
+#[test]
+fn a_reading_that_is_not_new_is_not_a_new_row() {
+    let (fakes, mut bench) = Fakes::new(|_, world| {
+        world.stuck_at_s = (102.0..102.1).contains(&world.now_s).then_some(101.9);
+        Ok(())
+    });
+    let done = play(&fakes, &mut bench, &loaded_plan(), |_| {});
+    done.check_safe(RunState::Completed);
+    let gap_s = done.ledger.table().column("time_s").unwrap().windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+    assert!((0.1..0.11).contains(&gap_s), "{gap_s}");
 }

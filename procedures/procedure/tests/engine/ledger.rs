@@ -23,6 +23,8 @@ pub struct Ledger {
     pub blocked: Option<String>,
     /// Commits that are acknowledged before the disk is full.
     pub room: usize,
+    /// Commits of this state fail.
+    pub refuses: Option<RunState>,
 }
 
 impl Ledger {
@@ -34,6 +36,7 @@ impl Ledger {
             progress: Vec::new(),
             blocked: None,
             room: usize::MAX,
+            refuses: None,
         }
     }
 
@@ -75,7 +78,7 @@ impl Recorder for Ledger {
     }
 
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
-        if self.kept.len() >= self.room {
+        if self.kept.len() >= self.room || self.refuses == Some(commit.state) {
             return Err(RecorderFault("no space left on device; free some and start the run again".into()));
         }
         let at_s = self.fakes.world().now_s;

@@ -105,3 +105,17 @@ fn the_brake_does_not_fall_at_standstill() {
     assert!(done.end.reason.unwrap().contains("cogging"));
     assert!(done.world.commands(|call| *call == Call::SetCurrent(0.1)).is_empty());
 }
+
+/// What the dry run cannot see, the guard sees before it is sent.
+#[test]
+fn a_set_point_that_is_not_a_number_is_never_sent() {
+    let mut plan = loaded_plan();
+    plan.steps[1].velocity = Profile::from(0.0).hold(0.5).to(f64::NAN, 1.0).to(0.0, 1.0);
+    let (fakes, mut bench) = Fakes::quiet();
+    bench.constants.link_range_rad = None;
+    let done = play(&fakes, &mut bench, &plan, |_| {});
+    done.check_safe(RunState::Failed);
+    let reason = done.end.reason.unwrap();
+    assert!(reason.starts_with("command refused: motor velocity NaN"), "{reason}");
+    assert!(done.world.commands(|call| matches!(call, Call::SetVelocity(v) if v.is_nan())).is_empty());
+}

@@ -68,3 +68,28 @@ fn the_estimate_of_the_rest_leaves_the_pause_out() {
     let most_s = done.ledger.progress.iter().map(|progress| progress.remaining_s).fold(0.0, f64::max);
     assert!(most_s <= plan.duration_s() + 0.1, "{most_s} s remaining of {} s", plan.duration_s());
 }
+
+#[test]
+fn every_attempt_is_one_unbroken_segment() {
+    // The second pause falls into the way back of the first.
+    let controls = [0.5, 2.0, 7.0, 12.0].map(|at_s| [(at_s, Control::Pause), (at_s + 0.8, Control::Resume)]);
+    let done = play_controlled(controls.as_flattened());
+    done.check_safe(RunState::Completed).check_no_cogging();
+    let table = done.ledger.table();
+    let mut stretches = table.column("segment").unwrap().to_vec();
+    stretches.dedup();
+    let count = stretches.len();
+    stretches.sort_by(f64::total_cmp);
+    stretches.dedup();
+    let pauses = done.ledger.states().iter().filter(|state| **state == RunState::Paused).count();
+    assert_eq!(pauses, 4);
+    assert_eq!((stretches.len(), count), (8, 8), "{stretches:?}");
+}
+
+#[test]
+fn a_resume_takes_back_a_pause_that_was_not_yet_granted() {
+    let done = play_controlled(&[(1.0, Control::Pause), (1.0, Control::Resume)]);
+    done.check_safe(RunState::Completed);
+    assert!(!done.ledger.states().contains(&RunState::Paused));
+    assert!(done.end.duration_s < loaded_plan().duration_s() + 0.5, "{} s", done.end.duration_s);
+}

@@ -191,3 +191,21 @@ proptest::proptest! {
         }
     }
 }
+
+#[test]
+fn slow_legs_travel_beyond_the_wind_up_and_tours_differ() {
+    for facts in [joint_a(), joint_b()] {
+        let plan = plan(json!({}), &facts);
+        let mut tours = BTreeMap::<_, Vec<i64>>::new();
+        for step in plan.steps.iter().filter(|step| step.phase == Phase::Measure && step.brake.knots().len() == 1) {
+            let travelled_rad = step.velocity.integral().last().unwrap().abs();
+            assert!(travelled_rad >= 1.6, "{} of {}: {travelled_rad} rad", step.label, facts.name);
+            let tour = tours.entry((step.repeat, (step.brake.end() * 1e3) as i64)).or_default();
+            if step.velocity.knots()[1].1 > 0.07 * facts.constants.gear_ratio {
+                tour.push(step.velocity.knots()[1].1 as i64);
+            }
+        }
+        let orders: BTreeSet<&[i64]> = tours.values().map(|speeds| &speeds[..5]).collect();
+        assert!(orders.len() >= 5, "{}: {orders:?}", facts.name);
+    }
+}
