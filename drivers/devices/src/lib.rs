@@ -1,1 +1,18 @@
+//! Instruments on real wires: transports, one module per protocol, one driver per instrument, and a mock bench that
+//! answers on the same wires.
+//!
+//! Everything here is synchronous: a bench is one physical thing, and the thread that owns it owns its ports. A driver
+//! holds one [`transport::Link`]; the link holds the port exclusively, gives every request a deadline of its own, and after
+//! a missed or garbled reply refuses further use until the instrument has been drained and identified again.
+//!
+//! The mock bench ([`sim`]) simulates instruments, not drivers: the firmware side of each protocol answers on
+//! pseudo-terminals that the drivers open like any serial port. Its truth never crosses the wire.
 
+pub mod driver;
+pub mod protocol;
+pub mod sim;
+pub mod transport;
+
+pub use driver::{LorenzSensor, LorenzSettings, OdriveJoint, OdriveSettings, ScpiSettings, ScpiSource};
+pub use sim::{Joint, MockBench, MockSettings};
+pub use transport::{Address, PortSettings};

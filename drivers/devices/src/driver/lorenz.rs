@@ -1,0 +1,131 @@
+//! A rotating torque sensor with two ranges behind a Lorenz telegram interface.
+
+use super::{Recovers, same};
+use crate::protocol::lorenz::{Hello, NOMINAL_COUNTS, ReadConfig, ReadRaw, ReadStatusShort, StopStream, nack_text};
+use crate::transport::{Command, Link, PortSettings};
+use jointbench_instrument::roles::{Identity, Instrument, TorqueSensor};
+use jointbench_instrument::units::NewtonMetres;
+use jointbench_instrument::{Fault, FaultKind};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// Stator header and rotor header: type and serial number.
+const STATOR_HEADER: u8 = 0;
+
+/// One of the two channels of a dual-range sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Range {
+    /// Channel A: the whole range of the shaft.
+    Coarse,
+    /// Channel B: the small range.
+    Fine,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LorenzSettings {
+    pub name: String,
+    pub port: PortSettings,
+    pub deadline_ms: u64,
+    pub range: Range,
+    /// Nominal torque of the channel that [`LorenzSettings::range`] selects.
+    pub nominal_nm: f64,
+}
+
+pub struct LorenzSensor {
+    settings: LorenzSettings,
+    link: Link,
+    identity: Option<Identity>,
+}
+
+impl LorenzSensor {
+    /// Opens the port, ends a stream that may run, and identifies the sensor.
+    pub fn open(settings: LorenzSettings) -> Result<Self, Fault> {
+        let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
+        let mut sensor = Self { settings, link, identity: None };
+        sensor.ready()?;
+        Ok(sensor)
+    }
+
+    fn who(&mut self) -> Result<Identity, Fault> {
+        self.link.probe(&Hello)?;
+        let header = self.link.probe(&ReadConfig { block: STATOR_HEADER })?;
+        let status = self.link.probe(&ReadStatusShort)?;
+        if status != 0 {
+            return Err(self.link.fault(FaultKind::Reported { what: nack_text(status) }));
+        }
+        let found = Identity {
+            maker: "Lorenz Messtechnik".into(),
+            model: format!("stator type {:06X}", header.number::<3>(1)),
+            serial: header.number::<4>(4).to_string(),
+            firmware: String::new(),
+        };
+        same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))
+    }
+
+    fn nm_per_count(&self) -> f64 {
+        self.settings.nominal_nm / f64::from(NOMINAL_COUNTS)
+    }
+}
+
+impl Recovers for LorenzSensor {
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
+    }
+
+    fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
+        let mut stop = Vec::new();
+        StopStream.encode(&mut stop);
+        self.link.drain(&stop)?;
+        let identity = self.who()?;
+        self.link.trust();
+        Ok(identity)
+    }
+}
+
+impl Instrument for LorenzSensor {
+    fn name(&self) -> &str {
+        &self.settings.name
+    }
+
+    fn port(&self) -> &str {
+        self.link.address()
+    }
+
+    fn identify(&mut self) -> Result<Identity, Fault> {
+        self.ready()?;
+        self.who()
+    }
+
+    fn recover(&mut self) -> Result<Identity, Fault> {
+        self.drain_and_identify()
+    }
+}
+
+impl TorqueSensor for LorenzSensor {
+    fn read(&mut self) -> Result<NewtonMetres, Fault> {
+        let reading = self.ready()?.request(&ReadRaw)?;
+        if reading.check_signal {
+            let what = "the 100 % check signal is switched in: unload the shaft and switch it off";
+            return Err(self.link.fault(FaultKind::Reported { what: what.into() }));
+        }
+        let counts = match self.settings.range {
+            Range::Coarse => reading.calibrated[0],
+            Range::Fine => reading.calibrated[1],
+        };
+        if counts.unsigned_abs() >= NOMINAL_COUNTS.unsigned_abs() {
+            let what = format!("{counts} counts, beyond ±{} Nm; use the larger range", self.settings.nominal_nm);
+            return Err(self.link.fault(FaultKind::Saturated { what }));
+        }
+        Ok(NewtonMetres(f64::from(counts) * self.nm_per_count()))
+    }
+
+    fn range(&self) -> NewtonMetres {
+        NewtonMetres(self.settings.nominal_nm)
+    }
+
+    fn resolution(&self) -> Option<NewtonMetres> {
+        Some(NewtonMetres(self.nm_per_count()))
+    }
+}

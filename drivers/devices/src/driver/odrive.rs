@@ -1,0 +1,223 @@
+//! An ODrive as the joint's controller. Axis 0 drives the motor; the encoder input of axis 1 may carry the link encoder.
+
+use super::{Recovers, same};
+use crate::protocol::odrive::{
+    CLOSED_LOOP, ClearErrors, FeedWatchdog, Feedback, IDLE, Part, ReadErrors, ReadFeedback, ReadInfo, ReadNumber,
+    RequestState, Set, SetVelocity, StandDown,
+};
+use crate::transport::{Link, PortSettings};
+use jointbench_instrument::roles::{DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution};
+use jointbench_instrument::units::{Amperes, Celsius, RadPerSec, Radians, Volts};
+use jointbench_instrument::{Clock, Fault, FaultKind};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Replies print millionths of a turn.
+const MICRO_TURN_RAD: f64 = TAU * 1e-6;
+/// Without a set-point for so long the drive stands down by itself.
+const WATCHDOG_S: f64 = 0.25;
+/// A drive that has not closed its loop after so long will not.
+const ARMING_S: f64 = 0.5;
+const VELOCITY_MODE: f64 = 2.0;
+/// Set-points go straight through, without the drive's own ramp.
+const PASSTHROUGH: f64 = 1.0;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Thermistor {
+    /// In the joint (`axis0.motor.motor_thermistor`).
+    Motor,
+    /// On the drive's power stage (`axis0.motor.fet_thermistor`).
+    PowerStage,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OdriveSettings {
+    pub name: String,
+    pub port: PortSettings,
+    pub deadline_ms: u64,
+    /// The encoder input of axis 1 carries the link encoder.
+    pub link_encoder: bool,
+    pub thermistor: Option<Thermistor>,
+}
+
+pub struct OdriveJoint {
+    settings: OdriveSettings,
+    link: Link,
+    clock: Arc<dyn Clock>,
+    identity: Option<Identity>,
+    /// The set-point that the drive is known to hold.
+    held_turns_s: Option<f64>,
+}
+
+impl OdriveJoint {
+    /// Opens the port and identifies the drive. Nothing is commanded.
+    pub fn open(settings: OdriveSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
+        let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
+        let mut joint = Self { settings, link, clock, identity: None, held_turns_s: None };
+        joint.identify()?;
+        Ok(joint)
+    }
+
+    fn set(&mut self, path: &'static str, value: f64) -> Result<(), Fault> {
+        self.link.request(&Set { path, value }).map(|_| ())
+    }
+
+    fn errors(&mut self) -> Result<Vec<String>, Fault> {
+        let link = self.ready()?;
+        let mut errors = Vec::new();
+        for part in Part::ALL {
+            errors.extend(link.request(&ReadErrors(part))?.names(part));
+        }
+        Ok(errors)
+    }
+
+    fn state(&mut self) -> Result<f64, Fault> {
+        self.ready()?.request(&ReadNumber { path: "axis0.current_state" })
+    }
+
+    /// Waits on the bench's clock until the axis is in `state`.
+    fn reach(&mut self, state: f64, request: &str) -> Result<(), Fault> {
+        let deadline_s = self.clock.now_s() + ARMING_S;
+        while self.state()? != state {
+            let errors = self.errors()?;
+            let refused = if !errors.is_empty() && state != IDLE {
+                format!("{request}: {}", errors.join(", "))
+            } else if self.clock.now_s() >= deadline_s {
+                format!("{request}: not done after {ARMING_S} s")
+            } else {
+                self.clock.sleep_until_s(self.clock.now_s() + 1e-3);
+                continue;
+            };
+            return Err(self.link.fault(FaultKind::Refused { what: refused }));
+        }
+        Ok(())
+    }
+}
+
+impl Recovers for OdriveJoint {
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
+    }
+
+    fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
+        self.held_turns_s = None;
+        // Ends a line that broke off; its error reply is thrown away with the rest.
+        self.link.drain(b"\n")?;
+        let found = self.link.probe(&ReadInfo)?;
+        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        self.link.trust();
+        Ok(identity)
+    }
+}
+
+impl Instrument for OdriveJoint {
+    fn name(&self) -> &str {
+        &self.settings.name
+    }
+
+    fn port(&self) -> &str {
+        self.link.address()
+    }
+
+    fn identify(&mut self) -> Result<Identity, Fault> {
+        self.ready()?.request(&ReadInfo)
+    }
+
+    fn recover(&mut self) -> Result<Identity, Fault> {
+        self.drain_and_identify()
+    }
+}
+
+impl JointController for OdriveJoint {
+    /// The speed limit becomes the drive's `vel_limit`, which trips at 1.2 times its value in every mode and reduces the
+    /// torque in torque mode: raised to the bench's limit, it stays out of the way of measurements.
+    fn arm(&mut self, speed_limit: RadPerSec, current_limit: Amperes) -> Result<(), Fault> {
+        if self.state()? != IDLE {
+            self.disarm()?;
+            self.reach(IDLE, "stand down")?;
+        }
+        self.set("axis0.controller.config.control_mode", VELOCITY_MODE)?;
+        self.set("axis0.controller.config.input_mode", PASSTHROUGH)?;
+        self.set("axis0.controller.config.vel_limit", speed_limit.0 / TAU)?;
+        self.set("axis0.motor.config.current_lim", current_limit.0)?;
+        // Set-points survive a disarm: an old one would move the joint at once.
+        self.set("axis0.controller.input_torque", 0.0)?;
+        self.set_velocity(RadPerSec(0.0))?;
+        self.set("axis0.config.watchdog_timeout", WATCHDOG_S)?;
+        self.link.send(&FeedWatchdog)?;
+        self.set("axis0.config.enable_watchdog", 1.0)?;
+        self.link.send(&ClearErrors)?;
+        let errors = self.errors()?;
+        if !errors.is_empty() {
+            return Err(self.link.fault(FaultKind::Reported { what: errors.join(", ") }));
+        }
+        self.link.send(&RequestState(CLOSED_LOOP))?;
+        self.reach(CLOSED_LOOP, "close the velocity loop")
+    }
+
+    fn set_velocity(&mut self, velocity: RadPerSec) -> Result<(), Fault> {
+        if !velocity.0.is_finite() {
+            let what = format!("velocity set-point {velocity}: expected a finite number");
+            return Err(self.link.fault(FaultKind::Refused { what }));
+        }
+        let turns_s = velocity.0 / TAU;
+        self.ready()?;
+        if self.held_turns_s == Some(turns_s) {
+            return self.link.send(&FeedWatchdog);
+        }
+        self.held_turns_s = None;
+        self.link.request(&SetVelocity { turns_s })?;
+        self.held_turns_s = Some(turns_s);
+        Ok(())
+    }
+
+    fn read(&mut self) -> Result<JointReading, Fault> {
+        let link_encoder = self.settings.link_encoder;
+        let at_s = self.clock.now_s();
+        let link = self.ready()?;
+        let Feedback { position_micro_turns, velocity_micro_turns_s } = link.request(&ReadFeedback { axis: 0 })?;
+        let link_position = match link_encoder {
+            true => Some(link.request(&ReadFeedback { axis: 1 })?.position_micro_turns),
+            false => None,
+        };
+        let current_a = link.request(&ReadNumber { path: "axis0.motor.current_control.Iq_measured" })?;
+        Ok(JointReading {
+            at_s,
+            motor_position: Radians(position_micro_turns as f64 * MICRO_TURN_RAD),
+            motor_velocity: RadPerSec(velocity_micro_turns_s as f64 * MICRO_TURN_RAD),
+            motor_current: Amperes(current_a),
+            link_position: link_position.map(|micro_turns| Radians(micro_turns as f64 * MICRO_TURN_RAD)),
+        })
+    }
+
+    fn health(&mut self) -> Result<DriveHealth, Fault> {
+        let armed = self.state()? == CLOSED_LOOP;
+        let errors = self.errors()?;
+        let bus_voltage = Volts(self.link.request(&ReadNumber { path: "vbus_voltage" })?);
+        let path = self.settings.thermistor.map(|thermistor| match thermistor {
+            Thermistor::Motor => "axis0.motor.motor_thermistor.temperature",
+            Thermistor::PowerStage => "axis0.motor.fet_thermistor.temperature",
+        });
+        let temperature = path.map(|path| self.link.request(&ReadNumber { path })).transpose()?.map(Celsius);
+        Ok(DriveHealth { armed, errors, bus_voltage, temperature })
+    }
+
+    fn disarm(&mut self) -> Result<(), Fault> {
+        self.held_turns_s = None;
+        self.link.send(&StandDown { after_broken_line: !self.link.is_trusted() })
+    }
+
+    fn resolution(&self) -> JointResolution {
+        JointResolution {
+            motor_position: Some(Radians(MICRO_TURN_RAD)),
+            motor_velocity: Some(RadPerSec(MICRO_TURN_RAD)),
+            motor_current: Some(Amperes(1e-6)),
+            link_position: self.settings.link_encoder.then_some(Radians(MICRO_TURN_RAD)),
+            temperature: self.settings.thermistor.map(|_| Celsius(1e-6)),
+        }
+    }
+}

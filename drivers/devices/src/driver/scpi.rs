@@ -1,0 +1,174 @@
+//! A DP800 supply as the current source of a brake's coil: channel 1, current regulated.
+
+use super::{Recovers, same};
+use crate::protocol::scpi::{
+    ClearStatus, ERROR_QUEUE_DEPTH, Identify, QueryError, QueryNumber, QueryOutput, ReadCondition, ReadMeasured, Set,
+    SwitchOff, Terminator,
+};
+use crate::transport::{Address, Command, Link, PortSettings};
+use jointbench_instrument::roles::{CurrentSource, Identity, Instrument, Regulation, SupplyReading};
+use jointbench_instrument::units::{Amperes, Volts};
+use jointbench_instrument::{Fault, FaultKind};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// Channel 1 of a DP821A is programmed in steps of this.
+const CURRENT_STEP_A: f64 = 1e-4;
+const VOLTAGE_STEP_V: f64 = 1e-3;
+
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScpiSettings {
+    pub name: String,
+    pub port: PortSettings,
+    pub deadline_ms: u64,
+}
+
+pub struct ScpiSource {
+    settings: ScpiSettings,
+    link: Link,
+    line_end: Terminator,
+    identity: Option<Identity>,
+}
+
+impl ScpiSource {
+    /// Opens the port and identifies the supply. Nothing is commanded.
+    pub fn open(settings: ScpiSettings) -> Result<Self, Fault> {
+        let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
+        let line_end = match settings.port.address {
+            Address::Serial(_) => Terminator::CrLf,
+            Address::Tcp(_) => Terminator::Lf,
+        };
+        let mut source = Self { settings, link, line_end, identity: None };
+        source.ready()?;
+        Ok(source)
+    }
+
+    /// Sets, asks the error queue, and where it holds anything, empties it and reports all of it.
+    fn set(&mut self, command: String) -> Result<(), Fault> {
+        let line_end = self.line_end;
+        let link = self.ready()?;
+        let Err(mut fault) = link.request(&Set(line_end, command)) else { return Ok(()) };
+        if let FaultKind::Refused { what } = &mut fault.kind {
+            for _ in 0..ERROR_QUEUE_DEPTH {
+                match self.link.probe(&QueryError(line_end)) {
+                    Ok(Some(entry)) => *what = format!("{what}; {entry}"),
+                    _ => break,
+                }
+            }
+        }
+        Err(fault)
+    }
+
+    fn set_and_read_back(
+        &mut self,
+        header: &'static str,
+        query: &'static str,
+        value: f64,
+        step: f64,
+    ) -> Result<(), Fault> {
+        if !value.is_finite() || value < 0.0 {
+            let what = format!("{header} {value}: expected a finite number from 0 upwards");
+            return Err(self.link.fault(FaultKind::Refused { what }));
+        }
+        self.set(format!("{header} {value:.4}"))?;
+        let held = self.link.request(&QueryNumber(self.line_end, query))?;
+        if (held - value).abs() > 0.51 * step + 1e-9 {
+            let what = format!("{query} {held} after {value} was set: the command was not taken");
+            return Err(self.link.fault(FaultKind::Reported { what }));
+        }
+        Ok(())
+    }
+
+    fn output(&mut self, on: bool) -> Result<(), Fault> {
+        let word = if on { "ON" } else { "OFF" };
+        self.set(format!(":OUTP CH1,{word}"))?;
+        if self.link.request(&QueryOutput(self.line_end))? != on {
+            let what = format!("the output does not go {word}");
+            return Err(self.link.fault(FaultKind::Reported { what }));
+        }
+        Ok(())
+    }
+}
+
+impl Recovers for ScpiSource {
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
+    }
+
+    fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
+        // A query that was not understood is never answered: drain, clear, ask who is there. Never "read again".
+        let mut clear = b"\n".to_vec();
+        ClearStatus(self.line_end).encode(&mut clear);
+        self.link.drain(&clear)?;
+        let found = self.link.probe(&Identify(self.line_end))?;
+        if !found.maker.to_ascii_uppercase().contains("RIGOL") || !found.model.starts_with("DP8") {
+            let found = format!("{} {}", found.maker, found.model);
+            return Err(self.link.fault(FaultKind::WrongInstrument { expected: "RIGOL DP8xx".into(), found }));
+        }
+        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        self.link.trust();
+        Ok(identity)
+    }
+}
+
+impl Instrument for ScpiSource {
+    fn name(&self) -> &str {
+        &self.settings.name
+    }
+
+    fn port(&self) -> &str {
+        self.link.address()
+    }
+
+    fn identify(&mut self) -> Result<Identity, Fault> {
+        let line_end = self.line_end;
+        self.ready()?.request(&Identify(line_end))
+    }
+
+    fn recover(&mut self) -> Result<Identity, Fault> {
+        self.drain_and_identify()
+    }
+}
+
+impl CurrentSource for ScpiSource {
+    fn prepare(&mut self, compliance: Volts) -> Result<(), Fault> {
+        self.set(":SYST:REM".into())?;
+        self.output(false)?;
+        self.set_and_read_back(":SOUR1:CURR", ":SOUR1:CURR?", 0.0, CURRENT_STEP_A)?;
+        self.set_and_read_back(":SOUR1:VOLT", ":SOUR1:VOLT?", compliance.0, VOLTAGE_STEP_V)?;
+        self.output(true)
+    }
+
+    fn set_current(&mut self, current: Amperes) -> Result<(), Fault> {
+        self.set_and_read_back(":SOUR1:CURR", ":SOUR1:CURR?", current.0, CURRENT_STEP_A)
+    }
+
+    fn read(&mut self) -> Result<SupplyReading, Fault> {
+        let line_end = self.line_end;
+        let link = self.ready()?;
+        let measured = link.request(&ReadMeasured(line_end))?;
+        let condition = link.request(&ReadCondition(line_end))?;
+        if condition.over_voltage_trip || condition.over_current_trip {
+            let what = if condition.over_voltage_trip { "over-voltage" } else { "over-current" };
+            return Err(link.fault(FaultKind::Reported { what: format!("{what} protection has tripped") }));
+        }
+        let regulation = match (condition.constant_current, condition.constant_voltage) {
+            (true, false) => Regulation::ConstantCurrent,
+            (false, true) => Regulation::ConstantVoltage,
+            (true, true) => Regulation::Unregulated,
+            (false, false) => Regulation::Off,
+        };
+        Ok(SupplyReading { current: Amperes(measured.current_a), voltage: Volts(measured.voltage_v), regulation })
+    }
+
+    fn output_off(&mut self) -> Result<(), Fault> {
+        // Out first, whatever the state of the link; then the question whether it was taken.
+        self.link.send(&SwitchOff(self.line_end))?;
+        self.output(false)
+    }
+
+    fn resolution(&self) -> Option<Amperes> {
+        Some(Amperes(CURRENT_STEP_A))
+    }
+}

@@ -1,0 +1,249 @@
+//! One type for each command.
+
+use crate::protocol::scan_line;
+use crate::transport::{Command, Request, Scan, shown};
+use jointbench_instrument::FaultKind;
+use jointbench_instrument::roles::Identity;
+
+const LINE_LIMIT: usize = 1024;
+/// Entries that an error queue can hold; reading it ends after as many.
+pub const ERROR_QUEUE_DEPTH: usize = 20;
+
+/// Line end of a request: `\n` on the network and USB, `\r\n` on RS-232.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Terminator {
+    Lf,
+    CrLf,
+}
+
+impl Terminator {
+    fn push(self, out: &mut Vec<u8>, text: &str) {
+        out.extend_from_slice(text.as_bytes());
+        out.extend_from_slice(match self {
+            Terminator::Lf => b"\n",
+            Terminator::CrLf => b"\r\n",
+        });
+    }
+}
+
+fn text(line: &[u8]) -> Result<&str, FaultKind> {
+    let garbled = || FaultKind::Garbled { what: format!("{}: expected an ASCII line", shown(line)) };
+    if line.is_ascii() { std::str::from_utf8(line).map(str::trim_end).map_err(|_| garbled()) } else { Err(garbled()) }
+}
+
+fn number(text: &str) -> Result<f64, FaultKind> {
+    match text.parse::<f64>() {
+        // 9.91E37 is SCPI's "not a number", 9.9E37 its infinity.
+        Ok(value) if value.is_finite() && value.abs() < 9.9e36 => Ok(value),
+        _ => Err(FaultKind::Garbled { what: format!("`{text}`: expected a number") }),
+    }
+}
+
+/// One entry of an error queue: `None` when it is empty.
+fn error_entry(text: &str) -> Result<Option<String>, FaultKind> {
+    let code = text.split(',').next().unwrap_or_default().trim().trim_start_matches('+');
+    match code.parse::<i32>() {
+        Ok(0) => Ok(None),
+        Ok(_) => Ok(Some(text.to_owned())),
+        Err(_) => Err(FaultKind::Garbled { what: format!("`{text}`: expected an error queue entry") }),
+    }
+}
+
+macro_rules! query {
+    ($request:ty, |$this:ident| $query:expr, $reply:ty, |$text:ident| $decode:expr) => {
+        impl Command for $request {
+            fn encode(&self, out: &mut Vec<u8>) {
+                self.0.push(out, &self.name());
+            }
+
+            fn name(&self) -> String {
+                let $this = self;
+                $query.into()
+            }
+        }
+
+        impl Request for $request {
+            type Reply = $reply;
+
+            fn scan(&self, received: &[u8]) -> Scan {
+                scan_line(received, LINE_LIMIT)
+            }
+
+            fn decode(&self, packet: &[u8]) -> Result<$reply, FaultKind> {
+                let $text = text(packet)?;
+                $decode
+            }
+        }
+    };
+}
+
+#[derive(Debug, Clone, Copy)]
+pub struct Identify(pub Terminator);
+
+query!(Identify, |_this| "*IDN?", Identity, |text| {
+    let fields: Vec<&str> = text.split(',').map(str::trim).collect();
+    let [maker, model, serial, firmware] = fields[..] else {
+        return Err(FaultKind::Garbled { what: format!("`{text}`: expected maker, model, serial number, firmware") });
+    };
+    let owned = str::to_owned;
+    Ok(Identity { maker: owned(maker), model: owned(model), serial: owned(serial), firmware: owned(firmware) })
+});
+
+/// The oldest entry of the error queue.
+#[derive(Debug, Clone, Copy)]
+pub struct QueryError(pub Terminator);
+
+query!(QueryError, |_this| ":SYST:ERR?", Option<String>, |text| error_entry(text));
+
+/// A number (`:SOUR1:CURR?`).
+#[derive(Debug, Clone, Copy)]
+pub struct QueryNumber(pub Terminator, pub &'static str);
+
+query!(QueryNumber, |this| this.1, f64, |text| number(text));
+
+/// Whether the output is on.
+#[derive(Debug, Clone, Copy)]
+pub struct QueryOutput(pub Terminator);
+
+query!(QueryOutput, |_this| ":OUTP? CH1", bool, |text| match text {
+    "ON" | "1" => Ok(true),
+    "OFF" | "0" => Ok(false),
+    _ => Err(FaultKind::Garbled { what: format!("`{text}`: expected ON or OFF") }),
+});
+
+/// What the supply measures at its output.
+#[derive(Debug, Clone, Copy)]
+pub struct ReadMeasured(pub Terminator);
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    pub voltage_v: f64,
+    pub current_a: f64,
+}
+
+query!(ReadMeasured, |_this| ":MEAS:ALL? CH1", Measured, |text| {
+    let values = text.split(',').map(|field| number(field.trim())).collect::<Result<Vec<f64>, FaultKind>>()?;
+    let [voltage_v, current_a, _power_w] = values[..] else {
+        return Err(FaultKind::Garbled { what: format!("`{text}`: expected voltage, current, power") });
+    };
+    Ok(Measured { voltage_v, current_a })
+});
+
+/// Questionable condition of channel 1: how the output is held, and what has tripped.
+#[derive(Debug, Clone, Copy)]
+pub struct ReadCondition(pub Terminator);
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Condition {
+    pub constant_current: bool,
+    pub constant_voltage: bool,
+    pub over_voltage_trip: bool,
+    pub over_current_trip: bool,
+}
+
+query!(ReadCondition, |_this| ":STAT:QUES:INST:ISUM1:COND?", Condition, |text| {
+    let bits = number(text)? as u32;
+    Ok(Condition {
+        constant_current: bits & 1 != 0,
+        constant_voltage: bits & 2 != 0,
+        over_voltage_trip: bits & 4 != 0,
+        over_current_trip: bits & 8 != 0,
+    })
+});
+
+/// A command with the question whether it was accepted.
+#[derive(Debug, Clone)]
+pub struct Set(pub Terminator, pub String);
+
+impl Command for Set {
+    fn encode(&self, out: &mut Vec<u8>) {
+        self.0.push(out, &self.1);
+        self.0.push(out, ":SYST:ERR?");
+    }
+
+    fn name(&self) -> String {
+        self.1.clone()
+    }
+}
+
+impl Request for Set {
+    type Reply = ();
+
+    fn scan(&self, received: &[u8]) -> Scan {
+        scan_line(received, LINE_LIMIT)
+    }
+
+    fn decode(&self, packet: &[u8]) -> Result<(), FaultKind> {
+        match error_entry(text(packet)?)? {
+            None => Ok(()),
+            Some(entry) => Err(FaultKind::Refused { what: format!("{}: {entry}", self.1) }),
+        }
+    }
+}
+
+/// Current zero and output off, waiting for nothing. No reply.
+#[derive(Debug, Clone, Copy)]
+pub struct SwitchOff(pub Terminator);
+
+impl Command for SwitchOff {
+    fn encode(&self, out: &mut Vec<u8>) {
+        self.0.push(out, ":OUTP CH1,OFF");
+        self.0.push(out, ":SOUR1:CURR 0");
+    }
+
+    fn name(&self) -> String {
+        ":OUTP CH1,OFF".into()
+    }
+}
+
+/// Empties the error queue and the status registers. No reply.
+#[derive(Debug, Clone, Copy)]
+pub struct ClearStatus(pub Terminator);
+
+impl Command for ClearStatus {
+    fn encode(&self, out: &mut Vec<u8>) {
+        self.0.push(out, "*CLS");
+    }
+
+    fn name(&self) -> String {
+        "*CLS".into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_replies() {
+        let lf = Terminator::Lf;
+        let identity = Identify(lf).decode(b"RIGOL TECHNOLOGIES,DP821A,DP8E204500123,00.01.16\n").unwrap();
+        assert_eq!((identity.model.as_str(), identity.serial.as_str()), ("DP821A", "DP8E204500123"));
+        assert_eq!(QueryError(lf).decode(b"0,\"No error\"\n"), Ok(None));
+        assert_eq!(QueryError(lf).decode(b"+0,\"No error\"\r\n"), Ok(None));
+        assert_eq!(QueryNumber(lf, ":SOUR1:VOLT?").decode(b"45.000\n"), Ok(45.0));
+        assert_eq!(QueryOutput(lf).decode(b"ON\n"), Ok(true));
+        let measured = ReadMeasured(lf).decode(b"12.9870,0.2498,3.2441\n").unwrap();
+        assert_eq!(measured, Measured { voltage_v: 12.987, current_a: 0.2498 });
+        assert!(ReadCondition(lf).decode(b"1\n").unwrap().constant_current);
+    }
+
+    #[test]
+    fn any_entry_but_zero_is_a_failure() {
+        let set = Set(Terminator::CrLf, ":SOUR1:CURR 9".into());
+        let mut out = Vec::new();
+        set.encode(&mut out);
+        assert_eq!(out, b":SOUR1:CURR 9\r\n:SYST:ERR?\r\n");
+        assert!(matches!(set.decode(b"-222,\"Data out of range\"\n"), Err(FaultKind::Refused { .. })));
+        assert!(matches!(set.decode(b"171,\"of the maker's own\"\n"), Err(FaultKind::Refused { .. })));
+        assert!(matches!(set.decode(b"rubbish\n"), Err(FaultKind::Garbled { .. })));
+        assert_eq!(set.decode(b"0,\"No error\"\n"), Ok(()));
+    }
+
+    #[test]
+    fn what_is_no_number_is_no_reading() {
+        for reply in ["9.91E37\n", "nan\n", "inf\n", "\n", "1.0V\n"] {
+            assert!(QueryNumber(Terminator::Lf, ":MEAS:CURR? CH1").decode(reply.as_bytes()).is_err(), "{reply}");
+        }
+    }
+}

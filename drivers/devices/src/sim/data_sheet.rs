@@ -1,0 +1,111 @@
+//! The joints under test as their papers describe them, and the brake: what an owner of the bench knows beforehand.
+
+use jointbench_instrument::Limits;
+use jointbench_instrument::bench::JointConstants;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// The two joints of the thesis behind the bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Joint {
+    /// Belt and strain-wave gear, 177.8:1, 70 Nm, ±5 turns.
+    JointA,
+    /// Two belts, 50:1, 20 Nm, no stops.
+    JointB,
+}
+
+/// Figures of the thesis: tables of the joints, of friction (motor side) and of stiffness (link side).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DataSheet {
+    pub torque_constant_nm_per_a: f64,
+    pub ratio: f64,
+    pub max_torque_nm: f64,
+    pub range_rad: Option<f64>,
+    pub coulomb_nm: f64,
+    pub breakaway_nm: f64,
+    pub viscous_nm_s: f64,
+    /// Link side.
+    pub stribeck_velocity_rad_s: f64,
+    pub stribeck_exponent: f64,
+    pub stiffness_nm_rad: f64,
+    /// Assumed: the thesis gives none.
+    pub rotor_inertia_kg_m2: f64,
+    pub max_motor_velocity_rad_s: f64,
+    pub max_motor_current_a: f64,
+}
+
+/// Magtrol HB-1750M, data sheet EN 04/2025.
+pub(super) mod brake {
+    pub const RATED_TORQUE_NM: f64 = 13.0;
+    pub const RATED_CURRENT_A: f64 = 0.6;
+    pub const COIL_OHM_25C: f64 = 52.0;
+    pub const INERTIA_KG_M2: f64 = 5.63e-3;
+    pub const CONTINUOUS_W: f64 = 350.0;
+}
+
+/// Holds rated current in a coil of 100 °C (40.4 V) with something to spare.
+const COMPLIANCE_V: f64 = 45.0;
+
+impl Joint {
+    pub(super) fn data_sheet(self) -> DataSheet {
+        match self {
+            Joint::JointA => DataSheet {
+                torque_constant_nm_per_a: 0.0406,
+                ratio: 177.8,
+                max_torque_nm: 70.0,
+                range_rad: Some(5.0 * TAU),
+                coulomb_nm: 0.030,
+                breakaway_nm: 0.039,
+                viscous_nm_s: 1.512e-4,
+                stribeck_velocity_rad_s: 0.06,
+                stribeck_exponent: 0.8,
+                stiffness_nm_rad: 5722.5,
+                rotor_inertia_kg_m2: 1.2e-5,
+                max_motor_velocity_rad_s: 350.0,
+                max_motor_current_a: 8.0,
+            },
+            Joint::JointB => DataSheet {
+                torque_constant_nm_per_a: 0.0798,
+                ratio: 50.0,
+                max_torque_nm: 20.0,
+                range_rad: None,
+                coulomb_nm: 0.031,
+                breakaway_nm: 0.057,
+                viscous_nm_s: 7.835e-5,
+                stribeck_velocity_rad_s: 0.08,
+                stribeck_exponent: 1.9,
+                stiffness_nm_rad: 684.3,
+                rotor_inertia_kg_m2: 4.4e-5,
+                max_motor_velocity_rad_s: 350.0,
+                max_motor_current_a: 8.0,
+            },
+        }
+    }
+
+    pub fn constants(self) -> JointConstants {
+        let sheet = self.data_sheet();
+        JointConstants {
+            torque_constant_nm_per_a: sheet.torque_constant_nm_per_a,
+            gear_ratio: sheet.ratio,
+            rotor_inertia_kg_m2: sheet.rotor_inertia_kg_m2,
+            brake_compliance_v: COMPLIANCE_V,
+            brake_rated_current_a: brake::RATED_CURRENT_A,
+            brake_rated_torque_nm: brake::RATED_TORQUE_NM,
+            link_range_rad: sheet.range_rad,
+        }
+    }
+
+    /// What the bench must never exceed: the joint's, the fine torque range's and the brake's own limits.
+    pub fn limits(self) -> Limits {
+        let sheet = self.data_sheet();
+        Limits {
+            motor_velocity_rad_s: sheet.max_motor_velocity_rad_s,
+            motor_current_a: sheet.max_motor_current_a,
+            link_torque_nm: sheet.max_torque_nm.min(18.0),
+            temperature_c: 70.0,
+            brake_current_a: 0.62,
+            brake_power_w: brake::CONTINUOUS_W,
+        }
+    }
+}

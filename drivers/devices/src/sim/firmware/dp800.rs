@@ -1,0 +1,375 @@
+//! A Rigol DP821A, channel 1 on a brake's coil (DP800 programming guide PGH03109-1110, data sheet DSH03108-1110).
+
+use super::Firmware;
+use super::scpi::{Error, Pattern, Status, Unit, number, units};
+use crate::sim::plant::{CoilSupply, Plant, Signal};
+use std::collections::VecDeque;
+use std::sync::LazyLock;
+
+/// From a command to a change at the output.
+const LATENCY_S: f64 = 0.118;
+/// A longer line than any client sends.
+const LONGEST_LINE: usize = 1024;
+const READBACK_NOISE_A: f64 = 2e-4;
+const READBACK_NOISE_V: f64 = 1e-3;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Command {
+    SystemError,
+    SystemVersion,
+    SystemControl,
+    SelectNumber,
+    SelectName,
+    Voltage,
+    Current,
+    Apply,
+    Output,
+    Mode,
+    ProtectionValue(Quantity),
+    ProtectionState(Quantity),
+    ProtectionTripped(Quantity),
+    ProtectionClear(Quantity),
+    Measure(Option<Quantity>),
+    MeasurePower,
+    MeasureAll,
+    Condition,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quantity {
+    Voltage,
+    Current,
+}
+
+static COMMANDS: LazyLock<Vec<(Pattern, Command)>> = LazyLock::new(|| {
+    use Quantity::{Current, Voltage};
+    let table = [
+        (":SYSTem:ERRor[:NEXT]", Command::SystemError),
+        (":SYSTem:VERSion", Command::SystemVersion),
+        (":SYSTem:REMote", Command::SystemControl),
+        (":SYSTem:LOCal", Command::SystemControl),
+        (":SYSTem:RWLock", Command::SystemControl),
+        (":INSTrument:NSELect", Command::SelectNumber),
+        (":INSTrument[:SELEct]", Command::SelectName),
+        ("[:SOURce#]:VOLTage[:LEVel][:IMMediate][:AMPLitude]", Command::Voltage),
+        ("[:SOURce#]:CURRent[:LEVel][:IMMediate][:AMPLitude]", Command::Current),
+        (":APPLy", Command::Apply),
+        (":OUTPut[:STATe]", Command::Output),
+        (":OUTPut:CVCC", Command::Mode),
+        (":OUTPut:MODE", Command::Mode),
+        (":OUTPut:OVP:VALue", Command::ProtectionValue(Voltage)),
+        (":OUTPut:OVP[:STATe]", Command::ProtectionState(Voltage)),
+        (":OUTPut:OVP:QUES", Command::ProtectionTripped(Voltage)),
+        (":OUTPut:OVP:CLEAR", Command::ProtectionClear(Voltage)),
+        (":OUTPut:OCP:VALue", Command::ProtectionValue(Current)),
+        (":OUTPut:OCP[:STATe]", Command::ProtectionState(Current)),
+        (":OUTPut:OCP:QUES", Command::ProtectionTripped(Current)),
+        (":OUTPut:OCP:CLEAR", Command::ProtectionClear(Current)),
+        (":MEASure:ALL[:DC]", Command::MeasureAll),
+        (":MEASure:CURRent[:DC]", Command::Measure(Some(Current))),
+        (":MEASure:POWEr[:DC]", Command::MeasurePower),
+        (":MEASure[:VOLTage][:DC]", Command::Measure(Some(Voltage))),
+        (":STATus:QUEStionable:INSTrument:ISUMmary#:CONDition", Command::Condition),
+    ];
+    table.into_iter().map(|(pattern, command)| (Pattern::new(pattern), command)).collect()
+});
+
+#[derive(Debug, Clone, Copy)]
+struct Protection {
+    value: f64,
+    enabled: bool,
+    tripped: bool,
+}
+
+#[derive(Debug, Clone)]
+struct Channel {
+    label: &'static str,
+    most_v: f64,
+    most_a: f64,
+    voltage_v: f64,
+    current_a: f64,
+    on: bool,
+    over_voltage: Protection,
+    over_current: Protection,
+}
+
+impl Channel {
+    fn new(label: &'static str, most_v: f64, most_a: f64) -> Self {
+        let protection = |most: f64| Protection { value: 1.05 * most, enabled: false, tripped: false };
+        Self {
+            label,
+            most_v,
+            most_a,
+            voltage_v: 0.0,
+            current_a: 0.0,
+            on: false,
+            over_voltage: protection(most_v),
+            over_current: protection(most_a),
+        }
+    }
+
+    fn protection(&mut self, quantity: Quantity) -> &mut Protection {
+        match quantity {
+            Quantity::Voltage => &mut self.over_voltage,
+            Quantity::Current => &mut self.over_current,
+        }
+    }
+
+    fn wanted(&self) -> Option<CoilSupply> {
+        self.on.then_some(CoilSupply { current_a: self.current_a, voltage_v: self.voltage_v })
+    }
+}
+
+pub struct Dp800 {
+    channels: [Channel; 2],
+    selected: usize,
+    status: Status,
+    /// Changes on their way to the output.
+    underway: VecDeque<(f64, Option<CoilSupply>)>,
+}
+
+impl Dp800 {
+    pub fn new() -> Self {
+        Self {
+            channels: [Channel::new("CH1:60V/1A", 63.0, 1.05), Channel::new("CH2:8V/10A", 8.4, 10.5)],
+            selected: 0,
+            status: Status::power_on(),
+            underway: VecDeque::new(),
+        }
+    }
+
+    fn line(&mut self, line: &str, plant: &Plant) -> Option<String> {
+        let mut replies = Vec::new();
+        for unit in units(line) {
+            match self.execute(&unit, plant) {
+                Ok(Some(reply)) => replies.push(reply),
+                Ok(None) => {}
+                Err(error) => self.status.push(error),
+            }
+        }
+        (!replies.is_empty()).then(|| replies.join(";"))
+    }
+
+    fn execute(&mut self, unit: &Unit, plant: &Plant) -> Result<Option<String>, Error> {
+        let header: Vec<&str> = unit.header.iter().map(String::as_str).collect();
+        if let [common] = header[..]
+            && common.starts_with('*')
+        {
+            return self.common(&common.to_ascii_uppercase(), unit, plant);
+        }
+        let found = COMMANDS.iter().find_map(|(pattern, command)| Some((*command, pattern.matches(&header)?)));
+        let (command, numbers) = found.ok_or(Error::UndefinedHeader)?;
+        let before = self.channels[0].wanted();
+        let reply = if unit.query {
+            self.query(command, unit, &numbers, plant).map(Some)
+        } else {
+            self.set(command, unit, &numbers).map(|()| None)
+        };
+        self.pass_on(before, plant);
+        reply
+    }
+
+    fn common(&mut self, command: &str, unit: &Unit, plant: &Plant) -> Result<Option<String>, Error> {
+        let text = |text: &str| Ok(Some(text.to_owned()));
+        let mask = || unit.parameters.first().ok_or(Error::Missing)?.parse().map_err(|_| Error::DataType);
+        match (command, unit.query) {
+            ("*IDN", true) => text("RIGOL TECHNOLOGIES,DP821A,DP8E204500123,00.01.16"),
+            ("*OPT", true) => text("0,0,0,0,0"),
+            ("*OPC", true) => text("1"),
+            ("*TST", true) => text("0"),
+            ("*ESR", true) => text(&std::mem::take(&mut self.status.events).to_string()),
+            ("*ESE", true) => text(&self.status.event_enable.to_string()),
+            ("*SRE", true) => text(&self.status.service_enable.to_string()),
+            ("*STB", true) => text(&self.status.byte().to_string()),
+            ("*ESE", false) => {
+                self.status.event_enable = mask()?;
+                Ok(None)
+            }
+            ("*SRE", false) => {
+                self.status.service_enable = mask()?;
+                Ok(None)
+            }
+            ("*CLS", false) => {
+                self.status.clear();
+                Ok(None)
+            }
+            ("*RST", false) => {
+                let before = self.channels[0].wanted();
+                self.channels = Self::new().channels;
+                self.selected = 0;
+                self.pass_on(before, plant);
+                Ok(None)
+            }
+            ("*OPC" | "*WAI" | "*TRG", false) => Ok(None),
+            _ => Err(Error::UndefinedHeader),
+        }
+    }
+
+    /// The channel that a `CH1` parameter, a `SOUR1` suffix or the selection names; and the parameters behind it.
+    fn channel<'a>(&self, unit: &'a Unit, numbers: &[u32]) -> Result<(usize, &'a [String]), Error> {
+        let index = |number: u32| match number {
+            1 | 2 => Ok(number as usize - 1),
+            _ => Err(Error::OutOfRange),
+        };
+        if let Some((first, rest)) = unit.parameters.split_first()
+            && let Some(number) = first.to_ascii_uppercase().strip_prefix("CH")
+        {
+            return Ok((index(number.parse().map_err(|_| Error::DataType)?)?, rest));
+        }
+        let index = numbers.first().map_or(Ok(self.selected), |number| index(*number))?;
+        Ok((index, &unit.parameters))
+    }
+
+    fn set(&mut self, command: Command, unit: &Unit, numbers: &[u32]) -> Result<(), Error> {
+        let (index, parameters) = self.channel(unit, numbers)?;
+        let first = || parameters.first().ok_or(Error::Missing);
+        let Channel { most_v, most_a, .. } = self.channels[index];
+        let volts = |text: &str| number(text, "V", (0.0, most_v)).map(|v| (v * 1e3).round() / 1e3);
+        let amperes = |text: &str| number(text, "A", (0.0, most_a)).map(|a| (a * 1e4).round() / 1e4);
+        let channel = &mut self.channels[index];
+        match command {
+            Command::SystemControl => {}
+            Command::SelectName => self.selected = index,
+            Command::SelectNumber => match first()?.as_str() {
+                "1" => self.selected = 0,
+                "2" => self.selected = 1,
+                _ => return Err(Error::OutOfRange),
+            },
+            Command::Voltage => channel.voltage_v = volts(first()?)?,
+            Command::Current => channel.current_a = amperes(first()?)?,
+            Command::Apply => {
+                let voltage_v = volts(first()?)?;
+                if let Some(text) = parameters.get(1) {
+                    channel.current_a = amperes(text)?;
+                }
+                channel.voltage_v = voltage_v;
+            }
+            Command::Output => {
+                let on = switch(first()?)?;
+                if on && (channel.over_voltage.tripped || channel.over_current.tripped) {
+                    return Err(Error::IllegalValue);
+                }
+                channel.on = on;
+            }
+            Command::ProtectionValue(quantity) => {
+                let (unit, most) = if quantity == Quantity::Voltage { ("V", most_v) } else { ("A", most_a) };
+                channel.protection(quantity).value = number(first()?, unit, (0.0, 1.05 * most))?;
+            }
+            Command::ProtectionState(quantity) => channel.protection(quantity).enabled = switch(first()?)?,
+            Command::ProtectionClear(quantity) => channel.protection(quantity).tripped = false,
+            _ => return Err(Error::UndefinedHeader),
+        }
+        Ok(())
+    }
+
+    fn query(&mut self, command: Command, unit: &Unit, numbers: &[u32], plant: &Plant) -> Result<String, Error> {
+        let (index, parameters) = self.channel(unit, numbers)?;
+        let measured = self.measured(index, plant);
+        let tripped = |protection: Protection| if protection.tripped { "YES" } else { "NO" }.to_owned();
+        let on_off = |on| if on { "ON" } else { "OFF" }.to_owned();
+        let selected = self.selected;
+        let channel = &mut self.channels[index];
+        let limit = |value: f64, most: f64| match parameters.first().map(|p| p.to_ascii_uppercase()).as_deref() {
+            None => Ok(value),
+            Some("MIN" | "MINIMUM") => Ok(0.0),
+            Some("MAX" | "MAXIMUM") => Ok(most),
+            Some(_) => Err(Error::NotAllowed),
+        };
+        Ok(match command {
+            Command::SystemError => self.status.pop(),
+            Command::SystemVersion => "1999.0".into(),
+            Command::SelectNumber => (selected + 1).to_string(),
+            Command::SelectName => format!("CH{}", selected + 1),
+            Command::Voltage => format!("{:.3}", limit(channel.voltage_v, channel.most_v)?),
+            Command::Current => format!("{:.4}", limit(channel.current_a, channel.most_a)?),
+            Command::Apply => format!("{},{:.3},{:.4}", channel.label, channel.voltage_v, channel.current_a),
+            Command::Output => on_off(channel.on),
+            Command::Mode => match held(channel, index, plant) {
+                1 => "CC".into(),
+                2 => "CV".into(),
+                _ => "UR".into(),
+            },
+            Command::ProtectionValue(quantity) => format!("{:.3}", channel.protection(quantity).value),
+            Command::ProtectionState(quantity) => on_off(channel.protection(quantity).enabled),
+            Command::ProtectionTripped(quantity) => tripped(*channel.protection(quantity)),
+            Command::Measure(Some(Quantity::Current)) => format!("{:.4}", measured.1),
+            Command::Measure(_) => format!("{:.4}", measured.0),
+            Command::MeasurePower => format!("{:.4}", measured.0 * measured.1),
+            Command::MeasureAll => format!("{:.4},{:.4},{:.4}", measured.0, measured.1, measured.0 * measured.1),
+            Command::Condition => {
+                // Here the suffix of ISUMmary names the channel.
+                let trips = u32::from(channel.over_voltage.tripped) << 2 | u32::from(channel.over_current.tripped) << 3;
+                (held(channel, index, plant) | trips).to_string()
+            }
+            _ => return Err(Error::UndefinedHeader),
+        })
+    }
+
+    /// Voltage and current at the terminals, with the read-back's noise. Nothing is wired to channel 2.
+    fn measured(&self, index: usize, plant: &Plant) -> (f64, f64) {
+        let volts_noise = READBACK_NOISE_V * plant.noise_of(Signal::SupplyVoltage);
+        let amperes_noise = READBACK_NOISE_A * plant.noise_of(Signal::SupplyCurrent);
+        let (volts, amperes) = match (index, plant.inputs.coil) {
+            (0, Some(supply)) => (plant.brake.settled_a(Some(supply)) * plant.brake.coil_ohm(), plant.brake.coil_a()),
+            (1, _) if self.channels[1].on => (self.channels[1].voltage_v, 0.0),
+            _ => return (0.0, 0.0),
+        };
+        ((volts + volts_noise).max(0.0), (amperes + amperes_noise).max(0.0))
+    }
+
+    /// A changed output takes effect after the supply's latency.
+    fn pass_on(&mut self, before: Option<CoilSupply>, plant: &Plant) {
+        let wanted = self.channels[0].wanted();
+        if wanted != before {
+            self.underway.push_back((plant.now_s() + LATENCY_S, wanted));
+        }
+    }
+}
+
+/// 1: current regulated, 2: voltage regulated, 0: off.
+fn held(channel: &Channel, index: usize, plant: &Plant) -> u32 {
+    match plant.inputs.coil {
+        _ if !channel.on => 0,
+        Some(supply) if index == 0 && supply.current_a * plant.brake.coil_ohm() > supply.voltage_v => 2,
+        _ if index == 0 => 1,
+        _ => 2,
+    }
+}
+
+fn switch(text: &str) -> Result<bool, Error> {
+    match text.to_ascii_uppercase().as_str() {
+        "ON" | "1" => Ok(true),
+        "OFF" | "0" => Ok(false),
+        _ => Err(Error::IllegalValue),
+    }
+}
+
+impl Firmware for Dp800 {
+    fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>) {
+        while let Some(end) = input.iter().position(|byte| *byte == b'\n') {
+            let line: Vec<u8> = input.drain(..=end).collect();
+            if let Some(reply) = self.line(String::from_utf8_lossy(&line).trim(), plant) {
+                output.extend(reply.bytes());
+                output.push(b'\n');
+            }
+        }
+        input.truncate(LONGEST_LINE);
+    }
+
+    fn step(&mut self, plant: &mut Plant) {
+        while self.underway.front().is_some_and(|(due_s, _)| plant.now_s() >= *due_s) {
+            plant.inputs.coil = self.underway.pop_front().and_then(|(_, supply)| supply);
+        }
+        let channel = &mut self.channels[0];
+        let Some(supply) = plant.inputs.coil.filter(|_| channel.on) else { return };
+        let volts = plant.brake.settled_a(Some(supply)) * plant.brake.coil_ohm();
+        let (over_v, over_a) = (&mut channel.over_voltage, &mut channel.over_current);
+        over_v.tripped |= over_v.enabled && volts > over_v.value;
+        over_a.tripped |= over_a.enabled && plant.brake.coil_a() > over_a.value;
+        if over_v.tripped || over_a.tripped {
+            channel.on = false;
+            self.underway.clear();
+            plant.inputs.coil = None;
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! The instruments' side of each protocol, faithful to what the makers publish rather than to what our drivers need.
+
+mod dp800;
+mod lorenz;
+mod odrive;
+mod odrive_lines;
+mod odrive_properties;
+mod scan;
+mod scpi;
+
+pub use dp800::Dp800;
+pub use lorenz::Lorenz;
+pub use odrive::Odrive;
+
+use super::plant::Plant;
+
+pub trait Firmware {
+    /// Handles the complete requests at the front of `input` and takes them out; replies go to `output`.
+    fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>);
+
+    /// One control period of the instrument, before the plant moves on.
+    fn step(&mut self, plant: &mut Plant);
+}

@@ -1,0 +1,28 @@
+//! The mock bench: simulated instruments on real wires over one simulated plant.
+//!
+//! Each instrument's firmware answers on a pseudo-terminal (loopback TCP where there is none, or on request), in a thread of
+//! its own, over one shared plant. Time is stepped: it moves in [`Clock::sleep_until_s`] and nowhere else, in fixed
+//! substeps of the drive's own control period. Noise is a function of seed, signal and moment, so the same seed and the
+//! same conversation give the same bytes.
+//!
+//! The plant shares no formula with the models of the project. What it hides is told by [`MockBench::truth`] alone, never on
+//! a wire.
+
+mod bench;
+mod clock;
+mod data_sheet;
+mod firmware;
+mod plant;
+mod port;
+#[cfg(unix)]
+mod pty;
+mod rig;
+
+pub use bench::{MockBench, MockError, MockPorts, MockSettings, Transport};
+pub use data_sheet::Joint;
+pub use plant::{HIDDEN_EFFECTS, HiddenEffect, Truth};
+pub use port::Trouble;
+pub use rig::MockInstrument;
+
+#[cfg(doc)]
+use jointbench_instrument::Clock;

@@ -1,0 +1,185 @@
+//! The simulated world: rotor, gear, link, brake, heat. Plain physics in SI, link side and motor side named.
+//!
+//! Two inertias joined by the gear's elasticity; friction on the rotor; the brake on the link. The torque sensor sits
+//! between the joint's own output and the brake's rotor.
+
+mod brake;
+mod friction;
+mod gear;
+mod hidden;
+mod noise;
+mod thermal;
+
+pub use hidden::{HIDDEN_EFFECTS, HiddenEffect, Truth};
+
+use super::data_sheet::{self, DataSheet, Joint};
+use brake::Brake;
+use friction::Friction;
+use gear::Gear;
+pub(super) use hidden::Hidden;
+pub(super) use noise::{Noise, Signal};
+use std::f64::consts::TAU;
+use thermal::Thermal;
+
+/// Substep: the ODrive's control period, 8 kHz.
+pub(super) const STEP_S: f64 = 125e-6;
+pub(super) const AMBIENT_C: f64 = 24.0;
+
+/// Counts for each turn of the encoders.
+pub(super) const MOTOR_COUNTS: f64 = 4096.0;
+pub(super) const LINK_COUNTS: f64 = 524_288.0;
+
+/// Flange, coupling and sensor shaft on the joint's side of the torque sensor.
+const LINK_INERTIA_KG_M2: f64 = 0.010;
+const COUPLING_INERTIA_KG_M2: f64 = 1.0e-3;
+/// i_q follows its set-point with the drive's current controller (bandwidth 1000 rad/s).
+const CURRENT_LAG_S: f64 = 1.0e-3;
+/// Low-pass of the torque sensor's electronics, 1 kHz class.
+const SENSOR_LAG_S: f64 = 0.4e-3;
+
+/// What the drive's windings carry and the supply offers, as the firmware sides set them.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Inputs {
+    pub motor_current_a: f64,
+    /// `None`: output off.
+    pub coil: Option<CoilSupply>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CoilSupply {
+    pub current_a: f64,
+    pub voltage_v: f64,
+}
+
+pub(super) struct Plant {
+    pub inputs: Inputs,
+    pub brake: Brake,
+    pub noise: Noise,
+    pub torque_constant_nm_per_a: f64,
+    sheet: DataSheet,
+    friction: Friction,
+    gear: Gear,
+    thermal: Thermal,
+    hidden: Hidden,
+    step: u64,
+    motor_angle_rad: f64,
+    motor_velocity_rad_s: f64,
+    motor_current_a: f64,
+    link_angle_rad: f64,
+    link_velocity_rad_s: f64,
+    sensor_torque_nm: f64,
+    sensor_drift_nm: f64,
+    current_gain: f64,
+    sensor_gain: f64,
+}
+
+impl Plant {
+    pub fn new(joint: Joint, seed: u64, hidden: Hidden) -> Self {
+        let sheet = joint.data_sheet();
+        let noise = Noise::new(seed);
+        let coulomb_nm = sheet.coulomb_nm * (1.0 + 0.08 * noise.trait_of(Signal::Coulomb));
+        let viscous_nm_s = sheet.viscous_nm_s * (1.0 + 0.08 * noise.trait_of(Signal::Viscous));
+        Self {
+            inputs: Inputs::default(),
+            brake: Brake::new(),
+            torque_constant_nm_per_a: sheet.torque_constant_nm_per_a,
+            friction: Friction::new(coulomb_nm, viscous_nm_s, sheet.rotor_inertia_kg_m2),
+            gear: Gear::new(&sheet, LINK_INERTIA_KG_M2 + COUPLING_INERTIA_KG_M2 + data_sheet::brake::INERTIA_KG_M2),
+            thermal: Thermal::new(AMBIENT_C),
+            hidden,
+            step: 0,
+            motor_angle_rad: 0.0,
+            motor_velocity_rad_s: 0.0,
+            motor_current_a: 0.0,
+            link_angle_rad: 0.0,
+            link_velocity_rad_s: 0.0,
+            sensor_torque_nm: 0.0,
+            // Class 0.1 % of 20 Nm, reached as the sensor warms up.
+            sensor_drift_nm: 0.010 * noise.trait_of(Signal::SensorDrift),
+            current_gain: 1.0 - (-STEP_S / CURRENT_LAG_S).exp(),
+            sensor_gain: 1.0 - (-STEP_S / SENSOR_LAG_S).exp(),
+            sheet,
+            noise,
+        }
+    }
+
+    /// One substep of [`STEP_S`]. Velocities first, then positions (symplectic Euler).
+    pub fn advance(&mut self) {
+        self.motor_current_a += self.current_gain * (self.inputs.motor_current_a - self.motor_current_a);
+        let gear_nm = self.gear.torque(
+            self.motor_angle_rad,
+            self.link_angle_rad,
+            self.motor_velocity_rad_s,
+            self.link_velocity_rad_s,
+        );
+        let velocity = self.motor_velocity_rad_s;
+        let grip = self.hidden.grip(&self.friction, velocity, gear_nm, self.link_angle_rad);
+        let drag_nm = self.hidden.drag(&self.friction, velocity, self.thermal.gear_c());
+        let friction_nm = self.friction.advance(velocity, grip) + drag_nm;
+
+        let drive_nm = self.torque_constant_nm_per_a * self.motor_current_a;
+        let cogging_nm = self.hidden.cogging(self.motor_angle_rad);
+        let motor_nm = drive_nm - friction_nm - cogging_nm - gear_nm / self.sheet.ratio;
+        self.motor_velocity_rad_s += motor_nm / self.sheet.rotor_inertia_kg_m2 * STEP_S;
+        self.motor_angle_rad += self.motor_velocity_rad_s * STEP_S;
+
+        let brake_nm = self.brake.advance(self.inputs.coil, self.link_velocity_rad_s);
+        let outside_nm = self.hidden.gravity(self.link_angle_rad) + self.gear.stop(self.link_angle_rad);
+        let link_acceleration = (gear_nm - outside_nm - brake_nm) / self.gear.link_inertia_kg_m2();
+        self.link_velocity_rad_s += link_acceleration * STEP_S;
+        self.link_angle_rad += self.link_velocity_rad_s * STEP_S;
+
+        let felt_nm = brake_nm + data_sheet::brake::INERTIA_KG_M2 * link_acceleration;
+        self.sensor_torque_nm += self.sensor_gain * (felt_nm - self.sensor_torque_nm);
+        self.thermal.advance(self.motor_current_a, friction_nm * velocity);
+        self.step += 1;
+    }
+
+    pub fn now_s(&self) -> f64 {
+        self.step as f64 * STEP_S
+    }
+
+    pub fn motor_counts(&self) -> i64 {
+        (self.motor_angle_rad / TAU * MOTOR_COUNTS).floor() as i64
+    }
+
+    pub fn link_counts(&self) -> i64 {
+        (self.link_angle_rad / TAU * LINK_COUNTS).floor() as i64
+    }
+
+    pub fn motor_current_a(&self) -> f64 {
+        self.motor_current_a
+    }
+
+    /// Torque at the sensor with its drift, before each channel's noise.
+    pub fn sensor_torque_nm(&self) -> f64 {
+        // Five minutes of warm-up (burster manual 86-2208).
+        self.sensor_torque_nm + self.sensor_drift_nm * (1.0 - (-self.now_s() / 300.0).exp())
+    }
+
+    /// Housing of the gear, where the thermistor sits.
+    pub fn gear_c(&self) -> f64 {
+        self.thermal.gear_c()
+    }
+
+    /// A draw for `signal` at this moment: asking twice gives the same.
+    pub fn noise_of(&self, signal: Signal) -> f64 {
+        self.noise.at(signal, self.step)
+    }
+
+    pub fn truth(&self, joint: Joint, seed: u64) -> Truth {
+        let reflected_kg_m2 =
+            (self.gear.link_inertia_kg_m2() - data_sheet::brake::INERTIA_KG_M2) / self.sheet.ratio.powi(2);
+        Truth {
+            joint,
+            seed,
+            hidden: self.hidden.described(),
+            coulomb_nm: self.friction.coulomb_nm,
+            viscous_nm_s: self.friction.viscous_nm_s,
+            inertia_kg_m2: self.sheet.rotor_inertia_kg_m2 + reflected_kg_m2,
+            stiffness_nm_rad: self.sheet.stiffness_nm_rad,
+            torque_constant_nm_per_a: self.torque_constant_nm_per_a,
+            gear_ratio: self.sheet.ratio,
+        }
+    }
+}

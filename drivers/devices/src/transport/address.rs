@@ -1,0 +1,80 @@
+//! Where an instrument is wired.
+
+use serde::{Deserialize, Serialize};
+use std::convert::Infallible;
+use std::fmt;
+use std::str::FromStr;
+
+/// `tcp://host:port`, or the name of a serial port (`/dev/ttyUSB0`, `COM3`, the path of a pseudo-terminal).
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum Address {
+    Serial(String),
+    Tcp(String),
+}
+
+impl From<&str> for Address {
+    fn from(text: &str) -> Self {
+        match text.strip_prefix("tcp://") {
+            Some(host) => Address::Tcp(host.to_owned()),
+            None => Address::Serial(text.to_owned()),
+        }
+    }
+}
+
+impl From<String> for Address {
+    fn from(text: String) -> Self {
+        text.as_str().into()
+    }
+}
+
+impl FromStr for Address {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(text.into())
+    }
+}
+
+impl From<Address> for String {
+    fn from(address: Address) -> Self {
+        address.to_string()
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Address::Serial(path) => f.write_str(path),
+            Address::Tcp(host) => write!(f, "tcp://{host}"),
+        }
+    }
+}
+
+/// A port and its line speed. 8 data bits, no parity, 1 stop bit, no flow control: all instruments of the bench agree on it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PortSettings {
+    pub address: Address,
+    /// Without meaning on TCP and on USB devices.
+    pub baud: u32,
+}
+
+impl PortSettings {
+    pub fn new(address: impl Into<Address>, baud: u32) -> Self {
+        Self { address: address.into(), baud }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_survives_its_text() {
+        for text in ["tcp://127.0.0.1:5555", "/dev/ttyUSB0", "COM3"] {
+            assert_eq!(Address::from(text).to_string(), text);
+        }
+        assert_eq!(Address::from("tcp://localhost:5025"), Address::Tcp("localhost:5025".into()));
+    }
+}

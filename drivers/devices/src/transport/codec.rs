@@ -1,0 +1,39 @@
+//! What a protocol tells the link: bytes to send, and what stands at the front of the bytes received. Never a port.
+
+use jointbench_instrument::FaultKind;
+
+/// What stands at the front of the bytes received so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scan {
+    /// The beginning of a packet; more bytes are needed.
+    Short,
+    /// A whole packet, framing included.
+    Packet { length: usize },
+    /// Bytes that cannot begin a packet.
+    Noise { skip: usize },
+}
+
+/// Something an instrument is told, without a reply.
+pub trait Command {
+    fn encode(&self, out: &mut Vec<u8>);
+
+    /// How the command appears in faults and logs.
+    fn name(&self) -> String;
+}
+
+/// A command that is answered. The request knows its reply.
+pub trait Request: Command {
+    type Reply;
+
+    fn scan(&self, received: &[u8]) -> Scan;
+
+    /// `packet` is what [`Request::scan`] measured.
+    fn decode(&self, packet: &[u8]) -> Result<Self::Reply, FaultKind>;
+}
+
+/// Printable form of bytes for the text of a fault, at most 48 of them.
+pub fn shown(bytes: &[u8]) -> String {
+    let head = &bytes[..bytes.len().min(48)];
+    let rest = if head.len() < bytes.len() { "…" } else { "" };
+    format!("`{}`{rest}", head.escape_ascii())
+}

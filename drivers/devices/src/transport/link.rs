@@ -1,0 +1,197 @@
+//! A link: one instrument, one port, one owner. Request and reply with a deadline of our own.
+
+use super::codec::shown;
+use super::wire::Wire;
+use super::{Command, PortSettings, Request, Scan};
+use jointbench_instrument::{Fault, FaultKind};
+use std::io;
+use std::time::{Duration, Instant};
+
+/// Silence after which a line counts as drained.
+const QUIET: Duration = Duration::from_millis(20);
+/// More than any reply of any instrument: what exceeds it is noise.
+const MAX_PENDING: usize = 4096;
+
+/// How far the next reply can be trusted to belong to the next request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Trust {
+    Trusted,
+    /// A reply was missed or garbled: drain and identify before use.
+    Stale,
+    /// The port is gone: open it again, drain and identify.
+    Lost,
+}
+
+pub struct Link {
+    instrument: String,
+    settings: PortSettings,
+    address: String,
+    deadline: Duration,
+    wire: Option<Wire>,
+    trust: Trust,
+    outgoing: Vec<u8>,
+    received: Vec<u8>,
+}
+
+impl Link {
+    /// Opens the port exclusively. The link is not trusted before [`Link::trust`].
+    pub fn open(instrument: &str, settings: &PortSettings, deadline: Duration) -> Result<Self, Fault> {
+        let address = settings.address.to_string();
+        let wire = Wire::open(settings).map_err(|kind| kind.at(instrument, &address))?;
+        Ok(Self {
+            instrument: instrument.to_owned(),
+            settings: settings.clone(),
+            address,
+            deadline,
+            wire: Some(wire),
+            trust: Trust::Stale,
+            outgoing: Vec::with_capacity(256),
+            received: Vec::with_capacity(256),
+        })
+    }
+
+    pub fn instrument(&self) -> &str {
+        &self.instrument
+    }
+
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
+    pub fn deadline(&self) -> Duration {
+        self.deadline
+    }
+
+    pub fn is_trusted(&self) -> bool {
+        self.trust == Trust::Trusted
+    }
+
+    /// The instrument has been identified: replies belong to requests again.
+    pub fn trust(&mut self) {
+        self.trust = Trust::Trusted;
+    }
+
+    /// Writes a command that has no reply. Goes out on a stale link too: a command to stop must not wait.
+    pub fn send(&mut self, command: &impl Command) -> Result<(), Fault> {
+        let deadline = Instant::now() + self.deadline;
+        self.outgoing.clear();
+        command.encode(&mut self.outgoing);
+        self.write(deadline).map_err(|kind| self.broken(kind))
+    }
+
+    /// Request and reply on a trusted link. Any failure makes the link stale.
+    pub fn request<R: Request>(&mut self, request: &R) -> Result<R::Reply, Fault> {
+        if self.trust != Trust::Trusted {
+            let what = format!("{} asked before the link was drained and the instrument identified", request.name());
+            return Err(self.fault(FaultKind::Garbled { what }));
+        }
+        self.probe(request)
+    }
+
+    /// Request and reply whatever the state of the link: for identification.
+    pub fn probe<R: Request>(&mut self, request: &R) -> Result<R::Reply, Fault> {
+        let deadline = Instant::now() + self.deadline;
+        self.exchange(request, deadline).map_err(|kind| self.broken(kind))
+    }
+
+    /// Opens a lost port again, ends whatever line or telegram was begun by sending `wake`, and throws away what comes in
+    /// until the line is quiet.
+    pub fn drain(&mut self, wake: &[u8]) -> Result<(), Fault> {
+        self.received.clear();
+        if self.trust == Trust::Lost {
+            self.wire = None;
+            self.wire = Some(Wire::open(&self.settings).map_err(|kind| self.fault(kind))?);
+        }
+        self.trust = Trust::Stale;
+        let deadline = Instant::now() + self.deadline;
+        self.outgoing.clear();
+        self.outgoing.extend_from_slice(wake);
+        self.discard(deadline).map_err(|kind| self.broken(kind))
+    }
+
+    pub fn fault(&self, kind: FaultKind) -> Fault {
+        kind.at(&self.instrument, &self.address)
+    }
+
+    fn exchange<R: Request>(&mut self, request: &R, deadline: Instant) -> Result<R::Reply, FaultKind> {
+        if !self.received.is_empty() {
+            return Err(FaultKind::Garbled { what: format!("{} without a request", shown(&self.received)) });
+        }
+        self.outgoing.clear();
+        request.encode(&mut self.outgoing);
+        self.write(deadline)?;
+        loop {
+            match request.scan(&self.received) {
+                Scan::Packet { length } => {
+                    let reply = request.decode(&self.received[..length]);
+                    self.received.drain(..length);
+                    return reply;
+                }
+                Scan::Noise { skip } => {
+                    tracing::debug!(instrument = %self.instrument, bytes = %shown(&self.received[..skip]), "noise");
+                    self.received.drain(..skip);
+                }
+                Scan::Short if self.received.len() > MAX_PENDING => {
+                    return Err(FaultKind::Garbled { what: format!("{} bytes without an end", self.received.len()) });
+                }
+                Scan::Short => {
+                    if self.read(deadline)? == 0 {
+                        return Err(self.nothing_came(request.name()));
+                    }
+                }
+            }
+        }
+    }
+
+    fn nothing_came(&self, request: String) -> FaultKind {
+        if self.received.is_empty() {
+            FaultKind::Silent { request, deadline_ms: self.deadline.as_millis() as u64 }
+        } else {
+            FaultKind::Garbled { what: format!("{} and no more", shown(&self.received)) }
+        }
+    }
+
+    fn discard(&mut self, deadline: Instant) -> Result<(), FaultKind> {
+        self.write(deadline)?;
+        while Instant::now() < deadline {
+            if self.read(deadline.min(Instant::now() + QUIET))? == 0 {
+                return Ok(());
+            }
+            self.received.clear();
+        }
+        Err(FaultKind::Garbled { what: "the line does not fall silent".into() })
+    }
+
+    fn write(&mut self, deadline: Instant) -> Result<(), FaultKind> {
+        let wire = self.wire.as_mut().ok_or_else(port_is_closed)?;
+        wire.write(&self.outgoing, deadline).map_err(lost)
+    }
+
+    fn read(&mut self, deadline: Instant) -> Result<usize, FaultKind> {
+        let mut chunk = [0; 512];
+        let wire = self.wire.as_mut().ok_or_else(port_is_closed)?;
+        let count = wire.read(&mut chunk, deadline).map_err(lost)?;
+        self.received.extend_from_slice(&chunk[..count]);
+        Ok(count)
+    }
+
+    /// Remembers what a failed exchange means for the next one.
+    fn broken(&mut self, kind: FaultKind) -> Fault {
+        self.trust = match kind {
+            FaultKind::Disconnected { .. } | FaultKind::NotOpened { .. } => Trust::Lost,
+            _ => Trust::Stale,
+        };
+        self.fault(kind)
+    }
+}
+
+fn lost(error: io::Error) -> FaultKind {
+    if error.kind() == io::ErrorKind::TimedOut {
+        return FaultKind::Garbled { what: "the line takes no more bytes".into() };
+    }
+    FaultKind::Disconnected { what: error.to_string() }
+}
+
+fn port_is_closed() -> FaultKind {
+    FaultKind::Disconnected { what: "the port is closed".into() }
+}

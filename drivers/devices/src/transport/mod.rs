@@ -1,0 +1,11 @@
+//! Ports with one owner, and links that never wait for ever.
+
+mod address;
+mod codec;
+mod link;
+mod wire;
+
+pub use address::{Address, PortSettings};
+pub(crate) use codec::shown;
+pub use codec::{Command, Request, Scan};
+pub use link::Link;
