@@ -1,14 +1,30 @@
 //! The heart: effects, identification and diagnosis of joints, encoders, stiffness and brakes. Pure numbers, no I/O.
 
+mod assembly;
+mod diagnose;
 pub mod effect;
 pub mod effects;
 mod error;
+mod explore;
+mod fit;
+mod floor;
+mod intervals;
+mod linear;
+pub mod prepare;
+mod regions;
 mod report;
+mod residuals;
+mod select;
 mod spec;
+mod terms;
 pub mod view;
+mod words;
 
+pub use diagnose::{diagnose, discover};
 pub use effect::{Effect, EffectInfo, ParameterInfo};
 pub use effects::effects;
 pub use error::ModelError;
+pub use fit::{evaluate, fit};
 pub use report::*;
+pub use residuals::residuals;
 pub use spec::{ModelSpec, Options};

@@ -57,8 +57,6 @@ pub struct Parameter {
 #[serde(rename_all = "snake_case")]
 pub enum ParameterState {
     Ok,
-    /// Given, not fitted.
-    Fixed,
     /// The best value lies at the edge of what is physically sensible.
     AtBound,
     /// The data does not decide it: the interval is as wide as the value.

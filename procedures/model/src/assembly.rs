@@ -1,0 +1,127 @@
+//! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
+
+use crate::effect::Stage;
+use crate::effects::find;
+use crate::linear::Basis;
+use crate::prepare::{Prepared, Problem};
+use crate::report::Invisible;
+use crate::select::gain;
+use crate::terms::{Term, Terms, columns};
+use crate::{Effect, ModelError, ModelSpec};
+
+#[derive(Clone)]
+pub struct Assembly<'p> {
+    pub prepared: &'p Prepared,
+    /// Ids in the order of the model.
+    pub effects: Vec<String>,
+    pub main: Terms<'p>,
+    pub moving: Option<Terms<'p>>,
+    /// Effects of the model that this data cannot show.
+    pub hidden: Vec<Invisible>,
+}
+
+impl<'p> Assembly<'p> {
+    /// Finds forms and starting shapes of every effect and refines them.
+    pub fn new(prepared: &'p Prepared, spec: &ModelSpec) -> Result<Self, ModelError> {
+        if spec.kind != prepared.kind {
+            return Err(ModelError::WrongKind { run: prepared.kind, model: spec.kind });
+        }
+        let mut assembly = Self {
+            prepared,
+            effects: spec.effects.clone(),
+            main: Terms::new(&prepared.main),
+            moving: prepared.moving.as_ref().map(Terms::new),
+            hidden: Vec::new(),
+        };
+        for id in &spec.effects {
+            let effect = find(spec.kind, id)?;
+            if let Some(why) = effect.hidden(&prepared.main.view) {
+                assembly.hidden.push(Invisible { effect: id.clone(), why });
+            } else if effect.is_given() {
+                let given = columns(effect, "linear", &[], assembly.main.problem);
+                add(&mut assembly.main.given, &given, &[1.0]);
+            } else if !assembly.is_apart(effect) {
+                enter(&mut assembly.main, effect);
+            }
+        }
+        assembly.main.refine();
+        assembly.enter_moving(spec);
+        Ok(assembly)
+    }
+
+    /// Plateaus say nothing about the effect: it is judged where the motion changes.
+    pub fn is_apart(&self, effect: &dyn Effect) -> bool {
+        effect.stage() != Stage::Settled && self.prepared.about.residual == crate::ResidualKind::PlateauMean
+    }
+
+    /// Lays the settled part under the moving problem.
+    fn relay(&mut self) {
+        let Some(moving) = &mut self.moving else { return };
+        moving.given.fill(0.0);
+        for id in &self.effects {
+            let Ok(effect) = find(self.prepared.kind, id) else { continue };
+            if effect.is_given() && !self.hidden.iter().any(|h| h.effect == *id) {
+                add(&mut moving.given, &columns(effect, "linear", &[], moving.problem), &[1.0]);
+            }
+        }
+        for (term, factors) in self.main.terms.iter().zip(self.main.linear().factors) {
+            let columns = columns(term.effect, term.form.name, &term.shape, moving.problem);
+            add(&mut moving.given, &columns, &factors);
+        }
+        moving.refine();
+    }
+
+    /// Enters the effects that are judged where the motion changes.
+    fn enter_moving(&mut self, spec: &ModelSpec) {
+        let apart: Vec<&'static dyn Effect> = spec
+            .effects
+            .iter()
+            .filter_map(|id| find(spec.kind, id).ok())
+            .filter(|e| self.is_apart(*e) && !self.hidden.iter().any(|h| h.effect == e.info().id))
+            .collect();
+        if self.moving.is_none() {
+            let why = "the run has no ramps or reversals that could show it".to_owned();
+            self.hidden.extend(apart.iter().map(|e| Invisible { effect: e.info().id.into(), why: why.clone() }));
+            return;
+        }
+        self.relay();
+        let Some(moving) = &mut self.moving else { return };
+        apart.into_iter().for_each(|effect| enter(moving, effect));
+        moving.refine();
+    }
+
+    /// The same model with another settled part.
+    pub fn with_main(&self, main: Terms<'p>, effects: Vec<String>) -> Self {
+        let mut next = Self { main, effects, ..self.clone() };
+        next.relay();
+        next
+    }
+}
+
+fn add(sum: &mut [f64], columns: &[Vec<f64>], factors: &[f64]) {
+    for (column, factor) in columns.iter().zip(factors) {
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+    }
+}
+
+/// Enters the form and shape of an effect that explain most of what is left.
+fn enter(terms: &mut Terms, effect: &'static dyn Effect) {
+    let problem: &Problem = terms.problem;
+    let forms = effect.forms(&problem.view);
+    let simple = forms.len() == 1 && forms[0].grid.len() == 1;
+    let basis = if simple { Basis::default() } else { terms.tangent() };
+    let residual = if simple { Vec::new() } else { basis.rest(&terms.response()) };
+    let mut best: Option<(f64, Term)> = None;
+    for form in forms {
+        for shape in form.grid.clone() {
+            let term = Term::new(effect, form.clone(), shape, problem);
+            let share = if simple { 0.0 } else { gain(&term.columns, &basis, &residual, 1.0).share };
+            if best.as_ref().is_none_or(|b| share > b.0) {
+                best = Some((share, term));
+            }
+        }
+    }
+    if let Some((_, term)) = best {
+        terms.terms.push(term);
+    }
+}

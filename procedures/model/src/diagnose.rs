@@ -1,0 +1,175 @@
+//! Which effect is missing, and what is left when all that can be named is in the model.
+
+use crate::assembly::Assembly;
+use crate::explore::{Advance, Exploration};
+use crate::fit::report;
+use crate::linear::dot;
+use crate::prepare::{Prepared, prepare};
+use crate::regions::regions;
+use crate::report::{Diagnosis, Discovery, Experiment, Silent, Step, Suggestion, Verdict};
+use crate::select::{Maps, held_out};
+use crate::words::{figure, list, percent};
+use crate::{Fit, ModelError, ModelSpec, Options};
+use jointbench_instrument::RunTable;
+
+/// How far the search looks ahead for a diagnosis.
+const MOST_EFFECTS: usize = 6;
+
+/// Compares a model with a run: where it fails, which effects are missing, how sure that is.
+pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
+    let prepared = prepare(run, options)?;
+    let found = Exploration::new(&prepared, spec, options, MOST_EFFECTS)?;
+    let fit = report(&found.start)?;
+    let suggestions = suggestions(&found, &fit, spec)?;
+    let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
+    let start = &found.start.main;
+    let basis = start.tangent();
+    let residual = basis.rest(&start.response());
+    let maps = Maps::new(&prepared.main, &basis, &residual, options);
+    let regions = if verdict == Verdict::Adequate { Vec::new() } else { regions(&prepared, &maps) };
+    let mut not_visible = found.start.hidden.clone();
+    not_visible.extend(found.invisible.iter().cloned());
+    Ok(Diagnosis {
+        kind: prepared.kind,
+        model: found.start.effects.clone(),
+        residual: fit.residual,
+        noise_floor_rms: found.floor.rms,
+        noise_floor: found.floor.clone(),
+        verdict,
+        summary: summary(&found, &fit, verdict, &suggestions),
+        regions,
+        experiment: experiment(&found, &prepared),
+        silent: found
+            .silent
+            .iter()
+            .map(|s| Silent { effect: s.effect.into(), minimum_detectable_rms: s.detectable_rms })
+            .collect(),
+        not_visible,
+        suggestions,
+        fit,
+    })
+}
+
+/// Diagnoses, adds the best effect and fits again until nothing more can be named or `max_effects` were added.
+///
+/// `on_step` sees every step as it is reported.
+pub fn discover(
+    run: &RunTable,
+    spec: &ModelSpec,
+    options: &Options,
+    max_effects: usize,
+    mut on_step: impl FnMut(&Step),
+) -> Result<Discovery, ModelError> {
+    let prepared = prepare(run, options)?;
+    let found = Exploration::new(&prepared, spec, options, max_effects)?;
+    let mut steps = vec![step(&found.start, None)];
+    steps.extend(found.advances.iter().map(|a| step(&a.after, Some(a))));
+    steps.iter().for_each(&mut on_step);
+    let fit = report(found.end())?;
+    let verdict = found.end_verdict();
+    Ok(Discovery {
+        kind: prepared.kind,
+        steps,
+        residual: fit.residual,
+        noise_floor_rms: found.floor.rms,
+        noise_floor: found.floor.clone(),
+        verdict,
+        summary: summary(&found, &fit, verdict, &[]),
+        model: found.end().effects.clone(),
+        regions: if verdict == Verdict::Adequate { Vec::new() } else { regions(&prepared, &found.maps) },
+        experiment: experiment(&found, &prepared),
+        fit,
+    })
+}
+
+fn step(model: &Assembly, advance: Option<&Advance>) -> Step {
+    let residual = model.main.linear().residual;
+    let n = residual.len() as f64;
+    Step {
+        added: advance.and_then(|a| a.added.as_ref()).map(|r| r.term.id().into()),
+        removed: advance.and_then(|a| a.removed).map(Into::into),
+        model: model.effects.clone(),
+        rms: (dot(&residual, &residual) / n).sqrt(),
+        validation_rms: (held_out(&model.main).iter().sum::<f64>() / n).sqrt(),
+    }
+}
+
+fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<Suggestion>, ModelError> {
+    let mut out = Vec::new();
+    for (advance, importance) in found.ranking() {
+        let Some(rival) = &advance.added else { continue };
+        let id = rival.term.id();
+        let alone = Assembly::new(found.start.prepared, &spec.with(id)?)?;
+        let with = report(&alone)?;
+        let reduction = 1.0 - with.validation_rms / fit.validation_rms;
+        let info = rival.term.effect.info();
+        let confounded_with: Vec<String> = advance.ties.iter().map(|t| (*t).into()).collect();
+        let tie = if confounded_with.is_empty() {
+            String::new()
+        } else {
+            format!(" This run cannot tell it from {}.", list(&confounded_with))
+        };
+        let why = format!(
+            "{} Without it the complete model's squared error would be {} larger.{tie}",
+            info.sentence,
+            percent(importance / (1.0 - importance).max(1e-9)),
+        );
+        out.push(Suggestion {
+            effect: id.into(),
+            validation_rms: with.validation_rms,
+            error_reduction: reduction,
+            p_value: rival.p_value,
+            parameters: with.parameters.into_iter().filter(|p| p.effect == id).collect(),
+            confounded_with,
+            why,
+        });
+    }
+    Ok(out)
+}
+
+fn summary(found: &Exploration, fit: &Fit, verdict: Verdict, suggestions: &[Suggestion]) -> String {
+    let error = figure(fit.validation_rms, &fit.unit);
+    let floor = match found.floor.rms {
+        Some(floor) => format!("the run repeats itself to {}", figure(floor, &fit.unit)),
+        None => "how well the run repeats itself is not known".into(),
+    };
+    match verdict {
+        Verdict::Adequate => {
+            format!("The model explains this run: its held-out error is {error}, and {floor}.")
+        }
+        Verdict::MissingEffect => {
+            let first = &suggestions[0];
+            let more: Vec<&str> = suggestions[1..].iter().map(|s| s.effect.as_str()).collect();
+            let more = if more.is_empty() { String::new() } else { format!(", then {}", list(&more)) };
+            format!(
+                "{} is missing{more}: with it the held-out error falls from {error} to {}; {floor}.",
+                first.effect,
+                figure(first.validation_rms, &fit.unit),
+            )
+        }
+        Verdict::UnexplainedStructure => {
+            let (axis, share) = found.maps.removable.unwrap_or((crate::view::Signal::Time, 0.0));
+            format!(
+                "Structure remains that no effect of the library explains: a function of {} alone would take {} off \
+                 the squared error that remains ({error}); {floor}.",
+                found.start.prepared.column_name(axis),
+                percent(share),
+            )
+        }
+    }
+}
+
+/// What to measure next.
+fn experiment(found: &Exploration, prepared: &Prepared) -> Option<Experiment> {
+    if found.floor.rms.is_none() {
+        let mut parameters = serde_json::Map::new();
+        parameters.insert("repeats".into(), 3.into());
+        return Some(Experiment {
+            procedure: prepared.kind.name().into(),
+            parameters,
+            why: "without repeats of the same profile nobody knows how small the error can become".into(),
+            expected_z: None,
+        });
+    }
+    None
+}

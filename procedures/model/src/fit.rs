@@ -1,0 +1,173 @@
+//! Fitting a model to a run, and holding a fit against another run.
+
+use crate::assembly::Assembly;
+use crate::intervals::intervals;
+use crate::linear::{dot, solve};
+use crate::prepare::{Prepared, Problem, prepare};
+use crate::report::{Evaluation, Fit, Parameter, ParameterState, Term as TermReport};
+use crate::select::held_out;
+use crate::terms::{Terms, columns};
+use crate::{ModelError, ModelSpec, Options, effects};
+use jointbench_instrument::RunTable;
+
+/// Fits the effects of a model to a run.
+///
+/// Linear parts by QR on scaled columns, shape parameters by variable projection, 95 % intervals by a jackknife over
+/// blocks. Effects that the run cannot show stay in the model at zero and are named in the notes.
+/// [`ModelError::Collinear`] where two effects are proportional in this data.
+pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
+    let prepared = prepare(run, options)?;
+    let assembly = Assembly::new(&prepared, spec)?;
+    report(&assembly)
+}
+
+/// The contract's object of a model that is laid out.
+pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
+    let prepared = assembly.prepared;
+    let main = &assembly.main;
+    let linear = main.linear();
+    let n = linear.residual.len() as f64;
+    let condition = check_columns(main)?;
+    if let Some(moving) = &assembly.moving {
+        check_columns(moving)?;
+    }
+    let mut parameters = Vec::new();
+    let mut trade_offs = Vec::new();
+    let mut terms = Vec::new();
+    for part in std::iter::once(main).chain(&assembly.moving) {
+        let found = intervals(part, prepared.motion);
+        parameters.extend(found.parameters);
+        trade_offs.extend(found.trade_offs);
+        for (term, factors) in part.terms.iter().zip(part.linear().factors) {
+            terms.push(TermReport {
+                effect: term.id().into(),
+                form: term.form.name.into(),
+                shape: term.shape.clone(),
+                linear: factors,
+            });
+        }
+    }
+    parameters.extend(assembly.hidden.iter().flat_map(|h| unseen(prepared, &h.effect, &h.why)));
+    let order = |effect: &str| assembly.effects.iter().position(|e| e == effect);
+    parameters.sort_by_key(|p| order(&p.effect));
+    terms.sort_by_key(|t| order(&t.effect));
+
+    let target = &prepared.main.target;
+    let mut notes: Vec<String> =
+        assembly.hidden.iter().map(|h| format!("{} is not visible in this data: {}", h.effect, h.why)).collect();
+    if assembly.effects.iter().any(|e| e == "direction_offset") {
+        notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
+    }
+    notes.extend(parameters.iter().filter_map(|p| p.note.as_ref().map(|n| format!("{}.{}: {n}", p.effect, p.name))));
+    notes.extend(
+        trade_offs.iter().map(|t| format!("{} and {} trade off (correlation {:.2})", t.first, t.second, t.correlation)),
+    );
+    Ok(Fit {
+        kind: prepared.kind,
+        effects: assembly.effects.clone(),
+        rms: (linear.sse / n).sqrt(),
+        validation_rms: (held_out(main).iter().sum::<f64>() / n).sqrt(),
+        unit: prepared.unit(),
+        residual: prepared.about.residual,
+        relative_error: (linear.sse / dot(target, target)).sqrt(),
+        parameters,
+        trade_offs,
+        condition,
+        notes,
+        preparation: prepared.about.clone(),
+        terms,
+    })
+}
+
+/// Condition of the scaled columns by QR; refuses columns that depend on each other.
+fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
+    let columns = terms.columns();
+    let solution = solve(&columns, &terms.response());
+    let owner = |column: usize| {
+        let mut names = terms.terms.iter().flat_map(|t| t.columns.iter().map(|_| t.id()));
+        names.nth(column).unwrap_or_default().to_owned()
+    };
+    match solution.dependent {
+        Some((a, b)) if a == b => {
+            Err(ModelError::NotVisible { effect: owner(a), why: "its signal never changes".into() })
+        }
+        Some((a, b)) => Err(ModelError::Collinear { first: owner(a), second: owner(b) }),
+        None => Ok(solution.condition),
+    }
+}
+
+fn unseen(prepared: &Prepared, id: &str, why: &str) -> Vec<Parameter> {
+    let Ok(effect) = effects::find(prepared.kind, id) else { return Vec::new() };
+    effect
+        .info()
+        .parameters
+        .iter()
+        .map(|p| Parameter {
+            effect: id.into(),
+            name: p.name.into(),
+            value: 0.0,
+            unit: prepared.motion.label(p.unit),
+            ci95: [0.0, 0.0],
+            state: ParameterState::Unidentified,
+            note: Some(format!("not visible in this data: {why}")),
+        })
+        .collect()
+}
+
+/// Holds a fit against a run that took no part in it. The run is prepared as the first one was.
+pub fn evaluate(fit: &Fit, run: &RunTable) -> Result<Evaluation, ModelError> {
+    let prepared = prepare_alike(fit, run)?;
+    let predicted = predict(fit, &prepared.main)?;
+    let target = &prepared.main.target;
+    let sse: f64 = target.iter().zip(&predicted).map(|(y, p)| (y - p).powi(2)).sum();
+    Ok(Evaluation {
+        rms: (sse / target.len() as f64).sqrt(),
+        unit: prepared.unit(),
+        residual: prepared.about.residual,
+        relative_error: (sse / dot(target, target)).sqrt(),
+        rows: target.len(),
+    })
+}
+
+pub(crate) fn prepare_alike(fit: &Fit, run: &RunTable) -> Result<Prepared, ModelError> {
+    if run.kind() != fit.kind {
+        return Err(ModelError::WrongKind { run: run.kind(), model: fit.kind });
+    }
+    let about = &fit.preparation;
+    let options = Options {
+        residual: Some(about.residual),
+        cutoff_hz: about.cutoff_hz,
+        decimation: Some(about.decimation),
+        chunk_s: about.chunk_s,
+        ..Options::default()
+    };
+    prepare(run, &options)
+}
+
+/// What a fit predicts at the rows of a problem.
+pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
+    let mut predicted = vec![0.0; problem.rows()];
+    let mut add = |columns: Vec<Vec<f64>>, factors: &[f64]| {
+        for (column, factor) in columns.iter().zip(factors) {
+            predicted.iter_mut().zip(column).for_each(|(p, c)| *p += factor * c);
+        }
+    };
+    for id in &fit.effects {
+        let effect = effects::find(fit.kind, id)?;
+        if effect.is_given() && effect.hidden(&problem.view).is_none() {
+            add(columns(effect, "linear", &[], problem), &[1.0]);
+        }
+    }
+    for term in &fit.terms {
+        let effect = effects::find(fit.kind, &term.effect)?;
+        if let Some(why) = effect.hidden(&problem.view) {
+            return Err(ModelError::NotVisible { effect: term.effect.clone(), why });
+        }
+        let found = columns(effect, &term.form, &term.shape, problem);
+        if found.len() != term.linear.len() {
+            return Err(ModelError::UnknownForm { effect: term.effect.clone(), form: term.form.clone() });
+        }
+        add(found, &term.linear);
+    }
+    Ok(predicted)
+}

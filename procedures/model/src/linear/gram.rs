@@ -1,0 +1,206 @@
+//! Gram matrices of blocks: cross-validation, jackknife and sign flips are functions of these alone.
+
+/// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
+#[derive(Debug, Clone)]
+pub struct Spd {
+    n: usize,
+    /// Lower triangle, row by row.
+    l: Vec<f64>,
+    scale: Vec<f64>,
+    dead: Vec<bool>,
+}
+
+impl Spd {
+    /// Cholesky of a row-major matrix after scaling its diagonal to one. `ridge` is added to the scaled diagonal.
+    pub fn new(matrix: &[f64], n: usize, ridge: f64) -> Self {
+        let scale: Vec<f64> =
+            (0..n).map(|i| if matrix[i * n + i] > 0.0 { matrix[i * n + i].sqrt().recip() } else { 0.0 }).collect();
+        let mut l = vec![0.0; n * n];
+        let mut dead = vec![false; n];
+        for i in 0..n {
+            for j in 0..=i {
+                let mut sum = matrix[i * n + j] * scale[i] * scale[j];
+                if i == j {
+                    sum += ridge;
+                }
+                for k in 0..j {
+                    sum -= l[i * n + k] * l[j * n + k];
+                }
+                if i == j {
+                    if sum > 1e-10 {
+                        l[i * n + i] = sum.sqrt();
+                    } else {
+                        dead[i] = true;
+                    }
+                } else if !dead[j] {
+                    l[i * n + j] = sum / l[j * n + j];
+                }
+            }
+            if dead[i] {
+                (0..=i).for_each(|j| l[i * n + j] = 0.0);
+            }
+        }
+        Self { n, l, scale, dead }
+    }
+
+    pub fn is_dead(&self, i: usize) -> bool {
+        self.dead[i]
+    }
+
+    /// L⁻¹·D·b: what makes the squared length of the result bᵀA⁻¹b.
+    pub fn whiten(&self, b: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        let mut x = vec![0.0; n];
+        for i in 0..n {
+            if self.dead[i] {
+                continue;
+            }
+            let below: f64 = (0..i).map(|k| self.l[i * n + k] * x[k]).sum();
+            x[i] = (b[i] * self.scale[i] - below) / self.l[i * n + i];
+        }
+        x
+    }
+
+    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        let mut x = self.whiten(b);
+        for i in (0..n).rev() {
+            if self.dead[i] {
+                x[i] = 0.0;
+                continue;
+            }
+            let above: f64 = (i + 1..n).map(|k| self.l[k * n + i] * x[k]).sum();
+            x[i] = (x[i] - above) / self.l[i * n + i];
+        }
+        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        x
+    }
+}
+
+/// Σ xxᵀ and Σ xy of each group of rows, and Σ yy.
+#[derive(Debug, Clone)]
+pub struct BlockGrams {
+    pub columns: usize,
+    pub groups: usize,
+    xx: Vec<f64>,
+    xy: Vec<f64>,
+    yy: Vec<f64>,
+    pub rows: Vec<usize>,
+}
+
+impl BlockGrams {
+    /// One pass over the rows.
+    pub fn new(columns: &[&[f64]], y: &[f64], group: &[usize], groups: usize) -> Self {
+        let p = columns.len();
+        let mut grams = Self {
+            columns: p,
+            groups,
+            xx: vec![0.0; groups * p * p],
+            xy: vec![0.0; groups * p],
+            yy: vec![0.0; groups],
+            rows: vec![0; groups],
+        };
+        let mut row = vec![0.0; p];
+        for (i, g) in group.iter().enumerate() {
+            row.iter_mut().zip(columns).for_each(|(r, c)| *r = c[i]);
+            let xx = &mut grams.xx[g * p * p..(g + 1) * p * p];
+            for a in 0..p {
+                let (x, line) = (row[a], &mut xx[a * p..a * p + a + 1]);
+                line.iter_mut().zip(&row).for_each(|(s, r)| *s += x * r);
+            }
+            grams.xy[g * p..(g + 1) * p].iter_mut().zip(&row).for_each(|(s, r)| *s += r * y[i]);
+            grams.yy[*g] += y[i] * y[i];
+            grams.rows[*g] += 1;
+        }
+        for xx in grams.xx.chunks_exact_mut((p * p).max(1)) {
+            for a in 0..p {
+                for b in a + 1..p {
+                    xx[a * p + b] = xx[b * p + a];
+                }
+            }
+        }
+        grams
+    }
+
+    pub fn xx(&self, group: usize) -> &[f64] {
+        let size = self.columns * self.columns;
+        &self.xx[group * size..(group + 1) * size]
+    }
+
+    pub fn xy(&self, group: usize) -> &[f64] {
+        &self.xy[group * self.columns..(group + 1) * self.columns]
+    }
+
+    pub fn total(&self) -> (Vec<f64>, Vec<f64>) {
+        let p = self.columns;
+        let mut xx = vec![0.0; p * p];
+        let mut xy = vec![0.0; p];
+        for g in 0..self.groups {
+            xx.iter_mut().zip(self.xx(g)).for_each(|(s, v)| *s += v);
+            xy.iter_mut().zip(self.xy(g)).for_each(|(s, v)| *s += v);
+        }
+        (xx, xy)
+    }
+
+    /// Squared error of each group when it is predicted from all others.
+    pub fn held_out(&self) -> Vec<f64> {
+        let p = self.columns;
+        let (xx, xy) = self.total();
+        (0..self.groups)
+            .map(|g| {
+                let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();
+                let side: Vec<f64> = xy.iter().zip(self.xy(g)).map(|(a, b)| a - b).collect();
+                let factors = Spd::new(&rest, p, 1e-12).solve(&side);
+                let mut loss = self.yy[g];
+                for a in 0..p {
+                    let inner: f64 = (0..p).map(|b| self.xx(g)[a * p + b] * factors[b]).sum();
+                    loss += factors[a] * (inner - 2.0 * self.xy(g)[a]);
+                }
+                loss.max(0.0)
+            })
+            .collect()
+    }
+
+    /// Solution of the whole without each group in turn.
+    pub fn jackknife(&self) -> Vec<Vec<f64>> {
+        let (xx, xy) = self.total();
+        (0..self.groups)
+            .filter(|g| self.rows[*g] > 0)
+            .map(|g| {
+                let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();
+                let side: Vec<f64> = xy.iter().zip(self.xy(g)).map(|(a, b)| a - b).collect();
+                Spd::new(&rest, self.columns, 0.0).solve(&side)
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dependent_column_is_left_at_zero() {
+        let a = [4.0, 2.0, 4.0, 2.0, 3.0, 2.0, 4.0, 2.0, 4.0];
+        let spd = Spd::new(&a, 3, 0.0);
+        assert!(spd.is_dead(2) && !spd.is_dead(1));
+        let x = spd.solve(&[8.0, 5.0, 8.0]);
+        assert!((4.0 * x[0] + 2.0 * x[1] - 8.0).abs() < 1e-9 && x[2] == 0.0, "{x:?}");
+    }
+
+    #[test]
+    fn held_out_error_is_that_of_a_refit() {
+        let x: Vec<f64> = (0..12).map(|i| f64::from(i) * 0.3 - 1.0).collect();
+        let y: Vec<f64> = x.iter().enumerate().map(|(i, x)| 2.0 * x + (i as f64 * 1.7).sin()).collect();
+        let group: Vec<usize> = (0..12).map(|i| i / 4).collect();
+        let grams = BlockGrams::new(&[&x], &y, &group, 3);
+        let slope = |keep: &dyn Fn(usize) -> bool| {
+            let pairs = || x.iter().zip(&y).enumerate().filter(|(i, _)| keep(*i)).map(|(_, p)| p);
+            pairs().map(|(x, y)| x * y).sum::<f64>() / pairs().map(|(x, _)| x * x).sum::<f64>()
+        };
+        let b = slope(&|i| i / 4 != 1);
+        let loss: f64 = (4..8).map(|i| (y[i] - b * x[i]).powi(2)).sum();
+        assert!((grams.held_out()[1] - loss).abs() < 1e-9);
+        assert!((grams.jackknife()[1][0] - b).abs() < 1e-9);
+    }
+}

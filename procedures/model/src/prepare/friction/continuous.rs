@@ -1,0 +1,103 @@
+//! Trajectories: filtered and decimated samples.
+//!
+//! Parallel filtering after Gautier 1997: the response and every column pass the same zero-phase filter before one of n
+//! samples is kept. The defaults are those of Janot, Gautier and Brunot 2019 at any sample rate.
+
+use super::Samples;
+use crate::prepare::filter::{LowPass, by_recording};
+use crate::prepare::{Prepared, Problem, Reduce, layout, segments};
+use crate::report::Preparation;
+use crate::view::{Signal, View};
+use crate::{ModelError, Options, ResidualKind};
+use jointbench_instrument::RunTable;
+
+/// Rows for each second that the defaults aim at.
+const ROWS_HZ: f64 = 100.0;
+
+pub fn prepare(run: &RunTable, mut samples: Samples, options: &Options) -> Result<Prepared, ModelError> {
+    let every = options.decimation.unwrap_or(((1.0 / samples.step_s / ROWS_HZ).round() as usize).max(1));
+    let filter = (every > 1).then(|| LowPass::chebyshev(8, 0.05, 0.8 / every as f64));
+    // The first and last samples of a recording are where filters and derivatives guess.
+    let skip = (50.min(run.len() / (20 * samples.starts.len().max(1)))).max(1);
+    let starts = samples.starts.clone();
+    let reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone() };
+    let keep = |values: &[f64]| {
+        by_recording(values, &starts, |_, v| {
+            (skip..v.len().saturating_sub(skip)).step_by(every).map(|i| v[i]).collect()
+        })
+    };
+    let target = reduce.apply(samples.torque_nm.clone());
+    if target.len() < 24 {
+        return Err(ModelError::TooFewSamples { usable: target.len(), needed: 24, what: "filtered rows" });
+    }
+    // A recording is forgotten between two blocks, and a stroke is the least that holds one experience of friction.
+    let direction = samples.signals.find(Signal::Direction).unwrap_or_default().to_vec();
+    let mut stroke = 0usize;
+    let strokes: Vec<f64> = (0..run.len())
+        .map(|i| {
+            if i > 0 && (direction[i] != direction[i - 1] || starts.contains(&i)) {
+                stroke += 1;
+            }
+            stroke as f64
+        })
+        .collect();
+    let group: Vec<usize> = keep(&strokes).into_iter().map(|s| s as usize).collect();
+    let (block, blocks) = layout::blocks(&group, 16);
+    let (fold, folds) = layout::folds(&vec![0; block.len()], &block, 8);
+
+    let column = |values: &Option<Vec<i64>>| -> Option<Vec<i64>> {
+        values.as_ref().map(|v| {
+            let v: Vec<f64> = v.iter().map(|x| *x as f64).collect();
+            keep(&v).into_iter().map(|x| x as i64).collect()
+        })
+    };
+    let velocity = keep(samples.signals.find(Signal::Velocity).unwrap_or_default());
+    let found = if starts.len() == 1 { segments::period(&velocity) } else { None };
+    let (repeat, phase, repeats_from) = match (column(&samples.repeat), found) {
+        (Some(repeat), _) if repeat.windows(2).any(|w| w[0] != w[1]) => {
+            let phase = phases(&repeat);
+            (repeat, phase, "column")
+        }
+        (_, Some(period)) => {
+            let repeat = (0..target.len()).map(|i| (i / period) as i64).collect();
+            (repeat, (0..target.len()).map(|i| i % period).collect(), "found")
+        }
+        _ => (vec![0; target.len()], (0..target.len()).collect(), "none"),
+    };
+    let twins = layout::twins(&vec![0; target.len()], &phase, &repeat, 0);
+    let segment = column(&samples.segment).unwrap_or_else(|| group.iter().map(|g| *g as i64).collect());
+    let about = Preparation {
+        residual: ResidualKind::Raw,
+        sample_rate_hz: 1.0 / samples.step_s,
+        cutoff_hz: Some(samples.cutoff_hz),
+        decimation: every,
+        chunk_s: None,
+        samples: run.len(),
+        rows: target.len(),
+        blocks,
+        segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
+        repeats_from: repeats_from.into(),
+    };
+    let points = std::mem::take(&mut samples.signals);
+    let view = View::new(points.clone(), points, Vec::new(), starts, samples.step_s);
+    let main = Problem { view, target, reduce, block, blocks, fold, folds, twins, segment, repeat };
+    Ok(Prepared {
+        kind: run.kind(),
+        motion: run.meta().motion,
+        load_scale: run.meta().gear_ratio.unwrap_or(1.0),
+        main,
+        moving: None,
+        about,
+    })
+}
+
+/// Rows since the repeat began.
+fn phases(repeat: &[i64]) -> Vec<usize> {
+    let mut phase = 0;
+    (0..repeat.len())
+        .map(|i| {
+            phase = if i > 0 && repeat[i] == repeat[i - 1] { phase + 1 } else { 0 };
+            phase
+        })
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! Friction runs: motor torque k_m·i_q over motion, load and temperature.
+
+mod continuous;
+mod plateaus;
+
+use super::{Prepared, filter, median, sample_s, segments};
+use crate::view::{Signal, Signals};
+use crate::{ModelError, Options, ResidualKind};
+use jointbench_instrument::RunTable;
+
+/// The samples of a friction run in model quantities.
+struct Samples {
+    signals: Signals,
+    torque_nm: Vec<f64>,
+    time_s: Vec<f64>,
+    step_s: f64,
+    starts: Vec<usize>,
+    cutoff_hz: f64,
+    segment: Option<Vec<i64>>,
+    repeat: Option<Vec<i64>>,
+    /// The velocity came from the position.
+    derived_velocity: bool,
+}
+
+pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
+    let samples = read(run, options)?;
+    let plateaus = plateaus::find(&samples, options);
+    let settled: usize = plateaus.iter().map(|p| p.len()).sum();
+    // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
+    // many steps does not take them away.
+    let in_steps = settled * 2 > run.len()
+        || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > plateaus::legs(&samples).len());
+    let kind = options.residual.unwrap_or(if in_steps { ResidualKind::PlateauMean } else { ResidualKind::Raw });
+    match kind {
+        ResidualKind::PlateauMean => plateaus::prepare(run, samples, plateaus, options),
+        ResidualKind::Raw => continuous::prepare(run, samples, options),
+    }
+}
+
+fn read(run: &RunTable, options: &Options) -> Result<Samples, ModelError> {
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let km = run
+        .meta()
+        .torque_constant_nm_per_a
+        .ok_or(ModelError::MissingConstant { needed: "torque_constant_nm_per_a" })?;
+    let position = column("motor_position_rad");
+    if position.iter().all(|q| *q == position[0]) {
+        return Err(ModelError::Constant { column: "motor_position_rad".into() });
+    }
+    let time_s = column("time_s").to_vec();
+    let step_s = sample_s(&time_s);
+    let starts = segments::recordings(&time_s, position, step_s);
+    let cutoff_hz = options.cutoff_hz.unwrap_or(0.1 / step_s).min(0.45 / step_s);
+    let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
+    let smoothed = |values: &[f64]| filter::by_recording(values, &starts, |_, v| smooth.both_ways(v, 12));
+    let slope =
+        |values: &[f64]| filter::by_recording(values, &starts, |range, v| filter::derivative(&time_s[range], v));
+
+    let measured = run.column("motor_velocity_rad_s");
+    let (velocity, smooth_velocity) = match measured {
+        Some(v) => (v.to_vec(), smoothed(v)),
+        None => {
+            let v = slope(&smoothed(position));
+            (v.clone(), v)
+        }
+    };
+    let acceleration = slope(&smooth_velocity);
+    let jerk = slope(&acceleration);
+    let noise = median(velocity.iter().zip(&smooth_velocity).map(|(a, b)| (a - b).abs()));
+    let fastest = smooth_velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let direction = segments::direction(&smooth_velocity, (2.0 * noise).min(0.02 * fastest));
+
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+    let mut signals = Signals::new(run.len());
+    let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
+    signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
+    signals.set(Signal::Position, position.to_vec());
+    signals.set(Signal::Velocity, velocity);
+    signals.set(Signal::Acceleration, acceleration);
+    signals.set(Signal::Jerk, jerk);
+    signals.set(Signal::Direction, direction);
+    let link = match run.column("link_position_rad") {
+        Some(link) => link.to_vec(),
+        None => position.iter().map(|q| q / gear).collect(),
+    };
+    signals.set(Signal::Link, link);
+    if let Some(load) = run.column("link_torque_nm") {
+        signals.set(Signal::Load, load.iter().map(|t| t / gear).collect());
+    }
+    if let Some(temperature) = run.column("temperature_c") {
+        signals.set(Signal::Temperature, temperature.to_vec());
+    }
+    Ok(Samples {
+        signals,
+        torque_nm,
+        step_s,
+        starts,
+        cutoff_hz,
+        segment: segments::integers(run, "segment"),
+        repeat: segments::integers(run, "repeat"),
+        derived_velocity: measured.is_none(),
+        time_s,
+    })
+}

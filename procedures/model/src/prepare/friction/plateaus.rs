@@ -1,0 +1,199 @@
+//! Measurements in steps: settled stretches of constant speed and load, cut into chunks.
+//!
+//! The response and every signal are averaged over chunks of about 40 ms: noise falls, memory effects stay out, and a
+//! periodic effect fades at speed exactly as its data does. Ramps and reversals are kept apart, where signals of
+//! different instruments are not aligned and friction has memory.
+
+use super::Samples;
+use crate::prepare::{Prepared, Problem, Reduce, layout, median, segments};
+use crate::report::Preparation;
+use crate::view::{Signal, Signals, View};
+use crate::{ModelError, Options, ResidualKind};
+use jointbench_instrument::RunTable;
+use std::ops::Range;
+
+const CHUNK_S: f64 = 0.04;
+const MOVING_CHUNK_S: f64 = 0.02;
+/// How far speed and load may be from the plateau's own middle, as a share of their size.
+const SETTLED_SHARE: f64 = 0.04;
+
+fn chunk_samples(samples: &Samples, chunk_s: f64) -> usize {
+    ((chunk_s / samples.step_s).round() as usize).max(1)
+}
+
+/// Segments, as numbered or as found: stretches of one direction within a recording.
+pub fn legs(samples: &Samples) -> Vec<Range<usize>> {
+    match &samples.segment {
+        Some(segment) => segments::stretches(&segment.iter().map(|s| *s as f64).collect::<Vec<_>>()),
+        None => segments::stretches(samples.signals.find(Signal::Direction).unwrap_or_default()),
+    }
+}
+
+/// The settled stretch of every segment that has one.
+pub fn find(samples: &Samples, options: &Options) -> Vec<Range<usize>> {
+    let n = chunk_samples(samples, options.chunk_s.unwrap_or(CHUNK_S));
+    let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
+    let load = samples.signals.find(Signal::Load);
+    let heaviest = load.map_or(0.0, |l| l.iter().fold(0.0f64, |m, v| m.max(v.abs())));
+    legs(samples).into_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, n)).collect()
+}
+
+fn settled(leg: Range<usize>, velocity: &[f64], load: Option<&[f64]>, heaviest: f64, n: usize) -> Option<Range<usize>> {
+    let means = |signal: &[f64]| -> Vec<f64> {
+        signal[leg.clone()].chunks_exact(n).map(|c| c.iter().sum::<f64>() / n as f64).collect()
+    };
+    let speed = means(velocity);
+    if speed.len() < 6 {
+        return None;
+    }
+    let late = speed.len() / 2..speed.len() - 1;
+    let target = median(speed[late.clone()].iter().copied());
+    let scatter = 1.5 * median(speed[late.clone()].iter().map(|v| (v - target).abs()));
+    if target.abs() < 5.0 * scatter || target == 0.0 {
+        return None;
+    }
+    let within = (SETTLED_SHARE * target.abs()).max(5.0 * scatter);
+    let mut steady: Vec<bool> = speed.iter().map(|v| (v - target).abs() <= within).collect();
+    if let Some(load) = load {
+        let load = means(load);
+        let held = median(load[late.clone()].iter().copied());
+        let scatter = 1.5 * median(load[late].iter().map(|v| (v - held).abs()));
+        let within = (SETTLED_SHARE * heaviest).max(5.0 * scatter);
+        steady.iter_mut().zip(&load).for_each(|(s, l)| *s &= (l - held).abs() <= within);
+    }
+    let longest = segments::stretches(&steady.iter().map(|s| f64::from(u8::from(*s))).collect::<Vec<_>>())
+        .into_iter()
+        .filter(|r| steady[r.start])
+        .max_by_key(Range::len)?;
+    // What follows a ramp at once still remembers it.
+    let skip = 2 + longest.len() / 20;
+    let (start, end) = (longest.start + skip, longest.end.min(speed.len()));
+    (end >= start + 3).then(|| leg.start + start * n..leg.start + end * n)
+}
+
+pub fn prepare(
+    run: &RunTable,
+    samples: Samples,
+    plateaus: Vec<Range<usize>>,
+    options: &Options,
+) -> Result<Prepared, ModelError> {
+    let n = chunk_samples(&samples, options.chunk_s.unwrap_or(CHUNK_S));
+    let legs = legs(&samples);
+    let mut chunks = Vec::new();
+    let mut group = Vec::new();
+    let mut phase = Vec::new();
+    for (number, plateau) in plateaus.iter().enumerate() {
+        let leg_start = legs.iter().find(|l| l.contains(&plateau.start)).map_or(plateau.start, |l| l.start);
+        for start in (plateau.start..plateau.end + 1 - n).step_by(n) {
+            chunks.push(start..start + n);
+            group.push(number);
+            phase.push((start - leg_start) / n);
+        }
+    }
+    if chunks.len() < 12 {
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks of settled motion" });
+    }
+    let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
+    let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
+    let main = problem(&samples, chunks, &group, &condition, Some(&phase), true);
+    let moving = moving(&samples, &plateaus);
+    let repeats = main.repeat.iter().max().copied().unwrap_or(0) > main.repeat.iter().min().copied().unwrap_or(0);
+    let about = Preparation {
+        residual: ResidualKind::PlateauMean,
+        sample_rate_hz: 1.0 / samples.step_s,
+        cutoff_hz: samples.derived_velocity.then_some(samples.cutoff_hz),
+        decimation: 1,
+        chunk_s: Some(n as f64 * samples.step_s),
+        samples: run.len(),
+        rows: main.rows(),
+        blocks: main.blocks,
+        segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
+        repeats_from: if repeats { "column" } else { "none" }.into(),
+    };
+    Ok(Prepared {
+        kind: run.kind(),
+        motion: run.meta().motion,
+        load_scale: run.meta().gear_ratio.unwrap_or(1.0),
+        main,
+        moving,
+        about,
+    })
+}
+
+/// Plateaus of the same speed, direction and load are one condition.
+fn conditions(samples: &Samples, plateaus: &[Range<usize>], command: Option<&[f64]>) -> Vec<usize> {
+    let middle = |signal: &[f64], p: &Range<usize>| median(signal[p.clone()].iter().copied());
+    let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
+    let speeds: Vec<f64> = plateaus.iter().map(|p| middle(velocity, p)).collect();
+    let lengths: Vec<f64> = plateaus.iter().map(|p| p.len() as f64).collect();
+    let loads: Vec<f64> = match command.or(samples.signals.find(Signal::Load)) {
+        Some(load) => plateaus.iter().map(|p| middle(load, p)).collect(),
+        None => vec![0.0; plateaus.len()],
+    };
+    let peak = loads.iter().fold(0.0f64, |m, l| m.max(l.abs()));
+    let speed = layout::clusters(&speeds, |v| 0.03 * v.abs());
+    let load = layout::clusters(&loads, |l| 0.03 * l.abs() + 0.01 * peak);
+    // Short steps and long turns at one speed are different conditions: they start at different places.
+    let length = layout::clusters(&lengths, |l| 0.3 * l);
+    let mut known: Vec<(usize, usize, usize)> = (0..plateaus.len()).map(|i| (length[i], load[i], speed[i])).collect();
+    let each = known.clone();
+    known.sort_unstable();
+    known.dedup();
+    each.iter().map(|c| known.binary_search(c).unwrap_or(0)).collect()
+}
+
+fn problem(
+    samples: &Samples,
+    chunks: Vec<Range<usize>>,
+    group: &[usize],
+    condition: &[usize],
+    phase: Option<&[usize]>,
+    settled: bool,
+) -> Problem {
+    let mean = |values: &[f64]| -> Vec<f64> {
+        chunks.iter().map(|c| values[c.clone()].iter().sum::<f64>() / c.len() as f64).collect()
+    };
+    let mut points = Signals::new(chunks.len());
+    for signal in Signal::ALL {
+        let Some(values) = samples.signals.find(signal) else { continue };
+        // Settled motion has no acceleration by definition; what is measured there is noise.
+        let still = settled && matches!(signal, Signal::Acceleration | Signal::Jerk);
+        points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
+    }
+    let target = mean(&samples.torque_nm);
+    let (block, blocks) = layout::blocks(group, 24);
+    let (fold, folds) = layout::folds(condition, &block, 10);
+    let first = |values: &Option<Vec<i64>>| -> Vec<i64> {
+        values.as_ref().map_or_else(|| vec![0; chunks.len()], |v| chunks.iter().map(|c| v[c.start]).collect())
+    };
+    let repeat = first(&samples.repeat);
+    let segment = match &samples.segment {
+        Some(_) => first(&samples.segment),
+        None => group.iter().map(|g| *g as i64).collect(),
+    };
+    let twins = phase.map_or_else(Vec::new, |phase| layout::twins(condition, phase, &repeat, 1));
+    let view = View::new(points, samples.signals.clone(), chunks, samples.starts.clone(), samples.step_s);
+    Problem { view, target, reduce: Reduce::Same, block, blocks, fold, folds, twins, segment, repeat }
+}
+
+/// Everything that is not settled, in short chunks.
+fn moving(samples: &Samples, plateaus: &[Range<usize>]) -> Option<Problem> {
+    let n = chunk_samples(samples, MOVING_CHUNK_S);
+    let mut settled = vec![false; samples.time_s.len()];
+    plateaus.iter().for_each(|p| settled[p.clone()].fill(true));
+    let mut chunks = Vec::new();
+    let mut group = Vec::new();
+    for (number, leg) in legs(samples).into_iter().enumerate() {
+        for start in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n) {
+            if !settled[start..start + n].iter().any(|s| *s) {
+                chunks.push(start..start + n);
+                group.push(number);
+            }
+        }
+    }
+    if chunks.len() < 50 {
+        return None;
+    }
+    let condition: Vec<usize> = group.clone();
+    Some(problem(samples, chunks, &group, &condition, None, false))
+}

@@ -1,0 +1,106 @@
+//! Rows into blocks, folds and twins.
+
+use std::collections::HashMap;
+
+/// Cuts groups of consecutive rows into blocks of about equal length, so that a slow trend cannot hide in one of them.
+///
+/// `group` numbers stretches of consecutive rows. Returns the block of every row and the number of blocks.
+pub fn blocks(group: &[usize], least: usize) -> (Vec<usize>, usize) {
+    let mut lengths: Vec<(usize, usize)> = Vec::new();
+    for g in group {
+        match lengths.last_mut() {
+            Some((last, n)) if last == g => *n += 1,
+            _ => lengths.push((*g, 1)),
+        }
+    }
+    let mut sorted: Vec<usize> = lengths.iter().map(|l| l.1).collect();
+    sorted.sort_unstable();
+    let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(1);
+    let length = middle.min(group.len() / least).max(4);
+    let mut block = Vec::with_capacity(group.len());
+    let mut next = 0;
+    for (_, n) in lengths {
+        let parts = ((n as f64 / length as f64).round() as usize).max(1);
+        block.extend((0..n).map(|i| next + i * parts / n));
+        next += parts;
+    }
+    (block, next)
+}
+
+/// Numbers values that lie close together alike: a gap wider than `tolerance(value)` starts a new cluster.
+pub fn clusters(values: &[f64], tolerance: impl Fn(f64) -> f64) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut cluster = vec![0; values.len()];
+    let mut number = 0;
+    for pair in order.windows(2) {
+        if values[pair[1]] - values[pair[0]] > tolerance(values[pair[1]]) {
+            number += 1;
+        }
+        cluster[pair[1]] = number;
+    }
+    cluster
+}
+
+/// Folds from conditions: every n-th condition together, so that each fold is predicted by its neighbours.
+pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, usize) {
+    let conditions = condition.iter().max().map_or(0, |c| c + 1);
+    if conditions >= 5 {
+        let n = conditions.min(most);
+        return (condition.iter().map(|c| c % n).collect(), n);
+    }
+    let blocks = block.iter().max().map_or(0, |b| b + 1);
+    let n = blocks.clamp(1, most);
+    (block.iter().map(|b| b % n).collect(), n)
+}
+
+/// Pairs of rows of the same condition in different repeats whose phases are `apart` rows from each other.
+///
+/// Neighbours instead of the very same phase where rows are chunks: what changes from chunk to chunk, such as the
+/// chatter of a control loop that happens to start alike, is nothing that a model of the joint could explain.
+pub fn twins(condition: &[usize], phase: &[usize], repeat: &[i64], apart: usize) -> Vec<(usize, usize)> {
+    let mut seen: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
+    for row in 0..condition.len() {
+        seen.entry((condition[row], phase[row])).or_default().push(row);
+    }
+    let mut pairs = Vec::new();
+    for row in 0..condition.len() {
+        let Some(others) = seen.get(&(condition[row], phase[row] + apart)) else { continue };
+        let twin = |r: &&usize| repeat[**r] != repeat[row] && (apart > 0 || **r > row);
+        pairs.extend(others.iter().filter(twin).map(|r| (row, *r)));
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_segment_becomes_several_blocks() {
+        let group: Vec<usize> = (0..40)
+            .map(|i| {
+                if i < 10 {
+                    0
+                } else if i < 20 {
+                    1
+                } else {
+                    2
+                }
+            })
+            .collect();
+        let (block, n) = blocks(&group, 4);
+        assert_eq!((n, block[0], block[19], block[20], block[39]), (4, 0, 1, 2, 3));
+    }
+
+    #[test]
+    fn close_values_are_one_condition() {
+        assert_eq!(clusters(&[1.0, 5.0, 1.01, 5.02, -3.0], |_| 0.1), vec![1, 2, 1, 2, 0]);
+    }
+
+    #[test]
+    fn twins_are_of_different_repeats() {
+        assert_eq!(twins(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 0), vec![(0, 2), (1, 3)]);
+        assert_eq!(twins(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 1), vec![(0, 3), (2, 1)]);
+    }
+}

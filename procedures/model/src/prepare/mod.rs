@@ -1,0 +1,158 @@
+//! From a run table to problems: response and view at points, cut into blocks that can be called independent.
+
+pub mod filter;
+mod friction;
+mod layout;
+mod segments;
+
+use crate::report::Preparation;
+use crate::view::{Signal, View};
+use crate::{ModelError, Options};
+use filter::LowPass;
+use jointbench_instrument::{Kind, Motion, RunTable};
+
+/// What a model is judged on: the response at points with the signals that may explain it.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    pub view: View,
+    /// The response at the rows.
+    pub target: Vec<f64>,
+    /// Columns at points become columns at rows in the way in which the target did.
+    pub reduce: Reduce,
+    /// Piece of the run to which a row belongs, from 0: long enough to be called independent of the others.
+    pub block: Vec<usize>,
+    pub blocks: usize,
+    /// Rows that are predicted together from all others: the repeats of one condition.
+    pub fold: Vec<usize>,
+    pub folds: usize,
+    /// Rows that should be equal but for noise: the same condition and phase in another repeat.
+    pub twins: Vec<(usize, usize)>,
+    pub segment: Vec<i64>,
+    pub repeat: Vec<i64>,
+}
+
+impl Problem {
+    pub fn rows(&self) -> usize {
+        self.target.len()
+    }
+}
+
+/// How columns at points become columns at rows.
+#[derive(Debug, Clone)]
+pub enum Reduce {
+    /// Points are rows.
+    Same,
+    /// Every recording is filtered and every n-th sample kept.
+    Decimate { filter: Option<LowPass>, every: usize, skip: usize, starts: Vec<usize> },
+}
+
+impl Reduce {
+    pub fn apply(&self, column: Vec<f64>) -> Vec<f64> {
+        match self {
+            Reduce::Same => column,
+            Reduce::Decimate { filter, every, skip, starts } => filter::by_recording(&column, starts, |_, values| {
+                let filtered = match filter {
+                    Some(filter) => filter.both_ways(values, 12 * every),
+                    None => values.to_vec(),
+                };
+                let end = values.len().saturating_sub(*skip);
+                (*skip..end).step_by(*every).map(|i| filtered[i]).collect()
+            }),
+        }
+    }
+}
+
+/// A run, ready for every fit and every test.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    pub kind: Kind,
+    pub motion: Motion,
+    /// What most effects are judged on.
+    pub main: Problem,
+    /// Ramps and reversals, where the main problem holds settled motion only.
+    pub moving: Option<Problem>,
+    /// Factor from the load as the models see it to the column of the run table.
+    pub load_scale: f64,
+    pub about: Preparation,
+}
+
+impl Prepared {
+    /// The column that a signal was, for people.
+    pub fn column_name(&self, signal: Signal) -> &'static str {
+        match (signal, self.kind) {
+            (Signal::Time, _) => "time_s",
+            (Signal::Position, Kind::Encoder) => "reference_position_rad",
+            (Signal::Position, Kind::Brake) => "position_rad",
+            (Signal::Position, _) => "motor_position_rad",
+            (Signal::Velocity, Kind::Friction) => "motor_velocity_rad_s",
+            (Signal::Velocity, Kind::Stiffness) => "link_velocity_rad_s",
+            (Signal::Velocity, _) => "velocity_rad_s",
+            (Signal::Acceleration, _) => "acceleration_rad_s2",
+            (Signal::Jerk, _) => "jerk_rad_s3",
+            (Signal::Direction, _) => "direction",
+            (Signal::Link, _) => "link_position_rad",
+            (Signal::Load, _) => "link_torque_nm",
+            (Signal::Temperature, _) => "temperature_c",
+            (Signal::Current, _) => "brake_current_a",
+            (Signal::Drive, _) => "motor_torque_nm",
+            (Signal::Repeat, _) => "repeat",
+        }
+    }
+
+    /// Factor from a signal as the models see it to its column.
+    pub fn column_scale(&self, signal: Signal) -> f64 {
+        if signal == Signal::Load { self.load_scale } else { 1.0 }
+    }
+
+    pub fn column_unit(&self, signal: Signal) -> String {
+        let unit = match signal {
+            Signal::Direction | Signal::Repeat => "1",
+            Signal::Acceleration => "rad/s²",
+            Signal::Jerk => "rad/s³",
+            _ => jointbench_instrument::units::unit_of(self.column_name(signal)).unwrap_or("1"),
+        };
+        self.motion.label(unit)
+    }
+
+    pub fn unit(&self) -> String {
+        self.motion.label(self.kind.target_unit())
+    }
+}
+
+/// Prepares a run. Deterministic; cost linear in the rows.
+pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
+    if let Some(cutoff_hz) = options.cutoff_hz
+        && !(cutoff_hz.is_finite() && cutoff_hz > 0.0)
+    {
+        return Err(ModelError::BadOption { option: "cutoff_hz", why: "expected a positive frequency".into() });
+    }
+    if options.decimation == Some(0) {
+        return Err(ModelError::BadOption { option: "decimation", why: "expected 1 or more".into() });
+    }
+    if options.chunk_s.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
+        return Err(ModelError::BadOption { option: "chunk_s", why: "expected a positive time".into() });
+    }
+    if run.len() < 16 {
+        return Err(ModelError::TooFewSamples { usable: run.len(), needed: 16, what: "samples" });
+    }
+    match run.kind() {
+        Kind::Friction => friction::prepare(run, options),
+        kind => Err(ModelError::WrongKind { run: kind, model: Kind::Friction }),
+    }
+}
+
+/// The middle value of the step from sample to sample.
+fn sample_s(time_s: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
+    let middle = steps.len() / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}

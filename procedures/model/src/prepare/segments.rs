@@ -1,0 +1,67 @@
+//! Segments, recordings and repeats: from their columns, or found where those are missing.
+
+use jointbench_instrument::RunTable;
+use std::ops::Range;
+
+/// Stretches of equal value.
+pub fn stretches(column: &[f64]) -> Vec<Range<usize>> {
+    let mut out = Vec::new();
+    let mut start = 0;
+    for i in 1..=column.len() {
+        if i == column.len() || column[i] != column[start] {
+            out.push(start..i);
+            start = i;
+        }
+    }
+    out
+}
+
+/// First samples of recordings: a gap in time of more than ten samples, or a segment that starts where nothing led to.
+pub fn recordings(time_s: &[f64], position: &[f64], step_s: f64) -> Vec<usize> {
+    let reach = 50.0 * super::median(position.windows(2).map(|w| (w[1] - w[0]).abs())).max(1e-4);
+    let gap = |i: usize| time_s[i] - time_s[i - 1] > 10.0 * step_s;
+    let jump = |i: usize| (position[i] - position[i - 1]).abs() > reach.max(0.5);
+    std::iter::once(0).chain((1..time_s.len()).filter(|i| gap(*i) || jump(*i))).collect()
+}
+
+/// Legs of one direction: the sign of the velocity with a hysteresis, so that noise around zero makes no legs.
+pub fn direction(velocity: &[f64], band: f64) -> Vec<f64> {
+    let first = velocity.iter().find(|v| v.abs() > band).map_or(0.0, |v| v.signum());
+    let mut sign = first;
+    velocity
+        .iter()
+        .map(|v| {
+            if v.abs() > band {
+                sign = v.signum();
+            }
+            sign
+        })
+        .collect()
+}
+
+/// The integers of a column, where the run has it.
+pub fn integers(run: &RunTable, column: &str) -> Option<Vec<i64>> {
+    run.column(column).map(|values| values.iter().map(|v| *v as i64).collect())
+}
+
+/// The period after which a signal repeats itself, in rows: the first peak of its autocorrelation that is as good as
+/// perfect. `None` where fewer than two periods were recorded.
+pub fn period(signal: &[f64]) -> Option<usize> {
+    let n = signal.len();
+    let mean = signal.iter().sum::<f64>() / n.max(1) as f64;
+    let x: Vec<f64> = signal.iter().map(|v| v - mean).collect();
+    let correlation = |lag: usize| {
+        let (a, b) = (&x[..n - lag], &x[lag..]);
+        let ab: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+        let aa: f64 = a.iter().map(|a| a * a).sum();
+        let bb: f64 = b.iter().map(|b| b * b).sum();
+        if aa * bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
+    };
+    let mut lag = n / 100 + 2;
+    while lag < n / 2 && correlation(lag) > 0.5 {
+        lag += 1;
+    }
+    let (best, value) =
+        (lag..=n / 2).map(|l| (l, correlation(l))).fold((0, 0.0), |m, c| if c.1 > m.1 + 1e-3 { c } else { m });
+    (value > 0.98).then_some(best)
+}

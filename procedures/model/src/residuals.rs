@@ -1,0 +1,81 @@
+//! The residual of a fit at every point with everything that it may depend on.
+
+use crate::fit::{predict, prepare_alike};
+use crate::prepare::{Prepared, Problem};
+use crate::report::{Axis, Fit, ResidualSet};
+use crate::view::Signal;
+use crate::{ModelError, Options};
+use jointbench_instrument::RunTable;
+
+/// Measured against model, with axes for pictures. Points in ramps and reversals come last and are marked held out.
+///
+/// The run is prepared as it was for the fit; `options` is there for callers that keep one set for every call and only
+/// its limits are checked.
+pub fn residuals(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualSet, ModelError> {
+    if !(options.alpha > 0.0 && options.alpha < 1.0) {
+        return Err(ModelError::BadOption { option: "alpha", why: "expected a share between 0 and 1".into() });
+    }
+    let prepared = prepare_alike(fit, run)?;
+    let mut set = ResidualSet {
+        residual: prepared.about.residual,
+        unit: prepared.unit(),
+        axes: axes(&prepared),
+        measured: Vec::new(),
+        predicted: Vec::new(),
+        error: Vec::new(),
+        held_out: Vec::new(),
+        segment: Vec::new(),
+        repeat: Vec::new(),
+    };
+    append(&mut set, &prepared, &prepared.main, fit, false)?;
+    if let Some(moving) = &prepared.moving {
+        append(&mut set, &prepared, moving, fit, true)?;
+    }
+    Ok(set)
+}
+
+fn axes(prepared: &Prepared) -> Vec<Axis> {
+    shown(prepared)
+        .map(|s| Axis { name: prepared.column_name(s).into(), unit: prepared.column_unit(s), values: Vec::new() })
+        .collect()
+}
+
+/// Signals that the run has, those that people look at first.
+fn shown(prepared: &Prepared) -> impl Iterator<Item = Signal> {
+    [
+        Signal::Velocity,
+        Signal::Link,
+        Signal::Position,
+        Signal::Load,
+        Signal::Current,
+        Signal::Temperature,
+        Signal::Time,
+        Signal::Direction,
+        Signal::Acceleration,
+        Signal::Repeat,
+    ]
+    .into_iter()
+    .filter(|s| prepared.main.view.find(*s).is_some())
+}
+
+fn append(
+    set: &mut ResidualSet,
+    prepared: &Prepared,
+    problem: &Problem,
+    fit: &Fit,
+    held_out: bool,
+) -> Result<(), ModelError> {
+    let predicted = predict(fit, problem)?;
+    for (axis, signal) in set.axes.iter_mut().zip(shown(prepared)) {
+        let scale = prepared.column_scale(signal);
+        let values = problem.reduce.apply(problem.view.get(signal).to_vec());
+        axis.values.extend(values.into_iter().map(|v| v * scale));
+    }
+    set.error.extend(problem.target.iter().zip(&predicted).map(|(y, p)| y - p));
+    set.measured.extend_from_slice(&problem.target);
+    set.predicted.extend(predicted);
+    set.held_out.extend(std::iter::repeat_n(held_out, problem.rows()));
+    set.segment.extend_from_slice(&problem.segment);
+    set.repeat.extend_from_slice(&problem.repeat);
+    Ok(())
+}

@@ -1,0 +1,211 @@
+//! From a model to the model that is left when nothing more can be named.
+
+use super::flips::{Null, Score};
+use super::library::{Gain, Library, gain};
+use crate::Options;
+use crate::linear::{BlockGrams, dot};
+use crate::prepare::Problem;
+use crate::terms::{Term, Terms, polish};
+
+/// Candidates that are refined and held against each other at each step.
+const SHORT_LIST: usize = 6;
+
+/// A candidate of one step with its evidence.
+#[derive(Clone)]
+pub struct Rival {
+    pub term: Term,
+    /// Share of the remaining squared error.
+    pub share: f64,
+    /// Held-out squared error of the model with it.
+    pub held_out: f64,
+    pub p_value: f64,
+    /// Held-out squared error of each fold.
+    losses: Vec<f64>,
+}
+
+pub enum Move {
+    Added { rival: Rival, ties: Vec<&'static str> },
+    Removed(&'static str),
+}
+
+/// What the search did, and what it left.
+pub struct Path<'p> {
+    pub start: Terms<'p>,
+    /// Every move with the model after it.
+    pub moves: Vec<(Move, Terms<'p>)>,
+    /// Candidates that were not added.
+    pub silent: Vec<Silence>,
+}
+
+/// A candidate that was looked for and not found.
+pub struct Silence {
+    pub effect: &'static str,
+    /// RMS of the smallest one that would have been found with 80 % probability.
+    pub detectable_rms: f64,
+}
+
+impl<'p> Path<'p> {
+    pub fn end(&self) -> &Terms<'p> {
+        self.moves.last().map_or(&self.start, |m| &m.1)
+    }
+}
+
+/// Held-out squared error of each fold.
+pub fn held_out(terms: &Terms) -> Vec<f64> {
+    let linear = terms.linear();
+    losses(&terms.columns(), &linear.residual, terms.problem)
+}
+
+fn losses(columns: &[&[f64]], residual: &[f64], problem: &Problem) -> Vec<f64> {
+    BlockGrams::new(columns, residual, &problem.fold, problem.folds).held_out()
+}
+
+/// Adds the best effect again and again until none passes, and drops what lost its reason.
+pub fn search<'p>(start: Terms<'p>, library: &Library, most: usize, options: &Options) -> Path<'p> {
+    let mut path = Path { start, moves: Vec::new(), silent: Vec::new() };
+    let kept: Vec<&'static str> = path.start.terms.iter().map(Term::id).collect();
+    let mut added = 0;
+    while added < most {
+        let now = path.end().clone();
+        let Some((rival, ties)) = step(&now, library, options) else { break };
+        let mut next = now;
+        next.terms.push(rival.term.clone());
+        next.refine();
+        path.moves.push((Move::Added { rival, ties }, next));
+        added += 1;
+        while let Some((id, less)) = drop_one(path.end(), &kept, options) {
+            path.moves.push((Move::Removed(id), less));
+        }
+    }
+    path.silent = silences(path.end(), library, options);
+    path
+}
+
+/// For each effect that is not in the model, its best form and shape: what would have been seen.
+fn silences(end: &Terms, library: &Library, options: &Options) -> Vec<Silence> {
+    let problem = end.problem;
+    let basis = end.tangent();
+    let residual = basis.rest(&end.response());
+    let n = problem.rows() as f64;
+    let rms = (dot(&residual, &residual) / n).sqrt();
+    let mut out: Vec<Silence> = Vec::new();
+    for candidate in library.candidates.iter().filter(|c| !end.contains(c.id())) {
+        let found = gain(&candidate.columns, &basis, &residual, 1.0);
+        // z₀.₉₇₅ + z₀.₈ standard errors of the amplitude, and never less than the practical share.
+        let noise = found
+            .rest
+            .iter()
+            .map(|r| {
+                let mut sums = vec![0.0; problem.blocks];
+                r.iter().zip(&residual).zip(&problem.block).for_each(|((x, e), b)| sums[*b] += x * e);
+                2.8 * (sums.iter().map(|s| s * s).sum::<f64>() / dot(r, r) / n).sqrt()
+            })
+            .fold(0.0, f64::max);
+        let detectable_rms =
+            if found.rest.is_empty() { f64::MAX } else { noise.max(options.practical_share.sqrt() * rms) };
+        match out.iter_mut().find(|s| s.effect == candidate.id()) {
+            Some(s) => s.detectable_rms = s.detectable_rms.min(detectable_rms),
+            None => out.push(Silence { effect: candidate.id(), detectable_rms }),
+        }
+    }
+    out.retain(|s| s.detectable_rms < f64::MAX);
+    out
+}
+
+fn step(now: &Terms, library: &Library, options: &Options) -> Option<(Rival, Vec<&'static str>)> {
+    let problem = now.problem;
+    let basis = now.tangent();
+    let residual = basis.rest(&now.response());
+    let energy = dot(&residual, &residual);
+    let open: Vec<usize> =
+        (0..library.candidates.len()).filter(|i| !now.contains(library.candidates[*i].id())).collect();
+    let gains: Vec<Gain> =
+        open.iter().map(|i| gain(&library.candidates[*i].columns, &basis, &residual, energy)).collect();
+
+    // The best form and shape of each effect, the most telling effects first.
+    let mut best: Vec<usize> = Vec::new();
+    for (at, i) in open.iter().enumerate() {
+        let id = library.candidates[*i].id();
+        match best.iter_mut().find(|b| library.candidates[open[**b]].id() == id) {
+            Some(b) if gains[at].share > gains[*b].share => *b = at,
+            Some(_) => {}
+            None => best.push(at),
+        }
+    }
+    best.sort_by(|a, b| gains[*b].share.total_cmp(&gains[*a].share));
+    best.truncate(SHORT_LIST);
+    best.retain(|b| gains[*b].share > 0.5 * options.practical_share);
+    if best.is_empty() {
+        return None;
+    }
+
+    let present: f64 = losses(&now.columns(), &residual, problem).iter().sum();
+    let mut rivals: Vec<Rival> = best
+        .iter()
+        .map(|b| {
+            let mut term = [library.candidates[open[*b]].term()];
+            let sse = polish(&mut term, &basis, &residual, problem);
+            let [term] = term;
+            let mut columns = now.columns();
+            columns.extend(term.columns.iter().map(Vec::as_slice));
+            let losses = losses(&columns, &residual, problem);
+            Rival { share: 1.0 - sse / energy, held_out: losses.iter().sum(), p_value: 1.0, losses, term }
+        })
+        .filter(|r| r.share >= options.practical_share && r.held_out < present)
+        .collect();
+    rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
+    let first = rivals.first()?;
+
+    let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(first, &rivals[*i])).collect();
+    let mut winner = 0;
+    // Of what explains the data equally well, the simplest.
+    for i in &ties {
+        let near = rivals[*i].held_out - rivals[0].held_out < 0.05 * (present - rivals[0].held_out);
+        if near && rivals[*i].term.size() < rivals[winner].term.size() {
+            winner = *i;
+        }
+    }
+    ties.push(0);
+    ties.retain(|i| *i != winner);
+
+    let mut scores: Vec<Score> =
+        gains.iter().map(|g| Score::new(&g.rest, &residual, &problem.block, problem.blocks)).collect();
+    let own = gain(&rivals[winner].term.columns, &basis, &residual, energy);
+    let score = Score::new(&own.rest, &residual, &problem.block, problem.blocks);
+    let z = score.z();
+    scores.push(score);
+    let null = Null::new(&scores, problem.blocks, options.flips, options.seed);
+    let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
+    let mut rival = rivals.swap_remove(winner);
+    rival.p_value = null.p_value(z);
+    (rival.p_value <= options.alpha).then_some((rival, ties))
+}
+
+/// Two effects tie where the difference of their held-out errors is not larger than its own scatter over the folds.
+fn is_tie(a: &Rival, b: &Rival) -> bool {
+    let differences: Vec<f64> = b.losses.iter().zip(&a.losses).map(|(b, a)| b - a).collect();
+    let n = differences.len() as f64;
+    let mean = differences.iter().sum::<f64>() / n;
+    let spread = (differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
+    differences.iter().sum::<f64>() < 2.0 * n.sqrt() * spread
+}
+
+/// The added term without which the model is as good, with the model without it.
+fn drop_one<'p>(now: &Terms<'p>, kept: &[&'static str], options: &Options) -> Option<(&'static str, Terms<'p>)> {
+    let full = now.linear().sse;
+    let mut worst: Option<(f64, usize, Terms)> = None;
+    for i in 0..now.terms.len() {
+        if kept.contains(&now.terms[i].id()) || i + 1 == now.terms.len() {
+            continue;
+        }
+        let mut less = now.clone();
+        less.terms.remove(i);
+        less.refine();
+        let sse = less.linear().sse;
+        let share = 1.0 - full / sse;
+        if share < options.practical_share && worst.as_ref().is_none_or(|w| share < w.0) {
+            worst = Some((share, i, less));
+        }
+    }
+    worst.map(|(_, i, less)| (now.terms[i].id(), less))
+}

@@ -1,0 +1,49 @@
+//! Figures as people say them.
+
+/// A value with its unit, three digits, and a prefix that keeps them before the point: `6.1 mNm`.
+pub fn figure(value: f64, unit: &str) -> String {
+    let size = value.abs();
+    let prefixed = unit.starts_with("Nm") || unit.starts_with("rad") || unit == "N" || unit == "m";
+    let (factor, prefix) = match size {
+        s if !prefixed || s == 0.0 || s >= 1.0 => (1.0, ""),
+        s if s >= 1e-3 => (1e3, "m"),
+        s if s >= 1e-6 => (1e6, "µ"),
+        _ => (1e9, "n"),
+    };
+    let scaled = value * factor;
+    let digits = match scaled.abs() {
+        s if s >= 100.0 => 0,
+        s if s >= 10.0 => 1,
+        _ => 2,
+    };
+    format!("{scaled:.digits$} {prefix}{unit}")
+}
+
+pub fn percent(share: f64) -> String {
+    if share.abs() < 0.0995 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub fn list(items: &[impl AsRef<str>]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.as_ref().to_owned(),
+        [rest @ .., last] => {
+            let rest: Vec<&str> = rest.iter().map(AsRef::as_ref).collect();
+            format!("{} and {}", rest.join(", "), last.as_ref())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_read_well() {
+        assert_eq!(figure(-0.00612, "Nm"), "-6.12 mNm");
+        assert_eq!(figure(95.106, "kg"), "95.1 kg");
+        assert_eq!(percent(0.184), "18 %");
+        assert_eq!(list(&["a", "b", "c"]), "a, b and c");
+    }
+}
