@@ -9,6 +9,5 @@ export default defineConfig({
 	server: {
 		proxy: { '/api': { target: process.env.JB_DAEMON ?? 'http://127.0.0.1:8080', ws: true, changeOrigin: true } },
 	},
-	test: { environment: 'happy-dom', include: ['app/**/*.test.ts'] },
-	resolve: process.env.VITEST ? { conditions: ['browser'] } : {},
+	test: { include: ['app/**/*.test.ts'] },
 });

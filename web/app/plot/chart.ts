@@ -55,12 +55,14 @@ export function makeChart(
 			width: Math.max(80, host.clientWidth),
 			height: frame.height,
 			legend: { show: false },
+			padding: [8, 10, 0, 0],
 			scales: { x: { time: false, range: (_u, low, high) => view ?? padded(low, high) } },
 			axes: [axis(frame.bareX ? '' : frame.xTitle, frame.bareX), axis(frame.yTitle, false, 58)],
 			series: [{}, ...frame.curves.map((curve) => series(curve, () => backdrop))],
 			cursor: {
 				...hands.cursor,
 				points: { size: 6 },
+				y: false,
 				sync: frame.sync ? { key: frame.sync, setSeries: false, scales: ['x', null] } : undefined,
 			},
 			hooks: {

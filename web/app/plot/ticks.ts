@@ -1,3 +1,5 @@
+import { figure } from '../format/number';
+
 /** Round positions for an axis, about `count` of them: steps of 1, 2 or 5 times a power of ten. */
 export function ticks(low: number, high: number, count: number): number[] {
 	const span = high - low;
@@ -8,4 +10,11 @@ export function ticks(low: number, high: number, count: number): number[] {
 	const first = Math.ceil(low / step - 1e-9);
 	const last = Math.floor(high / step + 1e-9);
 	return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+}
+
+/** A tick without needless zeros. */
+export function tickText(tick: number): string {
+	const size = Math.abs(tick);
+	if (size !== 0 && (size < 1e-4 || size >= 1e6)) return figure(tick, 2);
+	return String(Number(tick.toPrecision(6))).replace('-', '−');
 }

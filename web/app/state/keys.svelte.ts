@@ -1,3 +1,5 @@
+import { untrack } from 'svelte';
+
 /** One map of keys for the whole page. The help sheet is drawn from it, so it cannot tell of a key that does nothing. */
 export interface Key {
 	/** As `KeyboardEvent.key` gives it. */
@@ -13,9 +15,9 @@ class Keys {
 	/** Adds a group until the returned function is called. A later group wins over an earlier one. */
 	bind(name: string, keys: Key[]): () => void {
 		const group = { name, keys };
-		this.groups = [...this.groups, group];
+		this.groups = [...untrack(() => this.groups), group];
 		return () => {
-			this.groups = this.groups.filter((other) => other !== group);
+			this.groups = untrack(() => this.groups).filter((other) => other !== group);
 		};
 	}
 

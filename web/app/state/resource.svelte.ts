@@ -1,4 +1,5 @@
-import { Refusal, asRefusal } from '../api/problem';
+import { untrack } from 'svelte';
+import { type Refusal, asRefusal } from '../api/problem';
 
 export interface Resource<T> {
 	readonly data: T | undefined;
@@ -29,7 +30,7 @@ export function resource<K, T>(key: () => K | null, load: (key: K, signal: Abort
 		}
 		const abort = new AbortController();
 		loading = true;
-		load(wanted, abort.signal).then(
+		untrack(() => load(wanted, abort.signal)).then(
 			(value) => {
 				if (abort.signal.aborted) return;
 				data = value;

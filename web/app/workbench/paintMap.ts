@@ -1,6 +1,5 @@
-import { figure } from '../format/number';
 import { colour, diverging } from '../plot/colour';
-import { ticks } from '../plot/ticks';
+import { tickText, ticks } from '../plot/ticks';
 import type { ResidualMap } from '../residual/map';
 import { CLIP, score } from '../residual/tally';
 
@@ -43,13 +42,26 @@ export function paintMap(
 		const [left, right] = [x(map.x[column]!), x(map.x[column + 1]!)];
 		const [top, bottom] = [y(map.y[row + 1]!), y(map.y[row]!)];
 		const box = [left, top, Math.max(1, right - left), Math.max(1, bottom - top)] as const;
+		if (cell.n === 0) return;
 		const z = score(cell);
 		ctx.fillStyle = z === null ? colour('--map-none') : diverging(z / CLIP, ...palette);
 		ctx.fillRect(...box);
-		if (z === null && cell.n > 0) hatch(ctx, box);
+		if (z === null) hatch(ctx, box);
+		ctx.strokeStyle = colour('--panel');
+		ctx.lineWidth = 1;
+		ctx.strokeRect(...box);
 	});
+	frame(ctx, size);
 	outline(ctx, size, region.x?.map(x) ?? null, region.y?.map(y) ?? null);
 	ink(ctx, map, size, titles);
+}
+
+/** Inside the frame, bare paper is a condition that was never visited. */
+function frame(ctx: CanvasRenderingContext2D, size: Size): void {
+	const [width, height] = [size.width - MARGIN.left - MARGIN.right, size.height - MARGIN.top - MARGIN.bottom];
+	ctx.strokeStyle = colour('--line');
+	ctx.lineWidth = 1;
+	ctx.strokeRect(MARGIN.left - 0.5, MARGIN.top - 0.5, width + 1, height + 1);
 }
 
 function hatch(ctx: CanvasRenderingContext2D, [left, top, width, height]: readonly [number, number, number, number]): void {
@@ -73,11 +85,15 @@ function outline(ctx: CanvasRenderingContext2D, size: Size, x: number[] | null, 
 	if (!x && !y) return;
 	const [left = 0, right = 0] = x ?? [MARGIN.left, size.width - MARGIN.right];
 	const [bottom = 0, top = 0] = y ?? [size.height - MARGIN.bottom, MARGIN.top];
+	ctx.save();
+	ctx.beginPath();
+	ctx.rect(MARGIN.left - 2, 0, size.width - MARGIN.left - MARGIN.right + 4, size.height - MARGIN.bottom + 2);
+	ctx.clip();
 	ctx.strokeStyle = colour('--ink');
 	ctx.lineWidth = 2;
 	ctx.setLineDash([6, 3]);
 	ctx.strokeRect(left, top, right - left, bottom - top);
-	ctx.setLineDash([]);
+	ctx.restore();
 }
 
 function ink(ctx: CanvasRenderingContext2D, map: ResidualMap, size: Size, titles: { x: string; y: string }): void {
@@ -87,11 +103,11 @@ function ink(ctx: CanvasRenderingContext2D, map: ResidualMap, size: Size, titles
 	ctx.font = '11px system-ui, sans-serif';
 	ctx.textBaseline = 'top';
 	ctx.textAlign = 'center';
-	for (const tick of ticks(map.x[0]!, map.x.at(-1)!, 8)) ctx.fillText(figure(tick, 3), x(tick), foot + 5);
+	for (const tick of ticks(map.x[0]!, map.x.at(-1)!, 8)) ctx.fillText(tickText(tick), x(tick), foot + 5);
 	ctx.fillText(titles.x, (MARGIN.left + size.width) / 2, foot + 21);
 	ctx.textBaseline = 'middle';
 	ctx.textAlign = 'right';
-	for (const tick of ticks(map.y[0]!, map.y.at(-1)!, 5)) ctx.fillText(figure(tick, 3), MARGIN.left - 6, y(tick));
+	for (const tick of ticks(map.y[0]!, map.y.at(-1)!, 5)) ctx.fillText(tickText(tick), MARGIN.left - 6, y(tick));
 	ctx.save();
 	ctx.translate(11, (MARGIN.top + foot) / 2);
 	ctx.rotate(-Math.PI / 2);

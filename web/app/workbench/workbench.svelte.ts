@@ -1,3 +1,4 @@
+import { untrack } from 'svelte';
 import { api } from '../api/client';
 import { type Refusal, asRefusal } from '../api/problem';
 import type { Model, Run } from '../api/types';
@@ -99,7 +100,7 @@ export function openWorkbench(id: number) {
 	const baseline: string[] = $derived(baselineOf(run.data));
 	const fresh = $derived(models.data !== undefined && versions.length === 0 && run.data !== undefined && run.data.rows > 0);
 	$effect(() => {
-		if (fresh && run.data && isFinal(run.data.state) && baseline.length > 0 && !refused) void begin(baseline);
+		if (fresh && run.data && isFinal(run.data.state) && baseline.length > 0 && !refused) untrack(() => void begin(baseline));
 	});
 
 	return {

@@ -1,0 +1,14 @@
+import { expect, it } from 'vitest';
+import { axisTitle, label } from './label';
+
+it('reads the unit from the suffix', () => {
+	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
+	expect(label('torque_constant_nm_per_a').unit).toBe('Nm/A');
+	expect(label('time_s')).toEqual({ title: 'time', unit: 's' });
+	expect(label('segment')).toEqual({ title: 'segment', unit: '' });
+});
+
+it('trusts a unit that is given', () => {
+	expect(axisTitle('motor_position_rad', 'm')).toBe('motor position [m]');
+	expect(axisTitle('direction', '1')).toBe('direction of motion');
+});

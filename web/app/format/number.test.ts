@@ -1,0 +1,37 @@
+import { describe, expect, it } from 'vitest';
+import { bounds, chance, estimate, figure, percent, quantity, scaleFor } from './number';
+
+describe('numbers as an instrument shows them', () => {
+	it.each([
+		[0, '0'],
+		[12.3456, '12.35'],
+		[-0.00123456, '−0.001235'],
+		[123456, '123456'],
+		[1.5e-5, '1.500·10⁻⁵'],
+		[-2e7, '−2.000·10⁷'],
+		[Number.NaN, '–'],
+		[null, '–'],
+	])('%s is %s', (value, text) => expect(figure(value)).toBe(text));
+
+	it('chooses one prefix by the largest magnitude', () => {
+		expect(scaleFor('Nm', 0.0214)).toEqual({ factor: 1e3, unit: 'mNm' });
+		expect(scaleFor('Nm', 2)).toEqual({ factor: 1, unit: 'Nm' });
+		expect(scaleFor('rad', 3e-5)).toEqual({ factor: 1e6, unit: 'µrad' });
+		expect(scaleFor('kg·m²', 3e-5).factor).toBe(1);
+		expect(quantity(0.02142, 'Nm')).toBe('21.4 mNm');
+	});
+
+	it('gives a value the digits that its interval deserves', () => {
+		expect(estimate(0.10123, [0.097, 0.105])).toBe('0.1012');
+		expect(estimate(0.10123, [0.05, 0.15])).toBe('0.101');
+		expect(estimate(1, [null, null])).toBe('1.000');
+		expect(bounds([0.5, null])).toBe('[0.5000, ?]');
+	});
+
+	it('says chances and shares', () => {
+		expect(chance(3e-10)).toBe('p < 10⁻⁹');
+		expect(chance(0)).toBe('p < 10⁻¹⁶');
+		expect(chance(0.02)).toBe('p = 0.020');
+		expect(percent(-0.42)).toBe('−42 %');
+	});
+});

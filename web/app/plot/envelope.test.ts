@@ -1,0 +1,14 @@
+import { expect, it } from 'vitest';
+import { envelope, findGaps } from './envelope';
+
+it('draws a spike of one sample', () => {
+	const drawn = envelope({ time_s: [0, 1], rows: 2000, exact: false, channels: [{ name: 'x', unit: 'A', min: [0, -0.1], max: [0.1, 9] }] });
+	expect(drawn.time).toEqual([0, 0, 1, 1]);
+	expect(drawn.columns[0]).toEqual([0, 0.1, -0.1, 9]);
+});
+
+it('finds pauses, also between steps of unlike length', () => {
+	const even = Array.from({ length: 20 }, (_, i) => i * 0.1);
+	expect(findGaps(even)).toEqual([]);
+	expect(findGaps([...even, 5, 5.1])).toEqual([[even.at(-1), 5]]);
+});

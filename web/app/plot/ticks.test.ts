@@ -1,0 +1,13 @@
+import { expect, it } from 'vitest';
+import { tickText, ticks } from './ticks';
+
+it('finds round positions', () => {
+	expect(ticks(0, 1, 5)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1]);
+	expect(ticks(-7, 7, 3)).toEqual([-5, 0, 5]);
+	expect(ticks(3, 3, 5)).toEqual([3]);
+	expect(ticks(Number.NaN, 1, 5)).toEqual([]);
+});
+
+it('writes them without needless zeros', () => {
+	expect([0, 0.2, -50, 2e-5].map(tickText)).toEqual(['0', '0.2', '−50', '2.0·10⁻⁵']);
+});

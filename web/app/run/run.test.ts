@@ -1,0 +1,35 @@
+import { describe, expect, it } from 'vitest';
+import { afterHand, readLook, viewOf, writeLook } from './follow';
+import { groupsOf } from './groups';
+
+describe('following the live end', () => {
+	const follow = readLook(null, true);
+
+	it('goes on after a zoom, with the new width', () => {
+		const next = afterHand(follow, [92, 97], 'zoom');
+		expect(next).toEqual({ follow: true, width_s: 5 });
+		expect(viewOf(next, 100)).toEqual([95, 100]);
+	});
+
+	it('stands still after moving back', () => {
+		const next = afterHand(follow, [80, 90], 'pan');
+		expect(next).toEqual({ follow: false, view: [80, 90] });
+		expect(afterHand(follow, null, 'all')).toEqual({ follow: false, view: null });
+	});
+
+	it('survives in the address', () => {
+		for (const text of ['follow:7.5', '12.5:30', 'all']) expect(writeLook(readLook(text, true))).toBe(text);
+		expect(readLook('nonsense', true)).toEqual({ follow: false, view: null });
+		expect(readLook(null, false)).toEqual({ follow: false, view: null });
+	});
+});
+
+it('draws channels of one unit together', () => {
+	const names = ['time_s', 'motor_current_a', 'motor_velocity_rad_s', 'velocity_setpoint_rad_s', 'brake_current_a', 'segment'];
+	const groups = groupsOf(names.map((name) => ({ name })));
+	expect(groups.map((group) => [group.title, group.names.length])).toEqual([
+		['velocity [rad/s]', 2],
+		['current [A]', 2],
+	]);
+	expect(groups[0]!.curves[0]!.dash).not.toEqual(groups[0]!.curves[1]!.dash);
+});

@@ -1,0 +1,100 @@
+import { describe, expect, it } from 'vitest';
+import type { Model, Parameter, ResidualSet, Suggestion } from '../api/types';
+import { forest } from './forest';
+import { overlay } from './overlay';
+import { readStretch, strength, writeStretch } from './region';
+import { branches, chain, childWith, gain, stepName } from './tree';
+import { barsOf, topOf } from './waterfall';
+
+const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
+	({ id, parent, effects, added, removed: [], validation_rms: held, rms: held * 0.9 }) as unknown as Model;
+
+const models = [
+	version(1, null, ['coulomb'], 10),
+	version(2, 1, ['coulomb', 'stribeck'], 4, ['stribeck']),
+	version(3, 1, ['coulomb', 'load_linear'], 8, ['load_linear']),
+	version(4, 2, ['coulomb', 'stribeck', 'load_linear'], 1, ['load_linear']),
+];
+
+describe('the tree of versions', () => {
+	it('knows the way from the root', () => {
+		expect(chain(models, 4).map((model) => model.id)).toEqual([1, 2, 4]);
+		expect(chain(models, 99)).toEqual([]);
+	});
+
+	it('visits a set that was fitted before instead of fitting it again', () => {
+		expect(childWith(models, 2, ['load_linear', 'coulomb', 'stribeck'])?.id).toBe(4);
+		expect(childWith(models, 3, ['load_linear', 'coulomb', 'stribeck'])).toBeUndefined();
+	});
+
+	it('lists children under their parents', () => {
+		expect(branches(models).map(({ model, depth }) => [model.id, depth])).toEqual([
+			[1, 0],
+			[2, 1],
+			[4, 2],
+			[3, 1],
+		]);
+	});
+
+	it('names what a version did', () => {
+		expect(models.map(stepName)).toEqual(['start', '+ stribeck', '+ load linear', '+ load linear']);
+		expect(gain(models[0]!, models[1]!)).toBeCloseTo(0.6, 12);
+	});
+});
+
+it('lets the waterfall end with what would come next', () => {
+	const next = { effect: 'gravity', validation_rms: 0.5, error_reduction: 0.5 } as Suggestion;
+	const bars = barsOf(chain(models, 4), next);
+	expect(bars.map((bar) => [bar.label, bar.held])).toEqual([
+		['start', 10],
+		['+ stribeck', 4],
+		['+ load linear', 1],
+		['+ gravity?', 0.5],
+	]);
+	expect(bars[1]!.change).toBeCloseTo(-0.6, 12);
+	expect(topOf(bars, 0.3)).toBeGreaterThan(10);
+});
+
+describe('regions', () => {
+	it('live in the address', () => {
+		const stretch = { axis: 'motor_velocity_rad_s', from: -3.25, to: 8 };
+		expect(readStretch(writeStretch(stretch))).toEqual(stretch);
+		expect(readStretch('motor_velocity_rad_s:1')).toBeNull();
+		expect(readStretch(null)).toBeNull();
+	});
+
+	it('are seen in the overlay, whatever its axis', () => {
+		const set = {
+			axes: [
+				{ name: 'time_s', unit: 's', values: [3, 1, 2] },
+				{ name: 'load', unit: 'Nm', values: [5, 0, 9] },
+			],
+			measured: [30, 10, 20],
+			predicted: [31, 11, 21],
+			error: [-1, -1, -1],
+			held_out: [false, true, false],
+		} as unknown as ResidualSet;
+		const drawn = overlay(set, set.axes[0]!, { axis: 'load', from: 4, to: 6 }, 1000);
+		expect(drawn.x).toEqual([1, 2, 3]);
+		expect(drawn.measuredInside).toEqual([null, null, 30]);
+		expect(drawn.measuredOutside).toEqual([10, null, null]);
+		expect(drawn.residual).toEqual([null, -1000, null]);
+	});
+});
+
+it('says how strong the evidence is', () => {
+	const base = { error_reduction: 0.3, p_value: 1e-6, confounded_with: [] as string[] };
+	expect(strength(base)).toBe('STRONG');
+	expect(strength({ ...base, p_value: 0.04 })).toBe('WEAK');
+	expect(strength({ ...base, confounded_with: ['drift'] })).toBe("CAN'T TELL APART");
+});
+
+it('flags parameters in words', () => {
+	const rows = forest([
+		{ value: 2, ci95: [1, 3], state: 'ok' },
+		{ value: -2, ci95: [-5, 1], state: 'at_bound' },
+		{ value: 1, ci95: [null, null], state: 'fixed' },
+	] as Parameter[]);
+	expect(rows.map((row) => row.interval)).toEqual([[0.5, 1.5], [-0.5, 2.5], null]);
+	expect(rows.map((row) => row.flags)).toEqual([[], ['at its bound', 'may be zero'], ['given']]);
+});
