@@ -1,6 +1,5 @@
 //! The ordinary drivers on the mock bench's wires.
 
-use jointbench_devices::sim::MockInstrument;
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::Bench;
 use jointbench_instrument::roles::Regulation;
@@ -189,10 +188,9 @@ fn every_effect_can_be_hidden_and_shows_in_the_truth() {
 
 #[test]
 fn one_port_has_one_owner() {
-    let (mock, _bench) = open(MockSettings::new(Joint::JointA, 1));
+    let (mock, bench) = open(MockSettings::new(Joint::JointA, 1));
     let Err(fault) = mock.open_bench("second") else { panic!("a port was opened twice") };
     assert!(matches!(fault.kind, jointbench_instrument::FaultKind::NotOpened { .. }), "{fault}");
-    drop(_bench);
+    drop(bench);
     mock.open_bench("third").unwrap();
-    mock.trouble(MockInstrument::Joint, jointbench_devices::sim::Trouble::None);
 }

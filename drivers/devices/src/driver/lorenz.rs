@@ -77,10 +77,8 @@ impl Recovers for LorenzSensor {
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
         let mut stop = Vec::new();
         StopStream.encode(&mut stop);
-        self.link.drain(&stop)?;
-        let identity = self.who()?;
-        self.link.trust();
-        Ok(identity)
+        self.link.drain(&stop, false)?;
+        self.who()
     }
 }
 
@@ -99,7 +97,7 @@ impl Instrument for LorenzSensor {
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {
-        self.drain_and_identify()
+        self.resume()
     }
 }
 

@@ -8,6 +8,7 @@ pub use lorenz::{LorenzSensor, LorenzSettings, Range};
 pub use odrive::{OdriveJoint, OdriveSettings, Thermistor};
 pub use scpi::{ScpiSettings, ScpiSource};
 
+use crate::transport::Link;
 use jointbench_instrument::roles::Identity;
 use jointbench_instrument::{Fault, FaultKind};
 
@@ -22,16 +23,33 @@ fn same(known: &mut Option<Identity>, found: Identity) -> Result<Identity, Fault
     }
 }
 
+/// A reply that comes later than the silence after a drain spoils the identification: drain once more, this often.
+const ATTEMPTS: usize = 3;
+
 /// A link that is drained and identified again before the next use, where the last one failed.
 trait Recovers {
-    fn link(&mut self) -> &mut crate::transport::Link;
+    fn link(&mut self) -> &mut Link;
     fn drain_and_identify(&mut self) -> Result<Identity, Fault>;
 
-    fn ready(&mut self) -> Result<&mut crate::transport::Link, Fault> {
+    fn resume(&mut self) -> Result<Identity, Fault> {
+        let mut outcome = self.drain_and_identify();
+        for _ in 1..ATTEMPTS {
+            match &outcome {
+                Err(Fault { kind: FaultKind::Garbled { .. }, .. }) => outcome = self.drain_and_identify(),
+                _ => break,
+            }
+        }
+        let identity = outcome?;
+        let link = self.link();
+        link.trust();
+        tracing::info!(instrument = link.instrument(), serial = %identity.serial, "identified");
+        Ok(identity)
+    }
+
+    /// The link, trusted.
+    fn ready(&mut self) -> Result<&mut Link, Fault> {
         if !self.link().is_trusted() {
-            let identity = self.drain_and_identify()?;
-            let link = self.link();
-            tracing::info!(instrument = link.instrument(), serial = %identity.serial, "identified");
+            self.resume()?;
         }
         Ok(self.link())
     }

@@ -49,15 +49,15 @@ pub struct OdriveJoint {
     link: Link,
     clock: Arc<dyn Clock>,
     identity: Option<Identity>,
-    /// The set-point that the drive is known to hold.
-    held_turns_s: Option<f64>,
+    /// The set-point that the drive is known to hold, and since when on the bench's clock.
+    held: Option<(f64, f64)>,
 }
 
 impl OdriveJoint {
     /// Opens the port and identifies the drive. Nothing is commanded.
     pub fn open(settings: OdriveSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
-        let mut joint = Self { settings, link, clock, identity: None, held_turns_s: None };
+        let mut joint = Self { settings, link, clock, identity: None, held: None };
         joint.identify()?;
         Ok(joint)
     }
@@ -104,13 +104,11 @@ impl Recovers for OdriveJoint {
     }
 
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
-        self.held_turns_s = None;
+        self.held = None;
         // Ends a line that broke off; its error reply is thrown away with the rest.
-        self.link.drain(b"\n")?;
+        self.link.drain(b"\n", true)?;
         let found = self.link.probe(&ReadInfo)?;
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
-        self.link.trust();
-        Ok(identity)
+        same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))
     }
 }
 
@@ -128,7 +126,7 @@ impl Instrument for OdriveJoint {
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {
-        self.drain_and_identify()
+        self.resume()
     }
 }
 
@@ -159,19 +157,21 @@ impl JointController for OdriveJoint {
         self.reach(CLOSED_LOOP, "close the velocity loop")
     }
 
+    /// Every set is read back. An unchanged set-point goes out again only as often as the watchdog needs it.
     fn set_velocity(&mut self, velocity: RadPerSec) -> Result<(), Fault> {
         if !velocity.0.is_finite() {
             let what = format!("velocity set-point {velocity}: expected a finite number");
             return Err(self.link.fault(FaultKind::Refused { what }));
         }
         let turns_s = velocity.0 / TAU;
+        let now_s = self.clock.now_s();
         self.ready()?;
-        if self.held_turns_s == Some(turns_s) {
-            return self.link.send(&FeedWatchdog);
+        if self.held.is_some_and(|(held, since_s)| held == turns_s && now_s - since_s < WATCHDOG_S / 4.0) {
+            return Ok(());
         }
-        self.held_turns_s = None;
+        self.held = None;
         self.link.request(&SetVelocity { turns_s })?;
-        self.held_turns_s = Some(turns_s);
+        self.held = Some((turns_s, now_s));
         Ok(())
     }
 
@@ -207,7 +207,7 @@ impl JointController for OdriveJoint {
     }
 
     fn disarm(&mut self) -> Result<(), Fault> {
-        self.held_turns_s = None;
+        self.held = None;
         self.link.send(&StandDown { after_broken_line: !self.link.is_trusted() })
     }
 

@@ -100,15 +100,13 @@ impl Recovers for ScpiSource {
         // A query that was not understood is never answered: drain, clear, ask who is there. Never "read again".
         let mut clear = b"\n".to_vec();
         ClearStatus(self.line_end).encode(&mut clear);
-        self.link.drain(&clear)?;
+        self.link.drain(&clear, false)?;
         let found = self.link.probe(&Identify(self.line_end))?;
         if !found.maker.to_ascii_uppercase().contains("RIGOL") || !found.model.starts_with("DP8") {
             let found = format!("{} {}", found.maker, found.model);
             return Err(self.link.fault(FaultKind::WrongInstrument { expected: "RIGOL DP8xx".into(), found }));
         }
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
-        self.link.trust();
-        Ok(identity)
+        same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))
     }
 }
 
@@ -127,7 +125,7 @@ impl Instrument for ScpiSource {
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {
-        self.drain_and_identify()
+        self.resume()
     }
 }
 

@@ -22,6 +22,8 @@ pub enum Trouble {
     None,
     /// Hears and does what it is told, but its replies are lost.
     Silent,
+    /// Replies are held back until the trouble ends, and come all at once then.
+    Late,
     /// One byte of every reply is wrong.
     Garbled,
     /// The cable is out. A pseudo-terminal comes back under another name, a TCP port under the same.
@@ -167,7 +169,7 @@ impl Cable for TcpStream {
 /// Carries bytes until the cable breaks, is pulled, or the bench closes.
 fn converse(port: &Port, rig: &Mutex<Rig>, cable: &mut impl Cable) {
     let instrument = port.instrument;
-    let (mut input, mut output, mut chunk) = (Vec::new(), Vec::new(), [0; 1024]);
+    let (mut input, mut output, mut held, mut chunk) = (Vec::new(), Vec::new(), Vec::new(), [0; 1024]);
     let mut wait = GLANCE;
     while !port.is_closing() && port.trouble() != Trouble::Unplugged {
         let count = match cable.hear(&mut chunk, wait) {
@@ -188,6 +190,7 @@ fn converse(port: &Port, rig: &Mutex<Rig>, cable: &mut impl Cable) {
         }
         match port.trouble() {
             Trouble::Silent => output.clear(),
+            Trouble::Late => held.append(&mut output),
             // The middle of a line or telegram; a flipped high bit is wrong in each of the protocols.
             Trouble::Garbled => {
                 let middle = output.len() / 2;
@@ -195,7 +198,8 @@ fn converse(port: &Port, rig: &Mutex<Rig>, cable: &mut impl Cable) {
                     *byte ^= 0x40;
                 }
             }
-            Trouble::None | Trouble::Unplugged => {}
+            Trouble::None => drop(output.splice(0..0, held.drain(..))),
+            Trouble::Unplugged => {}
         }
         if !output.is_empty() {
             if let Err(error) = cable.say(&output) {

@@ -95,8 +95,8 @@ impl Link {
     }
 
     /// Opens a lost port again, ends whatever line or telegram was begun by sending `wake`, and throws away what comes in
-    /// until the line is quiet.
-    pub fn drain(&mut self, wake: &[u8]) -> Result<(), Fault> {
+    /// until the line is quiet. `answered`: the wake itself has a reply, which is waited for (half a deadline at most).
+    pub fn drain(&mut self, wake: &[u8], answered: bool) -> Result<(), Fault> {
         self.received.clear();
         if self.trust == Trust::Lost {
             self.wire = None;
@@ -106,7 +106,7 @@ impl Link {
         let deadline = Instant::now() + self.deadline;
         self.outgoing.clear();
         self.outgoing.extend_from_slice(wake);
-        self.discard(deadline).map_err(|kind| self.broken(kind))
+        self.discard(deadline, answered).map_err(|kind| self.broken(kind))
     }
 
     pub fn fault(&self, kind: FaultKind) -> Fault {
@@ -151,13 +151,15 @@ impl Link {
         }
     }
 
-    fn discard(&mut self, deadline: Instant) -> Result<(), FaultKind> {
+    fn discard(&mut self, deadline: Instant, answered: bool) -> Result<(), FaultKind> {
         self.write(deadline)?;
+        let mut wait = if answered { self.deadline / 2 } else { QUIET };
         while Instant::now() < deadline {
-            if self.read(deadline.min(Instant::now() + QUIET))? == 0 {
+            if self.read(deadline.min(Instant::now() + wait))? == 0 {
                 return Ok(());
             }
             self.received.clear();
+            wait = QUIET;
         }
         Err(FaultKind::Garbled { what: "the line does not fall silent".into() })
     }

@@ -1,0 +1,167 @@
+//! What drivers make of instruments that fail: the right verdict, no invented sample, a link that recovers.
+
+use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
+use jointbench_devices::{
+    Joint, MockBench, MockSettings, OdriveJoint, OdriveSettings, PortSettings, ScpiSettings, ScpiSource,
+};
+use jointbench_instrument::units::{Amperes, NewtonMetres, RadPerSec, Volts};
+use jointbench_instrument::{Bench, Fault, FaultKind};
+use std::time::{Duration, Instant};
+
+/// Of the mock bench's own drivers.
+const DEADLINE: Duration = Duration::from_millis(500);
+
+fn start(transport: Transport) -> (MockBench, Bench) {
+    let mock = MockBench::start(MockSettings { transport, ..MockSettings::new(Joint::JointA, 4) }).unwrap();
+    let mut bench = mock.open_bench("mock").unwrap();
+    bench.joint.arm(RadPerSec(100.0), Amperes(5.0)).unwrap();
+    bench.brake.as_mut().unwrap().prepare(Volts(45.0)).unwrap();
+    (mock, bench)
+}
+
+/// Any use of an instrument that needs a reply.
+fn ask(bench: &mut Bench, instrument: MockInstrument) -> Result<(), Fault> {
+    match instrument {
+        MockInstrument::Joint => bench.joint.read().map(drop),
+        MockInstrument::TorqueSensor => bench.torque_sensor.as_mut().unwrap().read().map(drop),
+        MockInstrument::Brake => bench.brake.as_mut().unwrap().read().map(drop),
+    }
+}
+
+/// The fault is seen within two deadlines, stays while the trouble lasts, and is over when the trouble is.
+fn check_passing(trouble: Trouble, expected: impl Fn(&FaultKind) -> bool) {
+    for transport in [Transport::Terminal, Transport::Tcp] {
+        let (mock, mut bench) = start(transport);
+        for instrument in MockInstrument::ALL {
+            ask(&mut bench, instrument).unwrap();
+            mock.trouble(instrument, trouble);
+            let asked = Instant::now();
+            let fault = ask(&mut bench, instrument).unwrap_err();
+            assert!(asked.elapsed() < 2 * DEADLINE, "{fault} after {:?}", asked.elapsed());
+            assert!(expected(&fault.kind) && fault.is_retryable(), "{instrument:?} over {transport:?}: {fault}");
+            assert!(ask(&mut bench, instrument).is_err(), "{instrument:?}: still in trouble");
+            mock.trouble(instrument, Trouble::None);
+            ask(&mut bench, instrument).unwrap_or_else(|fault| panic!("{instrument:?} does not recover: {fault}"));
+        }
+    }
+}
+
+#[test]
+fn a_silent_instrument_is_seen_and_comes_back() {
+    check_passing(Trouble::Silent, |kind| matches!(kind, FaultKind::Silent { .. }));
+}
+
+#[test]
+fn a_garbled_reply_is_no_reading() {
+    check_passing(Trouble::Garbled, |kind| matches!(kind, FaultKind::Garbled { .. }));
+}
+
+#[test]
+fn a_late_reply_answers_no_later_question() {
+    check_passing(Trouble::Late, |kind| matches!(kind, FaultKind::Silent { .. }));
+
+    let (mock, mut bench) = start(Transport::Terminal);
+    mock.trouble(MockInstrument::Joint, Trouble::Late);
+    assert!(bench.joint.read().is_err());
+    bench.clock.sleep_until_s(0.02);
+    let before = bench.clock.now_s();
+    mock.trouble(MockInstrument::Joint, Trouble::None);
+    bench.joint.set_velocity(RadPerSec(20.0)).unwrap();
+    bench.clock.sleep_until_s(before + 0.2);
+    let reading = bench.joint.read().unwrap();
+    assert!((reading.motor_velocity.0 - 20.0).abs() < 2.0, "{reading:?}: the reply of long ago said 0");
+}
+
+#[test]
+fn a_pulled_cable_is_a_lost_port() {
+    for transport in [Transport::Terminal, Transport::Tcp] {
+        let (mock, mut bench) = start(transport);
+        for instrument in MockInstrument::ALL {
+            mock.trouble(instrument, Trouble::Unplugged);
+            let asked = Instant::now();
+            // Until the cable is out the instrument may still answer.
+            let fault = loop {
+                match ask(&mut bench, instrument) {
+                    Err(fault) => break fault,
+                    Ok(()) => assert!(asked.elapsed() < 2 * DEADLINE, "{instrument:?} still answers"),
+                }
+            };
+            assert!(matches!(fault.kind, FaultKind::Disconnected { .. }), "{instrument:?}: {fault}");
+            assert!(!fault.is_retryable() && fault.to_string().contains("cable"));
+            assert!(ask(&mut bench, instrument).is_err());
+        }
+    }
+}
+
+#[test]
+fn a_plugged_cable_is_found_again() {
+    let (mock, mut bench) = start(Transport::Tcp);
+    mock.trouble(MockInstrument::Joint, Trouble::Unplugged);
+    while ask(&mut bench, MockInstrument::Joint).is_ok() {}
+    mock.trouble(MockInstrument::Joint, Trouble::None);
+    assert!(bench.joint.recover().unwrap().model.contains("ODrive"));
+    bench.joint.read().unwrap();
+
+    let (mock, mut bench) = start(Transport::Terminal);
+    mock.trouble(MockInstrument::TorqueSensor, Trouble::Unplugged);
+    while ask(&mut bench, MockInstrument::TorqueSensor).is_ok() {}
+    drop(bench);
+    mock.trouble(MockInstrument::TorqueSensor, Trouble::None);
+    // The terminal comes back under the name that the system gives it now.
+    let plugged = Instant::now();
+    while mock.open_bench("again").is_err() {
+        assert!(plugged.elapsed() < Duration::from_secs(5), "not back");
+    }
+}
+
+#[test]
+fn another_instrument_behind_the_port_is_named() {
+    let mock = MockBench::start(MockSettings::new(Joint::JointA, 4)).unwrap();
+    let ports = mock.ports();
+    let deadline_ms = 300;
+    let joint = OdriveSettings {
+        name: "joint".into(),
+        port: PortSettings::new(ports.brake, 115_200),
+        deadline_ms,
+        link_encoder: false,
+        thermistor: None,
+    };
+    let Err(fault) = OdriveJoint::open(joint, mock.clock()) else { panic!("a supply passed for a drive") };
+    assert!(fault.to_string().starts_with("joint on /dev/"), "{fault}");
+    let port = PortSettings::new(ports.joint, 115_200);
+    let Err(fault) = ScpiSource::open(ScpiSettings { name: "brake_a".into(), port, deadline_ms }) else {
+        panic!("a drive passed for a supply")
+    };
+    assert!(fault.to_string().starts_with("brake_a on /dev/"), "{fault}");
+}
+
+#[test]
+fn safe_commands_go_out_on_a_broken_link() {
+    let (mock, mut bench) = start(Transport::Terminal);
+    bench.brake.as_mut().unwrap().set_current(Amperes(0.2)).unwrap();
+    bench.clock.sleep_until_s(0.4);
+    for instrument in [MockInstrument::Joint, MockInstrument::Brake] {
+        mock.trouble(instrument, Trouble::Silent);
+        assert!(ask(&mut bench, instrument).is_err());
+    }
+    bench.joint.disarm().unwrap();
+    assert!(bench.brake.as_mut().unwrap().output_off().is_err(), "nothing confirms it");
+    for instrument in [MockInstrument::Joint, MockInstrument::Brake] {
+        mock.trouble(instrument, Trouble::None);
+    }
+    assert!(!bench.joint.health().unwrap().armed, "it was taken all the same");
+    bench.clock.sleep_until_s(2.0);
+    let reading = bench.brake.as_mut().unwrap().read().unwrap();
+    assert!(reading.current.0 < 0.001, "{reading:?}");
+}
+
+#[test]
+fn bad_set_points_never_reach_the_wire() {
+    let (_mock, mut bench) = start(Transport::Terminal);
+    for velocity in [f64::NAN, f64::INFINITY] {
+        let fault = bench.joint.set_velocity(RadPerSec(velocity)).unwrap_err();
+        assert!(matches!(fault.kind, FaultKind::Refused { .. }), "{fault}");
+    }
+    bench.joint.read().unwrap();
+    assert_eq!(bench.torque_sensor.as_mut().unwrap().range(), NewtonMetres(20.0));
+}
