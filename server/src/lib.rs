@@ -1,6 +1,11 @@
-//! The roof.
+//! The roof: configuration, one thread for each bench, store, API, live stream, command line.
+//!
+//! tokio, axum and sqlx live here and nowhere below.
 
 pub mod api;
+pub mod bench;
+pub mod config;
 pub mod lab;
 pub mod live;
+pub mod store;
 pub mod view;

@@ -1,0 +1,106 @@
+//! A column as whole counts of one step. Values that are no count stand beside, with their row.
+
+use super::planes::{Planes, unzigzag, zigzag};
+use super::{Broken, COUNTS, Reader, Scale};
+
+/// A column with more exceptions than one row in so many is not made of counts.
+const ROWS_PER_EXCEPTION: usize = 24;
+
+/// `None` where the scale does not reproduce the column.
+pub fn pack(values: &[f64], scale: Scale) -> Option<Vec<u8>> {
+    let inverse = scale.inverse();
+    let mut counts = vec![0i64; values.len()];
+    let mut exact = true;
+    for (count, value) in counts.iter_mut().zip(values) {
+        *count = scale.count(*value, inverse);
+        exact &= scale.value(*count).to_bits() == value.to_bits();
+    }
+    // A count beyond the rounding range cannot give the value back, save by accident: the repair looks at the range too.
+    let (corrections, exceptions) = if exact { (Vec::new(), Vec::new()) } else { repair(values, scale, &mut counts)? };
+
+    let (kind, factor) = match scale {
+        Scale::Times(step) => (0, step),
+        Scale::Over(parts) => (1, parts),
+    };
+    let first = counts.first().copied().unwrap_or_default();
+    let mut previous = first;
+    let planes = Planes::of(counts.iter().map(|count| {
+        let difference = count.wrapping_sub(previous);
+        previous = *count;
+        zigzag(difference)
+    }));
+    let mut packed = vec![COUNTS, kind, u8::from(!corrections.is_empty()), planes.width()];
+    packed.extend_from_slice(&factor.to_le_bytes());
+    packed.extend_from_slice(&first.to_le_bytes());
+    packed.extend_from_slice(&(exceptions.len() as u32).to_le_bytes());
+    for (row, bits) in exceptions {
+        packed.extend_from_slice(&row.to_le_bytes());
+        packed.extend_from_slice(&bits.to_le_bytes());
+    }
+    planes.compress(&corrections, &mut packed);
+    Some(packed)
+}
+
+type Repair = (Vec<u8>, Vec<(u32, u64)>);
+
+/// Corrections of the last places for all rows (empty where none is needed), and the rows that are no count at all.
+fn repair(values: &[f64], scale: Scale, counts: &mut [i64]) -> Option<Repair> {
+    let inverse = scale.inverse();
+    let most = values.len() / ROWS_PER_EXCEPTION;
+    let mut corrections = vec![0u8; values.len()];
+    let (mut corrected, mut exceptions) = (false, Vec::new());
+    for (row, value) in values.iter().enumerate() {
+        match scale.misses(*value, inverse) {
+            Some(miss) => {
+                corrections[row] = zigzag(i64::from(miss)) as u8;
+                corrected |= miss != 0;
+            }
+            None if exceptions.len() < most => {
+                exceptions.push((row as u32, value.to_bits()));
+                counts[row] = if row > 0 { counts[row - 1] } else { 0 };
+            }
+            None => return None,
+        }
+    }
+    if !corrected {
+        corrections.clear();
+    }
+    Some((corrections, exceptions))
+}
+
+pub fn unpack(mut packed: Reader<'_>, rows: usize, values: &mut Vec<f64>) -> Result<(), Broken> {
+    let [kind, corrected, width] = packed.take()?;
+    let factor = f64::from_bits(packed.word()?);
+    let first = packed.word()? as i64;
+    let exceptions = packed.half()?;
+    let exceptions: Vec<(usize, u64)> =
+        (0..exceptions).map(|_| Ok((packed.half()? as usize, packed.word()?))).collect::<Result<_, Broken>>()?;
+    let planes = Planes::decompress(packed.0, rows, width, corrected != 0)?;
+
+    let start = values.len();
+    match kind {
+        0 => append(&planes, first, values, |count| count as f64 * factor),
+        1 => append(&planes, first, values, |count| count as f64 / factor),
+        _ => return Err(Broken),
+    }
+    let column = &mut values[start..];
+    for (value, correction) in column.iter_mut().zip(planes.extra()) {
+        let miss = unzigzag(u64::from(*correction));
+        *value = f64::from_bits(value.to_bits().wrapping_add(miss as u64));
+    }
+    for (row, bits) in exceptions {
+        *column.get_mut(row).ok_or(Broken)? = f64::from_bits(bits);
+    }
+    Ok(())
+}
+
+fn append(planes: &Planes, first: i64, values: &mut Vec<f64>, value: impl Fn(i64) -> f64) {
+    let mut count = first;
+    planes.each(
+        |difference| {
+            count = count.wrapping_add(unzigzag(difference));
+            value(count)
+        },
+        values,
+    );
+}

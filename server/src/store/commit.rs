@@ -1,0 +1,228 @@
+//! The way in: rows, events and state of a run, together or not at all.
+//!
+//! A commit of the recorder (2 s of a 250 Hz run are 500 rows) becomes one row of `tail`. When the tail and the new rows
+//! fill a block, or the run is over, they are packed again as blocks, one column each, and the tail goes, in the same
+//! transaction: whenever the power fails, every committed row is there once.
+
+use super::codec;
+use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
+use super::runs::{channels, insert_events, insert_run, now};
+use super::samples::{TailPiece, tail};
+use super::{BLOCK_ROWS, NewRun, Store, StoreError};
+use jointbench_instrument::{Channel, Trace};
+use jointbench_procedure::{Event, RunId, RunState};
+use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
+use std::ops::Range;
+use std::sync::Arc;
+
+impl Store {
+    /// Appends rows and events to a run and moves it to `state`. Durable when this returns.
+    ///
+    /// Every commit with rows has the same channels, the first of them the time. A final state closes the run.
+    pub async fn commit(&self, run: RunId, state: RunState, events: &[Event], rows: Trace) -> Result<(), StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        append(&mut writer, run, state, events, rows).await?;
+        Ok(writer.commit().await?)
+    }
+
+    /// A run that comes whole, as a file: all of it, or nothing.
+    pub async fn import(&self, new: &NewRun, events: &[Event], rows: Trace) -> Result<RunId, StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let run = insert_run(&mut writer, new).await?;
+        append(&mut writer, run, RunState::Completed, events, rows).await?;
+        writer.commit().await?;
+        Ok(run)
+    }
+}
+
+async fn append(
+    writer: &mut SqliteConnection,
+    run: RunId,
+    state: RunState,
+    events: &[Event],
+    rows: Trace,
+) -> Result<(), StoreError> {
+    let found: Option<(i64, String)> =
+        sqlx::query_as("SELECT rows, state FROM runs WHERE id = ?").bind(run).fetch_optional(&mut *writer).await?;
+    let (kept, before) = found.ok_or(StoreError::NoRun(run))?;
+    let before: RunState = serde_json::from_value(before.into())?;
+    if before.is_final() {
+        return Err(StoreError::RunOver { run, state: before });
+    }
+
+    let total = kept + rows.len() as i64;
+    let closes = state.is_final();
+    if !rows.is_empty() || closes {
+        keep_rows(writer, run, kept, rows, closes).await?;
+    }
+    insert_events(writer, run, events).await?;
+    let now = now();
+    sqlx::query(
+        "UPDATE runs SET state = ?, rows = ?, finished_at = ?, \
+         started_at = CASE WHEN ? THEN COALESCE(started_at, ?) ELSE started_at END WHERE id = ?",
+    )
+    .bind(state.name())
+    .bind(total)
+    .bind(closes.then_some(&now))
+    .bind(state != RunState::Queued)
+    .bind(&now)
+    .bind(run)
+    .execute(writer)
+    .await?;
+    Ok(())
+}
+
+async fn keep_rows(
+    writer: &mut SqliteConnection,
+    run: RunId,
+    kept: i64,
+    mut rows: Trace,
+    closes: bool,
+) -> Result<(), StoreError> {
+    let there = channels(writer, run).await?;
+    if rows.is_empty() {
+        // A run that ends: what its tail holds becomes its last block.
+        rows = Trace::new(there);
+    } else if there.is_empty() {
+        insert_channels(writer, run, rows.channels()).await?;
+    } else if there != rows.channels() {
+        return Err(StoreError::OtherChannels { run });
+    }
+
+    let waiting: i64 = sqlx::query_scalar("SELECT COALESCE(SUM(rows), 0) FROM tail WHERE run = ?")
+        .bind(run)
+        .fetch_one(&mut *writer)
+        .await?;
+    let gathered = waiting as usize + rows.len();
+    if gathered < BLOCK_ROWS && !closes {
+        return insert_tail(writer, run, kept, rows).await;
+    }
+    let first_row = kept - waiting;
+    let pieces = if waiting > 0 { tail(writer, run, 0..i64::MAX).await? } else { Vec::new() };
+    let rows = with_tail(pieces, rows)?;
+
+    let full = if closes { rows.len() } else { rows.len() / BLOCK_ROWS * BLOCK_ROWS };
+    let rows = Arc::new(rows);
+    // All blocks are packed on the blocking threads while the first of them are already being written.
+    let blocks: Vec<_> = (0..full)
+        .step_by(BLOCK_ROWS)
+        .map(|start| {
+            let (rows, range) = (rows.clone(), start..full.min(start + BLOCK_ROWS));
+            tokio::task::spawn_blocking(move || PackedBlock::of(&rows, range))
+        })
+        .collect();
+    for block in blocks {
+        let block = block.await.map_err(|fault| StoreError::Database(fault.to_string()))?;
+        block.insert(writer, run, first_row).await?;
+    }
+    if waiting > 0 {
+        sqlx::query("DELETE FROM tail WHERE run = ?").bind(run).execute(&mut *writer).await?;
+    }
+    if full < rows.len() {
+        let columns = rows.columns().iter().map(|column| column[full..].to_vec()).collect();
+        let rest = Trace::from_columns(rows.channels().to_vec(), columns);
+        insert_tail(writer, run, first_row + full as i64, rest).await?;
+    }
+    Ok(())
+}
+
+fn with_tail(pieces: Vec<TailPiece>, rows: Trace) -> Result<Trace, StoreError> {
+    if pieces.is_empty() {
+        return Ok(rows);
+    }
+    let channels = rows.channels().to_vec();
+    let columns = rows.columns().iter().enumerate().map(|(place, new)| {
+        let mut column = Vec::new();
+        for piece in &pieces {
+            piece.unpack(place, &mut column)?;
+        }
+        column.extend_from_slice(new);
+        Ok(column)
+    });
+    Ok(Trace::from_columns(channels, columns.collect::<Result<_, StoreError>>()?))
+}
+
+async fn insert_channels(writer: &mut SqliteConnection, run: RunId, channels: &[Channel]) -> Result<(), StoreError> {
+    let mut insert = QueryBuilder::<Sqlite>::new("INSERT INTO channels (run, place, name, resolution) ");
+    insert.push_values(channels.iter().enumerate(), |mut row, (place, channel)| {
+        row.push_bind(run).push_bind(place as i64).push_bind(channel.name.clone()).push_bind(channel.resolution);
+    });
+    insert.build().execute(writer).await?;
+    Ok(())
+}
+
+async fn insert_tail(writer: &mut SqliteConnection, run: RunId, first_row: i64, rows: Trace) -> Result<(), StoreError> {
+    let (from_s, to_s) = ends(&rows.columns()[0]);
+    let count = rows.len() as i64;
+    let data = tokio::task::spawn_blocking(move || pyramid::pack_columns(rows.columns(), &resolutions(&rows)));
+    let data = data.await.map_err(|fault| StoreError::Database(fault.to_string()))?;
+    sqlx::query("INSERT INTO tail (run, first_row, rows, from_s, to_s, data) VALUES (?, ?, ?, ?, ?, ?)")
+        .bind(run)
+        .bind(first_row)
+        .bind(count)
+        .bind(from_s)
+        .bind(to_s)
+        .bind(data)
+        .execute(writer)
+        .await?;
+    Ok(())
+}
+
+fn ends(time_s: &[f64]) -> (Option<f64>, Option<f64>) {
+    (time_s.first().copied(), time_s.last().copied())
+}
+
+fn resolutions(rows: &Trace) -> Vec<Option<f64>> {
+    rows.channels().iter().map(|channel| channel.resolution).collect()
+}
+
+/// A block of rows, ready to be written.
+struct PackedBlock {
+    /// In the trace that it was packed from.
+    rows: Range<usize>,
+    from_s: Option<f64>,
+    to_s: Option<f64>,
+    columns: Vec<Vec<u8>>,
+    coarse: Vec<u8>,
+    fine: Vec<u8>,
+}
+
+impl PackedBlock {
+    fn of(trace: &Trace, rows: Range<usize>) -> PackedBlock {
+        let resolutions = resolutions(trace);
+        let columns: Vec<&[f64]> = trace.columns().iter().map(|column| &column[rows.clone()]).collect();
+        let fine: Vec<_> = columns.iter().map(|column| pyramid::extremes(column, FINE_ROWS)).collect();
+        let coarse: Vec<_> = fine.iter().map(|fine| pyramid::widen(fine, COARSE_ROWS / FINE_ROWS)).collect();
+        let (from_s, to_s) = ends(columns[0]);
+        PackedBlock {
+            from_s,
+            to_s,
+            columns: columns.iter().zip(&resolutions).map(|(column, step)| codec::pack(column, *step)).collect(),
+            coarse: pyramid::pack_coarse(&coarse),
+            fine: pyramid::pack_fine(&fine, &resolutions),
+            rows,
+        }
+    }
+
+    async fn insert(self, writer: &mut SqliteConnection, run: RunId, offset: i64) -> Result<(), StoreError> {
+        let (first_row, rows) = (offset + self.rows.start as i64, self.rows.len() as i64);
+        let mut insert = QueryBuilder::<Sqlite>::new("INSERT INTO blocks (run, channel, first_row, rows, data) ");
+        insert.push_values(self.columns.into_iter().enumerate(), |mut row, (channel, data)| {
+            row.push_bind(run).push_bind(channel as i64).push_bind(first_row).push_bind(rows).push_bind(data);
+        });
+        insert.build().execute(&mut *writer).await?;
+        sqlx::query(
+            "INSERT INTO spans (run, first_row, rows, from_s, to_s, coarse, fine) VALUES (?, ?, ?, ?, ?, ?, ?)",
+        )
+        .bind(run)
+        .bind(first_row)
+        .bind(rows)
+        .bind(self.from_s)
+        .bind(self.to_s)
+        .bind(self.coarse)
+        .bind(self.fine)
+        .execute(writer)
+        .await?;
+        Ok(())
+    }
+}

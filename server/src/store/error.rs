@@ -1,0 +1,75 @@
+//! Why the store cannot do what it should, each with what to do next.
+
+use jointbench_procedure::{RunId, RunState};
+use std::path::PathBuf;
+
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    #[error("the data folder {} cannot be written ({what}): choose another with --data, or change its permissions", .folder.display())]
+    Unwritable { folder: PathBuf, what: String },
+    #[error("the data folder {} is in use by another jointbench{holder}: stop that one, or choose another folder with --data", .folder.display())]
+    InUse { folder: PathBuf, holder: String },
+    #[error("{} is not a database of jointbench: move it away, or choose another folder with --data", .file.display())]
+    Foreign { file: PathBuf },
+    #[error("{} was written by a newer jointbench (schema {schema}): update this one, or choose another folder with --data", .file.display())]
+    Newer { file: PathBuf, schema: i64 },
+    #[error("{} was written by an older jointbench that cannot be carried over ({what}): move it away, or choose another folder with --data", .file.display())]
+    Old { file: PathBuf, what: String },
+    #[error("the disk is full: nothing of this step was kept, all before it was; free some space and start again")]
+    DiskFull,
+    #[error("there is no run {0}")]
+    NoRun(RunId),
+    #[error("there is no model version {0}")]
+    NoModel(i64),
+    #[error("there is no diagnosis {0}")]
+    NoDiagnosis(i64),
+    #[error("run {run} has no channel {name}: it has {}", .there.join(", "))]
+    NoChannel { run: RunId, name: String, there: Vec<String> },
+    #[error("run {run} is {state}: nothing can be added to it")]
+    RunOver { run: RunId, state: RunState },
+    #[error("run {run}: the channels of this commit are not those of the run")]
+    OtherChannels { run: RunId },
+    #[error("model version {parent} belongs to another run than {run}")]
+    OtherRun { parent: i64, run: RunId },
+    #[error("the database is damaged ({0}): restore it from a backup")]
+    Damaged(String),
+    #[error("the database refused: {0}")]
+    Database(String),
+}
+
+impl StoreError {
+    /// The daemon cannot start as it was asked to.
+    pub fn is_setup(&self) -> bool {
+        use StoreError as E;
+        matches!(self, E::Unwritable { .. } | E::InUse { .. } | E::Foreign { .. } | E::Newer { .. } | E::Old { .. })
+    }
+
+    /// What was named is not there.
+    pub fn is_not_found(&self) -> bool {
+        use StoreError as E;
+        matches!(self, E::NoRun(_) | E::NoModel(_) | E::NoDiagnosis(_) | E::NoChannel { .. })
+    }
+}
+
+/// SQLite's primary result codes: sqlite.org/rescode.html.
+const SQLITE_CORRUPT: i32 = 11;
+const SQLITE_FULL: i32 = 13;
+const SQLITE_NOTADB: i32 = 26;
+
+impl From<sqlx::Error> for StoreError {
+    fn from(fault: sqlx::Error) -> Self {
+        let code = fault.as_database_error().and_then(|fault| fault.code()?.parse::<i32>().ok());
+        // The extended code holds the primary one in its low byte.
+        match code.map(|code| code & 0xff) {
+            Some(SQLITE_FULL) => StoreError::DiskFull,
+            Some(SQLITE_CORRUPT | SQLITE_NOTADB) => StoreError::Damaged(fault.to_string()),
+            _ => StoreError::Database(fault.to_string()),
+        }
+    }
+}
+
+impl From<serde_json::Error> for StoreError {
+    fn from(fault: serde_json::Error) -> Self {
+        StoreError::Damaged(fault.to_string())
+    }
+}

@@ -1,0 +1,42 @@
+//! What the daemon remembers: one SQLite file in the data folder.
+//!
+//! Rows, events and state of a run go in together, in one transaction that is on the disk when [`Store::commit`] returns.
+//! Samples lie in coded columns ([`codec`]) of [`BLOCK_ROWS`] rows with a min/max [`pyramid`]; until a block is full, the
+//! rows of each commit lie in the `tail` as they came. What was measured never changes: the schema's triggers refuse it.
+
+pub mod codec;
+mod commit;
+mod error;
+mod models;
+mod open;
+pub mod pyramid;
+mod records;
+mod runs;
+mod safety;
+mod samples;
+#[cfg(test)]
+mod tests;
+mod view;
+
+pub use error::StoreError;
+pub use records::{
+    BenchBlock, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, RunFilter, RunRecord, View, ViewColumn,
+};
+
+use sqlx::SqlitePool;
+use std::fs::File;
+use std::sync::Arc;
+
+/// Rows of a full block.
+pub const BLOCK_ROWS: usize = 32_768;
+
+/// A handle to the store; clones share it. The data folder is let go with the last one.
+#[derive(Debug, Clone)]
+pub struct Store {
+    /// One connection: SQLite has one writer.
+    writer: SqlitePool,
+    /// Readers see the last commit and never wait for the writer.
+    readers: SqlitePool,
+    /// Held for as long as the store is open: one daemon for each data folder.
+    _lock: Arc<File>,
+}

@@ -1,0 +1,138 @@
+//! Model versions, a tree that only grows, and the diagnoses of its nodes.
+
+use super::runs::{exists, now};
+use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError};
+use jointbench_procedure::RunId;
+use serde_json::Value;
+
+#[derive(sqlx::FromRow)]
+struct ModelRow {
+    id: i64,
+    run: RunId,
+    parent: Option<i64>,
+    kind: String,
+    effects: String,
+    added: String,
+    removed: String,
+    fit: String,
+    residual: String,
+    rms: f64,
+    validation_rms: f64,
+    noise_floor_rms: Option<f64>,
+    options: String,
+    created_at: String,
+}
+
+impl ModelRow {
+    fn into_record(self) -> Result<ModelRecord, StoreError> {
+        Ok(ModelRecord {
+            id: self.id,
+            run: self.run,
+            parent: self.parent,
+            kind: self.kind,
+            effects: serde_json::from_str(&self.effects)?,
+            added: serde_json::from_str(&self.added)?,
+            removed: serde_json::from_str(&self.removed)?,
+            fit: serde_json::from_str(&self.fit)?,
+            residual: self.residual,
+            rms: self.rms,
+            validation_rms: self.validation_rms,
+            noise_floor_rms: self.noise_floor_rms,
+            options: serde_json::from_str(&self.options)?,
+            created_at: self.created_at,
+        })
+    }
+}
+
+impl Store {
+    /// Keeps a fit as a version. What was added and removed is told from the parent's effects.
+    pub async fn save_model(&self, new: &NewModel) -> Result<ModelRecord, StoreError> {
+        exists(&mut *self.readers.acquire().await?, new.run).await?;
+        let parent = match new.parent {
+            Some(parent) => self.model(parent).await?,
+            None => return self.insert_model(new, &[]).await,
+        };
+        if parent.run != new.run {
+            return Err(StoreError::OtherRun { parent: parent.id, run: new.run });
+        }
+        self.insert_model(new, &parent.effects).await
+    }
+
+    async fn insert_model(&self, new: &NewModel, before: &[String]) -> Result<ModelRecord, StoreError> {
+        let without = |these: &[String], those: &[String]| {
+            these.iter().filter(|effect| !those.contains(effect)).cloned().collect::<Vec<String>>()
+        };
+        let row: ModelRow = sqlx::query_as(
+            "INSERT INTO models (run, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
+             noise_floor_rms, options, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
+        )
+        .bind(new.run)
+        .bind(new.parent)
+        .bind(&new.kind)
+        .bind(serde_json::to_string(&new.effects)?)
+        .bind(serde_json::to_string(&without(&new.effects, before))?)
+        .bind(serde_json::to_string(&without(before, &new.effects))?)
+        .bind(serde_json::to_string(&new.fit)?)
+        .bind(&new.residual)
+        .bind(new.rms)
+        .bind(new.validation_rms)
+        .bind(new.noise_floor_rms)
+        .bind(serde_json::to_string(&new.options)?)
+        .bind(now())
+        .fetch_one(&self.writer)
+        .await?;
+        row.into_record()
+    }
+
+    pub async fn model(&self, id: i64) -> Result<ModelRecord, StoreError> {
+        let row: Option<ModelRow> =
+            sqlx::query_as("SELECT * FROM models WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
+        row.ok_or(StoreError::NoModel(id))?.into_record()
+    }
+
+    /// All versions of a run, oldest first: parents before their children.
+    pub async fn models(&self, run: RunId) -> Result<Vec<ModelRecord>, StoreError> {
+        exists(&mut *self.readers.acquire().await?, run).await?;
+        let rows: Vec<ModelRow> =
+            sqlx::query_as("SELECT * FROM models WHERE run = ? ORDER BY id").bind(run).fetch_all(&self.readers).await?;
+        rows.into_iter().map(ModelRow::into_record).collect()
+    }
+
+    pub async fn save_diagnosis(&self, model: i64, diagnosis: &Value) -> Result<DiagnosisRecord, StoreError> {
+        self.model(model).await?;
+        let created_at = now();
+        let inserted = sqlx::query("INSERT INTO diagnoses (model, diagnosis, created_at) VALUES (?, ?, ?)")
+            .bind(model)
+            .bind(serde_json::to_string(diagnosis)?)
+            .bind(&created_at)
+            .execute(&self.writer)
+            .await?;
+        Ok(DiagnosisRecord { id: inserted.last_insert_rowid(), model, diagnosis: diagnosis.clone(), created_at })
+    }
+
+    pub async fn diagnosis(&self, id: i64) -> Result<DiagnosisRecord, StoreError> {
+        let row: Option<(i64, i64, String, String)> =
+            sqlx::query_as("SELECT id, model, diagnosis, created_at FROM diagnoses WHERE id = ?")
+                .bind(id)
+                .fetch_optional(&self.readers)
+                .await?;
+        diagnosis_record(row.ok_or(StoreError::NoDiagnosis(id))?)
+    }
+
+    /// The diagnoses of a model version, oldest first.
+    pub async fn diagnoses(&self, model: i64) -> Result<Vec<DiagnosisRecord>, StoreError> {
+        self.model(model).await?;
+        let rows: Vec<(i64, i64, String, String)> =
+            sqlx::query_as("SELECT id, model, diagnosis, created_at FROM diagnoses WHERE model = ? ORDER BY id")
+                .bind(model)
+                .fetch_all(&self.readers)
+                .await?;
+        rows.into_iter().map(diagnosis_record).collect()
+    }
+}
+
+fn diagnosis_record(
+    (id, model, diagnosis, created_at): (i64, i64, String, String),
+) -> Result<DiagnosisRecord, StoreError> {
+    Ok(DiagnosisRecord { id, model, diagnosis: serde_json::from_str(&diagnosis)?, created_at })
+}

@@ -1,0 +1,89 @@
+//! A block from afar: smallest and largest value of bins of rows, so that a picture of any run costs the same and no
+//! spike of one sample is lost.
+
+use super::codec::{self, Broken};
+use super::view::Extremes;
+
+/// Rows of a fine bin, which is packed like samples are.
+pub const FINE_ROWS: usize = 64;
+/// Rows of a coarse bin, kept as plain doubles: a picture of a long run reads hundreds of these at once.
+pub const COARSE_ROWS: usize = 1024;
+
+/// Smallest and largest of each bin of `width` rows.
+pub fn extremes(values: &[f64], width: usize) -> Extremes {
+    let bins = values.len().div_ceil(width);
+    let mut found = Extremes { min: Vec::with_capacity(bins), max: Vec::with_capacity(bins) };
+    for bin in values.chunks(width) {
+        // A comparison with NaN is false, so NaN is passed over.
+        let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
+        for value in bin {
+            min = if *value < min { *value } else { min };
+            max = if *value > max { *value } else { max };
+        }
+        found.push(min, max);
+    }
+    found
+}
+
+/// Wider bins from narrow ones.
+pub fn widen(fine: &Extremes, times: usize) -> Extremes {
+    let mut wide = Extremes::default();
+    for (min, max) in fine.min.chunks(times).zip(fine.max.chunks(times)) {
+        wide.push(min.iter().copied().fold(f64::NAN, f64::min), max.iter().copied().fold(f64::NAN, f64::max));
+    }
+    wide
+}
+
+/// All channels of a block, one behind the other: all smallest values, then all largest.
+pub fn pack_coarse(channels: &[Extremes]) -> Vec<u8> {
+    let values = channels.iter().flat_map(|channel| channel.min.iter().chain(&channel.max));
+    values.flat_map(|value| value.to_le_bytes()).collect()
+}
+
+/// The channel at `place` of a block of `rows`.
+pub fn unpack_coarse(packed: &[u8], rows: usize, place: usize) -> Result<Extremes, Broken> {
+    let bins = rows.div_ceil(COARSE_ROWS);
+    let bytes = packed.get(place * bins * 16..(place + 1) * bins * 16).ok_or(Broken)?;
+    let read = |bytes: &[u8]| bytes.as_chunks::<8>().0.iter().map(|word| f64::from_le_bytes(*word)).collect();
+    let (min, max) = bytes.split_at(bins * 8);
+    Ok(Extremes { min: read(min), max: read(max) })
+}
+
+/// All channels of a block, each packed, with its length before it.
+pub fn pack_fine(channels: &[Extremes], resolutions: &[Option<f64>]) -> Vec<u8> {
+    let columns: Vec<Vec<f64>> = channels.iter().map(|channel| [&channel.min[..], &channel.max].concat()).collect();
+    pack_columns(&columns, resolutions)
+}
+
+pub fn unpack_fine(packed: &[u8], rows: usize, place: usize) -> Result<Extremes, Broken> {
+    let bins = rows.div_ceil(FINE_ROWS);
+    let mut values = Vec::with_capacity(2 * bins);
+    unpack_column(packed, 2 * bins, place, &mut values)?;
+    let max = values.split_off(bins);
+    Ok(Extremes { min: values, max })
+}
+
+/// Several columns in one piece: each with its length before it.
+pub fn pack_columns(columns: &[impl AsRef<[f64]>], resolutions: &[Option<f64>]) -> Vec<u8> {
+    let mut piece = Vec::new();
+    for (column, resolution) in columns.iter().zip(resolutions) {
+        let packed = codec::pack(column.as_ref(), *resolution);
+        piece.extend_from_slice(&(packed.len() as u32).to_le_bytes());
+        piece.extend_from_slice(&packed);
+    }
+    piece
+}
+
+/// Appends the column at `place` of a piece of [`pack_columns`].
+pub fn unpack_column(piece: &[u8], rows: usize, place: usize, values: &mut Vec<f64>) -> Result<(), Broken> {
+    let mut rest = piece;
+    for at in 0.. {
+        let (length, behind) = rest.split_first_chunk::<4>().ok_or(Broken)?;
+        let (column, behind) = behind.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or(Broken)?;
+        if at == place {
+            return codec::unpack(column, rows, values);
+        }
+        rest = behind;
+    }
+    Err(Broken)
+}

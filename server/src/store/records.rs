@@ -1,0 +1,135 @@
+//! What goes into the store and comes out of it.
+
+use jointbench_instrument::Channel;
+use jointbench_procedure::{RunId, RunState, Safe};
+use serde_json::{Map, Value};
+
+/// A run about to begin.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct NewRun {
+    pub bench: String,
+    /// The procedure's id; `import` for a run that came as a file.
+    pub procedure: String,
+    pub kind: String,
+    pub simulated: bool,
+    pub parameters: Map<String, Value>,
+    /// Bench description, calibration, software version, mock or hardware, seed.
+    pub provenance: Map<String, Value>,
+    /// Facts about the set-up, as in `meta.json`.
+    pub meta: Map<String, Value>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunRecord {
+    pub id: RunId,
+    pub bench: String,
+    pub procedure: String,
+    pub kind: String,
+    pub simulated: bool,
+    pub state: RunState,
+    pub safe: Option<Safe>,
+    pub reason: Option<String>,
+    /// Moments are RFC 3339 in UTC.
+    pub created_at: String,
+    pub started_at: Option<String>,
+    pub finished_at: Option<String>,
+    pub rows: u64,
+    /// From the first sample to the last.
+    pub duration_s: Option<f64>,
+    pub parameters: Map<String, Value>,
+    pub provenance: Map<String, Value>,
+    pub meta: Map<String, Value>,
+    /// Empty before the first row.
+    pub channels: Vec<Channel>,
+}
+
+/// Which runs to list. Newest first.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RunFilter {
+    pub limit: u32,
+    pub offset: u32,
+    /// Part of the bench, procedure, kind, state or reason; upper and lower case are one.
+    pub search: Option<String>,
+}
+
+/// One entry of a run's journal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventRecord {
+    /// From 1, without gaps.
+    pub sequence: u64,
+    pub at_s: f64,
+    pub kind: String,
+    /// The event's own fields.
+    pub data: Map<String, Value>,
+}
+
+/// A fit to be kept as a version.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewModel {
+    pub run: RunId,
+    pub parent: Option<i64>,
+    pub kind: String,
+    pub effects: Vec<String>,
+    pub fit: Value,
+    /// `raw` or `plateau_mean`.
+    pub residual: String,
+    pub rms: f64,
+    pub validation_rms: f64,
+    pub noise_floor_rms: Option<f64>,
+    pub options: Map<String, Value>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelRecord {
+    pub id: i64,
+    pub run: RunId,
+    pub parent: Option<i64>,
+    pub kind: String,
+    pub effects: Vec<String>,
+    /// Effects that the parent does not have; all of them where there is none.
+    pub added: Vec<String>,
+    pub removed: Vec<String>,
+    pub fit: Value,
+    pub residual: String,
+    pub rms: f64,
+    pub validation_rms: f64,
+    pub noise_floor_rms: Option<f64>,
+    pub options: Map<String, Value>,
+    pub created_at: String,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct DiagnosisRecord {
+    pub id: i64,
+    pub model: i64,
+    pub diagnosis: Value,
+    pub created_at: String,
+}
+
+/// Why a bench must not move.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BenchBlock {
+    pub reason: String,
+    pub since: String,
+    pub run: Option<RunId>,
+}
+
+/// Samples of a window, drawn at a width.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// The first time of each point.
+    pub time_s: Vec<f64>,
+    pub columns: Vec<ViewColumn>,
+    /// Every row is a point of its own.
+    pub exact: bool,
+    /// Rows in the window.
+    pub rows: u64,
+}
+
+/// Smallest and largest value of each point. NaN only where all its rows are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViewColumn {
+    pub channel: Channel,
+    pub min: Vec<f64>,
+    pub max: Vec<f64>,
+}

@@ -1,0 +1,219 @@
+//! Runs and their journal.
+
+use super::{EventRecord, NewRun, RunFilter, RunRecord, Store, StoreError};
+use jiff::Timestamp;
+use jointbench_instrument::Channel;
+use jointbench_procedure::{Event, EventKind, RunId, RunState, Safe};
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+use sqlx::SqliteConnection;
+
+/// Now, as it is written in the store.
+pub(super) fn now() -> String {
+    format!("{:.3}", Timestamp::now())
+}
+
+/// A word of the store (`"safe_verified"`) as its type.
+fn word<T: DeserializeOwned>(text: &str) -> Result<T, StoreError> {
+    Ok(serde_json::from_value(Value::from(text))?)
+}
+
+#[derive(sqlx::FromRow)]
+struct RunRow {
+    id: RunId,
+    bench: String,
+    procedure: String,
+    kind: String,
+    simulated: bool,
+    state: String,
+    safe: Option<String>,
+    reason: Option<String>,
+    created_at: String,
+    started_at: Option<String>,
+    finished_at: Option<String>,
+    rows: i64,
+    duration_s: Option<f64>,
+    parameters: String,
+    provenance: String,
+    meta: String,
+}
+
+impl RunRow {
+    fn into_record(self, channels: Vec<Channel>) -> Result<RunRecord, StoreError> {
+        Ok(RunRecord {
+            id: self.id,
+            bench: self.bench,
+            procedure: self.procedure,
+            kind: self.kind,
+            simulated: self.simulated,
+            state: word(&self.state)?,
+            safe: self.safe.as_deref().map(word).transpose()?,
+            reason: self.reason,
+            created_at: self.created_at,
+            started_at: self.started_at,
+            finished_at: self.finished_at,
+            rows: self.rows as u64,
+            duration_s: self.duration_s,
+            parameters: serde_json::from_str(&self.parameters)?,
+            provenance: serde_json::from_str(&self.provenance)?,
+            meta: serde_json::from_str(&self.meta)?,
+            channels,
+        })
+    }
+}
+
+impl Store {
+    /// A run that is queued.
+    pub async fn create_run(&self, new: &NewRun) -> Result<RunId, StoreError> {
+        insert_run(&mut *self.writer.acquire().await?, new).await
+    }
+
+    pub async fn run(&self, run: RunId) -> Result<RunRecord, StoreError> {
+        let mut reader = self.readers.begin().await?;
+        let row: Option<RunRow> =
+            sqlx::query_as("SELECT * FROM runs_told WHERE id = ?").bind(run).fetch_optional(&mut *reader).await?;
+        row.ok_or(StoreError::NoRun(run))?.into_record(channels(&mut reader, run).await?)
+    }
+
+    /// A page of the runs that match, and how many match. The page's runs come without their channels.
+    pub async fn runs(&self, filter: &RunFilter) -> Result<(u64, Vec<RunRecord>), StoreError> {
+        let search = filter.search.as_deref().unwrap_or_default().to_lowercase();
+        let mut reader = self.readers.begin().await?;
+        let total: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM runs_told WHERE ?1 = '' OR instr(words, ?1) > 0")
+            .bind(&search)
+            .fetch_one(&mut *reader)
+            .await?;
+        let rows: Vec<RunRow> = sqlx::query_as(
+            "SELECT * FROM runs_told WHERE ?1 = '' OR instr(words, ?1) > 0 ORDER BY id DESC LIMIT ?2 OFFSET ?3",
+        )
+        .bind(search)
+        .bind(filter.limit)
+        .bind(filter.offset)
+        .fetch_all(&mut *reader)
+        .await?;
+        let runs = rows.into_iter().map(|row| row.into_record(Vec::new())).collect::<Result<_, _>>()?;
+        Ok((total as u64, runs))
+    }
+
+    /// The journal behind `after`, in order.
+    pub async fn events(&self, run: RunId, after: u64) -> Result<Vec<EventRecord>, StoreError> {
+        let mut reader = self.readers.begin().await?;
+        exists(&mut reader, run).await?;
+        let rows: Vec<(i64, f64, String, String)> = sqlx::query_as(
+            "SELECT sequence, at_s, kind, data FROM events WHERE run = ? AND sequence > ? ORDER BY sequence",
+        )
+        .bind(run)
+        .bind(after as i64)
+        .fetch_all(&mut *reader)
+        .await?;
+        rows.into_iter()
+            .map(|(sequence, at_s, kind, data)| {
+                Ok(EventRecord { sequence: sequence as u64, at_s, kind, data: serde_json::from_str(&data)? })
+            })
+            .collect()
+    }
+
+    /// Says how a run that is over was secured, and why it ended, where its own last commit could not say so.
+    pub async fn end_run(&self, run: RunId, safe: Safe, reason: Option<&str>) -> Result<(), StoreError> {
+        let mut writer = self.writer.begin().await?;
+        let told: Option<Option<String>> =
+            sqlx::query_scalar("SELECT safe FROM runs WHERE id = ?").bind(run).fetch_optional(&mut *writer).await?;
+        if told.ok_or(StoreError::NoRun(run))?.is_none() {
+            let at_s: f64 = sqlx::query_scalar("SELECT COALESCE(MAX(at_s), 0.0) FROM events WHERE run = ?")
+                .bind(run)
+                .fetch_one(&mut *writer)
+                .await?;
+            insert_events(&mut writer, run, &[Event { at_s, kind: EventKind::Safe { safe } }]).await?;
+        }
+        sqlx::query("UPDATE runs SET reason = COALESCE(reason, ?) WHERE id = ?")
+            .bind(reason)
+            .bind(run)
+            .execute(&mut *writer)
+            .await?;
+        Ok(writer.commit().await?)
+    }
+
+    /// Ends the runs that a daemon left open when it died, and returns them. Their committed samples stay readable.
+    ///
+    /// The bench was not secured by this: do so, then [`Store::end_run`].
+    pub async fn interrupt_open_runs(&self) -> Result<Vec<RunRecord>, StoreError> {
+        let open: Vec<RunId> = sqlx::query_scalar("SELECT id FROM runs WHERE finished_at IS NULL ORDER BY id")
+            .fetch_all(&self.writer)
+            .await?;
+        let mut interrupted = Vec::new();
+        for run in open {
+            let at_s: f64 = sqlx::query_scalar("SELECT COALESCE(MAX(at_s), 0.0) FROM events WHERE run = ?")
+                .bind(run)
+                .fetch_one(&self.writer)
+                .await?;
+            let event = Event { at_s, kind: EventKind::State { state: RunState::Interrupted } };
+            self.commit(run, RunState::Interrupted, &[event], Default::default()).await?;
+            interrupted.push(self.run(run).await?);
+        }
+        Ok(interrupted)
+    }
+}
+
+pub(super) async fn insert_run(writer: &mut SqliteConnection, new: &NewRun) -> Result<RunId, StoreError> {
+    let inserted = sqlx::query(
+        "INSERT INTO runs (bench, procedure, kind, simulated, state, created_at, parameters, provenance, meta) \
+         VALUES (?, ?, ?, ?, 'queued', ?, ?, ?, ?)",
+    )
+    .bind(&new.bench)
+    .bind(&new.procedure)
+    .bind(&new.kind)
+    .bind(new.simulated)
+    .bind(now())
+    .bind(serde_json::to_string(&new.parameters)?)
+    .bind(serde_json::to_string(&new.provenance)?)
+    .bind(serde_json::to_string(&new.meta)?)
+    .execute(writer)
+    .await?;
+    Ok(inserted.last_insert_rowid())
+}
+
+/// Appends to the journal; what an event says about safety is taken over into the run and the bench.
+pub(super) async fn insert_events(
+    writer: &mut SqliteConnection,
+    run: RunId,
+    events: &[Event],
+) -> Result<(), StoreError> {
+    let last: i64 = sqlx::query_scalar("SELECT COALESCE(MAX(sequence), 0) FROM events WHERE run = ?")
+        .bind(run)
+        .fetch_one(&mut *writer)
+        .await?;
+    for (sequence, event) in (last + 1..).zip(events) {
+        let mut data: Map<String, Value> = match serde_json::to_value(&event.kind)? {
+            Value::Object(data) => data,
+            other => Map::from_iter([("kind".to_owned(), other)]),
+        };
+        let kind = data.remove("kind").and_then(|kind| Some(kind.as_str()?.to_owned())).unwrap_or_default();
+        sqlx::query("INSERT INTO events (run, sequence, at_s, kind, data) VALUES (?, ?, ?, ?, ?)")
+            .bind(run)
+            .bind(sequence)
+            .bind(event.at_s)
+            .bind(kind)
+            .bind(serde_json::to_string(&data)?)
+            .execute(&mut *writer)
+            .await?;
+        if let EventKind::Safe { safe } = &event.kind {
+            super::safety::keep_safe(writer, run, *safe).await?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) async fn channels(reader: &mut SqliteConnection, run: RunId) -> Result<Vec<Channel>, StoreError> {
+    let rows: Vec<(String, Option<f64>)> =
+        sqlx::query_as("SELECT name, resolution FROM channels WHERE run = ? ORDER BY place")
+            .bind(run)
+            .fetch_all(reader)
+            .await?;
+    Ok(rows.into_iter().map(|(name, resolution)| Channel { name, resolution }).collect())
+}
+
+pub(super) async fn exists(reader: &mut SqliteConnection, run: RunId) -> Result<(), StoreError> {
+    let there: bool =
+        sqlx::query_scalar("SELECT EXISTS (SELECT 1 FROM runs WHERE id = ?)").bind(run).fetch_one(reader).await?;
+    if there { Ok(()) } else { Err(StoreError::NoRun(run)) }
+}

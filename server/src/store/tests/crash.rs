@@ -1,0 +1,63 @@
+use super::super::StoreError;
+use super::*;
+use jointbench_procedure::Safe;
+
+/// Another store on a copy of the files as they lie on the disk this moment: what a start after kill -9 finds.
+async fn after_kill(folder: &TempDir) -> (TempDir, Store) {
+    let copy = tempfile::tempdir().unwrap();
+    for file in ["jointbench.db", "jointbench.db-wal"] {
+        std::fs::copy(folder.path().join(file), copy.path().join(file)).unwrap();
+    }
+    let store = Store::open(copy.path()).await.unwrap();
+    (copy, store)
+}
+
+#[test]
+fn every_committed_row_is_there_once_after_a_kill() {
+    block_on(async {
+        let (folder, store) = fresh().await;
+        let run = store.create_run(&new_run()).await.unwrap();
+        store.commit(run, RunState::Arming, &[note(0.0, "armed")], Trace::default()).await.unwrap();
+        // One commit before a block is full, the one that fills it, one behind it.
+        for (kept, count) in [(0, 32_000), (32_000, 500), (32_500, 500), (33_000, 500)] {
+            store.commit(run, RunState::Running, &[note(kept as f64, "step")], rows(kept, count)).await.unwrap();
+            let (_copy, found) = after_kill(&folder).await;
+            check_rows(&found, run, kept + count).await;
+        }
+
+        let (_copy, found) = after_kill(&folder).await;
+        let interrupted = found.interrupt_open_runs().await.unwrap();
+        assert_eq!(
+            interrupted.iter().map(|run| (run.id, run.state)).collect::<Vec<_>>(),
+            [(run, RunState::Interrupted)]
+        );
+        assert_eq!(found.interrupt_open_runs().await.unwrap(), []);
+        check_rows(&found, run, 33_500).await;
+        found.end_run(run, Safe::SafeCommanded, Some("the daemon ended in mid-run")).await.unwrap();
+        let record = found.run(run).await.unwrap();
+        assert_eq!((record.safe, record.state), (Some(Safe::SafeCommanded), RunState::Interrupted));
+        let kinds: Vec<String> = found.events(run, 0).await.unwrap().into_iter().map(|event| event.kind).collect();
+        assert_eq!(kinds, ["note", "note", "note", "note", "note", "state", "safe"]);
+    });
+}
+
+#[test]
+fn a_full_disk_keeps_all_before_it() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        let run = store.create_run(&new_run()).await.unwrap();
+        commit(&store, run, RunState::Running, rows(0, 500)).await;
+        let pages: i64 = sqlx::query_scalar("PRAGMA page_count").fetch_one(&store.writer).await.unwrap();
+        let limit = sqlx::AssertSqlSafe(format!("PRAGMA max_page_count = {}", pages + 2));
+        sqlx::query(limit).execute(&store.writer).await.unwrap();
+
+        let full = store.commit(run, RunState::Running, &[note(2.0, "lost")], rows(500, 32_768)).await.unwrap_err();
+        assert!(matches!(full, StoreError::DiskFull), "{full}");
+        check_rows(&store, run, 500).await;
+        assert_eq!(store.events(run, 0).await.unwrap(), []);
+
+        sqlx::query("PRAGMA max_page_count = 100000").execute(&store.writer).await.unwrap();
+        commit(&store, run, RunState::Running, rows(500, 32_768)).await;
+        check_rows(&store, run, 33_268).await;
+    });
+}

@@ -1,0 +1,209 @@
+use super::super::{NewModel, RunFilter, StoreError};
+use super::*;
+use jointbench_procedure::Safe;
+use serde_json::{Value, json};
+
+#[test]
+fn a_run_is_kept_with_all_that_it_was_started_with() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        let run = store.create_run(&new_run()).await.unwrap();
+        let record = store.run(run).await.unwrap();
+        assert_eq!((record.state, record.rows, record.safe), (RunState::Queued, 0, None));
+        assert_eq!(record.parameters, new_run().parameters);
+        assert_eq!(record.provenance, new_run().provenance);
+        assert_eq!(record.meta, new_run().meta);
+        assert_eq!((record.started_at, record.finished_at), (None, None));
+
+        store.commit(run, RunState::Running, &[note(0.5, "warm")], rows(0, 500)).await.unwrap();
+        let safe = Event { at_s: 2.5, kind: EventKind::Safe { safe: Safe::SafeVerified } };
+        store.commit(run, RunState::Securing, &[safe], Trace::default()).await.unwrap();
+        store.commit(run, RunState::Stopped, &[note(3.0, "over")], Trace::default()).await.unwrap();
+        store.end_run(run, Safe::SafeVerified, Some("a person stopped it")).await.unwrap();
+
+        let record = store.run(run).await.unwrap();
+        assert_eq!((record.state, record.rows, record.safe), (RunState::Stopped, 500, Some(Safe::SafeVerified)));
+        assert_eq!(record.reason.as_deref(), Some("a person stopped it"));
+        assert!((record.duration_s.unwrap() - 499.0 * 0.004).abs() < 1e-12);
+        assert_eq!(record.channels, rows(0, 1).channels());
+        assert!(record.finished_at > record.created_at.into());
+
+        let events = store.events(run, 0).await.unwrap();
+        assert_eq!(events.iter().map(|e| e.sequence).collect::<Vec<_>>(), [1, 2, 3]);
+        assert_eq!(events[0].data, json!({"text": "warm"}).as_object().unwrap().clone());
+        assert_eq!((events[1].kind.as_str(), &events[1].data["safe"]), ("safe", &json!("safe_verified")));
+        assert_eq!(store.events(run, 2).await.unwrap(), events[2..]);
+
+        let over = store.commit(run, RunState::Running, &[], rows(500, 1)).await.unwrap_err();
+        assert!(matches!(over, StoreError::RunOver { .. }), "{over}");
+        assert!(matches!(store.run(99).await.unwrap_err(), StoreError::NoRun(99)));
+        assert!(matches!(store.commit(99, RunState::Arming, &[], Trace::default()).await, Err(StoreError::NoRun(99))));
+    });
+}
+
+#[test]
+fn rows_come_back_however_they_came() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        for commits in [vec![1], vec![500; 70], vec![100_000], vec![32_768], vec![32_767, 1, 1], vec![10, 70_000, 5]] {
+            let run = store.create_run(&new_run()).await.unwrap();
+            let mut kept = 0;
+            for count in &commits {
+                commit(&store, run, RunState::Running, rows(kept, *count)).await;
+                kept += count;
+            }
+            check_rows(&store, run, kept).await;
+            commit(&store, run, RunState::Completed, Trace::default()).await;
+            check_rows(&store, run, kept).await;
+            let left: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM tail").fetch_one(&store.readers).await.unwrap();
+            assert_eq!(left, 0, "a run that is over is all blocks");
+
+            let some = store.trace(run, Some(&["link_torque_nm".to_owned()]), 3..40_000).await.unwrap();
+            let all = rows(0, kept);
+            let expected = &all.columns()[2][3.min(kept)..40_000.min(kept)];
+            assert_eq!(some.columns(), [expected.to_vec()]);
+        }
+        let run = store.create_run(&new_run()).await.unwrap();
+        commit(&store, run, RunState::Running, rows(0, 5)).await;
+        let unknown = store.trace(run, Some(&["speed".to_owned()]), 0..1).await.unwrap_err().to_string();
+        assert!(unknown.contains("no channel speed: it has time_s, motor_position_rad, link_torque_nm"), "{unknown}");
+        let other = store.commit(
+            run,
+            RunState::Running,
+            &[],
+            Trace::from_columns(vec![Channel::new("time_s")], vec![vec![9.0]]),
+        );
+        assert!(matches!(other.await.unwrap_err(), StoreError::OtherChannels { .. }));
+        check_rows(&store, run, 5).await;
+    });
+}
+
+#[test]
+fn what_was_measured_never_changes() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        let run = store.create_run(&new_run()).await.unwrap();
+        store.commit(run, RunState::Running, &[note(0.0, "first")], rows(0, 40_000)).await.unwrap();
+        for (sql, why) in [
+            ("UPDATE events SET data = '{}'", "only appended to"),
+            ("DELETE FROM events", "only appended to"),
+            ("INSERT INTO events (run, sequence, at_s, kind, data) VALUES (1, 3, 0, 'note', '{}')", "no gaps"),
+            ("UPDATE blocks SET data = x''", "samples never change"),
+            ("DELETE FROM blocks", "samples never change"),
+            ("UPDATE spans SET coarse = x''", "samples never change"),
+            ("DELETE FROM spans", "samples never change"),
+            ("UPDATE tail SET data = x''", "samples never change"),
+            ("DELETE FROM tail", "before a block holds them"),
+            ("UPDATE channels SET resolution = 1.0", "channels never change"),
+            ("DELETE FROM runs", "never deleted"),
+            ("UPDATE runs SET provenance = '{}'", "never changes"),
+        ] {
+            let refused = sqlx::query(sql).execute(&store.writer).await.unwrap_err().to_string();
+            assert!(refused.contains(why), "{sql}: {refused}");
+        }
+        check_rows(&store, run, 40_000).await;
+    });
+}
+
+#[test]
+fn an_import_is_whole_or_not_there() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        let twice =
+            Trace::from_columns(vec![Channel::new("time_s"), Channel::new("time_s")], vec![vec![0.0], vec![0.0]]);
+        assert!(store.import(&new_run(), &[note(0.0, "from a file")], twice).await.is_err());
+        assert_eq!(store.runs(&RunFilter { limit: 10, ..RunFilter::default() }).await.unwrap().0, 0);
+
+        let run = store.import(&new_run(), &[note(0.0, "from a file")], rows(0, 70_000)).await.unwrap();
+        assert_eq!(store.run(run).await.unwrap().state, RunState::Completed);
+        check_rows(&store, run, 70_000).await;
+    });
+}
+
+#[test]
+fn runs_are_found_by_their_words() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        for bench in ["joint-a", "Joint-B", "100%"] {
+            store.create_run(&NewRun { bench: bench.into(), ..new_run() }).await.unwrap();
+        }
+        let found = async |search: Option<&str>, limit, offset| {
+            let filter = RunFilter { limit, offset, search: search.map(str::to_owned) };
+            let (total, runs) = store.runs(&filter).await.unwrap();
+            (total, runs.into_iter().map(|run| run.id).collect::<Vec<_>>())
+        };
+        assert_eq!(found(None, 2, 0).await, (3, vec![3, 2]));
+        assert_eq!(found(None, 2, 2).await, (3, vec![1]));
+        assert_eq!(found(Some("JOINT-b"), 9, 0).await, (1, vec![2]));
+        assert_eq!(found(Some("%"), 9, 0).await, (1, vec![3]));
+        assert_eq!(found(Some("queued"), 1, 0).await, (3, vec![3]));
+    });
+}
+
+fn model(run: RunId, parent: Option<i64>, effects: &[&str]) -> NewModel {
+    NewModel {
+        run,
+        parent,
+        kind: "friction".into(),
+        effects: effects.iter().map(|effect| (*effect).to_owned()).collect(),
+        fit: json!({"rms": 0.012345678901234567, "parameters": []}),
+        residual: "raw".into(),
+        rms: 0.0123,
+        validation_rms: 0.0125,
+        noise_floor_rms: None,
+        options: json!({"decimation": 10}).as_object().unwrap().clone(),
+    }
+}
+
+#[test]
+fn model_versions_are_a_tree() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        let run = store.create_run(&new_run()).await.unwrap();
+        let other = store.create_run(&new_run()).await.unwrap();
+        let root = store.save_model(&model(run, None, &["coulomb", "viscous"])).await.unwrap();
+        let left = store.save_model(&model(run, Some(root.id), &["coulomb", "viscous", "stribeck"])).await.unwrap();
+        let right = store.save_model(&model(run, Some(root.id), &["coulomb", "load_linear"])).await.unwrap();
+        assert_eq!((root.added, root.removed), (vec!["coulomb".into(), "viscous".into()], vec![]));
+        assert_eq!((&left.added, &left.removed), (&vec!["stribeck".into()], &vec![]));
+        assert_eq!((&right.added, &right.removed), (&vec!["load_linear".into()], &vec!["viscous".into()]));
+        assert_eq!(
+            store.models(run).await.unwrap().iter().map(|m| m.parent).collect::<Vec<_>>(),
+            [None, Some(1), Some(1)]
+        );
+        assert_eq!(store.model(left.id).await.unwrap(), left);
+        assert_eq!(left.fit, model(run, None, &[]).fit);
+
+        let astray = store.save_model(&model(other, Some(root.id), &[])).await.unwrap_err();
+        assert!(matches!(astray, StoreError::OtherRun { .. }), "{astray}");
+        assert!(matches!(store.save_model(&model(run, Some(77), &[])).await, Err(StoreError::NoModel(77))));
+
+        let told = store.save_diagnosis(left.id, &json!({"verdict": "adequate"})).await.unwrap();
+        assert_eq!(store.diagnosis(told.id).await.unwrap(), told);
+        assert_eq!(store.diagnoses(left.id).await.unwrap(), [told]);
+        assert_eq!(store.diagnoses(right.id).await.unwrap(), []);
+        assert!(matches!(store.save_diagnosis(77, &Value::Null).await, Err(StoreError::NoModel(77))));
+        for sql in ["UPDATE models SET rms = 0.0", "DELETE FROM diagnoses"] {
+            let refused = sqlx::query(sql).execute(&store.writer).await.unwrap_err().to_string();
+            assert!(refused.contains("never change"), "{sql}: {refused}");
+        }
+    });
+}
+
+#[test]
+fn an_unsafe_end_blocks_the_bench_until_a_person_has_looked() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        let run = store.create_run(&new_run()).await.unwrap();
+        let unsafe_end = Event { at_s: 1.0, kind: EventKind::Safe { safe: Safe::UnsafeUnknown } };
+        assert_eq!(store.bench_block("joint-a").await.unwrap(), None);
+        store.commit(run, RunState::Failed, &[unsafe_end], Trace::default()).await.unwrap();
+        let block = store.bench_block("joint-a").await.unwrap().unwrap();
+        assert_eq!(block.run, Some(run));
+        assert_eq!(store.bench_block("joint-b").await.unwrap(), None);
+        store.acknowledge_bench("joint-a", "brake is off, shaft turns freely").await.unwrap();
+        assert_eq!(store.bench_block("joint-a").await.unwrap(), None);
+        store.block_bench("joint-a", None, "cover open").await.unwrap();
+        assert_eq!(store.bench_block("joint-a").await.unwrap().unwrap().reason, "cover open");
+    });
+}

@@ -1,0 +1,67 @@
+//! The store against a folder of its own.
+
+mod crash;
+mod keeping;
+mod opening;
+mod viewing;
+
+use super::{NewRun, Store};
+use jointbench_instrument::{Channel, Trace};
+use jointbench_procedure::{Event, EventKind, RunId, RunState};
+use std::future::Future;
+use tempfile::TempDir;
+
+fn block_on<T>(work: impl Future<Output = T>) -> T {
+    tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build().unwrap().block_on(work)
+}
+
+async fn fresh() -> (TempDir, Store) {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path()).await.unwrap();
+    (folder, store)
+}
+
+fn new_run() -> NewRun {
+    let object = |text: &str| serde_json::from_str(text).unwrap();
+    NewRun {
+        bench: "joint-a".into(),
+        procedure: "friction".into(),
+        kind: "friction".into(),
+        simulated: true,
+        parameters: object(r#"{"speeds": 12, "dwell_s": 0.30000000000000004}"#),
+        provenance: object(r#"{"seed": 7, "software": "0.1.0"}"#),
+        meta: object(r#"{"kind": "friction", "gear_ratio": 50.0}"#),
+    }
+}
+
+/// Rows of a run from `first` on: a time, an encoder, noise without a step.
+fn rows(first: usize, count: usize) -> Trace {
+    let channels = vec![
+        Channel::new("time_s"),
+        Channel::counted("motor_position_rad", std::f64::consts::TAU / 16_384.0),
+        Channel::new("link_torque_nm"),
+    ];
+    let mut trace = Trace::new(channels);
+    for row in first..first + count {
+        let angle = (row as f64 * 0.01).sin() * 1000.0;
+        trace.push_row(&[
+            row as f64 * 0.004,
+            angle.round() * (std::f64::consts::TAU / 16_384.0),
+            (row as f64).sqrt().sin(),
+        ]);
+    }
+    trace
+}
+
+fn note(at_s: f64, text: &str) -> Event {
+    Event { at_s, kind: EventKind::Note { text: text.into() } }
+}
+
+async fn commit(store: &Store, run: RunId, state: RunState, rows: Trace) {
+    store.commit(run, state, &[], rows).await.unwrap();
+}
+
+async fn check_rows(store: &Store, run: RunId, count: usize) {
+    assert_eq!(store.run(run).await.unwrap().rows, count as u64);
+    assert_eq!(store.trace(run, None, 0..u64::MAX).await.unwrap(), rows(0, count));
+}

@@ -1,0 +1,253 @@
+//! A window of a run at the width of a picture: no more points than pixels, and never a hidden spike.
+
+use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
+use super::samples::{Chosen, choose, read};
+use super::{Store, StoreError, View, ViewColumn};
+use jointbench_procedure::RunId;
+use sqlx::SqliteConnection;
+use std::ops::Range;
+
+/// Smallest and largest values of bins in a row.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Extremes {
+    pub min: Vec<f64>,
+    pub max: Vec<f64>,
+}
+
+impl Extremes {
+    /// An empty bin, or one of NaN alone, comes as (∞, −∞) and is kept as NaN.
+    pub fn push(&mut self, min: f64, max: f64) {
+        let empty = min > max;
+        self.min.push(if empty { f64::NAN } else { min });
+        self.max.push(if empty { f64::NAN } else { max });
+    }
+}
+
+impl Store {
+    /// Samples from `from_s` to `to_s`, both included, as at most `px` points with the smallest and largest value of each
+    /// channel. Where no more than `px` rows are in the window, the points are the rows.
+    ///
+    /// Points are cut at bins of the [`pyramid`]: a point may hold rows of its neighbour, less than half a pixel.
+    pub async fn view(
+        &self,
+        run: RunId,
+        names: Option<&[String]>,
+        from_s: Option<f64>,
+        to_s: Option<f64>,
+        px: usize,
+    ) -> Result<View, StoreError> {
+        let mut reader = self.readers.begin().await?;
+        let mut chosen = choose(&mut reader, run, names).await?;
+        let Some(time) = choose(&mut reader, run, None).await?.into_iter().next() else {
+            return Ok(View { time_s: Vec::new(), columns: Vec::new(), exact: true, rows: 0 });
+        };
+        let rows = window(&mut reader, run, &time, from_s, to_s).await?;
+        // The time goes first whatever was asked for: its smallest value is the point's place.
+        chosen.insert(0, time);
+        let count = (rows.end - rows.start).max(0) as usize;
+        let exact = count <= px;
+        let columns = match count / px.max(1) {
+            _ if exact => exactly(&mut reader, run, chosen, rows).await?,
+            few if few < 2 * FINE_ROWS => from_samples(&mut reader, run, chosen, rows, px).await?,
+            some => from_pyramid(&mut reader, run, chosen, rows, px, some >= 2 * COARSE_ROWS).await?,
+        };
+        let mut columns = columns.into_iter();
+        let time_s = columns.next().map(|time| time.min).unwrap_or_default();
+        Ok(View { time_s, columns: columns.collect(), exact, rows: count as u64 })
+    }
+}
+
+async fn exactly(
+    reader: &mut SqliteConnection,
+    run: RunId,
+    chosen: Vec<Chosen>,
+    rows: Range<i64>,
+) -> Result<Vec<ViewColumn>, StoreError> {
+    let trace = read(reader, run, chosen, rows).await?;
+    let columns = trace.channels().iter().zip(trace.columns());
+    Ok(columns
+        .map(|(channel, values)| ViewColumn { channel: channel.clone(), min: values.clone(), max: values.clone() })
+        .collect())
+}
+
+/// The rows whose time lies in the window.
+async fn window(
+    reader: &mut SqliteConnection,
+    run: RunId,
+    time: &Chosen,
+    from_s: Option<f64>,
+    to_s: Option<f64>,
+) -> Result<Range<i64>, StoreError> {
+    let rows: i64 = sqlx::query_scalar("SELECT rows FROM runs WHERE id = ?").bind(run).fetch_one(&mut *reader).await?;
+    let mut range = 0..rows;
+    if let Some(from_s) = from_s {
+        range.start = row_at(reader, run, time, rows, |time_s| time_s < from_s).await?;
+    }
+    if let Some(to_s) = to_s {
+        range.end = row_at(reader, run, time, rows, |time_s| time_s <= to_s).await?;
+    }
+    Ok(range)
+}
+
+/// The first row that is not `before`, found by the times of the pieces and then inside of one.
+async fn row_at(
+    reader: &mut SqliteConnection,
+    run: RunId,
+    time: &Chosen,
+    rows: i64,
+    before: impl Fn(f64) -> bool,
+) -> Result<i64, StoreError> {
+    let pieces: Vec<(i64, i64, Option<f64>)> = sqlx::query_as(
+        "SELECT first_row, rows, to_s FROM spans WHERE run = ?1 UNION ALL \
+         SELECT first_row, rows, to_s FROM tail WHERE run = ?1 ORDER BY first_row",
+    )
+    .bind(run)
+    .fetch_all(&mut *reader)
+    .await?;
+    let at = pieces.partition_point(|(_, _, to_s)| to_s.is_some_and(&before));
+    let Some((first, count, _)) = pieces.get(at) else { return Ok(rows) };
+    let piece = read(reader, run, vec![time.clone()], *first..first + count).await?;
+    Ok(first + piece.columns()[0].partition_point(|time_s| before(*time_s)) as i64)
+}
+
+/// The points of one channel while they are gathered.
+struct Points {
+    min: Vec<f64>,
+    max: Vec<f64>,
+}
+
+/// Which point a row belongs to.
+#[derive(Clone, Copy)]
+struct Grid {
+    start: i64,
+    rows: i64,
+    px: i64,
+}
+
+impl Grid {
+    fn of(rows: &Range<i64>, px: usize) -> Grid {
+        Grid { start: rows.start, rows: rows.end - rows.start, px: px as i64 }
+    }
+
+    fn point(self, row: i64) -> usize {
+        ((row - self.start) as i128 * self.px as i128 / self.rows as i128) as usize
+    }
+
+    fn first_row(self, point: usize) -> i64 {
+        self.start + ((point as i128 * self.rows as i128 + self.px as i128 - 1) / self.px as i128) as i64
+    }
+}
+
+impl Points {
+    fn new(px: usize) -> Points {
+        Points { min: vec![f64::INFINITY; px], max: vec![f64::NEG_INFINITY; px] }
+    }
+
+    fn take(&mut self, point: usize, min: f64, max: f64) {
+        // A comparison with NaN is false: NaN is passed over.
+        if min < self.min[point] {
+            self.min[point] = min;
+        }
+        if max > self.max[point] {
+            self.max[point] = max;
+        }
+    }
+
+    /// Bins that start at `first_row`, each of `width` rows.
+    fn take_bins(&mut self, grid: Grid, first_row: i64, width: usize, bins: &Extremes) {
+        let mut row = first_row;
+        let mut point = grid.point(row);
+        let mut next = grid.first_row(point + 1);
+        for (min, max) in bins.min.iter().zip(&bins.max) {
+            while row >= next && point + 1 < self.min.len() {
+                point += 1;
+                next = grid.first_row(point + 1);
+            }
+            self.take(point, *min, *max);
+            row += width as i64;
+        }
+    }
+
+    fn into_extremes(self) -> Extremes {
+        let mut points = Extremes::default();
+        self.min.into_iter().zip(self.max).for_each(|(min, max)| points.push(min, max));
+        points
+    }
+}
+
+fn finish(chosen: Vec<Chosen>, points: Vec<Points>) -> Vec<ViewColumn> {
+    let columns = chosen.into_iter().zip(points);
+    columns
+        .map(|((_, channel), points)| {
+            let Extremes { min, max } = points.into_extremes();
+            ViewColumn { channel, min, max }
+        })
+        .collect()
+}
+
+async fn from_samples(
+    reader: &mut SqliteConnection,
+    run: RunId,
+    chosen: Vec<Chosen>,
+    rows: Range<i64>,
+    px: usize,
+) -> Result<Vec<ViewColumn>, StoreError> {
+    let grid = Grid::of(&rows, px);
+    let trace = read(reader, run, chosen.clone(), rows.clone()).await?;
+    let points = trace.columns().iter().map(|values| {
+        let mut points = Points::new(px);
+        for point in 0..px {
+            let (from, to) = (grid.first_row(point) - rows.start, grid.first_row(point + 1) - rows.start);
+            let bin = pyramid::extremes(&values[from as usize..to as usize], usize::MAX);
+            points.take(point, bin.min[0], bin.max[0]);
+        }
+        points
+    });
+    let points = points.collect();
+    Ok(finish(chosen, points))
+}
+
+async fn from_pyramid(
+    reader: &mut SqliteConnection,
+    run: RunId,
+    chosen: Vec<Chosen>,
+    rows: Range<i64>,
+    px: usize,
+    coarse: bool,
+) -> Result<Vec<ViewColumn>, StoreError> {
+    let grid = Grid::of(&rows, px);
+    let mut points: Vec<Points> = chosen.iter().map(|_| Points::new(px)).collect();
+    let sql = match coarse {
+        true => {
+            "SELECT first_row, rows, coarse FROM spans WHERE run = ? AND first_row >= ? AND first_row + rows <= ? ORDER BY first_row"
+        }
+        false => {
+            "SELECT first_row, rows, fine FROM spans WHERE run = ? AND first_row >= ? AND first_row + rows <= ? ORDER BY first_row"
+        }
+    };
+    let spans: Vec<(i64, i64, Vec<u8>)> =
+        sqlx::query_as(sql).bind(run).bind(rows.start).bind(rows.end).fetch_all(&mut *reader).await?;
+    for (first_row, count, packed) in &spans {
+        for ((place, _), points) in chosen.iter().zip(&mut points) {
+            let (width, bins) = match coarse {
+                true => (COARSE_ROWS, pyramid::unpack_coarse(packed, *count as usize, *place)?),
+                false => (FINE_ROWS, pyramid::unpack_fine(packed, *count as usize, *place)?),
+            };
+            points.take_bins(grid, *first_row, width, &bins);
+        }
+    }
+    // What lies before and behind the whole blocks: cut blocks and the tail, sample by sample.
+    let inner = match (spans.first(), spans.last()) {
+        (Some((first, _, _)), Some((last, count, _))) => *first..last + count,
+        _ => rows.start..rows.start,
+    };
+    for edge in [rows.start..inner.start, inner.end..rows.end] {
+        if !edge.is_empty() {
+            let trace = read(reader, run, chosen.clone(), edge.clone()).await?;
+            for (values, points) in trace.columns().iter().zip(&mut points) {
+                points.take_bins(grid, edge.start, 1, &Extremes { min: values.clone(), max: values.clone() });
+            }
+        }
+    }
+    Ok(finish(chosen, points))
+}
