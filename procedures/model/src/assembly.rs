@@ -54,6 +54,34 @@ impl<'p> Assembly<'p> {
         effect.stage() != Stage::Settled && self.prepared.about.residual == crate::ResidualKind::PlateauMean
     }
 
+    /// The same model with an effect that was found where the motion changes.
+    pub fn with_memory(&self, term: &Term) -> Self {
+        let mut next = self.clone();
+        next.effects.push(term.id().into());
+        if let Some(moving) = &mut next.moving {
+            moving.terms.push(Term::new(term.effect, term.form.clone(), term.shape.clone(), moving.problem));
+            moving.refine();
+        }
+        next
+    }
+
+    /// What the model predicts at the rows of another problem of the same run.
+    pub fn predict(&self, problem: &Problem) -> Vec<f64> {
+        let mut sum = vec![0.0; problem.rows()];
+        for id in &self.effects {
+            let Ok(effect) = find(self.prepared.kind, id) else { continue };
+            if effect.is_given() && !self.hidden.iter().any(|h| h.effect == *id) {
+                add(&mut sum, &columns(effect, "linear", &[], problem), &[1.0]);
+            }
+        }
+        for part in std::iter::once(&self.main).chain(&self.moving) {
+            for (term, factors) in part.terms.iter().zip(part.linear().factors) {
+                add(&mut sum, &columns(term.effect, term.form.name, &term.shape, problem), &factors);
+            }
+        }
+        sum
+    }
+
     /// Lays the settled part under the moving problem.
     fn relay(&mut self) {
         let Some(moving) = &mut self.moving else { return };

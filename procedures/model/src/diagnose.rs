@@ -101,7 +101,12 @@ fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<S
         let id = rival.term.id();
         let alone = Assembly::new(found.start.prepared, &spec.with(id)?)?;
         let with = report(&alone)?;
-        let reduction = 1.0 - with.validation_rms / fit.validation_rms;
+        let apart = alone.is_apart(rival.term.effect);
+        let reduction = if apart {
+            1.0 - (1.0 - rival.share).max(0.0).sqrt()
+        } else {
+            1.0 - with.validation_rms / fit.validation_rms
+        };
         let info = rival.term.effect.info();
         let confounded_with: Vec<String> = advance.ties.iter().map(|t| (*t).into()).collect();
         let tie = if confounded_with.is_empty() {
@@ -109,11 +114,13 @@ fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<S
         } else {
             format!(" This run cannot tell it from {}.", list(&confounded_with))
         };
-        let why = format!(
-            "{} Without it the complete model's squared error would be {} larger.{tie}",
-            info.sentence,
-            percent(importance / (1.0 - importance).max(1e-9)),
-        );
+        let evidence = if apart {
+            format!("Around reversals it takes {} off the squared error.", percent(rival.share))
+        } else {
+            let larger = percent(importance / (1.0 - importance).max(1e-9));
+            format!("Without it the complete model's squared error would be {larger} larger.")
+        };
+        let why = format!("{} {evidence}{tie}", info.sentence);
         out.push(Suggestion {
             effect: id.into(),
             validation_rms: with.validation_rms,

@@ -3,6 +3,7 @@
 use crate::assembly::Assembly;
 use crate::effect::Stage;
 use crate::linear::dot;
+use crate::memory::memory;
 use crate::prepare::Prepared;
 use crate::report::{Invisible, NoiseFloor, Verdict};
 use crate::select::{Library, Maps, Move, Rival, Silence, search};
@@ -54,6 +55,13 @@ impl<'p> Exploration<'p> {
             };
             let after = start.with_main(terms, effects.clone());
             advances.push(Advance { added, removed, ties, after });
+        }
+        if advances.len() < most
+            && let now = advances.last().map_or(&start, |a| &a.after)
+            && let Some(rival) = memory(now, options)
+        {
+            let after = now.with_memory(&rival.term);
+            advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
         }
         let mut invisible = library.invisible;
         invisible.retain(|i| !start.hidden.iter().any(|h| h.effect == i.effect));

@@ -10,6 +10,7 @@ mod fit;
 mod floor;
 mod intervals;
 mod linear;
+mod memory;
 pub mod prepare;
 mod regions;
 mod report;

@@ -40,8 +40,8 @@ fn speed_range(view: &View) -> Option<(f64, f64)> {
     (fast > 0.0).then(|| (slow.max(1e-3 * fast), fast))
 }
 
-/// Lengths over which a reversal can be remembered and seen: from a thousandth of the motion between two reversals to
-/// all of it. `None` where the motion never turns.
+/// Lengths over which a reversal can be remembered and seen: from a thousandth of the motion between two reversals, or
+/// three steps of the encoder, to all of it. `None` where the motion never turns.
 fn reversal_range(view: &View) -> Option<(f64, f64)> {
     let position = view.samples.find(Signal::Position)?;
     let direction = view.samples.find(Signal::Direction)?;
@@ -56,7 +56,13 @@ fn reversal_range(view: &View) -> Option<(f64, f64)> {
     let mut ways: Vec<f64> = turns.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|w| *w > 0.0).collect();
     ways.sort_by(f64::total_cmp);
     let typical = *ways.get(ways.len() / 2)?;
-    Some((1e-3 * typical, typical))
+    // What is shorter than the encoder's step is a jump.
+    let mut steps: Vec<f64> = position.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
+    let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    steps.retain(|s| *s < 1.5 * smallest);
+    let counted = steps.len() * 20 > position.len();
+    let low = if counted { (3.0 * smallest).max(1e-3 * typical) } else { 1e-3 * typical };
+    (low < typical).then_some((low, typical))
 }
 
 /// A harmonic of an angle, searched over whole orders. Orders that turn further than half a wave between two samples

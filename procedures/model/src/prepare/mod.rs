@@ -71,6 +71,8 @@ pub struct Prepared {
     pub main: Problem,
     /// Ramps and reversals, where the main problem holds settled motion only.
     pub moving: Option<Problem>,
+    /// The slow part of the same: what came before a reversal matters there.
+    pub memory: Option<Problem>,
     /// Factor from the load as the models see it to the column of the run table.
     pub load_scale: f64,
     pub about: Preparation,

@@ -7,4 +7,4 @@ mod search;
 
 pub use library::{Library, gain};
 pub use maps::{MapFinding, Maps};
-pub use search::{Move, Rival, Silence, held_out, search};
+pub use search::{Move, Rival, Silence, held_out, search, significance};

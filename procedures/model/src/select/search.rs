@@ -3,7 +3,7 @@
 use super::flips::{Null, Score};
 use super::library::{Gain, Library, gain};
 use crate::Options;
-use crate::linear::{BlockGrams, dot};
+use crate::linear::{Basis, BlockGrams, dot};
 use crate::prepare::Problem;
 use crate::terms::{Term, Terms, polish};
 
@@ -21,6 +21,13 @@ pub struct Rival {
     pub p_value: f64,
     /// Held-out squared error of each fold.
     losses: Vec<f64>,
+}
+
+impl Rival {
+    /// A candidate that was judged apart from the others, without folds.
+    pub fn alone(term: Term, share: f64, p_value: f64) -> Self {
+        Self { term, share, held_out: f64::NAN, p_value, losses: Vec::new() }
+    }
 }
 
 pub enum Move {
@@ -168,17 +175,29 @@ fn step(now: &Terms, library: &Library, options: &Options) -> Option<(Rival, Vec
     ties.push(0);
     ties.retain(|i| *i != winner);
 
-    let mut scores: Vec<Score> =
-        gains.iter().map(|g| Score::new(&g.rest, &residual, &problem.block, problem.blocks)).collect();
-    let own = gain(&rivals[winner].term.columns, &basis, &residual, energy);
-    let score = Score::new(&own.rest, &residual, &problem.block, problem.blocks);
-    let z = score.z();
-    scores.push(score);
-    let null = Null::new(&scores, problem.blocks, options.flips, options.seed);
     let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
     let mut rival = rivals.swap_remove(winner);
-    rival.p_value = null.p_value(z);
+    rival.p_value = significance(&rival.term, library, &basis, &residual, problem, options);
     (rival.p_value <= options.alpha).then_some((rival, ties))
+}
+
+/// How often noise alone would bring any candidate of the library as far as this one: the family-wise p-value.
+pub fn significance(
+    term: &Term,
+    library: &Library,
+    basis: &Basis,
+    residual: &[f64],
+    problem: &Problem,
+    options: &Options,
+) -> f64 {
+    let score = |columns: &[Vec<f64>]| {
+        Score::new(&gain(columns, basis, residual, 1.0).rest, residual, &problem.block, problem.blocks)
+    };
+    let own = score(&term.columns);
+    let z = own.z();
+    let mut scores: Vec<Score> = library.candidates.iter().map(|c| score(&c.columns)).collect();
+    scores.push(own);
+    Null::new(&scores, problem.blocks, options.flips, options.seed).p_value(z)
 }
 
 /// Two effects tie where the difference of their held-out errors is not larger than its own scatter over the folds.

@@ -87,6 +87,7 @@ pub fn prepare(run: &RunTable, mut samples: Samples, options: &Options) -> Resul
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
         main,
         moving: None,
+        memory: None,
         about,
     })
 }

@@ -96,7 +96,12 @@ pub fn prepare(
     let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
     let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
     let main = problem(&samples, chunks, &group, &condition, Some(&phase), true);
-    let moving = moving(&samples, &plateaus);
+    let speed = |p: &Range<usize>| {
+        median(samples.signals.find(Signal::Velocity).unwrap_or_default()[p.clone()].iter().map(|v| v.abs()))
+    };
+    let slowest = plateaus.iter().map(speed).fold(f64::INFINITY, f64::min);
+    let moving = apart(&samples, &plateaus, f64::INFINITY);
+    let memory = apart(&samples, &plateaus, slowest);
     let repeats = main.repeat.iter().max().copied().unwrap_or(0) > main.repeat.iter().min().copied().unwrap_or(0);
     let about = Preparation {
         residual: ResidualKind::PlateauMean,
@@ -116,6 +121,7 @@ pub fn prepare(
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
         main,
         moving,
+        memory,
         about,
     })
 }
@@ -176,24 +182,22 @@ fn problem(
     Problem { view, target, reduce: Reduce::Same, block, blocks, fold, folds, twins, segment, repeat }
 }
 
-/// Everything that is not settled, in short chunks.
-fn moving(samples: &Samples, plateaus: &[Range<usize>]) -> Option<Problem> {
+/// What is not settled and not faster than a speed, in short chunks.
+fn apart(samples: &Samples, plateaus: &[Range<usize>], fastest: f64) -> Option<Problem> {
     let n = chunk_samples(samples, MOVING_CHUNK_S);
+    let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let mut settled = vec![false; samples.time_s.len()];
     plateaus.iter().for_each(|p| settled[p.clone()].fill(true));
     let mut chunks = Vec::new();
     let mut group = Vec::new();
     for (number, leg) in legs(samples).into_iter().enumerate() {
         for start in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n) {
-            if !settled[start..start + n].iter().any(|s| *s) {
+            let mean = velocity[start..start + n].iter().sum::<f64>() / n as f64;
+            if mean.abs() <= fastest && !settled[start..start + n].iter().any(|s| *s) {
                 chunks.push(start..start + n);
                 group.push(number);
             }
         }
     }
-    if chunks.len() < 50 {
-        return None;
-    }
-    let condition: Vec<usize> = group.clone();
-    Some(problem(samples, chunks, &group, &condition, None, false))
+    (chunks.len() >= 50).then(|| problem(samples, chunks, &group, &group, None, false))
 }
