@@ -2,7 +2,7 @@
 //!
 //! A repeat goes through the loads from none to the highest, so that the brake is always on its ascending branch, and
 //! is demagnetised while turning at its end. At each load the joint makes one *tour*: fast legs out in shuffled order,
-//! the same speeds back in another order, and slow pairs at shuffled places in between. A slow leg covers little of a
+//! the same speeds back in another order, and slow legs at shuffled places in between. A slow leg covers little of a
 //! link turn, so the tours spread them over the link's angle; the fastest leg covers a whole turn, the next a third.
 //! Order and places differ from tour to tour: neither time and temperature nor the link's angle follow speed or load.
 //!
@@ -10,7 +10,7 @@
 //! facts counts them): it is where temperature changes most, which is what shows an effect of temperature.
 
 use super::Procedure;
-use super::legs::{LONGEST_LEG_S, Legs, friction_meta, turn_s};
+use super::legs::{Legs, friction_meta, turn_s};
 use super::warm_up;
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault, Steady};
@@ -39,9 +39,6 @@ const SCHEMA: &[Parameter] = &[
 /// Speeds below the expected Stribeck velocity, as shares of it: at least four, or its exponent stays open
 /// (diagnosis, pitfalls).
 const SLOW_SHARES: [f64; 4] = [0.15, 0.3, 0.5, 0.75];
-/// Motor-side travel of a slow leg: after a reversal under load the joint winds up first, joint B by 2 · 9.7 Nm over
-/// 684 Nm/rad, which is 1.4 rad on the motor (seed-facts, section 6).
-const SLOW_TRAVEL_RAD: f64 = 1.6;
 /// The lowest of the speeds above it.
 const FAST_FROM: f64 = 1.3;
 /// The torque of the brake grows slowly at first (bench-physics, section 2): even torques need uneven currents.
@@ -149,9 +146,8 @@ impl Speeds {
             };
             (speed_rad_s, turn_s(turn_share, speed_rad_s, bench, dwell_s))
         };
-        let slow = |speed_rad_s: f64| (speed_rad_s, dwell_s.max((SLOW_TRAVEL_RAD / speed_rad_s).min(LONGEST_LEG_S)));
         Ok(Self {
-            slow: SLOW_SHARES.iter().map(|share| slow(share * stribeck_rad_s)).collect(),
+            slow: SLOW_SHARES.iter().map(|share| (share * stribeck_rad_s, dwell_s)).collect(),
             fast: (0..count).map(fast).collect(),
             top_rad_s,
         })
@@ -182,28 +178,35 @@ fn loads(values: &Values, bench: &BenchFacts) -> Result<Vec<f64>, PlanFault> {
 }
 
 fn tour(legs: &mut Legs, speeds: &Speeds, brake_a: f64, outwards: f64, rng: &mut ChaCha8Rng) {
-    let mut out: Vec<(f64, f64)> = speeds.fast.clone();
-    let mut back = out.clone();
-    out.shuffle(rng);
-    back.shuffle(rng);
-    let route: Vec<(f64, f64)> = out
-        .into_iter()
-        .map(|(speed_rad_s, dwell_s)| (outwards * speed_rad_s, dwell_s))
-        .chain(back.into_iter().map(|(speed_rad_s, dwell_s)| (-outwards * speed_rad_s, dwell_s)))
-        .collect();
-    // Slow pair number i stands before fast leg `places[i]`.
-    let mut places: Vec<usize> = (0..route.len()).collect();
-    places.shuffle(rng);
-    // The first slow leg goes on in the direction of the leg before it: the joint is wound up that way.
-    let mut direction = outwards;
-    for (place, (speed_rad_s, dwell_s)) in route.into_iter().enumerate() {
-        for pair in (0..speeds.slow.len()).filter(|pair| places[pair % places.len()] == place) {
-            let (slow_rad_s, slow_dwell_s) = speeds.slow[pair];
-            legs.leg(direction * slow_rad_s, slow_dwell_s, brake_a);
-            legs.leg(-direction * slow_rad_s, slow_dwell_s, brake_a);
+    for direction in [outwards, -outwards] {
+        let mut fast = speeds.fast.clone();
+        fast.shuffle(rng);
+        // The first leg of a half winds up what the reversal has unwound: not the slowest one.
+        if fast[0] == speeds.fast[0] {
+            fast.reverse();
         }
-        legs.leg(speed_rad_s, dwell_s, brake_a);
-        direction = speed_rad_s.signum();
+        // Slow leg number i follows fast leg `places[i]`.
+        let mut places: Vec<usize> = (0..fast.len()).collect();
+        places.shuffle(rng);
+        for (place, (speed_rad_s, dwell_s)) in fast.into_iter().enumerate() {
+            legs.leg(direction * speed_rad_s, dwell_s, brake_a);
+            for number in (0..speeds.slow.len()).filter(|number| places[number % places.len()] == place) {
+                slow(legs, speeds, number, brake_a, direction, outwards);
+            }
+        }
+    }
+}
+
+/// Without load a slow leg is a pair, out and back, in every other place: reversals close to each other. Under load the
+/// wind-up of joint and brake outlasts a reversed slow leg (0.04 rad of the link), so that each direction waits for its
+/// half of the tour.
+fn slow(legs: &mut Legs, speeds: &Speeds, number: usize, brake_a: f64, direction: f64, outwards: f64) {
+    let (speed_rad_s, dwell_s) = speeds.slow[number];
+    if brake_a > 0.0 {
+        legs.leg(direction * speed_rad_s, dwell_s, brake_a);
+    } else if number.is_multiple_of(2) == (direction == outwards) {
+        legs.leg(direction * speed_rad_s, dwell_s, brake_a);
+        legs.leg(-direction * speed_rad_s, dwell_s, brake_a);
     }
 }
 

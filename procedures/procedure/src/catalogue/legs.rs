@@ -6,7 +6,7 @@ use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
 
 /// A leg that should cover a part of a link turn is cut off here: a very slow gear has to do with less.
-pub(super) const LONGEST_LEG_S: f64 = 15.0;
+const LONGEST_LEG_S: f64 = 15.0;
 
 /// Collects steps and numbers their segments.
 pub(super) struct Legs {

@@ -40,6 +40,9 @@ fn a_whole_run_is_kept_once_and_in_order() {
     let command_nm = table.column("brake_torque_command_nm").unwrap();
     let top_nm = command_nm.iter().copied().fold(0.0, f64::max);
     assert!((top_nm - 0.4 * 13.0 / 0.6).abs() < 1e-9, "{top_nm}");
+    let sent = done.world.commands(|call| matches!(call, crate::fakes::Call::SetCurrent(_)));
+    let closest_s = sent.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::MAX, f64::min);
+    assert!(closest_s >= 0.099, "the supply takes a new current every 0.1 s, not {closest_s} s");
     assert!(done.ledger.live_rows >= table.len() - 9, "all but the last rows were shown");
 }
 

@@ -40,10 +40,11 @@ fn every_limit_trips_in_mid_run() {
             .events()
             .any(|event| matches!(event.kind, EventKind::Breach { breach } if breach.quantity == quantity));
         assert!(told, "{}", quantity.name());
-        // Drive torque off before anything else.
-        let tripped = done.world.log.iter().position(|(at_s, _)| *at_s >= 102.5);
-        let disarmed = done.world.log.iter().position(|(_, call)| *call == Call::Disarm);
-        assert!(disarmed <= tripped.or(disarmed), "{}", quantity.name());
+        // Drive torque off before anything else: no set-point between the breach and the disarming.
+        let last = done.world.commands(|call| matches!(call, Call::SetVelocity(_) | Call::Disarm));
+        let disarmed_s = last.iter().find(|(_, call)| *call == Call::Disarm).map(|(at_s, _)| *at_s);
+        let breach = done.ledger.events().find(|event| matches!(event.kind, EventKind::Breach { .. }));
+        assert_eq!(disarmed_s, breach.map(|event| 100.0 + event.at_s), "{}", quantity.name());
     }
 }
 
