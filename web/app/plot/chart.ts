@@ -102,6 +102,7 @@ function axis(title: string, bare = false, size?: number): uPlot.Axis {
 		ticks: { stroke: () => colour('--line'), width: 1, size: 4 },
 		gap: 4,
 		size: bare ? 8 : (size ?? 28),
+		space: size ? 26 : 60,
 		values: bare ? (_u, splits) => splits.map(() => '') : undefined,
 	};
 }

@@ -1,0 +1,52 @@
+// One Chromium page that keeps a record of everything that must not happen.
+import { existsSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+
+const KNOWN = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+
+export class Failed extends Error {}
+
+export function expect(truth, message) {
+	if (!truth) throw new Failed(message);
+}
+
+/** Base address of the daemon and the browser, from the arguments or the environment. */
+export function settings(usage) {
+	const [base, given] = process.argv.slice(2);
+	const executablePath = given ?? process.env.JB_CHROMIUM ?? KNOWN.find((path) => existsSync(path));
+	if (!base || !executablePath) {
+		console.error(`${usage}\nChromium is looked for in ${KNOWN.join(', ')}, $JB_CHROMIUM or the second argument.`);
+		process.exit(2);
+	}
+	return { base: base.replace(/\/$/, ''), executablePath };
+}
+
+/** A page at `base`, and the list of what went wrong in it: console errors, exceptions, requests to another host. */
+export async function open({ base, executablePath }, context = {}) {
+	const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-dev-shm-usage'] });
+	const page = await (await browser.newContext({ viewport: { width: 1440, height: 900 }, ...context })).newPage();
+	const faults = [];
+	page.on('console', (message) => {
+		if (message.type() === 'error') faults.push(`console: ${message.text()} (${message.location().url})`);
+	});
+	page.on('pageerror', (error) => faults.push(`exception: ${error.message}`));
+	page.on('request', (request) => {
+		if (new URL(request.url()).host !== new URL(base).host) faults.push(`request off the host: ${request.url()}`);
+	});
+	page.on('websocket', (socket) => {
+		if (new URL(socket.url()).host !== new URL(base).host) faults.push(`socket off the host: ${socket.url()}`);
+	});
+	return { browser, page, faults };
+}
+
+/** Runs the story; says in one line how it ended. */
+export async function tell(name, story) {
+	try {
+		await story();
+		console.log(`${name}: ok`);
+		process.exit(0);
+	} catch (error) {
+		console.error(`${name}: ${error instanceof Failed ? error.message : (error.stack ?? error)}`);
+		process.exit(1);
+	}
+}

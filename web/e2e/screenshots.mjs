@@ -1,0 +1,54 @@
+// Every screen, light and dark, for the documentation:
+//   node web/e2e/screenshots.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
+// Writes into docs/screens of the repository, or into $JB_SCREENS.
+import { mkdirSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { expect, open, settings, tell } from './browser.mjs';
+import { readVersion, startRun, toAnotherVersion, watchRun } from './steps.mjs';
+
+const where = settings('usage: node web/e2e/screenshots.mjs http://127.0.0.1:8080 [path/to/chromium]');
+const folder = process.env.JB_SCREENS ?? fileURLToPath(new URL('../../docs/screens', import.meta.url));
+mkdirSync(folder, { recursive: true });
+
+const NARROW = { width: 768, height: 1024 };
+const WIDE = { width: 1440, height: 900 };
+
+async function shoot(page, name) {
+	for (const theme of ['light', 'dark']) {
+		await page.emulateMedia({ colorScheme: theme, reducedMotion: 'reduce' });
+		await page.waitForTimeout(350);
+		await page.screenshot({ path: `${folder}/${name}-${theme}.png` });
+	}
+}
+
+await tell(`screens in ${folder}`, async () => {
+	const { browser, page, faults } = await open(where);
+	await page.goto(where.base);
+	await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 20_000 });
+	await shoot(page, 'bench');
+
+	const run = await startRun(page, where.base);
+	await page.waitForTimeout(2500);
+	await shoot(page, 'live');
+	const toWorkbench = await watchRun(page);
+	await shoot(page, 'run');
+
+	await toWorkbench.click();
+	const first = await readVersion(page);
+	await shoot(page, 'workbench-missing');
+	if (first.verdict === 'missing_effect') {
+		await page.locator('a.region').first().click();
+		await shoot(page, 'workbench-region');
+		await toAnotherVersion(page, () => page.keyboard.press('a'));
+		await shoot(page, 'workbench-added');
+	}
+	await page.setViewportSize(NARROW);
+	await shoot(page, 'workbench-narrow');
+	await page.setViewportSize(WIDE);
+
+	await page.goto(`${where.base}/runs`);
+	await page.getByRole('link', { name: `#${run}` }).waitFor();
+	await shoot(page, 'runs');
+	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
+	await browser.close();
+});

@@ -1,0 +1,51 @@
+// What a person does on the pages, for the walk and for the pictures.
+import { expect } from './browser.mjs';
+
+const RUN_MS = 180_000;
+const FIT_MS = 60_000;
+
+/** Starts the procedure that is offered, as it is offered. Gives the run's number. */
+export async function startRun(page, base) {
+	await page.goto(base);
+	const start = page.getByRole('button', { name: 'Start' });
+	try {
+		await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 20_000 });
+	} catch {
+		const reason = await page.locator('#start-reason').textContent({ timeout: 500 }).catch(() => 'the page has no Start');
+		expect(false, `Start stays disabled: ${reason}`);
+	}
+	await start.click();
+	await page.waitForURL(/\/runs\/\d+/, { timeout: 10_000 });
+	return Number(/runs\/(\d+)/.exec(page.url())[1]);
+}
+
+/** Waits on the live page until the run has completed. */
+export async function watchRun(page) {
+	const open = page.getByRole('link', { name: 'Open in the workbench' });
+	await open.waitFor({ timeout: RUN_MS }).catch(async () => {
+		expect(false, `the run did not end in ${RUN_MS / 1000} s: ${await page.locator('h1').locator('..').innerText()}`);
+	});
+	const head = await page.locator('header:has(h1)').last().innerText();
+	expect(head.includes('DONE'), `the run did not complete: ${head.replaceAll('\n', ' ')}`);
+	return open;
+}
+
+/** Waits until the version on the screen is fitted and diagnosed; says what the screen shows of it. */
+export async function readVersion(page) {
+	await page.locator('section[data-verdict]').waitFor({ timeout: FIT_MS });
+	await page.locator('rect.held.here').waitFor({ timeout: FIT_MS });
+	return {
+		model: new URL(page.url()).searchParams.get('model'),
+		verdict: await page.locator('section[data-verdict]').getAttribute('data-verdict'),
+		held: Number(await page.locator('rect.held.here').getAttribute('data-held')),
+		effects: await page.locator('article[data-effect]').evaluateAll((cards) => cards.map((card) => card.dataset.effect)),
+	};
+}
+
+/** Does something that leads to another version, and waits for it. */
+export async function toAnotherVersion(page, act) {
+	const before = new URL(page.url()).searchParams.get('model');
+	await act();
+	await page.waitForFunction((id) => new URL(location.href).searchParams.get('model') !== id, before, { timeout: FIT_MS });
+	return readVersion(page);
+}

@@ -1,0 +1,52 @@
+// The product's main path in a real browser, against a running daemon:
+//   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
+// Start the procedure, watch it finish, open the workbench, see where the model fails, add the first suggestion, see the
+// error fall, undo, and find the same through REST. Exits with 1 and a sentence where that does not hold.
+import { expect, open, settings, tell } from './browser.mjs';
+import { readVersion, startRun, toAnotherVersion, watchRun } from './steps.mjs';
+
+const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
+const rest = async (path) => {
+	const answer = await fetch(`${where.base}/api/v1${path}`);
+	expect(answer.ok, `GET ${path} answers ${answer.status}`);
+	return answer.json();
+};
+
+await tell('walk', async () => {
+	const { browser, page, faults } = await open(where);
+	const run = await startRun(page, where.base);
+	const toWorkbench = await watchRun(page);
+	console.log(`run ${run} is done`);
+
+	await toWorkbench.click();
+	const first = await readVersion(page);
+	expect(first.verdict === 'missing_effect', `the first model should lack an effect, but the verdict is ${first.verdict}`);
+	console.log(`held-out error ${first.held}, missing: ${first.effects.join(', ')}`);
+
+	const region = page.locator('a.region').first();
+	expect((await region.count()) === 1, 'no sentence says where the model fails');
+	await region.click();
+	await page.waitForURL(/region=/);
+	expect((await page.locator('a.region[aria-current=true]').count()) === 1, 'the region is not marked');
+
+	const card = page.locator('article[data-effect]').first();
+	const second = await toAnotherVersion(page, () => card.getByRole('button', { name: 'Add and refit' }).click());
+	expect(second.held < first.held, `the error should fall, but went from ${first.held} to ${second.held}`);
+	expect((await page.locator('rect.held').count()) >= 2, 'the waterfall has no step');
+	console.log(`with ${first.effects[0]}: ${second.held}`);
+
+	const undone = await toAnotherVersion(page, () => page.keyboard.press('z'));
+	expect(undone.held === first.held, `undo should lead back to ${first.held}, but shows ${undone.held}`);
+
+	const models = await rest(`/models?run=${run}`);
+	const [parent, child] = [undone.model, second.model].map((id) => models.find((model) => String(model.id) === id));
+	expect(parent && child, `REST does not know the versions ${undone.model} and ${second.model}`);
+	expect(child.parent === parent.id && child.added.includes(first.effects[0]), 'REST tells another story of the versions');
+	expect(parent.validation_rms === first.held && child.validation_rms === second.held, 'REST has other errors');
+	const [diagnosis] = await rest(`/diagnoses?model=${parent.id}`);
+	expect(diagnosis?.suggestions[0]?.effect === first.effects[0], 'REST has another first suggestion');
+	expect(diagnosis.where.length > 0, 'REST does not say where the model fails');
+
+	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
+	await browser.close();
+});
