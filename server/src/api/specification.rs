@@ -27,7 +27,10 @@ fn every_response_is_described() {
         for (method, operation) in item.as_object().unwrap().iter().filter(|(_, o)| o.get("responses").is_some()) {
             operations += 1;
             let name = operation["operationId"].as_str().unwrap();
-            assert!(names.insert(name.to_owned()), "{method} {path}: two operations are called {name}; name one with operation_id");
+            assert!(
+                names.insert(name.to_owned()),
+                "{method} {path}: two operations are called {name}; name one with operation_id"
+            );
             assert!(operation["summary"].is_string() && operation["tags"].is_array(), "{method} {path}");
             for (status, response) in operation["responses"].as_object().unwrap() {
                 let described = response["description"].as_str().is_some_and(|text| !text.is_empty());

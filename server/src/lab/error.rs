@@ -45,3 +45,60 @@ impl LabError {
         }
     }
 }
+
+impl From<crate::store::StoreError> for LabError {
+    fn from(error: crate::store::StoreError) -> Self {
+        use crate::store::StoreError as E;
+        let said = error.to_string();
+        match error {
+            E::NoRun(id) => LabError::no_run(id),
+            E::NoModel(id) => LabError::no_model(id),
+            _ if error.is_not_found() => LabError::NotFound(said),
+            _ if error.is_setup() => LabError::Setup(said),
+            E::OtherRun { .. } => LabError::Invalid(said),
+            E::RunOver { .. } => LabError::Conflict(said),
+            _ => LabError::Internal(said),
+        }
+    }
+}
+
+impl From<jointbench_files::FileError> for LabError {
+    fn from(error: jointbench_files::FileError) -> Self {
+        let (line, column) = (error.place.line.or(error.place.row), error.place.column.clone());
+        if error.is_io() {
+            return LabError::Setup(error.to_string());
+        }
+        LabError::File { detail: error.to_string(), line, column }
+    }
+}
+
+impl From<jointbench_files::OptionFault> for LabError {
+    fn from(error: jointbench_files::OptionFault) -> Self {
+        LabError::Invalid(error.to_string())
+    }
+}
+
+impl From<jointbench_model::ModelError> for LabError {
+    fn from(error: jointbench_model::ModelError) -> Self {
+        LabError::Invalid(error.to_string())
+    }
+}
+
+impl From<jointbench_procedure::PlanFault> for LabError {
+    fn from(error: jointbench_procedure::PlanFault) -> Self {
+        LabError::Invalid(error.to_string())
+    }
+}
+
+impl From<jointbench_instrument::TableFault> for LabError {
+    fn from(error: jointbench_instrument::TableFault) -> Self {
+        LabError::Invalid(format!("this run cannot be modelled: {error}"))
+    }
+}
+
+impl From<crate::config::Mistakes> for LabError {
+    fn from(mistakes: crate::config::Mistakes) -> Self {
+        let line = mistakes.mistakes.first().map(|mistake| mistake.line as u64);
+        LabError::File { detail: mistakes.to_string(), line, column: None }
+    }
+}

@@ -1,114 +1,80 @@
-//! The one service layer.
+//! The one service layer: whatever the REST API, the demo or the command line does with a bench or a run goes through
+//! a [`Lab`].
+
+mod benches;
+mod convert;
 mod error;
-use crate::view::*;
+mod models;
+mod runs;
+mod transfer;
+
+pub use convert::{bench_view, reread, run_event, safe_view, state_view};
 pub use error::LabError;
-use jointbench_procedure::Control;
-use serde::Deserialize;
-use serde_json::{Map, Value};
-use utoipa::ToSchema;
+pub use transfer::{FileFormat, ImportRequest};
 
-type R<T> = Result<T, LabError>;
-fn no<T>() -> R<T> {
-    Err(LabError::Internal("not wired".into()))
-}
+use crate::bench::BenchHandle;
+use crate::config::BenchDescription;
+use crate::live::Hub;
+use crate::store::Store;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum FileFormat {
-    Csv,
-    Parquet,
-}
-impl FileFormat {
-    pub fn extension(self) -> &'static str {
-        match self {
-            FileFormat::Csv => "csv",
-            FileFormat::Parquet => "parquet",
-        }
-    }
-    pub fn media_type(self) -> &'static str {
-        match self {
-            FileFormat::Csv => "text/csv; charset=utf-8",
-            FileFormat::Parquet => "application/vnd.apache.parquet",
-        }
-    }
-}
-#[derive(Debug, Clone, Default)]
-pub struct ImportRequest {
-    pub name: Option<String>,
-    pub file_name: String,
-    pub bytes: Vec<u8>,
-    pub meta: Option<String>,
-    pub map: Vec<String>,
-    pub scale: Vec<String>,
-}
+type Answer<T> = Result<T, LabError>;
 
+/// Benches, store and live stream together. Cheap to clone.
 #[derive(Clone)]
-pub struct Lab;
+pub struct Lab {
+    inner: Arc<Inner>,
+}
+
+struct Inner {
+    store: Store,
+    hub: Hub,
+    benches: Vec<BenchHandle>,
+}
+
 impl Lab {
-    pub fn benches(&self) -> Vec<Bench> {
-        vec![]
+    /// Opens the store, ends what another daemon has left open, and starts one thread for each bench, which secures it.
+    /// Nothing that was interrupted starts again.
+    pub async fn open(data: &Path, descriptions: Vec<BenchDescription>) -> Answer<Lab> {
+        let store = Store::open(data).await?;
+        let mut interrupted: BTreeMap<String, Vec<i64>> = BTreeMap::new();
+        for run in store.interrupt_open_runs().await? {
+            interrupted.entry(run.bench).or_default().push(run.id);
+        }
+        let hub = Hub::new();
+        let mut benches = Vec::new();
+        for description in descriptions {
+            let runs = interrupted.remove(&description.name).unwrap_or_default();
+            let name = description.name.clone();
+            let bench = BenchHandle::start(description, store.clone(), hub.clone(), runs)
+                .map_err(|fault| LabError::Setup(format!("bench {name} gets no thread: {fault}")))?;
+            benches.push(bench);
+        }
+        for (bench, runs) in interrupted {
+            let reason = "a run was interrupted, and the bench is not in the description that the daemon was started with";
+            store.block_bench(&bench, runs.last().copied(), reason).await?;
+            for run in runs {
+                store.end_run(run, jointbench_procedure::Safe::UnsafeUnknown, Some(reason)).await?;
+            }
+        }
+        let lab = Lab { inner: Arc::new(Inner { store, hub, benches }) };
+        lab.wait_until_secured().await;
+        Ok(lab)
     }
-    pub fn bench(&self, _: &str) -> R<Bench> {
-        no()
+
+    pub fn hub(&self) -> &Hub {
+        &self.inner.hub
     }
-    pub async fn emergency_stop(&self, _: &str) -> R<Bench> {
-        no()
-    }
-    pub async fn acknowledge(&self, _: &str, _: &str) -> R<Bench> {
-        no()
-    }
-    pub fn procedures(&self) -> Vec<Procedure> {
-        vec![]
-    }
-    pub fn preview(&self, _: &str, _: &str, _: &Map<String, Value>) -> R<Preview> {
-        no()
-    }
-    pub async fn runs(&self, _: u32, _: u32, _: Option<&str>) -> R<RunList> {
-        no()
-    }
-    pub async fn start_run(&self, _: &str, _: &str, _: &Map<String, Value>) -> R<Run> {
-        no()
-    }
-    pub async fn run(&self, _: i64) -> R<Run> {
-        no()
-    }
-    pub async fn control(&self, _: i64, _: Control) -> R<Run> {
-        no()
-    }
-    pub async fn events(&self, _: i64, _: Option<u64>) -> R<Vec<RunEvent>> {
-        no()
-    }
-    pub async fn samples(&self, _: i64, _: Option<&[String]>, _: Option<f64>, _: Option<f64>, _: u32) -> R<Samples> {
-        no()
-    }
-    pub async fn export(&self, _: i64, _: FileFormat) -> R<Vec<u8>> {
-        no()
-    }
-    pub async fn import(&self, _: ImportRequest) -> R<Run> {
-        no()
-    }
-    pub fn effects(&self, _: Option<&str>) -> R<Vec<Effect>> {
-        no()
-    }
-    pub async fn create_model(&self, _: i64, _: &[String], _: Option<i64>) -> R<Model> {
-        no()
-    }
-    pub async fn models(&self, _: i64) -> R<Vec<Model>> {
-        no()
-    }
-    pub async fn model(&self, _: i64) -> R<Model> {
-        no()
-    }
-    pub async fn residuals(&self, _: i64) -> R<ResidualSet> {
-        no()
-    }
-    pub async fn diagnose(&self, _: i64) -> R<Diagnosis> {
-        no()
-    }
-    pub async fn diagnosis(&self, _: i64) -> R<Diagnosis> {
-        no()
-    }
-    pub async fn diagnoses(&self, _: i64) -> R<Vec<Diagnosis>> {
-        no()
+
+    /// Ends all runs, secures all benches and closes the store.
+    pub async fn shut_down(&self) {
+        let benches = self.inner.benches.clone();
+        let ended = tokio::task::spawn_blocking(move || benches.iter().for_each(BenchHandle::shut_down)).await;
+        if let Err(fault) = ended {
+            tracing::error!(%fault, "shutting down failed");
+        }
+        self.inner.store.close().await;
     }
 }

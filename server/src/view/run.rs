@@ -140,3 +140,9 @@ pub struct SampleColumn {
     pub min: Vec<Option<f64>>,
     pub max: Vec<Option<f64>>,
 }
+
+impl From<&jointbench_instrument::Channel> for ChannelInfo {
+    fn from(channel: &jointbench_instrument::Channel) -> Self {
+        Self { name: channel.name.clone(), unit: channel.unit().map(str::to_owned), resolution: channel.resolution }
+    }
+}

@@ -1,0 +1,130 @@
+//! Keeps what a run brings: durable in the store first, then shown to whoever watches.
+
+use super::status::{Status, readings};
+use super::thread::Start;
+use crate::lab::{run_event, safe_view, state_view};
+use crate::live::Rows;
+use crate::view::{BenchState, LiveMessage, Progress};
+use jointbench_procedure::{Commit, Live, Recorder, RecorderFault, RunEnd, RunId, RunState};
+use std::time::{Duration, Instant};
+use tokio::runtime::Handle;
+use tokio::sync::watch;
+
+/// A mock bench outruns the clock on the wall; eyes do not.
+const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+
+pub(super) struct StoreRecorder<'a> {
+    start: &'a Start,
+    status: &'a watch::Sender<Status>,
+    runtime: &'a Handle,
+    run: RunId,
+    told_events: u64,
+    told_progress: Option<Instant>,
+    state: RunState,
+}
+
+impl<'a> StoreRecorder<'a> {
+    pub fn new(start: &'a Start, status: &'a watch::Sender<Status>, runtime: &'a Handle, run: RunId) -> Self {
+        Self { start, status, runtime, run, told_events: 0, told_progress: None, state: RunState::Queued }
+    }
+
+    fn bench(&self) -> &str {
+        &self.start.description.name
+    }
+
+    fn tell_state(&mut self, state: RunState) {
+        if state == self.state {
+            return;
+        }
+        self.state = state;
+        self.status.send_modify(|status| {
+            status.run = Some(self.run);
+            status.state = match state {
+                RunState::Paused => BenchState::Paused,
+                RunState::Securing => BenchState::Securing,
+                _ => BenchState::Running,
+            };
+        });
+        // The end is told with its reason, by `end`.
+        if !state.is_final() {
+            let message = LiveMessage::State {
+                bench: self.bench().to_owned(),
+                run: self.run,
+                state: state_view(state),
+                safe: None,
+                reason: None,
+            };
+            self.start.hub.tell(message);
+        }
+        let bench = crate::lab::bench_view(&self.start.description, &self.status.borrow());
+        self.start.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
+    }
+
+    /// Tells the journal's new lines with the numbers that the store gave them.
+    fn tell_events(&mut self) {
+        let events = self.runtime.block_on(self.start.store.events(self.run, self.told_events));
+        for event in events.unwrap_or_default() {
+            self.told_events = event.sequence;
+            let (bench, event) = (self.bench().to_owned(), run_event(event));
+            self.start.hub.tell(LiveMessage::Event { bench, run: self.run, event });
+        }
+    }
+
+    /// What the engine says of the end.
+    pub fn end(&mut self, end: &RunEnd) {
+        let kept = self.runtime.block_on(self.start.store.end_run(self.run, end.safe, end.reason.as_deref()));
+        if let Err(fault) = kept {
+            tracing::error!(run.id = self.run, %fault, "how the run ended could not be kept");
+        }
+        let message = LiveMessage::State {
+            bench: self.bench().to_owned(),
+            run: self.run,
+            state: state_view(end.state),
+            safe: Some(safe_view(end.safe)),
+            reason: end.reason.clone(),
+        };
+        self.start.hub.tell(message);
+    }
+}
+
+impl Recorder for StoreRecorder<'_> {
+    fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
+        let block = self.runtime.block_on(self.start.store.bench_block(self.bench())).map_err(fault)?;
+        Ok(block.map(|block| block.reason))
+    }
+
+    fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
+        let Commit { run, state, events, rows } = commit;
+        self.runtime.block_on(self.start.store.commit(run, state, events, rows)).map_err(fault)?;
+        self.tell_state(state);
+        self.tell_events();
+        Ok(())
+    }
+
+    fn live(&mut self, live: Live<'_>) {
+        let rows = Rows { bench: self.bench().to_owned(), run: live.run, rows: live.rows.clone() };
+        self.start.hub.show(rows);
+        if self.told_progress.is_some_and(|told| told.elapsed() < PROGRESS_EVERY) {
+            return;
+        }
+        self.told_progress = Some(Instant::now());
+        let progress = Progress {
+            step: live.progress.step,
+            steps: live.progress.steps,
+            label: live.progress.label.clone(),
+            elapsed_s: live.progress.elapsed_s,
+            remaining_s: live.progress.remaining_s,
+        };
+        let message = LiveMessage::Progress { bench: self.bench().to_owned(), run: live.run, progress: progress.clone() };
+        self.start.hub.tell(message);
+        let readings = readings(live.rows, self.start.description.constants.gear_ratio);
+        self.status.send_modify(|status| {
+            status.progress = Some(progress);
+            status.readings = readings;
+        });
+    }
+}
+
+fn fault(fault: crate::store::StoreError) -> RecorderFault {
+    RecorderFault(fault.to_string())
+}

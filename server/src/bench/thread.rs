@@ -1,0 +1,207 @@
+//! The thread that owns a bench. An ordinary loop: one command after the other, a run is one command.
+
+use super::handle::{Slot, lock};
+use super::instruments::{Opened, open};
+use super::recorder::StoreRecorder;
+use super::status::Status;
+use crate::config::BenchDescription;
+use crate::live::Hub;
+use crate::store::Store;
+use crate::view::{BenchState, Blocked, LiveMessage};
+use jointbench_procedure::{Control, Plan, RunId, Safe};
+use std::io;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread::JoinHandle;
+use tokio::runtime::Handle;
+use tokio::sync::{oneshot, watch};
+
+pub(super) enum Command {
+    Run { run: RunId, plan: Box<Plan>, controls: Receiver<Control> },
+    Secure { taken: oneshot::Sender<()> },
+    Open { done: oneshot::Sender<()> },
+    Refresh { done: oneshot::Sender<()> },
+    Quit,
+}
+
+pub(super) struct Start {
+    pub description: BenchDescription,
+    pub store: Store,
+    pub hub: Hub,
+    pub slot: Slot,
+    /// Runs that another daemon left open on this bench.
+    pub interrupted: Vec<RunId>,
+}
+
+const INTERRUPTED: &str = "the daemon ended before the run did; all committed samples are kept";
+
+type Spawned = (Sender<Command>, watch::Receiver<Status>, JoinHandle<()>);
+
+/// Must be called inside the runtime, which the thread uses to wait for the store.
+pub(super) fn spawn(start: Start) -> io::Result<Spawned> {
+    let (commands, receiver) = mpsc::channel();
+    let (status, watched) = watch::channel(Status::offline());
+    let runtime = Handle::current();
+    let name = format!("bench {}", start.description.name);
+    let thread = std::thread::Builder::new().name(name).spawn(move || {
+        Owner { start, status, runtime, opened: None }.serve(&receiver);
+    })?;
+    Ok((commands, watched, thread))
+}
+
+struct Owner {
+    start: Start,
+    status: watch::Sender<Status>,
+    runtime: Handle,
+    opened: Option<Opened>,
+}
+
+impl Owner {
+    fn serve(mut self, commands: &Receiver<Command>) {
+        self.open();
+        self.refresh();
+        // Whoever was here before may have been killed: nothing is known of the bench until it is secured.
+        let safe = self.secure();
+        for run in std::mem::take(&mut self.start.interrupted) {
+            tracing::warn!(run.id = run, bench = self.name(), %safe, "run was interrupted, the bench is secured now");
+            let ended = self.runtime.block_on(self.start.store.end_run(run, safe, Some(INTERRUPTED)));
+            if let Err(fault) = ended {
+                tracing::error!(run.id = run, %fault, "how the run ended could not be kept");
+            }
+        }
+        self.change(|status| status.settled = true);
+        while let Ok(command) = commands.recv() {
+            match command {
+                Command::Run { run, plan, controls } => self.run(run, &plan, &controls),
+                Command::Secure { taken } => {
+                    self.change(|status| status.state = BenchState::Securing);
+                    // Whoever asked may have left; the bench is secured all the same.
+                    let _ = taken.send(());
+                    self.secure();
+                }
+                Command::Open { done } => {
+                    let was_open = self.is_open();
+                    self.open();
+                    if !was_open && self.is_open() {
+                        self.secure();
+                    }
+                    let _ = done.send(());
+                }
+                Command::Refresh { done } => {
+                    self.refresh();
+                    let _ = done.send(());
+                }
+                Command::Quit => break,
+            }
+        }
+        tracing::debug!(bench = self.name(), "bench thread ends");
+    }
+
+    fn name(&self) -> &str {
+        &self.start.description.name
+    }
+
+    fn is_open(&self) -> bool {
+        self.opened.as_ref().is_some_and(|opened| opened.bench.is_some())
+    }
+
+    /// Opens what is not open. Instruments that answer already keep their ports.
+    fn open(&mut self) {
+        if self.is_open() {
+            return;
+        }
+        // The ports of a half-open bench are let go first.
+        self.opened = None;
+        let opened = open(&self.start.description);
+        for instrument in &opened.instruments {
+            let (name, port) = (&instrument.name, &instrument.port);
+            match &instrument.fault {
+                None => tracing::info!(bench = self.name(), name, port, driver = instrument.driver, "instrument ready"),
+                Some(fault) => tracing::warn!(bench = self.name(), name, port, fault, "instrument not ready"),
+            }
+        }
+        let state = if opened.bench.is_some() { BenchState::Idle } else { BenchState::Offline };
+        let instruments = opened.instruments.clone();
+        self.opened = Some(opened);
+        self.change(|status| {
+            status.state = state;
+            status.instruments = instruments;
+        });
+    }
+
+    fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Control>) {
+        let Some(bench) = self.opened.as_mut().and_then(|opened| opened.bench.as_mut()) else {
+            // The lab opens a bench before it starts a run; a bench that went away in between has no instruments to move.
+            tracing::error!(run.id = run, "run started on a bench that is not open");
+            lock(&self.start.slot).take();
+            return;
+        };
+        let mut recorder = StoreRecorder::new(&self.start, &self.status, &self.runtime, run);
+        let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
+        recorder.end(&end);
+        self.refresh_with(end.safe, end.reason.as_deref(), Some(run));
+        // Free before it is told: whoever hears of the end may start the next run.
+        lock(&self.start.slot).take();
+        let state = if end.safe == Safe::UnsafeUnknown { BenchState::Fault } else { BenchState::Idle };
+        self.change(|status| {
+            status.state = state;
+            status.run = None;
+            status.progress = None;
+            status.readings.clear();
+        });
+    }
+
+    fn secure(&mut self) -> Safe {
+        let Some(bench) = self.opened.as_mut().and_then(|opened| opened.bench.as_mut()) else {
+            // A bench that is merely not plugged in needs no acknowledgement; it is secured when it is opened.
+            if !self.start.interrupted.is_empty() {
+                let reason = "a run was interrupted and the instruments do not answer";
+                self.refresh_with(Safe::UnsafeUnknown, Some(reason), None);
+            }
+            self.change(|status| status.state = BenchState::Offline);
+            return Safe::UnsafeUnknown;
+        };
+        let secured = jointbench_procedure::secure(bench);
+        for note in &secured.notes {
+            tracing::warn!(bench = self.start.description.name, "{note}");
+        }
+        let reason = (!secured.notes.is_empty()).then(|| secured.notes.join("; "));
+        self.refresh_with(secured.safe, reason.as_deref(), None);
+        let state = if secured.safe == Safe::UnsafeUnknown { BenchState::Fault } else { BenchState::Idle };
+        self.change(|status| status.state = state);
+        secured.safe
+    }
+
+    /// Blocks the bench where it is not known to be safe.
+    fn refresh_with(&mut self, safe: Safe, reason: Option<&str>, run: Option<RunId>) {
+        if safe == Safe::UnsafeUnknown {
+            let reason = format!("the bench is not known to be safe: {}", reason.unwrap_or("no cause is known"));
+            let blocked = self.runtime.block_on(self.start.store.block_bench(self.name(), run, &reason));
+            if let Err(fault) = blocked {
+                tracing::error!(bench = self.name(), %fault, "the block of the bench could not be kept");
+            }
+        }
+        self.refresh();
+    }
+
+    fn refresh(&mut self) {
+        match self.runtime.block_on(self.start.store.bench_block(self.name())) {
+            Ok(block) => {
+                let blocked = block.map(|block| Blocked { reason: block.reason, since: block.since });
+                let open = self.is_open();
+                self.change(|status| {
+                    if blocked.is_none() && status.state == BenchState::Fault && open {
+                        status.state = BenchState::Idle;
+                    }
+                    status.blocked = blocked;
+                });
+            }
+            Err(fault) => tracing::error!(bench = self.name(), %fault, "the state of the bench cannot be read"),
+        }
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Status)) {
+        self.status.send_modify(change);
+        let bench = crate::lab::bench_view(&self.start.description, &self.status.borrow());
+        self.start.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
+    }
+}

@@ -1,0 +1,91 @@
+//! Bench descriptions: raw in, checked out, and never checked again.
+
+mod check;
+mod mistake;
+mod raw;
+#[cfg(test)]
+mod tests;
+
+pub use mistake::{Mistake, Mistakes};
+
+use jointbench_devices::driver::{LorenzSettings, OdriveSettings, ScpiSettings};
+use jointbench_devices::{Joint, MockSettings};
+use jointbench_instrument::Limits;
+use jointbench_instrument::bench::JointConstants;
+use std::path::Path;
+
+/// Ready-made descriptions, also to start a new one from.
+pub const READY_MADE: [(&str, &str); 4] = [
+    ("joint-a-mock", include_str!("../../descriptions/joint-a-mock.toml")),
+    ("joint-b-mock", include_str!("../../descriptions/joint-b-mock.toml")),
+    ("joint-a", include_str!("../../descriptions/joint-a.toml")),
+    ("joint-b", include_str!("../../descriptions/joint-b.toml")),
+];
+
+/// A checked bench.
+#[derive(Debug, Clone)]
+pub struct BenchDescription {
+    pub name: String,
+    pub source: Source,
+    pub limits: Limits,
+    pub constants: JointConstants,
+    /// As written, for the provenance of its runs.
+    pub text: String,
+}
+
+/// Where the instruments are.
+#[derive(Debug, Clone)]
+pub enum Source {
+    Mock(MockSettings),
+    Hardware(Box<Hardware>),
+}
+
+/// Real instruments. Absence is an empty slot.
+#[derive(Debug, Clone)]
+pub struct Hardware {
+    pub joint: OdriveSettings,
+    pub torque_sensor: Option<LorenzSettings>,
+    pub brake: Option<ScpiSettings>,
+}
+
+impl BenchDescription {
+    /// A mock bench with the constants and limits of its joint's data sheet.
+    pub fn mock(name: &str, settings: MockSettings) -> Self {
+        let joint: Joint = settings.joint;
+        Self {
+            name: name.to_owned(),
+            limits: joint.limits(),
+            constants: joint.constants(),
+            source: Source::Mock(settings),
+            text: String::new(),
+        }
+    }
+
+    pub fn is_simulated(&self) -> bool {
+        matches!(self.source, Source::Mock(_))
+    }
+
+    pub fn seed(&self) -> Option<u64> {
+        match &self.source {
+            Source::Mock(settings) => Some(settings.seed),
+            Source::Hardware(_) => None,
+        }
+    }
+}
+
+/// Reads a description. Names every mistake at its line with its cure.
+pub fn read(path: &Path) -> Result<Vec<BenchDescription>, Mistakes> {
+    let file = path.display().to_string();
+    match std::fs::read_to_string(path) {
+        Ok(text) => parse(&file, &text),
+        Err(fault) => {
+            let what = format!("cannot be read ({fault}): give the path of a bench description");
+            Err(Mistakes { file, mistakes: vec![Mistake { line: 1, what }] })
+        }
+    }
+}
+
+/// `file` stands in messages.
+pub fn parse(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
+    check::check(file, text)
+}

@@ -1,0 +1,72 @@
+//! Descriptions that are right, and the mistakes that are named.
+
+use super::*;
+
+#[test]
+fn the_ready_made_descriptions_are_right() {
+    for (name, text) in READY_MADE {
+        let benches = parse(name, text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        assert_eq!((benches.len(), benches[0].name.as_str()), (1, name));
+        assert_eq!(benches[0].is_simulated(), name.ends_with("-mock"));
+    }
+}
+
+#[test]
+fn a_mock_takes_the_data_sheet_and_what_is_given_goes_before_it() {
+    let benches = parse("b.toml", "[[bench]]\nname = \"b\"\nmock.joint = \"b\"\nlimits.temperature_c = 50.0\n").unwrap();
+    assert_eq!(benches[0].constants.gear_ratio, 50.0);
+    assert_eq!(benches[0].limits.temperature_c, 50.0);
+}
+
+#[test]
+fn every_mistake_is_named_at_its_line() {
+    let text = "[[bench]]
+name = \"bench one\"
+[bench.joint]
+driver = \"odrve\"
+port = \"/dev/ttyUSB0\"
+[bench.brake]
+driver = \"scpi\"
+port = \"/dev/ttyUSB0\"
+deadline_ms = 0
+[bench.limits]
+motor_velocity_rad_s = -3.0
+motor_current_a = 5.0
+link_torque_nm = 18.0
+temperature_c = 70.0
+brake_current_a = nan
+brake_power_w = 350.0
+
+[[bench]]
+name = \"two\"
+";
+    let mistakes = parse("bench.toml", text).unwrap_err();
+    let said = mistakes.to_string();
+    for expected in [
+        "line 2: name \"bench one\"",
+        "line 4: driver \"odrve\" is not known: write \"odrive\"",
+        "line 8: port \"/dev/ttyUSB0\" has an instrument already",
+        "line 9: deadline_ms 0: choose 1 to 10000",
+        "line 11: limits.motor_velocity_rad_s = -3: give a number above 0",
+        "line 15: limits.brake_current_a = NaN: give a number above 0",
+        "line 2: constants.gear_ratio is missing",
+        "line 19: bench \"two\" has no joint: add [bench.joint], or [bench.mock]",
+    ] {
+        assert!(said.contains(expected), "{expected:?} in\n{said}");
+    }
+    assert!(mistakes.mistakes.windows(2).all(|pair| pair[0].line <= pair[1].line));
+}
+
+#[test]
+fn what_toml_itself_refuses_has_a_line_too() {
+    for (text, line, said) in [
+        ("[[bench]]\nname = \n", 2, ""),
+        ("[[bench]]\nname = \"a\"\nmok.joint = \"a\"\n", 3, "unknown field `mok`"),
+        ("[[bench]]\nname = \"a\"\n\n[bench.mock]\njoint = 3\n", 5, "expected a string"),
+        ("", 1, "no bench is described"),
+    ] {
+        let mistakes = parse("b.toml", text).unwrap_err();
+        assert_eq!(mistakes.mistakes[0].line, line, "{mistakes}");
+        assert!(mistakes.to_string().contains(said), "{mistakes}");
+    }
+}

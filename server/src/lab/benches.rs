@@ -1,0 +1,134 @@
+//! Benches and what they can be asked to do.
+
+use super::convert::bench_view;
+use super::{Answer, Lab, LabError};
+use crate::bench::BenchHandle;
+use crate::view::{self, Bench, BenchState};
+use jointbench_procedure::parameter::{Parameter, ParameterKind};
+use jointbench_procedure::{Plan, Procedure, catalogue, procedure};
+use serde_json::{Map, Value};
+
+impl Lab {
+    pub fn benches(&self) -> Vec<Bench> {
+        self.inner.benches.iter().map(|bench| bench_view(bench.description(), &bench.status())).collect()
+    }
+
+    pub fn bench(&self, name: &str) -> Answer<Bench> {
+        let bench = self.handle(name)?;
+        Ok(bench_view(bench.description(), &bench.status()))
+    }
+
+    pub fn handle(&self, name: &str) -> Answer<&BenchHandle> {
+        self.inner.benches.iter().find(|bench| bench.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = self.inner.benches.iter().map(BenchHandle::name).collect();
+            LabError::NotFound(format!("there is no bench {name}; this daemon has {}", names.join(", ")))
+        })
+    }
+
+    /// Ends a run on this bench at once, or secures the idle bench.
+    pub async fn emergency_stop(&self, name: &str) -> Answer<Bench> {
+        tracing::warn!(bench = name, "software stop");
+        self.handle(name)?.stop().await?;
+        self.bench(name)
+    }
+
+    pub async fn acknowledge(&self, name: &str, reason: &str) -> Answer<Bench> {
+        let bench = self.handle(name)?;
+        if reason.trim().is_empty() {
+            return Err(LabError::Invalid("give a reason: what was found and done at the bench".into()));
+        }
+        if self.inner.store.bench_block(name).await?.is_none() {
+            return Err(LabError::Conflict(format!("bench {name} is not blocked: there is nothing to acknowledge")));
+        }
+        self.inner.store.acknowledge_bench(name, reason.trim()).await?;
+        tracing::warn!(bench = name, reason, "block lifted by a person");
+        bench.refresh().await?;
+        self.bench(name)
+    }
+
+    pub fn procedures(&self) -> Vec<view::Procedure> {
+        catalogue().iter().map(|procedure| procedure_view(*procedure)).collect()
+    }
+
+    /// Dry run. Nothing moves.
+    pub fn preview(&self, bench: &str, id: &str, parameters: &Map<String, Value>) -> Answer<view::Preview> {
+        let (bench, plan) = self.plan(bench, id, parameters)?;
+        let mut preview: view::Preview = super::reread(&plan.preview(&bench.facts()))?;
+        preview.checks.extend(readiness(bench));
+        Ok(preview)
+    }
+
+    pub(super) fn plan(
+        &self,
+        bench: &str,
+        id: &str,
+        parameters: &Map<String, Value>,
+    ) -> Answer<(&BenchHandle, Plan)> {
+        let bench = self.handle(bench)?;
+        let procedure = procedure(id).ok_or_else(|| {
+            let known: Vec<&str> = catalogue().iter().map(|procedure| procedure.id()).collect();
+            LabError::NotFound(format!("there is no procedure {id}; there are {}", known.join(", ")))
+        })?;
+        Ok((bench, procedure.plan(parameters, &bench.facts())?))
+    }
+
+    pub(super) async fn wait_until_secured(&self) {
+        for bench in &self.inner.benches {
+            let mut watch = bench.watch();
+            // An error says that the thread has ended; its status tells why.
+            let _ = watch.wait_for(|status| status.settled).await;
+        }
+    }
+}
+
+/// Conditions of a start that the plan does not know.
+fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
+    let status = bench.status();
+    let faults = status.faults();
+    let busy = !matches!(status.state, BenchState::Idle | BenchState::Offline | BenchState::Fault);
+    vec![
+        view::Check {
+            name: "instruments".into(),
+            ok: faults.is_none(),
+            detail: faults.clone().unwrap_or_else(|| "all answer".into()),
+            cure: faults.map(|_| "check power, cables and the ports in the bench description".into()),
+        },
+        view::Check {
+            name: "acknowledged".into(),
+            ok: status.blocked.is_none(),
+            detail: status.blocked.as_ref().map_or_else(|| "nothing open".into(), |blocked| blocked.reason.clone()),
+            cure: status.blocked.map(|_| "look at the bench, then acknowledge it with a reason".into()),
+        },
+        view::Check {
+            name: "free".into(),
+            ok: !busy,
+            detail: status.run.map_or_else(|| "no run is on".into(), |run| format!("run {run} is on")),
+            cure: busy.then(|| "wait for its end, or stop it".into()),
+        },
+    ]
+}
+
+fn procedure_view(procedure: &dyn Procedure) -> view::Procedure {
+    view::Procedure {
+        id: procedure.id().to_owned(),
+        title: procedure.title().to_owned(),
+        summary: procedure.summary().to_owned(),
+        kind: procedure.kind().to_string(),
+        parameters: procedure.schema().iter().map(parameter_view).collect(),
+    }
+}
+
+fn parameter_view(parameter: &Parameter) -> view::ProcedureParameter {
+    view::ProcedureParameter {
+        name: parameter.name.to_owned(),
+        title: parameter.title.to_owned(),
+        unit: parameter.unit.to_owned(),
+        default: parameter.default,
+        min: parameter.min,
+        max: parameter.max,
+        type_: match parameter.kind {
+            ParameterKind::Number => view::ParameterType::Number,
+            ParameterKind::Integer => view::ParameterType::Integer,
+        },
+    }
+}

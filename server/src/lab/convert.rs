@@ -1,0 +1,161 @@
+//! Records of the store and types of the lower crates, as views.
+
+use super::LabError;
+use crate::bench::Status;
+use crate::config::BenchDescription;
+use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord};
+use crate::view;
+use jointbench_instrument::limits::Limited;
+use jointbench_procedure::{EventKind, RunState, Safe};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+/// Reads one type's JSON as another. A NaN becomes `null` on the way, which a number refuses: nothing that is not finite
+/// gets through unnoticed.
+pub fn reread<T: Serialize, U: DeserializeOwned>(value: &T) -> Result<U, LabError> {
+    let json = serde_json::to_value(value).map_err(|fault| LabError::Internal(fault.to_string()))?;
+    serde_json::from_value(json).map_err(|fault| LabError::Internal(format!("a result is not finite or not whole: {fault}")))
+}
+
+pub fn state_view(state: RunState) -> view::RunState {
+    match state {
+        RunState::Queued => view::RunState::Queued,
+        RunState::Arming => view::RunState::Arming,
+        RunState::Running => view::RunState::Running,
+        RunState::Paused => view::RunState::Paused,
+        RunState::Securing => view::RunState::Securing,
+        RunState::Completed => view::RunState::Completed,
+        RunState::Stopped => view::RunState::Stopped,
+        RunState::Aborted => view::RunState::Aborted,
+        RunState::Failed => view::RunState::Failed,
+        RunState::Interrupted => view::RunState::Interrupted,
+    }
+}
+
+pub fn safe_view(safe: Safe) -> view::Safe {
+    match safe {
+        Safe::SafeVerified => view::Safe::SafeVerified,
+        Safe::SafeCommanded => view::Safe::SafeCommanded,
+        Safe::UnsafeUnknown => view::Safe::UnsafeUnknown,
+    }
+}
+
+pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Bench {
+    let constants = description.constants;
+    view::Bench {
+        name: description.name.clone(),
+        simulated: description.is_simulated(),
+        state: status.state,
+        blocked: status.blocked.clone(),
+        run: status.run,
+        instruments: status.instruments.clone(),
+        limits: Limited::ALL
+            .iter()
+            .map(|quantity| view::Limit {
+                quantity: quantity.name().to_owned(),
+                unit: quantity.unit().to_owned(),
+                limit: description.limits.of(*quantity),
+                value: status.reading(*quantity),
+            })
+            .collect(),
+        constants: view::Constants {
+            torque_constant_nm_per_a: constants.torque_constant_nm_per_a,
+            gear_ratio: constants.gear_ratio,
+            rotor_inertia_kg_m2: constants.rotor_inertia_kg_m2,
+            brake_compliance_v: constants.brake_compliance_v,
+            brake_rated_current_a: constants.brake_rated_current_a,
+            brake_rated_torque_nm: constants.brake_rated_torque_nm,
+            link_range_rad: constants.link_range_rad,
+        },
+    }
+}
+
+pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
+    view::RunSummary {
+        id: record.id,
+        bench: record.bench.clone(),
+        procedure: record.procedure.clone(),
+        kind: record.kind.clone(),
+        state: state_view(record.state),
+        safe: record.safe.map(safe_view),
+        reason: record.reason.clone(),
+        created_at: record.created_at.clone(),
+        finished_at: record.finished_at.clone(),
+        rows: record.rows,
+        duration_s: record.duration_s.and_then(view::finite),
+        simulated: record.simulated,
+    }
+}
+
+pub(super) fn run(record: RunRecord, progress: Option<view::Progress>) -> view::Run {
+    view::Run {
+        summary: summary(&record),
+        channels: record.channels.iter().map(view::ChannelInfo::from).collect(),
+        parameters: record.parameters,
+        provenance: record.provenance,
+        meta: record.meta,
+        progress,
+    }
+}
+
+/// An entry of the journal with its plain sentence.
+pub fn run_event(record: EventRecord) -> view::RunEvent {
+    let mut whole = record.data.clone();
+    whole.insert("kind".to_owned(), Value::from(record.kind.clone()));
+    let text = match serde_json::from_value::<EventKind>(Value::Object(whole)) {
+        Ok(kind) => sentence(&kind),
+        // Written by another version.
+        Err(_) => record.kind.replace('_', " "),
+    };
+    view::RunEvent { sequence: record.sequence, at_s: record.at_s, kind: record.kind, text, data: record.data }
+}
+
+fn sentence(kind: &EventKind) -> String {
+    match kind {
+        EventKind::State { state } => format!("run {state}"),
+        EventKind::Identified { instrument, port, identity } => {
+            format!("{instrument} on {port}: {} {}, firmware {}", identity.maker, identity.model, identity.firmware)
+        }
+        EventKind::StepStarted { label, repeat, .. } => format!("{label} (repeat {})", repeat + 1),
+        EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows so far", step + 1),
+        EventKind::Control { control } => {
+            let asked = serde_json::to_value(control).ok();
+            format!("a person asked: {}", asked.as_ref().and_then(Value::as_str).unwrap_or("control"))
+        }
+        EventKind::Fault { fault, recovered: true } => format!("{fault}; recovered"),
+        EventKind::Fault { fault, recovered: false } => fault.to_string(),
+        EventKind::Breach { breach } => breach.to_string(),
+        EventKind::Note { text } => text.clone(),
+        EventKind::Safe { safe } => format!("bench {safe}"),
+    }
+}
+
+pub(super) fn model(record: ModelRecord) -> Result<view::Model, LabError> {
+    Ok(view::Model {
+        id: record.id,
+        run: record.run,
+        kind: record.kind,
+        parent: record.parent,
+        added: record.added,
+        removed: record.removed,
+        effects: record.effects,
+        fit: reread(&record.fit)?,
+        residual: reread(&record.residual)?,
+        validation_rms: record.validation_rms,
+        rms: record.rms,
+        noise_floor_rms: record.noise_floor_rms,
+        created_at: record.created_at,
+        options: record.options,
+    })
+}
+
+pub(super) fn diagnosis(record: DiagnosisRecord, run: i64) -> Result<view::Diagnosis, LabError> {
+    Ok(view::Diagnosis {
+        id: record.id,
+        model_id: record.model,
+        run,
+        created_at: record.created_at,
+        finding: reread(&record.diagnosis)?,
+    })
+}

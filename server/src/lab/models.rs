@@ -1,0 +1,147 @@
+//! Effects, model versions and diagnoses.
+
+use super::{Answer, Lab, LabError, convert, reread};
+use crate::store::NewModel;
+use crate::view::{self, Diagnosis, Effect, LiveMessage, Model, ResidualSet, finite};
+use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::{Fit, ModelError, ModelSpec, Options};
+
+impl Lab {
+    pub fn effects(&self, kind: Option<&str>) -> Answer<Vec<Effect>> {
+        let kinds = match kind {
+            None => Kind::ALL.to_vec(),
+            Some(name) => vec![find_kind(name)?],
+        };
+        Ok(kinds.into_iter().flat_map(jointbench_model::effects).map(|effect| effect_view(effect.info())).collect())
+    }
+
+    /// Fits effects to a run and keeps the fit as a version, with its diagnosis.
+    pub async fn create_model(&self, run: i64, effects: &[String], parent: Option<i64>) -> Answer<Model> {
+        if let Some(parent) = parent
+            && self.inner.store.model(parent).await?.run != run
+        {
+            return Err(LabError::Invalid(format!("model version {parent} belongs to another run than {run}")));
+        }
+        let table = self.table(run).await?;
+        let spec = ModelSpec::new(table.kind(), effects)?;
+        let options = Options::default();
+        let chosen = reread(&options)?;
+        let (fit, diagnosis) = blocking(move || fit_and_diagnose(&table, &spec, &options)).await?;
+        let noise_floor_rms = diagnosis.as_ref().and_then(|diagnosis| diagnosis.noise_floor_rms).and_then(finite);
+        let checked: view::Fit = reread(&fit)?;
+        let new = NewModel {
+            run,
+            parent,
+            kind: fit.kind.to_string(),
+            effects: fit.effects.clone(),
+            residual: reread(&fit.residual)?,
+            rms: checked.rms,
+            validation_rms: checked.validation_rms,
+            noise_floor_rms,
+            options: chosen,
+            fit: reread(&fit)?,
+        };
+        let record = self.inner.store.save_model(&new).await?;
+        if let Some(diagnosis) = &diagnosis {
+            self.inner.store.save_diagnosis(record.id, &reread(diagnosis)?).await?;
+        }
+        tracing::info!(
+            run.id = run,
+            model.id = record.id,
+            validation_rms = record.validation_rms,
+            effects = record.effects.join(","),
+            "model fitted"
+        );
+        self.hub().tell(LiveMessage::Model { run, model: record.id });
+        convert::model(record)
+    }
+
+    pub async fn models(&self, run: i64) -> Answer<Vec<Model>> {
+        self.inner.store.models(run).await?.into_iter().map(convert::model).collect()
+    }
+
+    pub async fn model(&self, id: i64) -> Answer<Model> {
+        convert::model(self.inner.store.model(id).await?)
+    }
+
+    pub async fn residuals(&self, id: i64) -> Answer<ResidualSet> {
+        let model = self.inner.store.model(id).await?;
+        let fit: Fit = reread(&model.fit)?;
+        let table = self.table(model.run).await?;
+        let set = blocking(move || jointbench_model::residuals(&table, &fit, &Options::default())).await?;
+        reread(&set)
+    }
+
+    /// The diagnosis of a version. Data and version never change, so neither does the answer: it is made once.
+    pub async fn diagnose(&self, model: i64) -> Answer<Diagnosis> {
+        if let Some(kept) = self.diagnoses(model).await?.pop() {
+            return Ok(kept);
+        }
+        let record = self.inner.store.model(model).await?;
+        let table = self.table(record.run).await?;
+        let spec = ModelSpec::new(table.kind(), &record.effects)?;
+        let diagnosis = blocking(move || jointbench_model::diagnose(&table, &spec, &Options::default())).await?;
+        let kept = self.inner.store.save_diagnosis(model, &reread(&diagnosis)?).await?;
+        convert::diagnosis(kept, record.run)
+    }
+
+    pub async fn diagnosis(&self, id: i64) -> Answer<Diagnosis> {
+        let record = self.inner.store.diagnosis(id).await?;
+        let run = self.inner.store.model(record.model).await?.run;
+        convert::diagnosis(record, run)
+    }
+
+    pub async fn diagnoses(&self, model: i64) -> Answer<Vec<Diagnosis>> {
+        let run = self.inner.store.model(model).await?.run;
+        let records = self.inner.store.diagnoses(model).await?;
+        records.into_iter().map(|record| convert::diagnosis(record, run)).collect()
+    }
+}
+
+/// A run that can be fitted but not diagnosed still has a model.
+fn fit_and_diagnose(
+    table: &RunTable,
+    spec: &ModelSpec,
+    options: &Options,
+) -> Result<(Fit, Option<jointbench_model::Diagnosis>), ModelError> {
+    match jointbench_model::diagnose(table, spec, options) {
+        Ok(diagnosis) => Ok((diagnosis.fit.clone(), Some(diagnosis))),
+        Err(_) => Ok((jointbench_model::fit(table, spec, options)?, None)),
+    }
+}
+
+/// Numbers take their time: not on the threads that answer requests.
+async fn blocking<T: Send + 'static>(work: impl FnOnce() -> Result<T, ModelError> + Send + 'static) -> Answer<T> {
+    match tokio::task::spawn_blocking(work).await {
+        Ok(result) => Ok(result?),
+        Err(fault) => Err(LabError::Internal(format!("the computation failed: {fault}"))),
+    }
+}
+
+fn find_kind(name: &str) -> Answer<Kind> {
+    Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
+        LabError::Invalid(format!("kind {name:?}: write friction, encoder, stiffness or brake"))
+    })
+}
+
+fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
+    Effect {
+        id: info.id.to_owned(),
+        kind: info.kind.to_string(),
+        title: info.title.to_owned(),
+        sentence: info.sentence.to_owned(),
+        formula: info.formula.to_owned(),
+        parameters: info
+            .parameters
+            .iter()
+            .map(|parameter| view::EffectParameter {
+                name: parameter.name.to_owned(),
+                unit: parameter.unit.to_owned(),
+                // A bound without end is none.
+                min: finite(parameter.min),
+                max: finite(parameter.max),
+            })
+            .collect(),
+        needs: info.needs.iter().map(|need| (*need).to_owned()).collect(),
+    }
+}

@@ -1,0 +1,137 @@
+//! Runs: start, steer, look at.
+
+use super::{Answer, Lab, LabError, convert};
+use crate::bench::BenchHandle;
+use crate::store::{NewRun, RunFilter, RunRecord};
+use crate::view::{self, Run, RunEvent, RunList, Samples};
+use jointbench_instrument::{Meta, RunTable};
+use jointbench_procedure::{Control, Plan};
+use serde_json::{Map, Value, json};
+
+impl Lab {
+    /// Plans, checks against the limits, and hands the plan to the thread of the bench.
+    pub async fn start_run(&self, bench: &str, procedure: &str, parameters: &Map<String, Value>) -> Answer<Run> {
+        let (bench, plan) = self.plan(bench, procedure, parameters)?;
+        let preview = plan.preview(&bench.facts());
+        let failed: Vec<String> = preview
+            .checks
+            .iter()
+            .filter(|check| !check.ok)
+            .map(|check| match &check.cure {
+                Some(cure) => format!("{}: {} ({cure})", check.name, check.detail),
+                None => format!("{}: {}", check.name, check.detail),
+            })
+            .collect();
+        if !failed.is_empty() {
+            return Err(LabError::Invalid(format!("the plan is refused: {}", failed.join("; "))));
+        }
+        if let Some(block) = self.inner.store.bench_block(bench.name()).await? {
+            return Err(LabError::Conflict(format!(
+                "bench {} is blocked: {}. Look at it, then acknowledge with a reason",
+                bench.name(),
+                block.reason
+            )));
+        }
+        let claim = bench.claim()?;
+        if bench.status().faults().is_some() {
+            bench.reopen().await?;
+        }
+        if let Some(faults) = bench.status().faults() {
+            return Err(LabError::Bench(format!("bench {} is not ready: {faults}", bench.name())));
+        }
+        let run = self.inner.store.create_run(&new_run(bench, &plan)?).await?;
+        tracing::info!(run.id = run, bench = bench.name(), procedure, planned_s = plan.duration_s(), "run queued");
+        claim.start(run, plan)?;
+        self.run(run).await
+    }
+
+    pub async fn run(&self, id: i64) -> Answer<Run> {
+        let record = self.inner.store.run(id).await?;
+        let status = self.inner.benches.iter().map(BenchHandle::status).find(|status| status.run == Some(id));
+        Ok(convert::run(record, status.and_then(|status| status.progress)))
+    }
+
+    pub async fn runs(&self, limit: u32, offset: u32, search: Option<&str>) -> Answer<RunList> {
+        let filter = RunFilter { limit, offset, search: search.map(str::to_owned) };
+        let (total, records) = self.inner.store.runs(&filter).await?;
+        Ok(RunList { total, runs: records.iter().map(convert::summary).collect() })
+    }
+
+    pub async fn control(&self, id: i64, control: Control) -> Answer<Run> {
+        let record = self.inner.store.run(id).await?;
+        let on = !record.state.is_final()
+            && self.inner.benches.iter().any(|bench| bench.name() == record.bench && bench.control(control));
+        if !on {
+            return Err(LabError::Conflict(format!("run {id} is {}: there is nothing to steer", record.state)));
+        }
+        self.run(id).await
+    }
+
+    pub async fn events(&self, id: i64, after: Option<u64>) -> Answer<Vec<RunEvent>> {
+        let events = self.inner.store.events(id, after.unwrap_or(0)).await?;
+        Ok(events.into_iter().map(convert::run_event).collect())
+    }
+
+    /// A window of samples, `px` points wide.
+    pub async fn samples(
+        &self,
+        id: i64,
+        channels: Option<&[String]>,
+        from_s: Option<f64>,
+        to_s: Option<f64>,
+        px: u32,
+    ) -> Answer<Samples> {
+        if px == 0 || px > 20_000 {
+            return Err(LabError::Invalid(format!("px = {px}: choose 1 to 20000")));
+        }
+        let window = self.inner.store.view(id, channels, from_s, to_s, px as usize).await?;
+        let column = |values: Vec<f64>| values.into_iter().map(view::finite).collect();
+        let channels = window.columns.into_iter().map(|found| view::SampleColumn {
+            unit: found.channel.unit().map(str::to_owned),
+            name: found.channel.name,
+            min: column(found.min),
+            max: column(found.max),
+        });
+        Ok(Samples { time_s: window.time_s, channels: channels.collect(), exact: window.exact, rows: window.rows })
+    }
+
+    /// The whole run with its facts, as the models take it.
+    pub async fn table(&self, id: i64) -> Answer<RunTable> {
+        let (meta, record) = self.facts(id).await?;
+        if record.rows == 0 {
+            return Err(LabError::Invalid(format!("run {id} has no samples: choose a run that was measured")));
+        }
+        let trace = self.inner.store.trace(id, None, 0..record.rows).await?;
+        Ok(RunTable::new(meta, trace)?)
+    }
+
+    pub(super) async fn facts(&self, id: i64) -> Answer<(Meta, RunRecord)> {
+        let record = self.inner.store.run(id).await?;
+        let meta = serde_json::from_value(Value::Object(record.meta.clone()))
+            .map_err(|fault| LabError::Internal(format!("the facts of run {id} cannot be read: {fault}")))?;
+        Ok((meta, record))
+    }
+}
+
+fn new_run(bench: &BenchHandle, plan: &Plan) -> Answer<NewRun> {
+    let description = bench.description();
+    let status = bench.status();
+    let provenance = json!({
+        "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
+        "bench_description": description.text,
+        "limits": description.limits,
+        "constants": description.constants,
+        "instruments": status.instruments,
+        "simulated": description.is_simulated(),
+        "seed": description.seed(),
+    });
+    Ok(NewRun {
+        bench: description.name.clone(),
+        procedure: plan.procedure.to_owned(),
+        kind: plan.kind.to_string(),
+        simulated: description.is_simulated(),
+        parameters: plan.parameters.clone(),
+        provenance: super::reread(&provenance)?,
+        meta: super::reread(&plan.meta)?,
+    })
+}

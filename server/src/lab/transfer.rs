@@ -1,0 +1,121 @@
+//! Run tables in and out.
+
+use super::{Answer, Lab, LabError};
+use crate::store::NewRun;
+use crate::view::Run;
+use jointbench_files::{ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_parquet};
+use jointbench_instrument::{RunTable, Trace};
+use serde::Deserialize;
+use serde_json::json;
+use utoipa::ToSchema;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum FileFormat {
+    Csv,
+    Parquet,
+}
+
+impl FileFormat {
+    pub fn extension(self) -> &'static str {
+        match self {
+            FileFormat::Csv => "csv",
+            FileFormat::Parquet => "parquet",
+        }
+    }
+
+    pub fn media_type(self) -> &'static str {
+        match self {
+            FileFormat::Csv => "text/csv; charset=utf-8",
+            FileFormat::Parquet => "application/vnd.apache.parquet",
+        }
+    }
+}
+
+/// A measured file with what is needed to read it.
+#[derive(Debug, Clone, Default)]
+pub struct ImportRequest {
+    /// To keep the run under; the file's name where empty.
+    pub name: Option<String>,
+    /// Tells the form, and stands in messages.
+    pub file_name: String,
+    pub bytes: Vec<u8>,
+    pub meta: Option<String>,
+    /// `column=name in the file`.
+    pub map: Vec<String>,
+    /// `column=factor`.
+    pub scale: Vec<String>,
+}
+
+impl Lab {
+    /// Takes a file in as a run. It is read and checked whole before anything is kept, and kept in one transaction.
+    pub async fn import(&self, request: ImportRequest) -> Answer<Run> {
+        let name = request.name.clone().unwrap_or_else(|| request.file_name.clone());
+        let source = json!({ "file": request.file_name, "map": request.map, "scale": request.scale });
+        let table = tokio::task::spawn_blocking(move || read(&request)).await.map_err(|fault| {
+            LabError::Internal(format!("reading the file failed: {fault}"))
+        })??;
+        self.keep_table(&name, source, table).await
+    }
+
+    async fn keep_table(&self, name: &str, source: serde_json::Value, table: RunTable) -> Answer<Run> {
+        let kind = table.kind().to_string();
+        let (meta, trace) = table.into_parts();
+        let provenance = json!({
+            "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
+            "imported": source,
+        });
+        let new = NewRun {
+            bench: name.to_owned(),
+            procedure: "import".to_owned(),
+            kind,
+            simulated: false,
+            parameters: serde_json::Map::new(),
+            provenance: super::reread(&provenance)?,
+            meta: super::reread(&meta)?,
+        };
+        let rows = trace.len();
+        let run = self.inner.store.import(&new, &[], trace).await?;
+        tracing::info!(run.id = run, name, rows, "run imported");
+        self.run(run).await
+    }
+
+    /// The whole run as a file, which [`Lab::import`] takes back unchanged.
+    pub async fn export(&self, id: i64, format: FileFormat) -> Answer<Vec<u8>> {
+        let (meta, record) = self.facts(id).await?;
+        let trace = self.inner.store.trace(id, None, 0..record.rows).await?;
+        tokio::task::spawn_blocking(move || write(&meta, &trace, format))
+            .await
+            .map_err(|fault| LabError::Internal(format!("writing the file failed: {fault}")))?
+    }
+
+    /// The facts of a run as `meta.json`, for a table that cannot carry them itself.
+    pub async fn export_meta(&self, id: i64) -> Answer<String> {
+        let (meta, record) = self.facts(id).await?;
+        Ok(meta_json(&meta, &record.channels))
+    }
+}
+
+fn read(request: &ImportRequest) -> Answer<RunTable> {
+    let mut options = ReadOptions::default();
+    for pair in &request.map {
+        options.map.push(parse_map(pair)?);
+    }
+    for pair in &request.scale {
+        options.scale.push(parse_scale(pair)?);
+    }
+    if let Some(meta) = &request.meta {
+        options.meta = Some(parse_meta("meta.json", meta.as_bytes())?);
+    }
+    Ok(read_bytes(&request.file_name, &request.bytes, &options)?)
+}
+
+fn write(meta: &jointbench_instrument::Meta, trace: &Trace, format: FileFormat) -> Answer<Vec<u8>> {
+    let mut bytes = Vec::new();
+    match format {
+        FileFormat::Csv => write_csv(&mut bytes, trace),
+        FileFormat::Parquet => write_parquet(&mut bytes, meta, trace),
+    }
+    .map_err(|fault| LabError::Internal(format!("writing the file failed: {fault}")))?;
+    Ok(bytes)
+}

@@ -1,0 +1,56 @@
+//! From the bench threads to every client: best effort, never waiting.
+
+use crate::view::LiveMessage;
+use jointbench_instrument::Trace;
+use std::sync::Arc;
+use tokio::sync::broadcast::{self, Receiver, Sender};
+
+/// A client that is this many pieces behind loses the oldest.
+const CAPACITY: usize = 1024;
+
+/// The newest rows of a run.
+#[derive(Debug)]
+pub struct Rows {
+    pub bench: String,
+    pub run: i64,
+    pub rows: Trace,
+}
+
+#[derive(Debug, Clone)]
+pub enum Piece {
+    Message(Arc<LiveMessage>),
+    Rows(Arc<Rows>),
+}
+
+/// Where pieces are published and taken. Cheap to clone.
+#[derive(Debug, Clone)]
+pub struct Hub {
+    pieces: Sender<Piece>,
+}
+
+impl Hub {
+    pub fn new() -> Self {
+        Self { pieces: broadcast::channel(CAPACITY).0 }
+    }
+
+    pub fn tell(&self, message: LiveMessage) {
+        // An error only says that nobody listens.
+        let _ = self.pieces.send(Piece::Message(Arc::new(message)));
+    }
+
+    pub fn show(&self, rows: Rows) {
+        if self.pieces.receiver_count() > 0 {
+            let _ = self.pieces.send(Piece::Rows(Arc::new(rows)));
+        }
+    }
+
+    pub fn listen(&self) -> Receiver<Piece> {
+        self.pieces.subscribe()
+    }
+}
+
+impl Default for Hub {
+    fn default() -> Self {
+        Self::new()
+    }
+}

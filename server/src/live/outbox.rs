@@ -1,0 +1,135 @@
+//! What one client has not got yet. Rows that wait are merged into one frame; what is too much is dropped, and counted.
+
+use super::frame;
+use super::hub::{Piece, Rows};
+use crate::view::{ChannelInfo, LiveMessage};
+use jointbench_instrument::{Channel, Trace};
+
+/// A frame that would be larger loses its oldest rows: a slow client sees less, not later.
+const LARGEST_FRAME_ROWS: usize = 8192;
+const LARGEST_QUEUE: usize = 512;
+
+#[derive(Debug, PartialEq)]
+pub enum Frame {
+    Text(String),
+    Binary(Vec<u8>),
+}
+
+#[derive(Default)]
+pub struct Outbox {
+    texts: Vec<String>,
+    waiting: Option<Trace>,
+    /// The run and channels that the client was told of last.
+    told: Option<(i64, Vec<Channel>)>,
+    sequence: u32,
+    dropped: u32,
+}
+
+impl Outbox {
+    pub fn put(&mut self, piece: &Piece) {
+        match piece {
+            Piece::Message(message) => self.text(message),
+            Piece::Rows(rows) => self.rows(rows),
+        }
+    }
+
+    /// Pieces that the hub could not keep for this client.
+    pub fn lost(&mut self, pieces: u64) {
+        self.dropped = self.dropped.saturating_add(pieces.min(u64::from(u32::MAX)) as u32);
+    }
+
+    pub fn text(&mut self, message: &LiveMessage) {
+        // What is lost here, REST still has.
+        if self.texts.len() < LARGEST_QUEUE {
+            self.texts.push(serde_json::to_string(message).expect("a live message is plain JSON"));
+        } else {
+            self.lost(1);
+        }
+    }
+
+    fn rows(&mut self, piece: &Rows) {
+        let channels = piece.rows.channels();
+        let same = self.told.as_ref().is_some_and(|(run, told)| *run == piece.run && told == channels);
+        if !same {
+            // Rows of the run before would be read with the wrong columns.
+            if self.waiting.take().is_some() {
+                self.lost(1);
+            }
+            self.told = Some((piece.run, channels.to_vec()));
+            let channels = channels.iter().map(ChannelInfo::from).collect();
+            self.text(&LiveMessage::Channels { bench: piece.bench.clone(), run: piece.run, channels });
+        }
+        match &mut self.waiting {
+            Some(waiting) => waiting.append(piece.rows.clone()),
+            None => self.waiting = Some(piece.rows.clone()),
+        }
+        if let Some(waiting) = &mut self.waiting
+            && waiting.len() > LARGEST_FRAME_ROWS
+        {
+            let newest = waiting.columns().iter().map(|c| c[c.len() - LARGEST_FRAME_ROWS..].to_vec()).collect();
+            *waiting = Trace::from_columns(waiting.channels().to_vec(), newest);
+            self.dropped = self.dropped.saturating_add(1);
+        }
+    }
+
+    /// Everything that waits, as frames: text first.
+    pub fn take(&mut self) -> Vec<Frame> {
+        let mut frames: Vec<Frame> = self.texts.drain(..).map(Frame::Text).collect();
+        if let Some(rows) = self.waiting.take().filter(|rows| !rows.is_empty()) {
+            frames.push(Frame::Binary(frame::encode(self.sequence, self.dropped, &rows)));
+            self.sequence = self.sequence.wrapping_add(1);
+        }
+        frames
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    fn rows(run: i64, from: usize, count: usize) -> Piece {
+        let time_s = (from..from + count).map(|i| i as f64 * 0.004).collect();
+        let rows = Trace::from_columns(vec![Channel::new("time_s")], vec![time_s]);
+        Piece::Rows(Arc::new(Rows { bench: "a".into(), run, rows }))
+    }
+
+    fn header(frame: &Frame) -> [u32; 4] {
+        let Frame::Binary(bytes) = frame else { panic!("a binary frame, not {frame:?}") };
+        std::array::from_fn(|i| u32::from_le_bytes(bytes[4 * i..4 * i + 4].try_into().unwrap()))
+    }
+
+    #[test]
+    fn rows_that_wait_become_one_frame_behind_their_channels() {
+        let mut outbox = Outbox::default();
+        (0..5).for_each(|i| outbox.put(&rows(1, 10 * i, 10)));
+        let frames = outbox.take();
+        assert_eq!(frames.len(), 2);
+        assert!(matches!(&frames[0], Frame::Text(text) if text.contains("\"channels\"")), "{frames:?}");
+        assert_eq!(header(&frames[1]), [0, 0, 50, 1]);
+        outbox.put(&rows(1, 50, 10));
+        assert_eq!(header(&outbox.take()[0]), [1, 0, 10, 1], "the channels are known by now");
+    }
+
+    #[test]
+    fn a_slow_client_gets_the_newest_rows_and_learns_of_the_loss() {
+        let mut outbox = Outbox::default();
+        (0..20).for_each(|i| outbox.put(&rows(1, 1000 * i, 1000)));
+        let frames = outbox.take();
+        let [_, dropped, count, _] = header(&frames[1]);
+        assert_eq!(count as usize, LARGEST_FRAME_ROWS);
+        assert!(dropped > 0);
+        let Frame::Binary(bytes) = &frames[1] else { unreachable!() };
+        let t0_s = f64::from_le_bytes(bytes[16..24].try_into().unwrap());
+        assert_eq!(t0_s, (20_000 - LARGEST_FRAME_ROWS) as f64 * 0.004);
+    }
+
+    #[test]
+    fn rows_of_another_run_never_share_a_frame() {
+        let mut outbox = Outbox::default();
+        outbox.put(&rows(1, 0, 10));
+        outbox.put(&rows(2, 0, 3));
+        let frames = outbox.take();
+        assert_eq!(header(frames.last().unwrap()), [0, 1, 3, 1]);
+    }
+}
