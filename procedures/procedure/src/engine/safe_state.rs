@@ -70,9 +70,13 @@ fn disarm(joint: &mut dyn JointController, notes: &mut Vec<String>) -> bool {
 
 /// Whether the commands were accepted.
 fn take_current_away(brake: &mut dyn CurrentSource, clock: &dyn Clock, rated_a: f64, notes: &mut Vec<String>) -> bool {
-    // Where the current cannot be read it may be as much as the brake is rated for.
-    let before_a = ask(brake, |brake| brake.read(), |_| {}).map_or(rated_a, |reading| reading.current.0);
-    if before_a > NO_CURRENT * rated_a {
+    let before = ask(brake, |brake| brake.read(), |_| {}).map(|reading| reading.current.0);
+    if before.is_err() {
+        notes.push("the brake current cannot be read and is switched off at once: demagnetise the brake later".into());
+    }
+    if let Ok(before_a) = before
+        && before_a > NO_CURRENT * rated_a
+    {
         notes.push(format!(
             "the brake current fell from {before_a:.3} A with the drive off: demagnetise the brake while turning"
         ));

@@ -37,6 +37,7 @@ pub(super) struct Session<'a> {
     /// Time of the newest row, which the next one has to exceed.
     pub row_s: f64,
     pub next_segment: u32,
+    pub lost: Lost,
     /// Replies that were missed and asked for again in this step.
     pub recoveries: u32,
 }
@@ -65,6 +66,13 @@ pub(super) struct Beat {
     pub period_s: f64,
     pub next_s: f64,
     pub late: u64,
+}
+
+/// Instruments that failed for good: while the joint comes to rest they are asked no more.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Lost {
+    pub sensor: bool,
+    pub brake: bool,
 }
 
 /// What a person asked for that a step cannot do by itself.
@@ -99,6 +107,7 @@ impl<'a> Session<'a> {
             joint: None,
             row_s: f64::NEG_INFINITY,
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
+            lost: Lost::default(),
             recoveries: 0,
             bench,
         }
@@ -134,11 +143,12 @@ impl<'a> Session<'a> {
         request: impl FnMut(&mut (dyn CurrentSource + 'static)) -> Result<T, Fault>,
     ) -> Result<Option<T>, Ending> {
         let now_s = self.bench.clock.now_s();
-        let Self { bench, journal, recoveries, .. } = self;
+        let Self { bench, journal, recoveries, lost, .. } = self;
         let Some(brake) = &mut bench.brake else { return Ok(None) };
-        ask(brake.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble))
-            .map(Some)
-            .map_err(Ending::OtherFault)
+        ask(brake.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
+            lost.brake = true;
+            Ending::OtherFault(fault)
+        })
     }
 
     /// `None` where the bench has no torque sensor.
@@ -147,11 +157,12 @@ impl<'a> Session<'a> {
         request: impl FnMut(&mut (dyn TorqueSensor + 'static)) -> Result<T, Fault>,
     ) -> Result<Option<T>, Ending> {
         let now_s = self.bench.clock.now_s();
-        let Self { bench, journal, recoveries, .. } = self;
+        let Self { bench, journal, recoveries, lost, .. } = self;
         let Some(sensor) = &mut bench.torque_sensor else { return Ok(None) };
-        ask(sensor.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble))
-            .map(Some)
-            .map_err(Ending::OtherFault)
+        ask(sensor.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
+            lost.sensor = true;
+            Ending::OtherFault(fault)
+        })
     }
 }
 

@@ -97,7 +97,7 @@ impl Session<'_> {
     }
 
     fn command_brake(&mut self, now_s: f64, brake_a: f64) -> Result<(), Ending> {
-        let Some(brake) = &self.bench.brake else { return Ok(()) };
+        let Some(brake) = self.bench.brake.as_ref().filter(|_| !self.lost.brake) else { return Ok(()) };
         let brake_a = match brake.resolution() {
             Some(step) => (brake_a / step.0).round() * step.0,
             None => brake_a,
@@ -117,12 +117,19 @@ impl Session<'_> {
         let recovered_before = self.recoveries;
         let joint = self.ask_joint(|joint| joint.read())?;
         self.trust_joint(recovered_before)?;
-        let link_torque_nm = self.ask_torque_sensor(|sensor| sensor.read())?.map(|torque| torque.0);
+        self.joint = Some(joint);
+        let link_torque_nm = if self.lost.sensor {
+            None
+        } else {
+            self.ask_torque_sensor(|sensor| sensor.read())?.map(|torque| torque.0)
+        };
         if now_s >= self.held.next_s {
             self.held.next_s = now_s + SLOW_EVERY_S;
-            self.feel_slowly()?;
+            self.check_drive()?;
+            if !self.lost.brake {
+                self.feel_brake()?;
+            }
         }
-        self.joint = Some(joint);
         Ok(Moment {
             time_s: to_time_step(joint.at_s - self.journal.started_s),
             joint,
@@ -133,8 +140,7 @@ impl Session<'_> {
         })
     }
 
-    fn feel_slowly(&mut self) -> Result<(), Ending> {
-        self.check_drive()?;
+    fn feel_brake(&mut self) -> Result<(), Ending> {
         if let Some(reading) = self.ask_brake(|brake| brake.read())? {
             self.held.brake_a = Some(reading.current.0);
             let loaded = self.commanded.brake_a > 0.02 * self.bench.constants.brake_rated_current_a;
@@ -195,8 +201,9 @@ impl Session<'_> {
     }
 
     fn keep(&mut self, now_s: f64, moment: &Moment, keep: Option<(u32, u32)>) {
-        // A reading that is not newer than the row before is that row again.
-        let Some(columns) = self.columns.as_mut().filter(|_| moment.time_s > self.row_s) else { return };
+        // A reading that is not newer than the row before is that row again; without an instrument it is no row.
+        let is_row = moment.time_s > self.row_s && !self.lost.sensor;
+        let Some(columns) = self.columns.as_mut().filter(|_| is_row) else { return };
         self.row_s = moment.time_s;
         let (segment, repeat) = keep.unwrap_or_default();
         let row = columns.row(moment, segment, repeat);

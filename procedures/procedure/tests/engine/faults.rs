@@ -72,7 +72,30 @@ fn a_link_that_keeps_missing_is_given_up() {
 fn a_lost_sensor_ends_the_run_safely() {
     let done = failing(Role::Torque, lost, |_| true);
     done.check_safe(RunState::Failed).check_no_cogging();
-    assert!(done.end.reason.unwrap().contains("torque_sensor on pty1"));
+    assert!(done.end.reason.as_ref().unwrap().contains("torque_sensor on pty1"));
+    // The joint still obeys: it comes to rest on its ramp, and the brake is unloaded on the way.
+    let setpoints = done.world.commands(|call| matches!(call, Call::SetVelocity(_)));
+    assert!(setpoints.last().is_some_and(|(at_s, call)| *call == Call::SetVelocity(0.0) && *at_s < 102.5));
+    assert!(!done.ledger.notes().iter().any(|note| note.contains("harder") || note.contains("demagnetise")));
+}
+
+/// A supply that hears and does, but does not answer any more.
+#[test]
+fn a_silent_supply_is_switched_off_blindly_while_the_joint_comes_to_rest() {
+    let (fakes, mut bench) = Fakes::new(|call, world| {
+        if world.now_s >= 102.0 && call.role() == Role::Brake {
+            if call == Call::OutputOff {
+                world.brake_on = false;
+            }
+            return Err(silent());
+        }
+        Ok(())
+    });
+    let done = play(&fakes, &mut bench, &loaded_plan(), |_| {});
+    assert_eq!((done.end.state, done.end.safe), (RunState::Failed, Safe::UnsafeUnknown));
+    assert!(done.world.is_safe());
+    let setpoints = done.world.commands(|call| matches!(call, Call::SetVelocity(_)));
+    assert_eq!(setpoints.last().map(|(_, call)| *call), Some(Call::SetVelocity(0.0)));
 }
 
 #[test]
