@@ -8,11 +8,15 @@ use jointbench_instrument::units::{Amperes, NewtonMetres, RadPerSec, Volts};
 use jointbench_instrument::{Bench, Fault, FaultKind};
 use std::time::{Duration, Instant};
 
-/// Of the mock bench's own drivers.
-const DEADLINE: Duration = Duration::from_millis(500);
+const DEADLINE: Duration = Duration::from_millis(250);
+
+fn settings(transport: Transport) -> MockSettings {
+    let deadline_ms = DEADLINE.as_millis() as u64;
+    MockSettings { transport, deadline_ms, ..MockSettings::new(Joint::JointA, 4) }
+}
 
 fn start(transport: Transport) -> (MockBench, Bench) {
-    let mock = MockBench::start(MockSettings { transport, ..MockSettings::new(Joint::JointA, 4) }).unwrap();
+    let mock = MockBench::start(settings(transport)).unwrap();
     let mut bench = mock.open_bench("mock").unwrap();
     bench.joint.arm(RadPerSec(100.0), Amperes(5.0)).unwrap();
     bench.brake.as_mut().unwrap().prepare(Volts(45.0)).unwrap();

@@ -59,7 +59,8 @@ fn check_baseline(joint: Joint, velocities_rad_s: &[f64], budget_nm: f64) {
     for current_a in [0.0, 0.35] {
         bench.brake.as_mut().unwrap().set_current(Amperes(current_a)).unwrap();
         for velocity_rad_s in velocities_rad_s.iter().flat_map(|v| [*v, -*v]) {
-            let mean = stretch(&mut bench, velocity_rad_s, 1.2, 1.2);
+            // The brake's rotor winds up over a part of a degree before it slips, which takes a slow joint its time.
+            let mean = stretch(&mut bench, velocity_rad_s, 1.2 + 5.0 / velocity_rad_s.abs(), 1.2);
             let friction_nm = mean.motor_nm - mean.link_nm / truth.gear_ratio;
             let expected_nm = truth.coulomb_nm * velocity_rad_s.signum() + truth.viscous_nm_s * mean.velocity_rad_s;
             assert!(
@@ -73,12 +74,12 @@ fn check_baseline(joint: Joint, velocities_rad_s: &[f64], budget_nm: f64) {
 
 #[test]
 fn nothing_hidden_is_coulomb_and_viscous_on_joint_a() {
-    check_baseline(Joint::JointA, &[10.0, 150.0], 6e-4);
+    check_baseline(Joint::JointA, &[2.0, 10.0, 150.0], 6e-4);
 }
 
 #[test]
 fn nothing_hidden_is_coulomb_and_viscous_on_joint_b() {
-    check_baseline(Joint::JointB, &[10.0, 150.0], 1.2e-3);
+    check_baseline(Joint::JointB, &[2.0, 10.0, 150.0], 1.2e-3);
 }
 
 #[test]

@@ -37,11 +37,13 @@ pub struct MockSettings {
     /// Bench seconds for each second of wall time. `None`: as fast as it goes.
     pub pace: Option<f64>,
     pub transport: Transport,
+    /// For the drivers that [`MockBench::open_bench`] opens.
+    pub deadline_ms: u64,
 }
 
 impl MockSettings {
     pub fn new(joint: Joint, seed: u64) -> Self {
-        Self { joint, seed, effects: Vec::new(), pace: None, transport: Transport::Terminal }
+        Self { joint, seed, effects: Vec::new(), pace: None, transport: Transport::Terminal, deadline_ms: DEADLINE_MS }
     }
 
     pub fn hiding(mut self, effects: &[&str]) -> Self {
@@ -140,7 +142,7 @@ impl MockBench {
             OdriveSettings {
                 name: "joint".into(),
                 port: PortSettings::new(ports.joint, 921_600),
-                deadline_ms: DEADLINE_MS,
+                deadline_ms: self.settings.deadline_ms,
                 link_encoder: true,
                 thermistor: Some(Thermistor::Motor),
             },
@@ -149,14 +151,14 @@ impl MockBench {
         let torque_sensor = LorenzSensor::open(LorenzSettings {
             name: "torque_sensor".into(),
             port: PortSettings::new(ports.torque_sensor, 230_400),
-            deadline_ms: DEADLINE_MS,
+            deadline_ms: self.settings.deadline_ms,
             range: Range::Fine,
             nominal_nm: 20.0,
         })?;
         let brake = ScpiSource::open(ScpiSettings {
             name: "brake_a".into(),
             port: PortSettings::new(ports.brake, 115_200),
-            deadline_ms: DEADLINE_MS,
+            deadline_ms: self.settings.deadline_ms,
         })?;
         Ok(Bench {
             name: name.to_owned(),

@@ -5,11 +5,11 @@
 use super::Firmware;
 use crate::sim::plant::{Plant, STEP_S, Signal};
 
-const STX: u8 = 0x02;
+pub(super) const STX: u8 = 0x02;
 const ACK: u8 = 0x06;
-const NACK: u8 = 0x15;
-const ADDRESS: u8 = 0x01;
-const BROADCAST: u8 = 0x00;
+pub(super) const NACK: u8 = 0x15;
+pub(super) const ADDRESS: u8 = 0x01;
+pub(super) const BROADCAST: u8 = 0x00;
 
 /// Counts at nominal torque; 16 bit leave head-room up to 131 %.
 const NOMINAL_COUNTS: f64 = 25_000.0;
@@ -23,11 +23,11 @@ const CHANNELS: [Signal; 2] = [Signal::TorqueCoarse, Signal::TorqueFine];
 const PERIOD_S: f64 = 200e-6;
 const LINE_BYTES_S: f64 = 23_040.0;
 
-const WRONG_SIZE: u8 = 40;
-const UNKNOWN_COMMAND: u8 = 41;
-const WRONG_CHECKSUM: u8 = 42;
-const WRONG_PARAMETER: u8 = 43;
-const WRITE_ONCE: u8 = 45;
+pub(super) const WRONG_SIZE: u8 = 40;
+pub(super) const UNKNOWN_COMMAND: u8 = 41;
+pub(super) const WRONG_CHECKSUM: u8 = 42;
+pub(super) const WRONG_PARAMETER: u8 = 43;
+pub(super) const WRITE_ONCE: u8 = 45;
 
 struct Stream {
     period_s: f64,
@@ -189,7 +189,7 @@ fn sealed(data: [u8; 28]) -> [u8; 32] {
     block
 }
 
-fn checks(bytes: &[u8]) -> [u8; 2] {
+pub(super) fn checks(bytes: &[u8]) -> [u8; 2] {
     let (mut sum, mut weighted) = (0u8, 0u16);
     for byte in bytes {
         sum = sum.wrapping_add(*byte);
@@ -201,7 +201,7 @@ fn checks(bytes: &[u8]) -> [u8; 2] {
     [sum, weighted as u8]
 }
 
-fn send(output: &mut Vec<u8>, to: u8, (command, parameters): (u8, Vec<u8>)) {
+pub(super) fn send(output: &mut Vec<u8>, to: u8, (command, parameters): (u8, Vec<u8>)) {
     let mut body = vec![command, to, ADDRESS, parameters.len() as u8];
     body.extend(parameters);
     body.extend(checks(&body));

@@ -7,6 +7,8 @@ mod odrive_lines;
 mod odrive_properties;
 mod scan;
 mod scpi;
+#[cfg(test)]
+mod tests;
 
 pub use dp800::Dp800;
 pub use lorenz::Lorenz;

@@ -1,0 +1,5 @@
+//! Bytes in, bytes out: each firmware against what its maker publishes.
+
+mod dp800;
+mod lorenz;
+mod odrive;
