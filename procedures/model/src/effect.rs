@@ -57,8 +57,18 @@ pub struct Shape {
     pub name: &'static str,
     pub min: f64,
     pub max: f64,
-    /// A whole number is found on the grid and not refined.
-    pub whole: bool,
+    pub search: Search,
+}
+
+/// How the best value of a shape parameter is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Search {
+    /// Refined continuously, in its logarithm.
+    Smooth,
+    /// A whole number: found on the grid and not refined.
+    Whole,
+    /// A moment at which the columns jump: narrowed down by halving.
+    Jump,
 }
 
 impl Form {

@@ -1,5 +1,6 @@
 //! Parameters with intervals that survive autocorrelation: a jackknife over blocks.
 
+use crate::effect::Search;
 use crate::linear::{BlockGrams, Spd};
 use crate::report::{Parameter, ParameterState, TradeOff};
 use crate::terms::Terms;
@@ -69,7 +70,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
         parameters.push(Parameter { effect, name, value: slot.value, unit: motion.label(unit), ci95, state, note });
     }
     for term in &terms.terms {
-        for (shape, value) in term.form.shape.iter().zip(&term.shape).filter(|(s, _)| s.whole) {
+        for (shape, value) in term.form.shape.iter().zip(&term.shape).filter(|(s, _)| s.search != Search::Smooth) {
             let unit = term.effect.info().parameters.iter().find(|p| p.name == shape.name).map_or("1", |p| p.unit);
             parameters.push(Parameter {
                 effect: term.id().into(),

@@ -1,6 +1,6 @@
 //! A model at work: effects with their forms, shapes and columns at the rows of a problem.
 
-use crate::effect::{Columns, Effect, Form};
+use crate::effect::{Columns, Effect, Form, Search};
 use crate::linear::{Basis, Spd, dot};
 use crate::prepare::Problem;
 
@@ -25,7 +25,7 @@ impl Term {
 
     /// Shape parameters that are refined continuously.
     fn free(&self) -> impl Iterator<Item = usize> {
-        let free: Vec<usize> = (0..self.shape.len()).filter(|i| !self.form.shape[*i].whole).collect();
+        let free: Vec<usize> = (0..self.shape.len()).filter(|i| self.form.shape[*i].search == Search::Smooth).collect();
         free.into_iter()
     }
 
@@ -123,7 +123,8 @@ impl<'p> Terms<'p> {
 
     /// Refines all shape parameters together. A coarse grid leaves a remainder that a second, false effect explains.
     pub fn refine(&mut self) {
-        let free: Vec<usize> = (0..self.terms.len()).filter(|i| self.terms[*i].free().next().is_some()).collect();
+        let moves = |t: &Term| t.form.shape.iter().any(|s| s.search != Search::Whole);
+        let free: Vec<usize> = (0..self.terms.len()).filter(|i| moves(&self.terms[*i])).collect();
         if free.is_empty() {
             return;
         }
@@ -188,10 +189,39 @@ fn reduce(terms: &[Term], basis: &Basis, rest: &[f64]) -> Reduced {
     Reduced { columns, factors, residual, sse, spd }
 }
 
+/// Narrows down moments of jumps: both neighbours at half the distance, again and again.
+fn narrow(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> Reduced {
+    let mut best = reduce(terms, basis, rest);
+    for i in 0..terms.len() {
+        for k in 0..terms[i].shape.len() {
+            let bounds = terms[i].form.shape[k];
+            if bounds.search != Search::Jump {
+                continue;
+            }
+            let mut reach = (bounds.max - bounds.min) / terms[i].form.grid.len().max(2) as f64;
+            for _ in 0..16 {
+                for sign in [-1.0, 1.0] {
+                    let mut trial = terms.to_vec();
+                    trial[i].shape[k] = (trial[i].shape[k] + sign * reach).clamp(bounds.min, bounds.max);
+                    trial[i].columns = columns(trial[i].effect, trial[i].form.name, &trial[i].shape, problem);
+                    let reduced = reduce(&trial, basis, rest);
+                    if reduced.sse < best.sse {
+                        terms.clone_from_slice(&trial);
+                        best = reduced;
+                        break;
+                    }
+                }
+                reach *= 0.6;
+            }
+        }
+    }
+    best
+}
+
 /// Variable projection with Kaufman's Jacobian (Golub, Pereyra 2003; Kaufman 1975) in a Levenberg–Marquardt loop over
 /// the logarithms of the shape parameters, held within their bounds.
 pub fn polish(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> f64 {
-    let mut best = reduce(terms, basis, rest);
+    let mut best = narrow(terms, basis, rest, problem);
     let index: Vec<(usize, usize)> =
         terms.iter().enumerate().flat_map(|(i, t)| t.free().map(move |k| (i, k))).collect();
     if index.is_empty() {

@@ -95,6 +95,13 @@ impl Signals {
     }
 }
 
+/// Facts about the set-up that effects ask for.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Constants {
+    pub pole_pairs: Option<u32>,
+    pub poles: Option<u32>,
+}
+
 /// Signals at the points, and the samples behind them.
 #[derive(Debug, Clone, Default)]
 pub struct View {
@@ -105,6 +112,7 @@ pub struct View {
     /// Samples at which the past is forgotten: first ones of recordings.
     pub starts: Vec<usize>,
     pub sample_s: f64,
+    pub constants: Constants,
     zeros: Vec<f64>,
 }
 
@@ -117,7 +125,7 @@ impl View {
         sample_s: f64,
     ) -> Self {
         let zeros = vec![0.0; points.len()];
-        Self { points, samples, chunks, starts, sample_s, zeros }
+        Self { points, samples, chunks, starts, sample_s, constants: Constants::default(), zeros }
     }
 
     pub fn len(&self) -> usize {

@@ -1,9 +1,13 @@
 //! The library: one small file for each effect.
 
+mod brake;
+mod encoder;
 mod friction;
+mod memory;
+mod stiffness;
 
 use crate::ModelError;
-use crate::effect::{Effect, Form, Shape};
+use crate::effect::{Effect, Form, Search, Shape};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 use std::ops::RangeInclusive;
@@ -12,7 +16,9 @@ use std::ops::RangeInclusive;
 pub fn effects(kind: Kind) -> &'static [&'static dyn Effect] {
     match kind {
         Kind::Friction => friction::ALL,
-        Kind::Encoder | Kind::Stiffness | Kind::Brake => &[],
+        Kind::Encoder => encoder::ALL,
+        Kind::Stiffness => stiffness::ALL,
+        Kind::Brake => brake::ALL,
     }
 }
 
@@ -82,6 +88,6 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
     if grid.is_empty() {
         return Vec::new();
     }
-    let shape = vec![Shape { name: "harmonic", min: first, max: last, whole: true }];
+    let shape = vec![Shape { name: "harmonic", min: first, max: last, search: Search::Whole }];
     vec![Form { name: "harmonic", linear: &["a", "b"], shape, grid }]
 }

@@ -1,9 +1,14 @@
 //! From a run table to problems: response and view at points, cut into blocks that can be called independent.
 
+mod brake;
+mod chunks;
+mod encoder;
 pub mod filter;
 mod friction;
 mod layout;
 mod segments;
+mod stiffness;
+mod sweeps;
 
 use crate::report::Preparation;
 use crate::view::{Signal, View};
@@ -139,7 +144,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     }
     match run.kind() {
         Kind::Friction => friction::prepare(run, options),
-        kind => Err(ModelError::WrongKind { run: kind, model: Kind::Friction }),
+        Kind::Encoder => encoder::prepare(run, options),
+        Kind::Stiffness => stiffness::prepare(run, options),
+        Kind::Brake => brake::prepare(run, options),
     }
 }
 

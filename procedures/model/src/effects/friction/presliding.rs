@@ -1,6 +1,7 @@
 //! Presliding hysteresis.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::effects::memory;
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 
@@ -25,21 +26,16 @@ impl Effect for Presliding {
 
     fn forms(&self, view: &View) -> Vec<Form> {
         let Some((low, high)) = crate::effects::reversal_range(view) else { return Vec::new() };
-        let shape = vec![Shape { name: "theta_p", min: low, max: high, whole: false }];
+        let shape = vec![Shape { name: "theta_p", min: low, max: high, search: Search::Smooth }];
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(low, high, 7).into_iter().map(|d| vec![d]).collect();
         ["dahl", "stop"].map(|name| Form { name, linear: &["tau_p"], shape: shape.clone(), grid: grid.clone() }).into()
     }
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let position = view.samples.find(Signal::Position).unwrap_or_default();
-        let state = if form == "dahl" {
-            remember(position, &view.starts, |z, step| {
-                // Exact for a straight step: the way left to ±1 shrinks exponentially, whatever the speed.
-                let end = if step < 0.0 { -1.0 } else { 1.0 };
-                end + (z - end) * (-step.abs() / shape[0]).exp()
-            })
-        } else {
-            remember(position, &view.starts, |z, step| (z + step / shape[0]).clamp(-1.0, 1.0))
+        let state = match form {
+            "dahl" => memory::dahl(position, shape[0], &view.starts),
+            _ => memory::stop(position, shape[0], &view.starts),
         };
         let direction = view.samples.find(Signal::Direction).unwrap_or_default();
         vec![view.average(state.iter().zip(direction).map(|(z, d)| z - d).collect())]
@@ -48,21 +44,4 @@ impl Effect for Presliding {
     fn stage(&self) -> crate::effect::Stage {
         crate::effect::Stage::Memory
     }
-}
-
-/// The state after each sample, from zero at every start.
-fn remember(position_rad: &[f64], starts: &[usize], next: impl Fn(f64, f64) -> f64) -> Vec<f64> {
-    let mut state = 0.0;
-    let mut last = position_rad.first().copied().unwrap_or_default();
-    let mut starts = starts.iter().peekable();
-    let step = |(i, position): (usize, &f64)| {
-        if starts.next_if(|s| **s == i).is_some() {
-            state = 0.0;
-        } else {
-            state = next(state, position - last);
-        }
-        last = *position;
-        state
-    };
-    position_rad.iter().enumerate().map(step).collect()
 }

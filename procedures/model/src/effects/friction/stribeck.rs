@@ -1,6 +1,6 @@
 //! Stribeck effect.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 
@@ -35,8 +35,8 @@ pub(super) fn search(view: &View) -> Option<(Vec<Shape>, Vec<Vec<f64>>)> {
         return None;
     }
     let shape = vec![
-        Shape { name: "omega_s", min: low, max: high, whole: false },
-        Shape { name: "delta", min: 0.5, max: 3.0, whole: false },
+        Shape { name: "omega_s", min: low, max: high, search: Search::Smooth },
+        Shape { name: "delta", min: 0.5, max: 3.0, search: Search::Smooth },
     ];
     let speeds = crate::effects::log_grid(low, high, 6);
     let grid = speeds.iter().flat_map(|s| [vec![*s, 0.9], vec![*s, 1.8]]).collect();

@@ -1,6 +1,6 @@
 //! Shear-thinning viscous friction.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 
@@ -27,7 +27,7 @@ impl Effect for ViscousSublinear {
         if crate::effects::speed_range(view).is_none_or(|(slow, fast)| fast < 3.0 * slow) {
             return Vec::new();
         }
-        let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, whole: false }];
+        let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, search: Search::Smooth }];
         let grid = [0.25, 0.4, 0.55, 0.7].iter().map(|a| vec![*a]).collect();
         vec![Form { name: "power", linear: &["c_alpha"], shape, grid }]
     }

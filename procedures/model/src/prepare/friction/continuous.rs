@@ -3,7 +3,7 @@
 //! Parallel filtering after Gautier 1997: the response and every column pass the same zero-phase filter before one of n
 //! samples is kept. The defaults are those of Janot, Gautier and Brunot 2019 at any sample rate.
 
-use super::Samples;
+use crate::prepare::chunks::Source;
 use crate::prepare::filter::{LowPass, by_recording};
 use crate::prepare::{Prepared, Problem, Reduce, layout, segments};
 use crate::report::Preparation;
@@ -14,7 +14,7 @@ use jointbench_instrument::RunTable;
 /// Rows for each second that the defaults aim at.
 const ROWS_HZ: f64 = 100.0;
 
-pub fn prepare(run: &RunTable, mut samples: Samples, options: &Options) -> Result<Prepared, ModelError> {
+pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result<Prepared, ModelError> {
     let every = options.decimation.unwrap_or(((1.0 / samples.step_s / ROWS_HZ).round() as usize).max(1));
     let filter = (every > 1).then(|| LowPass::chebyshev(8, 0.05, 0.8 / every as f64));
     // The first and last samples of a recording are where filters and derivatives guess.
@@ -26,7 +26,7 @@ pub fn prepare(run: &RunTable, mut samples: Samples, options: &Options) -> Resul
             (skip..v.len().saturating_sub(skip)).step_by(every).map(|i| v[i]).collect()
         })
     };
-    let target = reduce.apply(samples.torque_nm.clone());
+    let target = reduce.apply(samples.target.clone());
     if target.len() < 24 {
         return Err(ModelError::TooFewSamples { usable: target.len(), needed: 24, what: "filtered rows" });
     }

@@ -3,24 +3,11 @@
 mod continuous;
 mod plateaus;
 
+use super::chunks::Source;
 use super::{Prepared, filter, median, sample_s, segments};
-use crate::view::{Signal, Signals};
+use crate::view::{Constants, Signal, Signals};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
-
-/// The samples of a friction run in model quantities.
-struct Samples {
-    signals: Signals,
-    torque_nm: Vec<f64>,
-    time_s: Vec<f64>,
-    step_s: f64,
-    starts: Vec<usize>,
-    cutoff_hz: f64,
-    segment: Option<Vec<i64>>,
-    repeat: Option<Vec<i64>>,
-    /// The velocity came from the position.
-    derived_velocity: bool,
-}
 
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
     let samples = read(run, options)?;
@@ -29,7 +16,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
     // many steps does not take them away.
     let in_steps = settled * 2 > run.len()
-        || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > plateaus::legs(&samples).len());
+        || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
     let kind = options.residual.unwrap_or(if in_steps { ResidualKind::PlateauMean } else { ResidualKind::Raw });
     match kind {
         ResidualKind::PlateauMean => plateaus::prepare(run, samples, plateaus, options),
@@ -37,7 +24,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     }
 }
 
-fn read(run: &RunTable, options: &Options) -> Result<Samples, ModelError> {
+fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
     let column = |name: &str| run.column(name).unwrap_or_default();
     let km = run
         .meta()
@@ -90,15 +77,16 @@ fn read(run: &RunTable, options: &Options) -> Result<Samples, ModelError> {
     if let Some(temperature) = run.column("temperature_c") {
         signals.set(Signal::Temperature, temperature.to_vec());
     }
-    Ok(Samples {
+    Ok(Source {
         signals,
-        torque_nm,
+        target: torque_nm,
         step_s,
         starts,
         cutoff_hz,
         segment: segments::integers(run, "segment"),
         repeat: segments::integers(run, "repeat"),
         derived_velocity: measured.is_none(),
+        constants: Constants::default(),
         time_s,
     })
 }

@@ -4,10 +4,10 @@
 //! periodic effect fades at speed exactly as its data does. Ramps and reversals are kept apart, where signals of
 //! different instruments are not aligned and friction has memory.
 
-use super::Samples;
-use crate::prepare::{Prepared, Problem, Reduce, layout, median, segments};
+use crate::prepare::chunks::{Layout, Source, problem};
+use crate::prepare::{Prepared, Problem, layout, median, segments};
 use crate::report::Preparation;
-use crate::view::{Signal, Signals, View};
+use crate::view::Signal;
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
 use std::ops::Range;
@@ -17,25 +17,13 @@ const MOVING_CHUNK_S: f64 = 0.02;
 /// How far speed and load may be from the plateau's own middle, as a share of their size.
 const SETTLED_SHARE: f64 = 0.04;
 
-fn chunk_samples(samples: &Samples, chunk_s: f64) -> usize {
-    ((chunk_s / samples.step_s).round() as usize).max(1)
-}
-
-/// Segments, as numbered or as found: stretches of one direction within a recording.
-pub fn legs(samples: &Samples) -> Vec<Range<usize>> {
-    match &samples.segment {
-        Some(segment) => segments::stretches(&segment.iter().map(|s| *s as f64).collect::<Vec<_>>()),
-        None => segments::stretches(samples.signals.find(Signal::Direction).unwrap_or_default()),
-    }
-}
-
 /// The settled stretch of every segment that has one.
-pub fn find(samples: &Samples, options: &Options) -> Vec<Range<usize>> {
-    let n = chunk_samples(samples, options.chunk_s.unwrap_or(CHUNK_S));
+pub fn find(samples: &Source, options: &Options) -> Vec<Range<usize>> {
+    let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let load = samples.signals.find(Signal::Load);
     let heaviest = load.map_or(0.0, |l| l.iter().fold(0.0f64, |m, v| m.max(v.abs())));
-    legs(samples).into_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, n)).collect()
+    samples.legs().into_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, n)).collect()
 }
 
 fn settled(leg: Range<usize>, velocity: &[f64], load: Option<&[f64]>, heaviest: f64, n: usize) -> Option<Range<usize>> {
@@ -73,12 +61,12 @@ fn settled(leg: Range<usize>, velocity: &[f64], load: Option<&[f64]>, heaviest: 
 
 pub fn prepare(
     run: &RunTable,
-    samples: Samples,
+    samples: Source,
     plateaus: Vec<Range<usize>>,
     options: &Options,
 ) -> Result<Prepared, ModelError> {
-    let n = chunk_samples(&samples, options.chunk_s.unwrap_or(CHUNK_S));
-    let legs = legs(&samples);
+    let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
+    let legs = samples.legs();
     let mut chunks = Vec::new();
     let mut group = Vec::new();
     let mut phase = Vec::new();
@@ -95,7 +83,7 @@ pub fn prepare(
     }
     let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
     let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
-    let main = problem(&samples, chunks, &group, &condition, Some(&phase), true);
+    let main = problem(&samples, Layout { chunks, group, condition, phase: Some(phase), settled: true });
     let speed = |p: &Range<usize>| {
         median(samples.signals.find(Signal::Velocity).unwrap_or_default()[p.clone()].iter().map(|v| v.abs()))
     };
@@ -127,7 +115,7 @@ pub fn prepare(
 }
 
 /// Plateaus of the same speed, direction and load are one condition.
-fn conditions(samples: &Samples, plateaus: &[Range<usize>], command: Option<&[f64]>) -> Vec<usize> {
+fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&[f64]>) -> Vec<usize> {
     let middle = |signal: &[f64], p: &Range<usize>| median(signal[p.clone()].iter().copied());
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let speeds: Vec<f64> = plateaus.iter().map(|p| middle(velocity, p)).collect();
@@ -148,49 +136,15 @@ fn conditions(samples: &Samples, plateaus: &[Range<usize>], command: Option<&[f6
     each.iter().map(|c| known.binary_search(c).unwrap_or(0)).collect()
 }
 
-fn problem(
-    samples: &Samples,
-    chunks: Vec<Range<usize>>,
-    group: &[usize],
-    condition: &[usize],
-    phase: Option<&[usize]>,
-    settled: bool,
-) -> Problem {
-    let mean = |values: &[f64]| -> Vec<f64> {
-        chunks.iter().map(|c| values[c.clone()].iter().sum::<f64>() / c.len() as f64).collect()
-    };
-    let mut points = Signals::new(chunks.len());
-    for signal in Signal::ALL {
-        let Some(values) = samples.signals.find(signal) else { continue };
-        // Settled motion has no acceleration by definition; what is measured there is noise.
-        let still = settled && matches!(signal, Signal::Acceleration | Signal::Jerk);
-        points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
-    }
-    let target = mean(&samples.torque_nm);
-    let (block, blocks) = layout::blocks(group, 24);
-    let (fold, folds) = layout::folds(condition, &block, 10);
-    let first = |values: &Option<Vec<i64>>| -> Vec<i64> {
-        values.as_ref().map_or_else(|| vec![0; chunks.len()], |v| chunks.iter().map(|c| v[c.start]).collect())
-    };
-    let repeat = first(&samples.repeat);
-    let segment = match &samples.segment {
-        Some(_) => first(&samples.segment),
-        None => group.iter().map(|g| *g as i64).collect(),
-    };
-    let twins = phase.map_or_else(Vec::new, |phase| layout::twins(condition, phase, &repeat, 1));
-    let view = View::new(points, samples.signals.clone(), chunks, samples.starts.clone(), samples.step_s);
-    Problem { view, target, reduce: Reduce::Same, block, blocks, fold, folds, twins, segment, repeat }
-}
-
 /// What is not settled and not faster than a speed, in short chunks.
-fn apart(samples: &Samples, plateaus: &[Range<usize>], fastest: f64) -> Option<Problem> {
-    let n = chunk_samples(samples, MOVING_CHUNK_S);
+fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Problem> {
+    let n = samples.chunk(MOVING_CHUNK_S);
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let mut settled = vec![false; samples.time_s.len()];
     plateaus.iter().for_each(|p| settled[p.clone()].fill(true));
     let mut chunks = Vec::new();
     let mut group = Vec::new();
-    for (number, leg) in legs(samples).into_iter().enumerate() {
+    for (number, leg) in samples.legs().into_iter().enumerate() {
         for start in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n) {
             let mean = velocity[start..start + n].iter().sum::<f64>() / n as f64;
             if mean.abs() <= fastest && !settled[start..start + n].iter().any(|s| *s) {
@@ -199,5 +153,6 @@ fn apart(samples: &Samples, plateaus: &[Range<usize>], fastest: f64) -> Option<P
             }
         }
     }
-    (chunks.len() >= 50).then(|| problem(samples, chunks, &group, &group, None, false))
+    (chunks.len() >= 50)
+        .then(|| problem(samples, Layout { chunks, condition: group.clone(), group, phase: None, settled: false }))
 }

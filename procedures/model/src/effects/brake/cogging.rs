@@ -1,0 +1,46 @@
+//! Cogging.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Cogging;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "cogging",
+    kind: Kind::Brake,
+    title: "Cogging",
+    sentence: "The poles of the brake leave a pattern in the rotor: the torque waves with the angle.",
+    formula: "a·cos(p·θ) + b·sin(p·θ), p found",
+    source: "makers' data of hysteresis brakes (salient poles)",
+    looks: "waves over the angle of the shaft",
+    parameters: &[
+        parameter("a", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("b", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("harmonic", "1/turn", 1.0, 120.0),
+    ],
+    needs: &["position_rad"],
+};
+
+impl Effect for Cogging {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        let orders = view.constants.poles.map_or(1..=60, |p| p..=p);
+        let mut forms = crate::effects::harmonic_form(view, Signal::Position, orders);
+        let excited = forms.iter().map(|f| Form { name: "excited", ..f.clone() }).collect::<Vec<_>>();
+        forms.extend(excited);
+        forms
+    }
+
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
+        let mut columns = view.harmonic(Signal::Position, shape[0]);
+        if form == "excited" {
+            let current = view.get(Signal::Current);
+            columns.iter_mut().for_each(|c| c.iter_mut().zip(current).for_each(|(c, i)| *c *= i));
+        }
+        columns.into()
+    }
+}

@@ -1,0 +1,33 @@
+//! Drag.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::View;
+use jointbench_instrument::Kind;
+
+pub struct Drag;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "drag",
+    kind: Kind::Brake,
+    title: "Drag",
+    sentence: "Bearings and remanence brake a little without any current.",
+    formula: "τ_0",
+    source: "makers' data of hysteresis brakes",
+    looks: "one constant everywhere",
+    parameters: &[parameter("tau_0", "Nm", 0.0, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for Drag {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["tau_0"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![vec![1.0; view.len()]]
+    }
+}

@@ -1,0 +1,53 @@
+//! Saturation.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Saturation;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "saturation",
+    kind: Kind::Brake,
+    title: "Saturation",
+    sentence: "The curve starts flat, is steep in the middle and bends when the iron is full.",
+    formula: "c_2·i² + c_3·i³, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s)",
+    source: "makers' data of hysteresis brakes (S-shape); contract section 2",
+    looks: "a curve over current, the same on the way up and down",
+    parameters: &[
+        parameter("c_2", "Nm/A²", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_3", "Nm/A³", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("i_0", "A", 0.0, f64::INFINITY),
+        parameter("i_s", "A", 0.0, f64::INFINITY),
+    ],
+    needs: &[],
+};
+
+impl Effect for Saturation {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        let peak = view.peak(Signal::Current);
+        let bend = Shape { name: "i_s", min: 0.05 * peak, max: 2.0 * peak, search: Search::Smooth };
+        let onset = Shape { name: "i_0", min: 0.01 * peak, max: peak, search: Search::Smooth };
+        let widths = crate::effects::log_grid(0.1 * peak, 1.5 * peak, 4);
+        let onsets = [0.1, 0.3, 0.6].map(|o| o * peak);
+        let pairs = onsets.iter().flat_map(|o| widths.iter().map(|w| vec![*o, *w])).collect();
+        vec![
+            Form { name: "polynomial", linear: &["c_2", "c_3"], shape: Vec::new(), grid: vec![Vec::new()] },
+            Form { name: "tanh", linear: &["c"], shape: vec![bend], grid: widths.iter().map(|w| vec![*w]).collect() },
+            Form { name: "s_shape", linear: &["c"], shape: vec![onset, bend], grid: pairs },
+        ]
+    }
+
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
+        match form {
+            "polynomial" => vec![view.map(Signal::Current, |i| i * i), view.map(Signal::Current, |i| i * i * i)],
+            "tanh" => vec![view.map(Signal::Current, |i| (i / shape[0]).tanh())],
+            _ => vec![view.map(Signal::Current, |i| ((i - shape[0]) / shape[1]).tanh() + (shape[0] / shape[1]).tanh())],
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Torque per current.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct TorquePerCurrent;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "torque_per_current",
+    kind: Kind::Brake,
+    title: "Torque per current",
+    sentence: "The braking torque grows in proportion to the coil current.",
+    formula: "k_b·i",
+    source: "makers' data of hysteresis brakes",
+    looks: "a line over current",
+    parameters: &[parameter("k_b", "Nm/A", 0.0, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for TorquePerCurrent {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["k_b"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.get(Signal::Current).to_vec()]
+    }
+}

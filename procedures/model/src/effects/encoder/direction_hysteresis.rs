@@ -1,0 +1,33 @@
+//! Direction hysteresis.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct DirectionHysteresis;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "direction_hysteresis",
+    kind: Kind::Encoder,
+    title: "Direction hysteresis",
+    sentence: "The reading depends on the side from which a place is reached: play in the coupling or magnetic hysteresis.",
+    formula: "h·sgn ω",
+    source: "contract section 2",
+    looks: "the same constant, with the sign of the direction",
+    parameters: &[parameter("h", "rad", f64::NEG_INFINITY, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for DirectionHysteresis {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["h"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.get(Signal::Direction).to_vec()]
+    }
+}

@@ -1,0 +1,36 @@
+//! Eccentricity.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Harmonic1;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "harmonic_1",
+    kind: Kind::Encoder,
+    title: "Eccentricity",
+    sentence: "The ring or the sensor is off centre: one wave per turn.",
+    formula: "a·cos θ + b·sin θ",
+    source: "thesis on joint test benches, section 4.3 (sinusoid per turn)",
+    looks: "one wave per turn",
+    parameters: &[
+        parameter("a", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("b", "rad", f64::NEG_INFINITY, f64::INFINITY),
+    ],
+    needs: &[],
+};
+
+impl Effect for Harmonic1 {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["a", "b"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        view.harmonic(Signal::Position, 1.0).into()
+    }
+}

@@ -1,0 +1,36 @@
+//! Tilt or ellipticity.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Harmonic2;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "harmonic_2",
+    kind: Kind::Encoder,
+    title: "Tilt or ellipticity",
+    sentence: "The ring is tilted or not round: two waves per turn.",
+    formula: "a·cos 2θ + b·sin 2θ",
+    source: "thesis on joint test benches, section 4.3",
+    looks: "two waves per turn",
+    parameters: &[
+        parameter("a", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("b", "rad", f64::NEG_INFINITY, f64::INFINITY),
+    ],
+    needs: &[],
+};
+
+impl Effect for Harmonic2 {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["a", "b"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        view.harmonic(Signal::Position, 2.0).into()
+    }
+}

@@ -1,0 +1,50 @@
+//! Pole period error.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct PolePeriod;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "pole_period",
+    kind: Kind::Encoder,
+    title: "Pole period error",
+    sentence: "Inside one pole pair the angle is interpolated from two waves that are never quite equal: an error once and twice per pole pair.",
+    formula: "a·cos pθ + b·sin pθ + c·cos 2pθ + d·sin 2pθ, p pole pairs",
+    source: "thesis on joint test benches, section 4.3; contract section 2",
+    looks: "fast waves, p and 2p per turn",
+    parameters: &[
+        parameter("a", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("b", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("d", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("pole_pairs", "1/turn", 1.0, 128.0),
+    ],
+    needs: &[],
+};
+
+impl Effect for PolePeriod {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        let orders = match view.constants.pole_pairs {
+            Some(p) => p..=p,
+            None => 16..=128,
+        };
+        let mut forms = crate::effects::harmonic_form(view, Signal::Position, orders);
+        for form in &mut forms {
+            form.linear = &["a", "b", "c", "d"];
+            form.shape = vec![Shape { name: "pole_pairs", min: 1.0, max: 128.0, search: Search::Whole }];
+        }
+        forms
+    }
+
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        let [a, b] = view.harmonic(Signal::Position, shape[0]);
+        let [c, d] = view.harmonic(Signal::Position, 2.0 * shape[0]);
+        vec![a, b, c, d]
+    }
+}

@@ -1,0 +1,33 @@
+//! Temperature drift.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct TemperatureDrift;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "temperature_drift",
+    kind: Kind::Encoder,
+    title: "Temperature drift",
+    sentence: "The zero moves as the encoder warms up.",
+    formula: "ξ_T·(T − 25 °C)",
+    source: "contract section 2",
+    looks: "a line over temperature",
+    parameters: &[parameter("xi_t", "rad/K", f64::NEG_INFINITY, f64::INFINITY)],
+    needs: &["temperature_c"],
+};
+
+impl Effect for TemperatureDrift {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["xi_t"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.map(Signal::Temperature, |t| t - 25.0)]
+    }
+}

@@ -1,0 +1,36 @@
+//! Backlash.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Backlash;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "backlash",
+    kind: Kind::Stiffness,
+    title: "Backlash",
+    sentence: "Between the flanks there is a gap that the joint crosses when the torque changes sign.",
+    formula: "β·tanh(τ/τ_b)",
+    source: "Nordin and Gutman 2002",
+    looks: "a step at zero torque",
+    parameters: &[parameter("beta", "rad", 0.0, f64::INFINITY), parameter("tau_b", "Nm", 0.0, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for Backlash {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        let peak = view.peak(Signal::Load);
+        let shape = vec![Shape { name: "tau_b", min: 3e-3 * peak, max: 0.05 * peak, search: Search::Smooth }];
+        let grid = crate::effects::log_grid(3e-3 * peak, 0.05 * peak, 3).into_iter().map(|t| vec![t]).collect();
+        vec![Form { name: "dead_zone", linear: &["beta"], shape, grid }]
+    }
+
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        vec![view.map(Signal::Load, |t| (t / shape[0]).tanh())]
+    }
+}

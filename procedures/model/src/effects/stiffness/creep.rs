@@ -1,0 +1,43 @@
+//! Creep.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::effects::memory;
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct Creep;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "creep",
+    kind: Kind::Stiffness,
+    title: "Creep",
+    sentence: "Under a lasting load the joint goes on twisting for a while.",
+    formula: "κ_c·(s − τ), ds = (τ − s)·dt/t_c",
+    source: "Findley, Lai, Onaran, Creep and Relaxation, standard linear solid",
+    looks: "the twist follows the torque late",
+    parameters: &[parameter("kappa_c", "rad/Nm", 0.0, f64::INFINITY), parameter("t_c", "s", 0.0, f64::INFINITY)],
+    needs: &[],
+};
+
+impl Effect for Creep {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        let step = view.sample_s;
+        let (low, high) = (5.0 * step, 0.2 * step * view.samples.len() as f64);
+        if high <= 2.0 * low {
+            return Vec::new();
+        }
+        let shape = vec![Shape { name: "t_c", min: low, max: high, search: Search::Smooth }];
+        let grid = crate::effects::log_grid(low, high, 8).into_iter().map(|t| vec![t]).collect();
+        vec![Form { name: "lag", linear: &["kappa_c"], shape, grid }]
+    }
+
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        let torque = view.samples.find(Signal::Load).unwrap_or_default();
+        let lag = memory::lag(torque, view.sample_s / shape[0], &view.starts);
+        vec![view.average(lag.iter().zip(torque).map(|(s, t)| s - t).collect())]
+    }
+}

@@ -1,0 +1,33 @@
+//! Temperature-dependent compliance.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct TemperatureCompliance;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "temperature_compliance",
+    kind: Kind::Stiffness,
+    title: "Temperature-dependent compliance",
+    sentence: "The joint gets softer as it warms up.",
+    formula: "κ_T·(T − 25 °C)·τ",
+    source: "contract section 2",
+    looks: "a line over torque whose slope changes with temperature",
+    parameters: &[parameter("kappa_t", "rad/(Nm·K)", f64::NEG_INFINITY, f64::INFINITY)],
+    needs: &["temperature_c"],
+};
+
+impl Effect for TemperatureCompliance {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, _: &View) -> Vec<Form> {
+        vec![Form::linear(&["kappa_t"])]
+    }
+
+    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
+        vec![view.map2(Signal::Temperature, Signal::Load, |c, t| (c - 25.0) * t)]
+    }
+}

@@ -1,0 +1,37 @@
+//! Transmission error.
+
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+
+pub struct TransmissionError;
+
+static INFO: EffectInfo = EffectInfo {
+    id: "transmission_error",
+    kind: Kind::Stiffness,
+    title: "Transmission error",
+    sentence: "The teeth are not quite evenly spaced: the twist waves with the angle of the link.",
+    formula: "a·cos(h·θ_link) + b·sin(h·θ_link), h found",
+    source: "contract section 2; Tuttle and Seering 1996",
+    looks: "waves over the link angle, the same at every torque",
+    parameters: &[
+        parameter("a", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("b", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("harmonic", "1/turn", 1.0, 60.0),
+    ],
+    needs: &[],
+};
+
+impl Effect for TransmissionError {
+    fn info(&self) -> &'static EffectInfo {
+        &INFO
+    }
+
+    fn forms(&self, view: &View) -> Vec<Form> {
+        crate::effects::harmonic_form(view, Signal::Link, 1..=60)
+    }
+
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        view.harmonic(Signal::Link, shape[0]).into()
+    }
+}

@@ -1,0 +1,105 @@
+//! Stiffness runs: torsion between motor and link over the link torque.
+
+use super::chunks::Source;
+use super::{Prepared, filter, sample_s, segments, sweeps};
+use crate::linear::Spd;
+use crate::view::{Constants, Signal, Signals};
+use crate::{ModelError, Options};
+use jointbench_instrument::RunTable;
+
+const CHUNK_S: f64 = 0.04;
+
+pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let gear = run.meta().gear_ratio.ok_or(ModelError::MissingConstant { needed: "gear_ratio" })?;
+    let torque = column("link_torque_nm");
+    if torque.iter().all(|t| *t == torque[0]) {
+        return Err(ModelError::Constant { column: "link_torque_nm".into() });
+    }
+    let time_s = column("time_s").to_vec();
+    let step_s = sample_s(&time_s);
+    let link = column("link_position_rad");
+    let target: Vec<f64> = column("motor_position_rad").iter().zip(link).map(|(m, l)| m / gear - l).collect();
+    let cutoff_hz = options.cutoff_hz.unwrap_or(0.1 / step_s).min(0.45 / step_s);
+    let measured = run.column("link_velocity_rad_s");
+    let velocity = measured.map_or_else(
+        || {
+            let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
+            filter::derivative(&time_s, &smooth.both_ways(link, 12))
+        },
+        <[f64]>::to_vec,
+    );
+    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let mut signals = Signals::new(run.len());
+    signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
+    signals.set(Signal::Direction, segments::direction(&velocity, 0.01 * fastest));
+    signals.set(Signal::Link, link.to_vec());
+    signals.set(Signal::Position, column("motor_position_rad").to_vec());
+    signals.set(Signal::Velocity, velocity);
+    for (name, signal) in [("temperature_c", Signal::Temperature), ("repeat", Signal::Repeat)] {
+        if let Some(values) = run.column(name) {
+            signals.set(signal, values.to_vec());
+        }
+    }
+    let mut source = Source {
+        signals,
+        target,
+        step_s,
+        starts: vec![0],
+        cutoff_hz,
+        segment: segments::integers(run, "segment"),
+        repeat: segments::integers(run, "repeat"),
+        derived_velocity: measured.is_none(),
+        time_s,
+        constants: Constants::default(),
+    };
+    let smooth: Vec<f64> = source.legs().into_iter().flat_map(|leg| smooth_leg(&torque[leg])).collect();
+    source.signals.set(Signal::Load, smooth);
+    sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Load], options)
+}
+
+/// One smooth curve for a leg: Chebyshev polynomials of the square root of the time since the reversal, which follow a
+/// fast beginning and a slow end. Noise in the torque would feed hysteresis and sign terms; a filter across the reversal
+/// would blur what those terms live from.
+fn smooth_leg(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let order = (n / 12).min(11);
+    if order < 2 {
+        return values.to_vec();
+    }
+    let terms = |i: usize| {
+        let x = 2.0 * ((i as f64 + 0.5) / n as f64).sqrt() - 1.0;
+        let mut t = vec![1.0, x];
+        for k in 2..=order {
+            t.push(2.0 * x * t[k - 1] - t[k - 2]);
+        }
+        t
+    };
+    let p = order + 1;
+    let mut gram = vec![0.0; p * p];
+    let mut side = vec![0.0; p];
+    for (i, v) in values.iter().enumerate() {
+        let t = terms(i);
+        for a in 0..p {
+            side[a] += t[a] * v;
+            for b in 0..p {
+                gram[a * p + b] += t[a] * t[b];
+            }
+        }
+    }
+    let factors = Spd::new(&gram, p, 0.0).solve(&side);
+    (0..n).map(|i| terms(i).iter().zip(&factors).map(|(t, f)| t * f).sum()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_relaxing_torque_is_followed_and_noise_is_not() {
+        let truth = |i: usize| 14.0 - 28.0 * (-(i as f64) / 27.0).exp();
+        let noisy: Vec<f64> = (0..300).map(|i| truth(i) + 0.03 * (i as f64 * 2.1).sin()).collect();
+        let worst = smooth_leg(&noisy).iter().enumerate().map(|(i, v)| (v - truth(i)).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.025, "{worst}");
+    }
+}

@@ -1,0 +1,83 @@
+//! Runs in legs without plateaus: every sample counts, averaged over short chunks.
+
+use super::chunks::{Layout, Source, problem};
+use super::{Prepared, layout};
+use crate::report::Preparation;
+use crate::view::Signal;
+use crate::{ModelError, Options, ResidualKind};
+use jointbench_instrument::RunTable;
+use std::ops::Range;
+
+pub fn prepare(
+    run: &RunTable,
+    samples: Source,
+    chunk_s: f64,
+    inputs: &[Signal],
+    options: &Options,
+) -> Result<Prepared, ModelError> {
+    let raw = options.residual == Some(ResidualKind::Raw);
+    let n = if raw { 1 } else { samples.chunk(options.chunk_s.unwrap_or(chunk_s)) };
+    let legs = samples.legs();
+    let conditions = conditions(&samples, &legs, inputs);
+    let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (number, leg) in legs.iter().enumerate() {
+        for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n).enumerate() {
+            chunks.push(start..start + n);
+            group.push(number);
+            phase.push(k);
+            condition.push(conditions[number]);
+        }
+    }
+    if chunks.len() < 12 {
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks" });
+    }
+    let main = problem(&samples, Layout { chunks, group, condition, phase: Some(phase), settled: false });
+    let repeats = main.repeat.iter().any(|r| *r != main.repeat[0]);
+    let about = Preparation {
+        residual: if raw { ResidualKind::Raw } else { ResidualKind::PlateauMean },
+        sample_rate_hz: 1.0 / samples.step_s,
+        cutoff_hz: samples.derived_velocity.then_some(samples.cutoff_hz),
+        decimation: 1,
+        chunk_s: Some(n as f64 * samples.step_s),
+        samples: run.len(),
+        rows: main.rows(),
+        blocks: main.blocks,
+        segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
+        repeats_from: if repeats { "column" } else { "none" }.into(),
+    };
+    Ok(Prepared {
+        kind: run.kind(),
+        motion: run.meta().motion,
+        main,
+        moving: None,
+        memory: None,
+        load_scale: 1.0,
+        about,
+    })
+}
+
+/// Legs that start and end alike are repeats of one condition.
+fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Signal]) -> Vec<usize> {
+    let mut keys: Vec<Vec<usize>> = vec![Vec::new(); legs.len()];
+    for signal in inputs {
+        let Some(values) = samples.signals.find(*signal) else { continue };
+        let peak = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        let parts: [&dyn Fn(&Range<usize>) -> Range<usize>; 2] =
+            [&|leg| leg.start + leg.len() / 4..leg.start + leg.len() / 2, &|leg| leg.end - leg.len() / 4..leg.end];
+        for part in parts {
+            let means: Vec<f64> = legs
+                .iter()
+                .map(|leg| {
+                    let range = part(leg);
+                    values[range.clone()].iter().sum::<f64>() / range.len().max(1) as f64
+                })
+                .collect();
+            let cluster = layout::clusters(&means, |v| 0.03 * v.abs() + 0.01 * peak);
+            keys.iter_mut().zip(cluster).for_each(|(k, c)| k.push(c));
+        }
+    }
+    let mut known = keys.clone();
+    known.sort();
+    known.dedup();
+    keys.iter().map(|k| known.binary_search(k).unwrap_or(0)).collect()
+}
