@@ -1,10 +1,16 @@
 import createClient from 'openapi-fetch';
 import type { paths } from '../../gen/schema';
 import { Refusal, asRefusal } from './problem';
+import { authorization } from './token';
 
 export const BASE = '/api/v1';
 
 const client = createClient<paths>({ baseUrl: '' });
+client.use({
+	onRequest: ({ request }) => {
+		for (const [name, value] of Object.entries(authorization())) request.headers.set(name, value);
+	},
+});
 
 /** The answer's body, or a refusal that a page can show. */
 async function body<T>(answer: Promise<{ data?: T; error?: unknown; response: Response }>): Promise<T> {

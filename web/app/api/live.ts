@@ -1,5 +1,6 @@
 import { BASE } from './client';
 import { type Frame, decodeFrame } from './frame';
+import { token } from './token';
 import type { LiveMessage } from './types';
 
 export interface LiveHandlers {
@@ -21,7 +22,9 @@ export function connectLive(handlers: LiveHandlers): () => void {
 
 	const open = () => {
 		const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
-		socket = new WebSocket(`${scheme}://${location.host}${BASE}/events`);
+		const kept = token();
+		const query = kept ? `?token=${encodeURIComponent(kept)}` : '';
+		socket = new WebSocket(`${scheme}://${location.host}${BASE}/events${query}`);
 		socket.binaryType = 'arraybuffer';
 		socket.onopen = () => {
 			wait_ms = FIRST_RETRY_MS;

@@ -22,3 +22,4 @@ export type RunEvent = Schemas['RunEvent'];
 export type RunState = Schemas['RunState'];
 export type Samples = Schemas['Samples'];
 export type Suggestion = Schemas['Suggestion'];
+export type TradeOff = Schemas['TradeOff'];

@@ -1,5 +1,6 @@
 import { BASE } from './client';
 import { Refusal, asRefusal } from './problem';
+import { authorization } from './token';
 import type { Problem, Run } from './types';
 
 /** A run table and, beside it, its `meta.json`. */
@@ -20,7 +21,7 @@ export async function importRun({ file, meta }: Upload): Promise<Run> {
 	form.append('file', file, file.name);
 	if (meta) form.append('meta', await meta.text());
 	try {
-		const response = await fetch(`${BASE}/runs/import`, { method: 'POST', body: form });
+		const response = await fetch(`${BASE}/runs/import`, { method: 'POST', body: form, headers: authorization() });
 		const body: unknown = await response.json();
 		if (!response.ok) throw new Refusal({ ...(body as Problem), status: response.status });
 		return body as Run;

@@ -1,6 +1,7 @@
 import uPlot from 'uplot';
 import { colour } from './colour';
 import { type Asked, type View, gestures } from './gestures';
+import { trace } from './trace';
 
 /** `line` joins the points; the others mark each point by itself. */
 export type Mark = 'line' | 'dot' | 'ring' | 'dash';
@@ -110,7 +111,7 @@ function axis(title: string, bare = false, size?: number): uPlot.Axis {
 function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 	const stroke = () => colour(curve.stroke);
 	if (curve.mark === 'line') {
-		return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, gaps: (u) => gapPixels(u, backdrop().gaps) };
+		return { stroke, points: { show: false }, paths: trace(curve.dash, () => backdrop().gaps) };
 	}
 	if (curve.mark === 'dash') return { stroke, width: 2, points: { show: false }, paths: dashes };
 	const filled = curve.mark === 'dot';
@@ -119,10 +120,6 @@ function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 		paths: () => null,
 		points: { show: true, size: filled ? 5 : 6, width: 1, stroke, fill: filled ? stroke : () => 'transparent' },
 	};
-}
-
-function gapPixels(u: uPlot, gaps: Backdrop['gaps']): [number, number][] {
-	return gaps.map(([from, to]) => [u.valToPos(from, 'x', true), u.valToPos(to, 'x', true)]);
 }
 
 /** A short level stroke at each point: where the model says the point should be. */

@@ -1,5 +1,6 @@
 import { api } from '../api/client';
 import { connectLive } from '../api/live';
+import { asRefusal } from '../api/problem';
 import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
 import type { Frame } from '../api/frame';
 import { Tape } from '../plot/tape';
@@ -25,6 +26,8 @@ class LabState {
 	/** Raised when a model version was made anywhere. */
 	models = $state(0);
 	line = $state(false);
+	/** The daemon wants a token that it was not given. */
+	unauthorized = $state(false);
 	heard_ms = $state(performance.now());
 	now_ms = $state(performance.now());
 	tape: Tape | null = null;
@@ -63,8 +66,10 @@ class LabState {
 		try {
 			this.benches = await api.benches(AbortSignal.timeout(2500));
 			this.hear();
-		} catch {
+			this.unauthorized = false;
+		} catch (failure) {
 			// Silence is shown by its age.
+			this.unauthorized = asRefusal(failure).status === 401;
 		}
 		this.asking = false;
 	}
@@ -76,7 +81,11 @@ class LabState {
 
 	private setLine(up: boolean): void {
 		this.line = up;
-		if (up) void this.ask();
+		if (!up) return;
+		// The daemon may have come back without the run that was on: only what it says from now on counts.
+		this.runStates = {};
+		this.progress = {};
+		void this.ask();
 	}
 
 	private take(message: LiveMessage): void {
@@ -119,11 +128,19 @@ class LabState {
 		this.dropped = 0;
 	}
 
+	private drawing = false;
+
+	/** However many frames come, plots are drawn once for each picture of the screen, and not at all in a hidden tab. */
 	private takeFrame(frame: Frame): void {
 		this.hear();
 		this.tape?.push(frame);
 		this.dropped = frame.dropped;
-		this.frames += 1;
+		if (this.drawing) return;
+		this.drawing = true;
+		requestAnimationFrame(() => {
+			this.drawing = false;
+			this.frames += 1;
+		});
 	}
 }
 

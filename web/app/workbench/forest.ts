@@ -1,4 +1,4 @@
-import type { Parameter } from '../api/types';
+import type { Parameter, TradeOff } from '../api/types';
 
 /** A parameter on a scale of its own value: 0 is zero, 1 is the estimate. */
 export interface Row {
@@ -10,12 +10,20 @@ export interface Row {
 
 const SAID: Record<string, string> = { at_bound: 'at its bound', unidentified: 'not decided by this data', fixed: 'given' };
 
-export function forest(parameters: readonly Parameter[]): Row[] {
+/** Pairs that the data can hardly tell apart are flagged from this correlation on. */
+const TRADING = 0.9;
+
+export function forest(parameters: readonly Parameter[], tradeOffs: readonly TradeOff[] = []): Row[] {
 	return parameters.map((parameter) => {
 		const { value, ci95 } = parameter;
 		const [low, high] = [ci95[0] ?? Number.NaN, ci95[1] ?? Number.NaN];
 		const known = Number.isFinite(low) && Number.isFinite(high);
 		const flags: string[] = [];
+		const name = `${parameter.effect}.${parameter.name}`;
+		for (const { first, second, correlation } of tradeOffs) {
+			if (Math.abs(correlation) < TRADING || (name !== first && name !== second)) continue;
+			flags.push(`trades with ${name === first ? second : first} (ρ ${correlation.toFixed(2).replace('-', '−')})`);
+		}
 		const state = SAID[parameter.state];
 		if (state) flags.push(state);
 		if (!known && parameter.state !== 'fixed') flags.push('no interval');

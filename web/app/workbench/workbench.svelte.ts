@@ -136,6 +136,10 @@ export function openWorkbench(id: number) {
 		get canRedo() {
 			return undone.length > 0;
 		},
+		/** The residuals on the screen belong to the version on the screen. */
+		get settled() {
+			return residuals.data?.version === model?.id;
+		},
 		/** The diagnosis on the screen belongs to the version on the screen. */
 		get diagnosed() {
 			return diagnosis.data?.model_id === model?.id;

@@ -97,4 +97,7 @@ it('flags parameters in words', () => {
 	] as Parameter[]);
 	expect(rows.map((row) => row.interval)).toEqual([[0.5, 1.5], [-0.5, 2.5], null]);
 	expect(rows.map((row) => row.flags)).toEqual([[], ['at its bound', 'may be zero'], ['given']]);
+	const pair = ['a', 'b'].map((name) => ({ effect: 'e', name, value: 1, ci95: [0.5, 1.5], state: 'ok' })) as Parameter[];
+	const [first] = forest(pair, [{ first: 'e.a', second: 'e.b', correlation: -0.96 }]);
+	expect(first!.flags).toEqual(['trades with e.b (ρ −0.96)']);
 });

@@ -1,0 +1,18 @@
+/**
+ * A daemon that listens beyond loopback wants a token. A person gives it once for each browser session; it goes into a
+ * header, and into the address only where a browser cannot set one (the live stream).
+ */
+const KEPT = 'jointbench.token';
+
+export function token(): string | null {
+	return sessionStorage.getItem(KEPT);
+}
+
+export function keepToken(text: string): void {
+	sessionStorage.setItem(KEPT, text.trim());
+}
+
+export function authorization(): Record<string, string> {
+	const kept = token();
+	return kept ? { authorization: `Bearer ${kept}` } : {};
+}

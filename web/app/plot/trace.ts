@@ -1,0 +1,90 @@
+import type uPlot from 'uplot';
+
+/** Up to here a curve is drawn as it is, with a true dash along its length. */
+const SPARSE = 600;
+
+/** Where along x a dash pattern is on: a dash that does not depend on how far a noisy curve travels up and down. */
+export function isOn(pattern: readonly number[], x: number): boolean {
+	let rest = x % pattern.reduce((sum, length) => sum + length, 0);
+	for (let i = 0; i < pattern.length; i++) {
+		rest -= pattern[i]!;
+		if (rest < 0) return i % 2 === 0;
+	}
+	return true;
+}
+
+/**
+ * A line through the points, broken at gaps and at missing values. Dense data becomes its smallest and largest value in each
+ * pixel column, one pixel wide: without a graphics card, wide or dashed strokes of noise cost ten times as much.
+ */
+export function trace(dash: readonly number[] | undefined, gaps: () => readonly (readonly [number, number])[]): uPlot.Series.PathBuilder {
+	return (u, index, from, to) => {
+		const ratio = devicePixelRatio;
+		const sparse = to - from <= SPARSE;
+		const series = u.series[index]!;
+		series.width = sparse ? 1.5 : 1;
+		series.dash = sparse && dash ? [...dash] : undefined;
+		const pattern = sparse || !dash ? null : dash.map((length) => length * ratio);
+		const path = new Path2D();
+		for (const [begin, end] of pieces(u.data[0]!, from, to, gaps())) line(u, index, begin, end, sparse, pattern, path);
+		return { stroke: path };
+	};
+}
+
+/** Index ranges between gaps. */
+function pieces(x: ArrayLike<number>, from: number, to: number, gaps: readonly (readonly [number, number])[]): [number, number][] {
+	const cuts = gaps.filter(([, end]) => end > x[from]! && end <= x[to]!);
+	const list: [number, number][] = [];
+	let begin = from;
+	for (const [, end] of cuts) {
+		let i = begin;
+		while (i <= to && x[i]! < end) i += 1;
+		list.push([begin, i - 1]);
+		begin = i;
+	}
+	return [...list, [begin, to]];
+}
+
+function line(u: uPlot, index: number, from: number, to: number, sparse: boolean, pattern: number[] | null, path: Path2D): void {
+	const [x, y] = [u.data[0]!, u.data[index]!];
+	let column = Number.NaN;
+	let [low, high] = [0, 0];
+	let joined = false;
+	const put = (px: number, py: number) => {
+		if (joined) path.lineTo(px, py);
+		else path.moveTo(px, py);
+		joined = true;
+	};
+	const flush = () => {
+		if (Number.isNaN(column)) return;
+		if (pattern && !isOn(pattern, column)) joined = false;
+		else {
+			put(column, low);
+			if (high !== low) put(column, high);
+		}
+		column = Number.NaN;
+	};
+	for (let i = from; i <= to; i++) {
+		const value = y[i];
+		if (value == null || Number.isNaN(value)) {
+			flush();
+			joined = false;
+			continue;
+		}
+		const px = u.valToPos(x[i]!, 'x', true);
+		const py = u.valToPos(value, 'y', true);
+		if (sparse) {
+			put(px, py);
+			continue;
+		}
+		const here = Math.round(px);
+		if (here === column) {
+			low = Math.min(low, py);
+			high = Math.max(high, py);
+		} else {
+			flush();
+			[column, low, high] = [here, py, py];
+		}
+	}
+	flush();
+}
