@@ -8,7 +8,7 @@ use jointbench_instrument::units::{Amperes, NewtonMetres, RadPerSec, Volts};
 use jointbench_instrument::{Bench, Fault, FaultKind};
 use std::time::{Duration, Instant};
 
-const DEADLINE: Duration = Duration::from_millis(250);
+const DEADLINE: Duration = Duration::from_millis(400);
 
 fn settings(transport: Transport) -> MockSettings {
     let deadline_ms = DEADLINE.as_millis() as u64;
