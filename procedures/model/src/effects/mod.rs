@@ -74,17 +74,13 @@ fn reversal_range(view: &View) -> Option<(f64, f64)> {
 /// A harmonic of an angle, searched over whole orders. Orders that turn further than half a wave between two samples
 /// at the slowest motion cannot be told from lower ones and are left out.
 fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form> {
-    let (Some(values), Some(samples)) = (view.find(angle), view.samples.find(angle)) else { return Vec::new() };
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let Some(samples) = view.samples.find(angle) else { return Vec::new() };
     let mut steps: Vec<f64> = samples.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
     steps.sort_by(f64::total_cmp);
     let Some(slow) = steps.get(steps.len() / 10) else { return Vec::new() };
     let highest = std::f64::consts::PI / slow;
-    // A wave of which less than half is seen is a slope, not a wave.
-    let lowest = std::f64::consts::PI / (high - low).max(1e-12);
     let (first, last) = (f64::from(*orders.start()), f64::from(*orders.end()));
-    let grid: Vec<Vec<f64>> =
-        orders.map(f64::from).filter(|h| *h >= lowest && *h <= highest).map(|h| vec![h]).collect();
+    let grid: Vec<Vec<f64>> = orders.map(f64::from).filter(|h| *h <= highest).map(|h| vec![h]).collect();
     if grid.is_empty() {
         return Vec::new();
     }

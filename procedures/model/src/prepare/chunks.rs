@@ -60,7 +60,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
     }
     let target = mean(&samples.target);
-    let (block, blocks) = layout::blocks(&group, 24);
+    let (block, blocks) = layout::blocks(&group, 48);
     let (fold, folds) = layout::folds(&condition, &block, 10);
     let first = |values: &Option<Vec<i64>>| -> Vec<i64> {
         values.as_ref().map_or_else(|| vec![0; chunks.len()], |v| chunks.iter().map(|c| v[c.start]).collect())

@@ -43,15 +43,19 @@ pub fn clusters(values: &[f64], tolerance: impl Fn(f64) -> f64) -> Vec<usize> {
 }
 
 /// Folds from conditions: every n-th condition together, so that each fold is predicted by its neighbours.
+///
+/// Fewer conditions than a dozen have no neighbours, and a first magnetisation or warm-up is there only once: then every
+/// n-th stretch of a block is held out, its rest kept.
 pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, usize) {
     let conditions = condition.iter().max().map_or(0, |c| c + 1);
-    if conditions >= 5 {
+    if conditions >= 12 {
         let n = conditions.min(most);
         return (condition.iter().map(|c| c % n).collect(), n);
     }
     let blocks = block.iter().max().map_or(0, |b| b + 1);
-    let n = blocks.clamp(1, most);
-    (block.iter().map(|b| b % n).collect(), n)
+    let stretch = (block.len() / (blocks * most).max(1)).max(4);
+    let n = most.min(block.len() / stretch).max(1);
+    ((0..block.len()).map(|i| i / stretch % n).collect(), n)
 }
 
 /// Pairs of rows of the same condition in different repeats whose phases are `apart` rows from each other.

@@ -8,7 +8,7 @@ use crate::prepare::Problem;
 use crate::terms::{Term, Terms, polish};
 
 /// Candidates that are refined and held against each other at each step.
-const SHORT_LIST: usize = 6;
+const SHORT_LIST: usize = 8;
 
 /// A candidate of one step with its evidence.
 #[derive(Clone)]
@@ -78,6 +78,7 @@ pub fn search<'p>(start: Terms<'p>, library: &Library, most: usize, options: &Op
         let mut next = now;
         next.terms.push(rival.term.clone());
         next.refine();
+        reform(&mut next, library);
         path.moves.push((Move::Added { rival, ties }, next));
         added += 1;
         while let Some((id, less)) = drop_one(path.end(), &kept, options) {
@@ -86,6 +87,46 @@ pub fn search<'p>(start: Terms<'p>, library: &Library, most: usize, options: &Op
     }
     path.silent = silences(path.end(), library, options);
     path
+}
+
+/// Another form must take this share off the squared error for each parameter that it has more.
+const BETTER_FORM: f64 = 0.01;
+
+/// Asks of every effect with several forms whether another one fits better beside the effects that came in since.
+fn reform(terms: &mut Terms, library: &Library) {
+    for i in 0..terms.terms.len() {
+        let mut others = terms.clone();
+        let term = others.terms.remove(i);
+        let same: Vec<_> = library.candidates.iter().filter(|c| c.id() == term.id()).collect();
+        if same.iter().all(|c| c.form.name == term.form.name) {
+            continue;
+        }
+        let basis = others.tangent();
+        let rest = basis.rest(&terms.response());
+        let sse = |term: &Term| {
+            let mut one = [term.clone()];
+            let sse = polish(&mut one, &basis, &rest, terms.problem);
+            let [term] = one;
+            (sse, term)
+        };
+        let mut best = sse(&term);
+        let mut forms: Vec<&str> = same.iter().map(|c| c.form.name).filter(|f| *f != term.form.name).collect();
+        forms.dedup();
+        for form in forms {
+            let share = |c: &&&super::library::Candidate| gain(&c.columns, &basis, &rest, 1.0).share;
+            let of_form = same.iter().filter(|c| c.form.name == form);
+            let Some(start) = of_form.max_by(|a, b| share(a).total_cmp(&share(b))) else { continue };
+            let trial = sse(&start.term());
+            let more = trial.1.size().saturating_sub(best.1.size()).max(1) as f64;
+            if trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
+                best = trial;
+            }
+        }
+        if best.1.form.name != term.form.name {
+            terms.terms[i] = best.1;
+            terms.refine();
+        }
+    }
 }
 
 /// For each effect that is not in the model, its best form and shape: what would have been seen.
@@ -129,11 +170,11 @@ fn step(now: &Terms, library: &Library, options: &Options) -> Option<(Rival, Vec
     let gains: Vec<Gain> =
         open.iter().map(|i| gain(&library.candidates[*i].columns, &basis, &residual, energy)).collect();
 
-    // The best form and shape of each effect, the most telling effects first.
+    // The best shape of each form of each effect, the most telling first.
     let mut best: Vec<usize> = Vec::new();
-    for (at, i) in open.iter().enumerate() {
-        let id = library.candidates[*i].id();
-        match best.iter_mut().find(|b| library.candidates[open[**b]].id() == id) {
+    let form = |at: usize| (library.candidates[open[at]].id(), library.candidates[open[at]].form.name);
+    for at in 0..open.len() {
+        match best.iter_mut().find(|b| form(**b) == form(at)) {
             Some(b) if gains[at].share > gains[*b].share => *b = at,
             Some(_) => {}
             None => best.push(at),
@@ -161,13 +202,21 @@ fn step(now: &Terms, library: &Library, options: &Options) -> Option<(Rival, Vec
         .filter(|r| r.share >= options.practical_share && r.held_out < present)
         .collect();
     rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
+    // The forms of one effect are one group: the best of them speaks for it.
+    let mut seen: Vec<&str> = Vec::new();
+    rivals.retain(|r| {
+        !seen.contains(&r.term.id()) && {
+            seen.push(r.term.id());
+            true
+        }
+    });
     let first = rivals.first()?;
 
     let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(first, &rivals[*i])).collect();
     let mut winner = 0;
     // Of what explains the data equally well, the simplest.
     for i in &ties {
-        let near = rivals[*i].held_out - rivals[0].held_out < 0.05 * (present - rivals[0].held_out);
+        let near = rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
         if near && rivals[*i].term.size() < rivals[winner].term.size() {
             winner = *i;
         }

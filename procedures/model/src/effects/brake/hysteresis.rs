@@ -7,12 +7,17 @@ use jointbench_instrument::Kind;
 
 pub struct Hysteresis;
 
+/// Bands of stops, evenly up to the largest current.
+const BANDS: [&str; 8] = ["h_1", "h_2", "h_3", "h_4", "h_5", "h_6", "h_7", "h_8"];
+/// Stops that make up the bands: a smooth density of a few numbers instead of many loose weights.
+const STOPS: usize = 48;
+
 static INFO: EffectInfo = EffectInfo {
     id: "hysteresis",
     kind: Kind::Brake,
     title: "Hysteresis",
     sentence: "At the same current the brake holds more on the way down than on the way up.",
-    formula: "Σ h_k·z_k, stops dz_k = di/r_k within ±1, r_k fractions of the largest current",
+    formula: "h·z, stop dz = di/r within ±1 or Dahl; or Σ h_k·z_k over bands of stops with reaches up to the largest current",
     source: "Prandtl–Ishlinskii model: Kuhnen 2003",
     looks: "loops over current",
     parameters: &[
@@ -22,6 +27,8 @@ static INFO: EffectInfo = EffectInfo {
         parameter("h_4", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("h_5", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("h_6", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("h_7", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("h_8", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("h", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("r", "A", 0.0, f64::INFINITY),
     ],
@@ -42,11 +49,11 @@ impl Effect for Hysteresis {
             return Vec::new();
         }
         let one = |name| Form { name, linear: &["h"], shape: shape.clone(), grid: grid.clone() };
-        let several = &["h_1", "h_2", "h_3", "h_4", "h_5", "h_6"];
+
         vec![
             one("stop"),
             one("dahl"),
-            Form { name: "stops", linear: several, shape: Vec::new(), grid: vec![Vec::new()] },
+            Form { name: "bands", linear: &BANDS, shape: Vec::new(), grid: vec![Vec::new()] },
         ]
     }
 
@@ -55,11 +62,24 @@ impl Effect for Hysteresis {
         match form {
             "stop" => vec![view.average(memory::stop(current, shape[0], &view.starts))],
             "dahl" => vec![view.average(memory::dahl(current, shape[0], &view.starts))],
-            _ => {
-                let peak = view.peak(Signal::Current);
-                let reach = [0.08, 0.16, 0.3, 0.5, 0.75, 1.0].map(|s| s * peak);
-                reach.iter().map(|r| view.average(memory::stop(current, *r, &view.starts))).collect()
+            _ => bands(current, view),
+        }
+    }
+}
+
+/// Stops weighted by hats over their reach: each band rises to its knot and falls to the next.
+fn bands(current: &[f64], view: &View) -> Columns {
+    let peak = view.peak(Signal::Current);
+    let mut columns = vec![vec![0.0; view.len()]; BANDS.len()];
+    for k in 1..=STOPS {
+        let place = (k * BANDS.len()) as f64 / STOPS as f64;
+        let stop = view.average(memory::stop(current, peak * k as f64 / STOPS as f64, &view.starts));
+        for (band, column) in columns.iter_mut().enumerate() {
+            let weight = (1.0 - (place - (band + 1) as f64).abs()).max(0.0);
+            if weight > 0.0 {
+                column.iter_mut().zip(&stop).for_each(|(c, s)| *c += weight * s);
             }
         }
     }
+    columns
 }

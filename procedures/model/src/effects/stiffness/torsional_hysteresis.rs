@@ -15,12 +15,7 @@ static INFO: EffectInfo = EffectInfo {
     formula: "η·z, dz = (1 − z·sgn dτ)·dτ/τ_η (Dahl), or stops dz = dτ/τ_η within ±1",
     source: "Dahl 1968; Ruderman, Bertram, Iwasaki 2014",
     looks: "loops over torque",
-    parameters: &[
-        parameter("eta", "rad", 0.0, f64::INFINITY),
-        parameter("eta_1", "rad", f64::NEG_INFINITY, f64::INFINITY),
-        parameter("eta_2", "rad", f64::NEG_INFINITY, f64::INFINITY),
-        parameter("tau_eta", "Nm", 0.0, f64::INFINITY),
-    ],
+    parameters: &[parameter("eta", "rad", 0.0, f64::INFINITY), parameter("tau_eta", "Nm", 0.0, f64::INFINITY)],
     needs: &[],
 };
 
@@ -31,8 +26,9 @@ impl Effect for TorsionalHysteresis {
 
     fn forms(&self, view: &View) -> Vec<Form> {
         let peak = view.peak(Signal::Load);
-        let shape = vec![Shape { name: "tau_eta", min: 0.03 * peak, max: peak, search: Search::Smooth }];
-        let grid: Vec<Vec<f64>> = crate::effects::log_grid(0.03 * peak, peak, 5).into_iter().map(|t| vec![t]).collect();
+        let shape = vec![Shape { name: "tau_eta", min: 0.004 * peak, max: peak, search: Search::Smooth }];
+        let grid: Vec<Vec<f64>> =
+            crate::effects::log_grid(0.004 * peak, peak, 9).into_iter().map(|t| vec![t]).collect();
         let one = |name| Form { name, linear: &["eta"], shape: shape.clone(), grid: grid.clone() };
         vec![one("dahl"), one("stop")]
     }
