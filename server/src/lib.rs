@@ -4,7 +4,9 @@
 
 pub mod api;
 pub mod bench;
+pub mod cli;
 pub mod config;
+pub mod daemon;
 pub mod lab;
 pub mod live;
 pub mod store;

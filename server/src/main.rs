@@ -1,1 +1,5 @@
-fn main() {}
+//! The command `jointbench`.
+
+fn main() -> std::process::ExitCode {
+    jointbench::cli::main()
+}

@@ -73,6 +73,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(runs::events))
         .routes(routes!(runs::samples))
         .routes(routes!(transfer::export))
+        .routes(routes!(transfer::export_meta))
         .routes(routes!(models::effects))
         .routes(routes!(models::list, models::create))
         .routes(routes!(models::get))

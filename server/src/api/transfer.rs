@@ -36,6 +36,15 @@ pub async fn export(
     Ok((headers, bytes).into_response())
 }
 
+/// The run's facts as `meta.json`: what an exported CSV needs beside it
+#[utoipa::path(get, path = "/runs/{id}/meta", operation_id = "export_meta", tag = "runs",
+    params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "The facts", body = serde_json::Value), Refusals))]
+pub async fn export_meta(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Response, Problem> {
+    let headers = [(header::CONTENT_TYPE, "application/json")];
+    Ok((headers, lab.export_meta(id).await?).into_response())
+}
+
 #[derive(Debug, Clone, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]

@@ -96,6 +96,11 @@ impl BenchHandle {
         Ok(Claim { bench: self.clone(), controls: Some(controls) })
     }
 
+    /// A run is on, or about to be.
+    pub fn is_busy(&self) -> bool {
+        lock(&self.shared.slot).is_some()
+    }
+
     /// Whether a run was there to hear it.
     pub fn control(&self, control: Control) -> bool {
         lock(&self.shared.slot).as_ref().is_some_and(|run| run.send(control).is_ok())

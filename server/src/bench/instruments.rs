@@ -65,7 +65,11 @@ fn simulated(mock: &MockBench) -> Hardware {
     }
 }
 
-fn wire(description: &BenchDescription, hardware: &Hardware, clock: Arc<dyn Clock>) -> (Option<Bench>, Vec<Instrument>) {
+fn wire(
+    description: &BenchDescription,
+    hardware: &Hardware,
+    clock: Arc<dyn Clock>,
+) -> (Option<Bench>, Vec<Instrument>) {
     let mut slots = Vec::new();
     let settings = hardware.joint.clone();
     let found = slot(description, "joint", &settings.name, "odrive", settings.port.address.to_string());
@@ -133,11 +137,6 @@ fn keep<T: roles::Instrument>(
 
 impl From<Identity> for InstrumentIdentity {
     fn from(identity: Identity) -> Self {
-        Self {
-            maker: identity.maker,
-            model: identity.model,
-            serial: identity.serial,
-            firmware: identity.firmware,
-        }
+        Self { maker: identity.maker, model: identity.model, serial: identity.serial, firmware: identity.firmware }
     }
 }

@@ -115,7 +115,8 @@ impl Recorder for StoreRecorder<'_> {
             elapsed_s: live.progress.elapsed_s,
             remaining_s: live.progress.remaining_s,
         };
-        let message = LiveMessage::Progress { bench: self.bench().to_owned(), run: live.run, progress: progress.clone() };
+        let message =
+            LiveMessage::Progress { bench: self.bench().to_owned(), run: live.run, progress: progress.clone() };
         self.start.hub.tell(message);
         let readings = readings(live.rows, self.start.description.constants.gear_ratio);
         self.status.send_modify(|status| {

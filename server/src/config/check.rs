@@ -27,11 +27,15 @@ pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mis
     }
     for (i, bench) in raw.bench.iter().enumerate() {
         if raw.bench[..i].iter().any(|earlier| earlier.name.get_ref() == bench.name.get_ref()) {
-            wrong.add(bench.name.span(), format!("bench {:?} is there twice: give each its own name", bench.name.get_ref()));
+            wrong.add(
+                bench.name.span(),
+                format!("bench {:?} is there twice: give each its own name", bench.name.get_ref()),
+            );
         }
     }
-    let benches: Option<Vec<_>> = raw.bench.iter().map(|bench| check_bench(bench, text, &mut wrong)).collect();
-    wrong.finish(file, benches)
+    // Every bench is looked at, whatever is wrong with the one before it.
+    let benches: Vec<_> = raw.bench.iter().map(|bench| check_bench(bench, text, &mut wrong)).collect();
+    wrong.finish(file, benches.into_iter().collect())
 }
 
 fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<BenchDescription> {
@@ -51,7 +55,7 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
         (None, Some(joint)) => check_hardware(raw, joint, wrong).map(|hardware| Source::Hardware(Box::new(hardware))),
         (None, None) => {
             wrong.add(raw.name.span(), format!("bench {name:?} has no joint: add [bench.joint], or [bench.mock]"));
-            None
+            return None;
         }
     };
     let sheet = match &source {
@@ -215,8 +219,7 @@ fn limits(
         take(raw.and_then(|r| r.motor_current_a.as_ref()), sheet.map(|s| s.motor_current_a), "motor_current_a");
     let torque = take(raw.and_then(|r| r.link_torque_nm.as_ref()), sheet.map(|s| s.link_torque_nm), "link_torque_nm");
     let heat = take(raw.and_then(|r| r.temperature_c.as_ref()), sheet.map(|s| s.temperature_c), "temperature_c");
-    let brake =
-        take(raw.and_then(|r| r.brake_current_a.as_ref()), sheet.map(|s| s.brake_current_a), "brake_current_a");
+    let brake = take(raw.and_then(|r| r.brake_current_a.as_ref()), sheet.map(|s| s.brake_current_a), "brake_current_a");
     let power = take(raw.and_then(|r| r.brake_power_w.as_ref()), sheet.map(|s| s.brake_power_w), "brake_power_w");
     Some(Limits {
         motor_velocity_rad_s: velocity?,
@@ -234,7 +237,8 @@ fn constants(
     place: std::ops::Range<usize>,
     wrong: &mut Collector,
 ) -> Option<JointConstants> {
-    let range = raw.and_then(|r| r.link_range_rad.as_ref()).map(|given| positive(given, "constants.link_range_rad", wrong));
+    let range =
+        raw.and_then(|r| r.link_range_rad.as_ref()).map(|given| positive(given, "constants.link_range_rad", wrong));
     let mut take = |given: Option<&Spanned<f64>>, sheet: Option<f64>, name: &str| {
         either(given, sheet, &format!("constants.{name}"), &place, wrong)
     };

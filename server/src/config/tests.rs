@@ -13,7 +13,8 @@ fn the_ready_made_descriptions_are_right() {
 
 #[test]
 fn a_mock_takes_the_data_sheet_and_what_is_given_goes_before_it() {
-    let benches = parse("b.toml", "[[bench]]\nname = \"b\"\nmock.joint = \"b\"\nlimits.temperature_c = 50.0\n").unwrap();
+    let benches =
+        parse("b.toml", "[[bench]]\nname = \"b\"\nmock.joint = \"b\"\nlimits.temperature_c = 50.0\n").unwrap();
     assert_eq!(benches[0].constants.gear_ratio, 50.0);
     assert_eq!(benches[0].limits.temperature_c, 50.0);
 }

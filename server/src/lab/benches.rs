@@ -58,12 +58,7 @@ impl Lab {
         Ok(preview)
     }
 
-    pub(super) fn plan(
-        &self,
-        bench: &str,
-        id: &str,
-        parameters: &Map<String, Value>,
-    ) -> Answer<(&BenchHandle, Plan)> {
+    pub(super) fn plan(&self, bench: &str, id: &str, parameters: &Map<String, Value>) -> Answer<(&BenchHandle, Plan)> {
         let bench = self.handle(bench)?;
         let procedure = procedure(id).ok_or_else(|| {
             let known: Vec<&str> = catalogue().iter().map(|procedure| procedure.id()).collect();

@@ -15,7 +15,8 @@ use serde_json::Value;
 /// gets through unnoticed.
 pub fn reread<T: Serialize, U: DeserializeOwned>(value: &T) -> Result<U, LabError> {
     let json = serde_json::to_value(value).map_err(|fault| LabError::Internal(fault.to_string()))?;
-    serde_json::from_value(json).map_err(|fault| LabError::Internal(format!("a result is not finite or not whole: {fault}")))
+    serde_json::from_value(json)
+        .map_err(|fault| LabError::Internal(format!("a result is not finite or not whole: {fault}")))
 }
 
 pub fn state_view(state: RunState) -> view::RunState {

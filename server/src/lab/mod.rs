@@ -53,7 +53,8 @@ impl Lab {
             benches.push(bench);
         }
         for (bench, runs) in interrupted {
-            let reason = "a run was interrupted, and the bench is not in the description that the daemon was started with";
+            let reason =
+                "a run was interrupted, and the bench is not in the description that the daemon was started with";
             store.block_bench(&bench, runs.last().copied(), reason).await?;
             for run in runs {
                 store.end_run(run, jointbench_procedure::Safe::UnsafeUnknown, Some(reason)).await?;
@@ -62,6 +63,11 @@ impl Lab {
         let lab = Lab { inner: Arc::new(Inner { store, hub, benches }) };
         lab.wait_until_secured().await;
         Ok(lab)
+    }
+
+    /// The store alone, to bring runs in and out while no daemon has it. No bench, and nothing is ended.
+    pub fn of_store(store: Store) -> Lab {
+        Lab { inner: Arc::new(Inner { store, hub: Hub::new(), benches: Vec::new() }) }
     }
 
     pub fn hub(&self) -> &Hub {

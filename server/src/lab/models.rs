@@ -119,9 +119,10 @@ async fn blocking<T: Send + 'static>(work: impl FnOnce() -> Result<T, ModelError
 }
 
 fn find_kind(name: &str) -> Answer<Kind> {
-    Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
-        LabError::Invalid(format!("kind {name:?}: write friction, encoder, stiffness or brake"))
-    })
+    Kind::ALL
+        .into_iter()
+        .find(|kind| kind.name() == name)
+        .ok_or_else(|| LabError::Invalid(format!("kind {name:?}: write friction, encoder, stiffness or brake")))
 }
 
 fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {

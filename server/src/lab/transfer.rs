@@ -3,7 +3,9 @@
 use super::{Answer, Lab, LabError};
 use crate::store::NewRun;
 use crate::view::Run;
-use jointbench_files::{ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_parquet};
+use jointbench_files::{
+    ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_parquet,
+};
 use jointbench_instrument::{RunTable, Trace};
 use serde::Deserialize;
 use serde_json::json;
@@ -52,9 +54,9 @@ impl Lab {
     pub async fn import(&self, request: ImportRequest) -> Answer<Run> {
         let name = request.name.clone().unwrap_or_else(|| request.file_name.clone());
         let source = json!({ "file": request.file_name, "map": request.map, "scale": request.scale });
-        let table = tokio::task::spawn_blocking(move || read(&request)).await.map_err(|fault| {
-            LabError::Internal(format!("reading the file failed: {fault}"))
-        })??;
+        let table = tokio::task::spawn_blocking(move || read(&request))
+            .await
+            .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))??;
         self.keep_table(&name, source, table).await
     }
 

@@ -115,8 +115,6 @@ pub struct FittedParameter {
 #[serde(rename_all = "snake_case")]
 pub enum ParameterState {
     Ok,
-    /// Given, not fitted.
-    Fixed,
     /// The best value lies at the edge of what is physically sensible.
     AtBound,
     /// The interval is as wide as the value.

@@ -1,0 +1,240 @@
+//! What can be written on the command line.
+
+use super::log::LogForm;
+use crate::lab::FileFormat;
+use clap::{Args, Parser, Subcommand};
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Begin here:
+  jointbench demo                              measure a simulated joint, find what its model lacks
+  jointbench diagnose RUN.csv                  where does the model fail on my data, and what is missing?
+
+Exit codes: 0 done, 1 the run failed or a limit was broken, 2 bad arguments or bad input, 3 could not be decided.";
+
+/// Test bench for robot joints: measure, fit a model, find where it fails and which effect it lacks.
+#[derive(Debug, Parser)]
+#[command(name = "jointbench", version, after_help = EXAMPLES, max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+    /// Form of the log on standard error; RUST_LOG chooses what is told (such as RUST_LOG=debug).
+    #[arg(long, global = true, value_enum, default_value = "text")]
+    pub log: LogForm,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Show the whole loop on a simulated bench, then keep the dashboard open
+    Demo(Demo),
+    /// Run the daemon: benches, store, REST API and dashboard
+    Serve(Serve),
+    /// Check a bench description and let its instruments identify themselves; moves nothing
+    Check(Check),
+    /// Start a procedure on a running daemon
+    Run(Run),
+    /// Say where a model fails on a measured run and which effect is missing
+    Diagnose(Diagnose),
+    /// Diagnose, add the best effect and fit again, until nothing is missing
+    Discover(Discover),
+    /// Fit a model to a measured run
+    Fit(Fit),
+    /// Take measured files into the store
+    Import(Import),
+    /// Write a run of the store to a file
+    Export(Export),
+}
+
+#[derive(Debug, Args)]
+pub struct Demo {
+    /// The effect to hide in the joint, such as stribeck or gravity
+    #[arg(long, value_name = "ID", conflicts_with = "seed", default_value = "load_linear")]
+    pub effect: String,
+    /// Hide an effect at random, and tell it only at the end
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// End after the report instead of keeping the dashboard open
+    #[arg(long)]
+    pub exit: bool,
+    #[command(flatten)]
+    pub place: Place,
+}
+
+#[derive(Debug, Args)]
+pub struct Serve {
+    /// Bench description: a file, or one of the ready-made ones (joint-a-mock, joint-b-mock, joint-a, joint-b)
+    #[arg(long, value_name = "BENCH.TOML", default_value = "joint-a-mock")]
+    pub config: String,
+    #[command(flatten)]
+    pub place: Place,
+}
+
+/// Where a daemon lives.
+#[derive(Debug, Args)]
+pub struct Place {
+    /// Folder of the store; made where it is missing [default: jointbench-data, or jointbench-data/demo for the demo]
+    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA")]
+    pub data: Option<PathBuf>,
+    /// Address and port of API and dashboard; port 0 takes a free one
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080")]
+    pub listen: SocketAddr,
+    /// Needed to listen beyond loopback; callers send it as `Authorization: Bearer TOKEN`
+    #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
+    pub token: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct Check {
+    /// Bench description: a file, or the name of a ready-made one
+    pub config: String,
+    /// Print the description itself, to start an own one from
+    #[arg(long)]
+    pub print: bool,
+}
+
+/// How to reach a running daemon.
+#[derive(Debug, Args)]
+pub struct Reach {
+    /// Address of the daemon
+    #[arg(long, value_name = "URL", env = "JOINTBENCH_URL", default_value = "http://127.0.0.1:8080")]
+    pub daemon: String,
+    /// Token of a daemon that listens beyond loopback
+    #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
+    pub token: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct Run {
+    /// Id of the procedure, such as friction or warm_up
+    pub procedure: String,
+    /// A parameter of the procedure, in SI units; may be given again
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Bench to run on; not needed where the daemon has only one
+    #[arg(long, value_name = "NAME")]
+    pub bench: Option<String>,
+    /// Wait for the end; Ctrl-C stops waiting, not the run
+    #[arg(long)]
+    pub wait: bool,
+    /// Print the run as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write how the run ended as a JUnit report; waits for the end
+    #[arg(long, value_name = "REPORT.XML")]
+    pub junit: Option<PathBuf>,
+    #[command(flatten)]
+    pub reach: Reach,
+}
+
+/// A measured run, and how to read and prepare it.
+#[derive(Debug, Args)]
+pub struct Measured {
+    /// Run table: .csv, .csv.gz, .parquet or .arrow
+    pub file: PathBuf,
+    /// Facts about the set-up [default: RUN.meta.json or meta.json beside the file, or what is embedded]
+    #[arg(long, value_name = "META.JSON")]
+    pub meta: Option<PathBuf>,
+    /// Effects of the model, with commas between [default: `baseline` of the facts]
+    #[arg(long, value_name = "EFFECTS")]
+    pub model: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub columns: Columns,
+    #[command(flatten)]
+    pub preparation: Preparation,
+}
+
+#[derive(Debug, Args)]
+pub struct Columns {
+    /// Take a column from one of another name, such as motor_current_a=Iq; may be given again
+    #[arg(long, value_name = "COLUMN=NAME")]
+    pub map: Vec<String>,
+    /// Multiply a column, such as motor_position_rad=0.0174533; may be given again
+    #[arg(long, value_name = "COLUMN=FACTOR")]
+    pub scale: Vec<String>,
+}
+
+/// How the run is prepared. Everything left out is chosen from the data and told with the fit.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Preparation (chosen from the data where left out)")]
+pub struct Preparation {
+    /// What the residual is made of
+    #[arg(long, value_name = "KIND", value_parser = ["raw", "plateau_mean"])]
+    pub residual: Option<String>,
+    /// Corner of the zero-phase low-pass filter [Hz]
+    #[arg(long, value_name = "HZ")]
+    pub cutoff_hz: Option<f64>,
+    /// Keep one of so many samples
+    #[arg(long, value_name = "N")]
+    pub decimation: Option<usize>,
+    /// Length of the pieces that plateaus are averaged over [s]
+    #[arg(long, value_name = "S")]
+    pub chunk_s: Option<f64>,
+    /// Family-wise error that is accepted for everything that is shown
+    #[arg(long, value_name = "SHARE")]
+    pub alpha: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct Diagnose {
+    #[command(flatten)]
+    pub run: Measured,
+}
+
+#[derive(Debug, Args)]
+pub struct Discover {
+    #[command(flatten)]
+    pub run: Measured,
+    /// Add at most so many effects
+    #[arg(long, value_name = "N", default_value_t = 6)]
+    pub max_effects: usize,
+}
+
+#[derive(Debug, Args)]
+pub struct Fit {
+    #[command(flatten)]
+    pub run: Measured,
+    /// Predict another run with the fit, and tell the error there
+    #[arg(long, value_name = "OTHER.CSV")]
+    pub evaluate: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Import {
+    /// Run tables: .csv, .csv.gz, .parquet or .arrow
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Facts about the set-up [default: RUN.meta.json or meta.json beside each file, or what is embedded]
+    #[arg(long, value_name = "META.JSON")]
+    pub meta: Option<PathBuf>,
+    #[command(flatten)]
+    pub columns: Columns,
+    #[command(flatten)]
+    pub store: StorePlace,
+}
+
+#[derive(Debug, Args)]
+pub struct Export {
+    /// Number of the run
+    pub run: i64,
+    #[arg(long, value_enum)]
+    pub format: FileFormat,
+    /// File to write; a CSV gets its facts beside it as NAME.meta.json [default: run-N.csv or run-N.parquet]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub store: StorePlace,
+}
+
+/// The folder where no daemon has it, else the daemon that has it.
+#[derive(Debug, Args)]
+pub struct StorePlace {
+    /// Folder of the store
+    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA", default_value = "jointbench-data")]
+    pub data: PathBuf,
+    #[command(flatten)]
+    pub reach: Reach,
+}

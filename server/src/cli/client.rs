@@ -1,0 +1,78 @@
+//! A running daemon, over REST.
+
+use super::arguments::Reach;
+use super::exit::Exit;
+use crate::api::Problem;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use ureq::http::Response;
+use ureq::{Agent, Body};
+
+pub struct Client {
+    agent: Agent,
+    base: String,
+    bearer: Option<String>,
+}
+
+impl Client {
+    pub fn new(reach: &Reach) -> Self {
+        let agent = Agent::new_with_config(Agent::config_builder().http_status_as_error(false).build());
+        let base = format!("{}/api/v1", reach.daemon.trim_end_matches('/'));
+        Self { agent, base, bearer: reach.token.as_ref().map(|token| format!("Bearer {token}")) }
+    }
+
+    pub fn get<T: DeserializeOwned>(&self, path: &str) -> Result<T, Exit> {
+        self.json(&self.get_bytes(path)?)
+    }
+
+    pub fn get_bytes(&self, path: &str) -> Result<Vec<u8>, Exit> {
+        let mut request = self.agent.get(format!("{}{path}", self.base));
+        if let Some(bearer) = &self.bearer {
+            request = request.header("authorization", bearer);
+        }
+        self.answer(request.call())
+    }
+
+    pub fn post<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, Exit> {
+        let body = serde_json::to_vec(body).map_err(|fault| Exit::failed(fault.to_string()))?;
+        self.post_bytes(path, "application/json", &body)
+    }
+
+    pub fn post_bytes<T: DeserializeOwned>(&self, path: &str, media_type: &str, body: &[u8]) -> Result<T, Exit> {
+        let mut request = self.agent.post(format!("{}{path}", self.base)).header("content-type", media_type);
+        if let Some(bearer) = &self.bearer {
+            request = request.header("authorization", bearer);
+        }
+        self.json(&self.answer(request.send(body))?)
+    }
+
+    fn answer(&self, answer: Result<Response<Body>, ureq::Error>) -> Result<Vec<u8>, Exit> {
+        let mut response = answer.map_err(|fault| {
+            let base = self.base.trim_end_matches("/api/v1");
+            Exit::bad_input(format!(
+                "no daemon answers at {base} ({fault}): start one with `jointbench serve`, or give its address with --daemon"
+            ))
+        })?;
+        let status = response.status();
+        let bytes = response
+            .body_mut()
+            .with_config()
+            .limit(u64::MAX)
+            .read_to_vec()
+            .map_err(|fault| Exit::failed(format!("the daemon's answer broke off: {fault}")))?;
+        if status.is_success() {
+            return Ok(bytes);
+        }
+        Err(match serde_json::from_slice::<Problem>(&bytes) {
+            Ok(problem) => {
+                Exit { code: if problem.status < 500 && problem.status != 409 { 2 } else { 1 }, said: problem.detail }
+            }
+            Err(_) => Exit::failed(format!("{} answered {status}: is a jointbench daemon there?", self.base)),
+        })
+    }
+
+    fn json<T: DeserializeOwned>(&self, bytes: &[u8]) -> Result<T, Exit> {
+        serde_json::from_slice(bytes)
+            .map_err(|fault| Exit::failed(format!("the daemon speaks another version of the API: {fault}")))
+    }
+}

@@ -1,0 +1,175 @@
+//! `jointbench demo`: the main job on a simulated joint, through the same path as every other run.
+
+use super::arguments::Demo;
+use super::exit::{Done, Exit};
+use super::print;
+use super::progress::RunProgress;
+use super::run::ending;
+use super::serve::{runtime, settings};
+use crate::config::BenchDescription;
+use crate::daemon::{Daemon, asked_to_end};
+use crate::lab::{Lab, reread};
+use crate::view::{Model, Run, RunState, Verdict};
+use jointbench_devices::sim::HIDDEN_EFFECTS;
+use jointbench_devices::{Joint, MockSettings};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+use serde_json::Map;
+use std::time::Instant;
+
+const BENCH: &str = "joint-a-mock";
+const PROCEDURE: &str = "friction";
+/// More than this never is missing in the demo; a surprise shall still come to an end.
+const MOST_EFFECTS: usize = 5;
+
+pub fn demo(arguments: Demo) -> Done {
+    let hidden = Hidden::choose(&arguments)?;
+    let mock = MockSettings::new(Joint::JointA, hidden.seed).hiding(&[&hidden.effect]);
+    let benches = vec![BenchDescription::mock(BENCH, mock)];
+    let stays = !arguments.exit;
+    runtime()?.block_on(async {
+        let daemon = Daemon::start(settings(arguments.place, "jointbench-data/demo", benches)).await?;
+        let address = daemon.address;
+        let end = tokio::select! {
+            shown = show(&daemon.lab, &hidden) => match shown {
+                Ok(run) => {
+                    println!();
+                    println!("dashboard: http://{address}/  (model workbench of this run: http://{address}/workbench/{run})");
+                    if stays {
+                        println!("Ctrl-C ends.");
+                        asked_to_end().await;
+                    }
+                    Ok(())
+                }
+                Err(error) => Err(error),
+            },
+            () = asked_to_end() => {
+                eprintln!("asked to end: securing the bench");
+                Err(Exit::failed("ended before the demo was through; the bench is secured"))
+            }
+        };
+        daemon.stop().await;
+        end
+    })
+}
+
+/// What the joint hides. The measuring and modelling side is not told.
+struct Hidden {
+    effect: String,
+    seed: u64,
+    is_secret: bool,
+}
+
+impl Hidden {
+    fn choose(arguments: &Demo) -> Result<Self, Exit> {
+        if let Some(seed) = arguments.seed {
+            let pick = StdRng::seed_from_u64(seed).random_range(0..HIDDEN_EFFECTS.len());
+            return Ok(Self { effect: HIDDEN_EFFECTS[pick].to_owned(), seed, is_secret: true });
+        }
+        if !HIDDEN_EFFECTS.contains(&arguments.effect.as_str()) {
+            let known = HIDDEN_EFFECTS.join(", ");
+            return Err(Exit::bad_input(format!(
+                "--effect {}: the simulated joint can hide {known}",
+                arguments.effect
+            )));
+        }
+        Ok(Self { effect: arguments.effect.clone(), seed: 1, is_secret: false })
+    }
+}
+
+/// The whole loop. Returns the run.
+async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
+    let began = Instant::now();
+    println!("A simulated joint (strain-wave gear 177.8:1) on simulated instruments, driven and read like a real one.");
+    match hidden.is_secret {
+        true => {
+            println!("It hides one effect beside plain friction; which one is told at the end (seed {}).", hidden.seed)
+        }
+        false => println!("It hides {} beside plain friction; the model starts without it.", hidden.effect),
+    }
+    println!();
+    println!("1  Measure: procedure {PROCEDURE} on {BENCH}");
+    let run = measure(lab).await?;
+    println!("   {}", ending(&run));
+
+    println!();
+    println!("2  Fit the baseline, see where it fails, add what is missing");
+    let versions = improve(lab, &run).await?;
+
+    println!();
+    println!("3  Error on data that took no part in the fit");
+    println!();
+    report(&versions);
+    println!();
+    conclude(&versions, hidden);
+    println!("Took {:.0} s.", began.elapsed().as_secs_f64());
+    Ok(run.summary.id)
+}
+
+async fn measure(lab: &Lab) -> Result<Run, Exit> {
+    let run = lab.start_run(BENCH, PROCEDURE, &Map::new()).await?.summary.id;
+    let mut watch = lab.handle(BENCH)?.watch();
+    let mut shown = RunProgress::begin();
+    loop {
+        if watch.changed().await.is_err() {
+            return Err(Exit::failed("the bench thread has ended"));
+        }
+        let progress = watch.borrow_and_update().progress.clone();
+        if let Some(progress) = &progress {
+            shown.show(progress);
+        }
+        if !lab.handle(BENCH)?.is_busy() {
+            break;
+        }
+    }
+    shown.end();
+    let run = lab.run(run).await?;
+    match run.summary.state {
+        RunState::Completed => Ok(run),
+        _ => Err(Exit::failed(ending(&run))),
+    }
+}
+
+/// Baseline, diagnosis, best effect, again: through the same calls as the dashboard.
+async fn improve(lab: &Lab, run: &Run) -> Result<Vec<Model>, Exit> {
+    let meta: jointbench_instrument::Meta = reread(&run.meta)?;
+    let mut versions = vec![lab.create_model(run.summary.id, &meta.baseline, None).await?];
+    loop {
+        let model = &versions[versions.len() - 1];
+        let diagnosis = lab.diagnose(model.id).await?.finding;
+        println!();
+        println!("   {}", model.effects.join(" + "));
+        println!("   {}", diagnosis.summary);
+        print::regions(&reread::<_, Vec<_>>(&diagnosis.regions)?, &diagnosis.fit.unit);
+        print::suggestions(&reread::<_, Vec<_>>(&diagnosis.suggestions)?, &diagnosis.fit.unit);
+        let best = diagnosis.suggestions.first().filter(|_| diagnosis.verdict == Verdict::MissingEffect);
+        let Some(best) = best.filter(|_| versions.len() <= MOST_EFFECTS) else { return Ok(versions) };
+        println!();
+        println!("   → add {} and fit again", best.effect);
+        let effects: Vec<String> = model.effects.iter().cloned().chain([best.effect.clone()]).collect();
+        let next = lab.create_model(run.summary.id, &effects, Some(model.id)).await?;
+        versions.push(next);
+    }
+}
+
+fn report(versions: &[Model]) {
+    let steps: Vec<(String, f64)> = versions
+        .iter()
+        .map(|model| match model.parent {
+            None => ("baseline".to_owned(), model.validation_rms),
+            Some(_) => (format!("+ {}", model.added.join(", ")), model.validation_rms),
+        })
+        .collect();
+    if let Some(last) = versions.last() {
+        print::fall(&steps, last.noise_floor_rms, &last.fit.unit);
+    }
+}
+
+fn conclude(versions: &[Model], hidden: &Hidden) {
+    let added: Vec<&str> = versions.iter().skip(1).flat_map(|model| &model.added).map(String::as_str).collect();
+    let found = match added.as_slice() {
+        [] => "Nothing was found missing".to_owned(),
+        added => format!("Found missing: {}", added.join(", ")),
+    };
+    println!("{found}. Hidden was: {}.", hidden.effect);
+}

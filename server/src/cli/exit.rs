@@ -1,0 +1,60 @@
+//! How a command ends that could not do what it was asked to.
+
+use crate::lab::LabError;
+use jointbench_files::{FileError, OptionFault};
+use jointbench_model::ModelError;
+
+#[derive(Debug)]
+pub struct Exit {
+    pub code: u8,
+    /// For a person; empty where everything is said already.
+    pub said: String,
+}
+
+pub type Done = Result<(), Exit>;
+
+impl Exit {
+    pub fn failed(said: impl Into<String>) -> Self {
+        Self { code: 1, said: said.into() }
+    }
+
+    pub fn bad_input(said: impl Into<String>) -> Self {
+        Self { code: 2, said: said.into() }
+    }
+
+    pub fn undecided(said: impl Into<String>) -> Self {
+        Self { code: 3, said: said.into() }
+    }
+}
+
+impl From<LabError> for Exit {
+    fn from(error: LabError) -> Self {
+        Self { code: error.exit_code(), said: error.to_string() }
+    }
+}
+
+impl From<FileError> for Exit {
+    fn from(error: FileError) -> Self {
+        Exit::bad_input(error.to_string())
+    }
+}
+
+impl From<OptionFault> for Exit {
+    fn from(error: OptionFault) -> Self {
+        Exit::bad_input(error.to_string())
+    }
+}
+
+impl From<ModelError> for Exit {
+    /// What the arguments or the facts have wrong is bad input; what the data cannot tell is undecided.
+    fn from(error: ModelError) -> Self {
+        use ModelError as E;
+        let said = error.to_string();
+        match error {
+            E::TooFewSamples { .. } | E::NotVisible { .. } | E::Collinear { .. } | E::Constant { .. } => {
+                Exit::undecided(said)
+            }
+            _ => Exit::bad_input(said),
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! Logs go to standard error: results on standard output stay clean.
+
+use clap::ValueEnum;
+use std::io::{IsTerminal, stderr};
+use tracing_subscriber::EnvFilter;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum LogForm {
+    /// One line for a person.
+    Text,
+    /// One JSON object a line.
+    Json,
+}
+
+/// `RUST_LOG` decides what is told; without it everything from `level` on.
+pub fn start(form: LogForm, level: &str) {
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
+    let builder = tracing_subscriber::fmt().with_env_filter(filter).with_writer(stderr);
+    match form {
+        LogForm::Text => builder.with_target(false).with_ansi(stderr().is_terminal()).init(),
+        LogForm::Json => builder.json().flatten_event(true).init(),
+    }
+}

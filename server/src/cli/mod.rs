@@ -1,0 +1,48 @@
+//! The command line. Offline commands work on files; the others on a data folder or a running daemon.
+
+mod arguments;
+mod check;
+mod client;
+mod demo;
+mod exit;
+mod log;
+mod offline;
+mod print;
+mod progress;
+mod run;
+mod serve;
+mod transfer;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+pub use exit::Exit;
+
+/// Reads the arguments and does what they say. Exit codes: 0 done, 1 the run failed or a limit was broken, 2 bad arguments
+/// or bad input, 3 could not be decided.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let default_level = if matches!(arguments.command, Command::Serve(_)) { "info" } else { "warn" };
+    log::start(arguments.log, default_level);
+    let done = match arguments.command {
+        Command::Demo(arguments) => demo::demo(arguments),
+        Command::Serve(arguments) => serve::serve(arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Diagnose(arguments) => offline::diagnose(&arguments),
+        Command::Discover(arguments) => offline::discover(&arguments),
+        Command::Fit(arguments) => offline::fit(&arguments),
+        Command::Import(arguments) => transfer::import(&arguments),
+        Command::Export(arguments) => transfer::export(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(exit) => {
+            if !exit.said.is_empty() {
+                eprintln!("jointbench: {}", exit.said);
+            }
+            ExitCode::from(exit.code)
+        }
+    }
+}

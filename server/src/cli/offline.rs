@@ -1,0 +1,100 @@
+//! `jointbench diagnose`, `discover`, `fit`: on a file, without a daemon.
+
+use super::arguments::{Columns, Diagnose, Discover, Fit, Measured, Preparation};
+use super::exit::{Done, Exit};
+use super::print;
+use crate::lab::reread;
+use jointbench_files::{ReadOptions, parse_map, parse_scale};
+use jointbench_instrument::RunTable;
+use jointbench_model::{ModelSpec, Options};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::path::Path;
+
+pub fn diagnose(arguments: &Diagnose) -> Done {
+    let (run, spec, options) = open(&arguments.run)?;
+    let diagnosis = jointbench_model::diagnose(&run, &spec, &options)?;
+    if arguments.run.json {
+        return json_out(&diagnosis);
+    }
+    print::diagnosis(&diagnosis);
+    Ok(())
+}
+
+pub fn discover(arguments: &Discover) -> Done {
+    let (run, spec, options) = open(&arguments.run)?;
+    let discovery = jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {})?;
+    if arguments.run.json {
+        return json_out(&discovery);
+    }
+    print::discovery(&discovery);
+    Ok(())
+}
+
+pub fn fit(arguments: &Fit) -> Done {
+    let (run, spec, options) = open(&arguments.run)?;
+    let fit = jointbench_model::fit(&run, &spec, &options)?;
+    let evaluation = match &arguments.evaluate {
+        None => None,
+        Some(other) => {
+            let other_run = read(other, None, &arguments.run.columns)?;
+            Some((other, jointbench_model::evaluate(&fit, &other_run)?))
+        }
+    };
+    if arguments.run.json {
+        let mut object: Value = reread(&fit)?;
+        if let (Some((file, evaluation)), Some(object)) = (&evaluation, object.as_object_mut()) {
+            let told: Value = reread(evaluation)?;
+            object.insert("evaluation".to_owned(), json!({ "file": file.display().to_string(), "result": told }));
+        }
+        return json_out(&object);
+    }
+    print::fit(&fit);
+    if let Some((file, evaluation)) = &evaluation {
+        print::evaluation(file, evaluation);
+    }
+    Ok(())
+}
+
+fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
+    let run = read(&measured.file, measured.meta.as_deref(), &measured.columns)?;
+    let spec = match &measured.model {
+        Some(list) => ModelSpec::parse(run.kind(), list)?,
+        None => ModelSpec::baseline(&run)?,
+    };
+    Ok((run, spec, options(&measured.preparation)?))
+}
+
+fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<RunTable, Exit> {
+    let mut options = ReadOptions { meta_path: meta.map(Path::to_owned), ..ReadOptions::default() };
+    for pair in &columns.map {
+        options.map.push(parse_map(pair)?);
+    }
+    for pair in &columns.scale {
+        options.scale.push(parse_scale(pair)?);
+    }
+    Ok(jointbench_files::read(file, &options)?)
+}
+
+fn options(preparation: &Preparation) -> Result<Options, Exit> {
+    let defaults = Options::default();
+    let residual = match preparation.residual.as_deref() {
+        None => None,
+        // The words of the argument are those of the type.
+        Some(word) => Some(reread(&word)?),
+    };
+    Ok(Options {
+        residual,
+        cutoff_hz: preparation.cutoff_hz,
+        decimation: preparation.decimation,
+        chunk_s: preparation.chunk_s,
+        alpha: preparation.alpha.unwrap_or(defaults.alpha),
+        ..defaults
+    })
+}
+
+fn json_out(value: &impl Serialize) -> Done {
+    let text = serde_json::to_string_pretty(value).map_err(|fault| Exit::failed(fault.to_string()))?;
+    println!("{text}");
+    Ok(())
+}

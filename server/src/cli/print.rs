@@ -1,0 +1,232 @@
+//! Results as a person reads them.
+
+use jointbench_model::{
+    Diagnosis, Discovery, Evaluation, Fit, NoiseFloor, Parameter, ParameterState, Region, ResidualKind, Suggestion,
+};
+use std::path::Path;
+
+const BAR_WIDTH: f64 = 40.0;
+
+pub fn fit(fit: &Fit) {
+    println!("model     {}", fit.effects.join(" + "));
+    println!("prepared  {}", prepared(fit));
+    println!();
+    parameters(&fit.parameters);
+    println!();
+    println!(
+        "error     {} {} on data that took no part in the fit ({})",
+        figure(fit.validation_rms),
+        fit.unit,
+        of(fit.residual)
+    );
+    println!(
+        "          {} {} on the fitted data, {:.2} % of what was measured",
+        figure(fit.rms),
+        fit.unit,
+        100.0 * fit.relative_error
+    );
+    for pair in &fit.trade_offs {
+        println!("note      {} and {} trade off (correlation {:.2})", pair.first, pair.second, pair.correlation);
+    }
+    for note in &fit.notes {
+        println!("note      {note}");
+    }
+}
+
+pub fn evaluation(file: &Path, evaluation: &Evaluation) {
+    println!();
+    println!(
+        "on {}: error {} {}, {:.2} % of what was measured ({} points)",
+        file.display(),
+        figure(evaluation.rms),
+        evaluation.unit,
+        100.0 * evaluation.relative_error,
+        evaluation.rows
+    );
+}
+
+pub fn diagnosis(diagnosis: &Diagnosis) {
+    fit(&diagnosis.fit);
+    floor(&diagnosis.noise_floor, &diagnosis.fit.unit);
+    println!();
+    println!("{}", diagnosis.summary);
+    regions(&diagnosis.regions, &diagnosis.fit.unit);
+    suggestions(&diagnosis.suggestions, &diagnosis.fit.unit);
+    if let Some(experiment) = &diagnosis.experiment {
+        println!();
+        println!("a run that would tell: {} ({})", experiment.procedure, experiment.why);
+    }
+    for hidden in &diagnosis.not_visible {
+        println!("cannot be seen here: {} ({})", hidden.effect, hidden.why);
+    }
+}
+
+pub fn discovery(discovery: &Discovery) {
+    let steps: Vec<(String, f64)> = discovery
+        .steps
+        .iter()
+        .map(|step| match (&step.added, &step.removed) {
+            (Some(added), Some(removed)) => (format!("+ {added} − {removed}"), step.validation_rms),
+            (Some(added), None) => (format!("+ {added}"), step.validation_rms),
+            (None, Some(removed)) => (format!("− {removed}"), step.validation_rms),
+            (None, None) => ("start".to_owned(), step.validation_rms),
+        })
+        .collect();
+    fall(&steps, discovery.noise_floor_rms, &discovery.fit.unit);
+    println!();
+    fit(&discovery.fit);
+    floor(&discovery.noise_floor, &discovery.fit.unit);
+    println!();
+    println!("{}", discovery.summary);
+    regions(&discovery.regions, &discovery.fit.unit);
+}
+
+pub fn parameters(parameters: &[Parameter]) {
+    let wide = |of: fn(&Parameter) -> &str| parameters.iter().map(|p| of(p).chars().count()).max().unwrap_or(0);
+    let (effect, name) = (wide(|p| &p.effect), wide(|p| &p.name));
+    let unit = wide(|p| &p.unit);
+    println!("{:effect$}  {:name$}  {:>11}  {:unit$}  95 % interval", "effect", "parameter", "value", "unit");
+    for parameter in parameters {
+        let [low, high] = parameter.ci95;
+        let interval = format!("{} … {}", figure(low), figure(high));
+        let state = match (parameter.state, &parameter.note) {
+            (ParameterState::Ok, _) => String::new(),
+            (_, Some(note)) => format!("  {note}"),
+            (ParameterState::AtBound, None) => "  at its bound".to_owned(),
+            (ParameterState::Unidentified, None) => "  not decided by this data".to_owned(),
+        };
+        println!(
+            "{:effect$}  {:name$}  {:>11}  {:unit$}  {interval}{state}",
+            parameter.effect,
+            parameter.name,
+            figure(parameter.value),
+            parameter.unit
+        );
+    }
+}
+
+pub fn regions(regions: &[Region], unit: &str) {
+    if regions.is_empty() {
+        return;
+    }
+    println!();
+    println!("where the model fails (mean error [{unit}], interval over all regions at once):");
+    for region in regions {
+        let [low, high] = region.ci95;
+        println!("  {:>11}  [{} … {}]  {}", figure(region.mean_residual), figure(low), figure(high), region.sentence);
+    }
+}
+
+pub fn suggestions(suggestions: &[Suggestion], unit: &str) {
+    if suggestions.is_empty() {
+        return;
+    }
+    println!();
+    println!("what is missing, the most important first:");
+    for (i, suggestion) in suggestions.iter().enumerate() {
+        println!(
+            "  {}. {}: error {:+.1} % to {} {unit}, p = {}",
+            i + 1,
+            suggestion.effect,
+            -100.0 * suggestion.error_reduction,
+            figure(suggestion.validation_rms),
+            figure(suggestion.p_value)
+        );
+        println!("     {}", suggestion.why);
+        for parameter in &suggestion.parameters {
+            let [low, high] = parameter.ci95;
+            let (value, low, high) = (figure(parameter.value), figure(low), figure(high));
+            println!("     {} = {value} {}  [{low} … {high}]", parameter.name, parameter.unit);
+        }
+    }
+}
+
+fn floor(floor: &NoiseFloor, unit: &str) {
+    match floor.rms {
+        Some(rms) => println!("noise     {} {unit}: {}", figure(rms), floor.source),
+        None => println!("noise     {}", floor.source),
+    }
+}
+
+/// The validation error of each step as a table and a picture, with the noise floor.
+pub fn fall(steps: &[(String, f64)], floor: Option<f64>, unit: &str) {
+    let top = steps.iter().map(|(_, rms)| *rms).fold(floor.unwrap_or(0.0), f64::max);
+    let wide = steps.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0).max("noise floor".len());
+    let at = |rms: f64| if top > 0.0 { (BAR_WIDTH * rms / top).round() as usize } else { 0 };
+    println!("{:wide$}  {:>11}", "", format!("[{unit}]"));
+    for (name, rms) in steps {
+        let mut bar: Vec<char> = vec!['█'; at(*rms)];
+        if let Some(floor) = floor.map(at) {
+            bar.resize(bar.len().max(floor + 1), ' ');
+            bar[floor] = '│';
+        }
+        println!("{name:wide$}  {:>11}  {}", figure(*rms), bar.into_iter().collect::<String>());
+    }
+    if let Some(floor) = floor {
+        println!("{:wide$}  {:>11}  {}│", "noise floor", figure(floor), " ".repeat(at(floor)));
+    }
+}
+
+fn prepared(fit: &Fit) -> String {
+    let prepared = &fit.preparation;
+    let mut said = format!("{} samples at {:.0} Hz", prepared.samples, prepared.sample_rate_hz);
+    if let Some(cutoff_hz) = prepared.cutoff_hz {
+        said += &format!(", low-pass {cutoff_hz:.1} Hz");
+    }
+    if prepared.decimation > 1 {
+        said += &format!(", one of {}", prepared.decimation);
+    }
+    if let Some(chunk_s) = prepared.chunk_s {
+        said += &format!(", means over {chunk_s:.3} s of settled motion");
+    }
+    said + &format!(": {} points in {} independent pieces", prepared.rows, prepared.blocks)
+}
+
+fn of(residual: ResidualKind) -> &'static str {
+    match residual {
+        ResidualKind::Raw => "filtered samples",
+        ResidualKind::PlateauMean => "means of settled motion",
+    }
+}
+
+/// Four significant digits, plain where that is short.
+pub fn figure(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return if value.is_nan() {
+            "–".to_owned()
+        } else if value > 0.0 {
+            "∞".to_owned()
+        } else {
+            "−∞".to_owned()
+        };
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    match exponent {
+        -4..=5 => format!("{value:.*}", (3 - exponent).max(0) as usize),
+        _ => format!("{value:.3e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::figure;
+
+    #[test]
+    fn figures_have_four_digits() {
+        for (value, said) in [
+            (0.0, "0"),
+            (0.030612, "0.03061"),
+            (-203.5034, "-203.5"),
+            (95108.9, "95109"),
+            (1.512e-4, "0.0001512"),
+            (8.2e-6, "8.200e-6"),
+            (1e9, "1.000e9"),
+            (f64::INFINITY, "∞"),
+        ] {
+            assert_eq!(figure(value), said);
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! How far a run is: a bar on a terminal, plain lines elsewhere.
+
+use crate::view::Progress;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{IsTerminal, stderr};
+use std::time::{Duration, Instant};
+
+const LINE_EVERY: Duration = Duration::from_secs(5);
+
+pub struct RunProgress {
+    bar: Option<ProgressBar>,
+    began: Instant,
+    told: Option<Instant>,
+}
+
+impl RunProgress {
+    pub fn begin() -> Self {
+        let bar = stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("  [{bar:32}] {percent:>3} %  {msg}");
+            ProgressBar::new(1000)
+                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("##-"))
+        });
+        Self { bar, began: Instant::now(), told: None }
+    }
+
+    pub fn show(&mut self, progress: &Progress) {
+        let whole_s = progress.elapsed_s + progress.remaining_s;
+        let share = if whole_s > 0.0 { (progress.elapsed_s / whole_s).clamp(0.0, 1.0) } else { 0.0 };
+        // Bench time may run faster than the clock on the wall.
+        let wall_s = self.began.elapsed().as_secs_f64();
+        let left =
+            if share > 0.02 { format!("{:.0} s left", wall_s * (1.0 - share) / share) } else { "…".to_owned() };
+        let step = format!("step {}/{}", (progress.step + 1).min(progress.steps), progress.steps);
+        if let Some(bar) = &self.bar {
+            bar.set_position((1000.0 * share) as u64);
+            bar.set_message(format!("{left}  {step}  {}", progress.label));
+        } else if self.told.is_none_or(|told| told.elapsed() >= LINE_EVERY) {
+            self.told = Some(Instant::now());
+            eprintln!("  {:>3.0} %  {left}  {step}  {}", 100.0 * share, progress.label);
+        }
+    }
+
+    pub fn end(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

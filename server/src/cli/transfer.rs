@@ -1,0 +1,108 @@
+//! `jointbench import` and `jointbench export`: to and from the folder itself, or through the daemon that has it.
+
+use super::arguments::{Columns, Export, Import, StorePlace};
+use super::client::Client;
+use super::exit::{Done, Exit};
+use super::serve::runtime;
+use crate::lab::{ImportRequest, Lab, LabError};
+use crate::view::Run;
+use jointbench_files::meta_path_of;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub fn import(arguments: &Import) -> Done {
+    let runtime = runtime()?;
+    let store = open(&runtime, &arguments.store)?;
+    for file in &arguments.files {
+        let request = read(file, arguments.meta.as_deref(), &arguments.columns)?;
+        let run = match &store {
+            Way::Folder(lab) => runtime.block_on(lab.import(request))?,
+            Way::Daemon(client) => upload(client, &request)?,
+        };
+        let summary = &run.summary;
+        println!("run {}: {} ({}, {} rows)", summary.id, file.display(), summary.kind, summary.rows);
+    }
+    Ok(())
+}
+
+pub fn export(arguments: &Export) -> Done {
+    let runtime = runtime()?;
+    let (run, format) = (arguments.run, arguments.format);
+    let (bytes, meta) = match open(&runtime, &arguments.store)? {
+        Way::Folder(lab) => runtime
+            .block_on(async { Ok::<_, LabError>((lab.export(run, format).await?, lab.export_meta(run).await?)) })?,
+        Way::Daemon(client) => {
+            let bytes = client.get_bytes(&format!("/runs/{run}/export?format={}", format.extension()))?;
+            (bytes, String::from_utf8_lossy(&client.get_bytes(&format!("/runs/{run}/meta"))?).into_owned())
+        }
+    };
+    let named = || PathBuf::from(format!("run-{run}.{}", format.extension()));
+    let path = arguments.output.clone().unwrap_or_else(named);
+    write(&path, &bytes)?;
+    println!("{}", path.display());
+    if format == crate::lab::FileFormat::Csv {
+        let beside = meta_path_of(&path);
+        write(&beside, meta.as_bytes())?;
+        println!("{}", beside.display());
+    }
+    Ok(())
+}
+
+enum Way {
+    Folder(Lab),
+    Daemon(Client),
+}
+
+fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace) -> Result<Way, Exit> {
+    match runtime.block_on(crate::store::Store::open(&place.data)) {
+        Ok(store) => Ok(Way::Folder(Lab::of_store(store))),
+        Err(crate::store::StoreError::InUse { .. }) => Ok(Way::Daemon(Client::new(&place.reach))),
+        Err(fault) => Err(LabError::from(fault).into()),
+    }
+}
+
+fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportRequest, Exit> {
+    let text =
+        |path: &Path| fs::read_to_string(path).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())));
+    let bytes = fs::read(file).map_err(|fault| Exit::bad_input(format!("{}: {fault}", file.display())))?;
+    let beside = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
+    let carries_its_own = !matches!(file.extension().and_then(|end| end.to_str()), Some("csv" | "gz"));
+    let meta = match (meta, beside) {
+        (Some(path), _) => Some(text(path)?),
+        (None, Some(path)) if !carries_its_own => Some(text(&path)?),
+        _ => None,
+    };
+    Ok(ImportRequest {
+        name: None,
+        file_name: file.display().to_string(),
+        bytes,
+        meta,
+        map: columns.map.clone(),
+        scale: columns.scale.clone(),
+    })
+}
+
+fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
+    // Long enough not to be in any file by chance.
+    let boundary = format!("jointbench-{:032x}", rand::random::<u128>());
+    let mut body = Vec::new();
+    let mut part = |name: &str, bytes: &[u8]| {
+        let head = format!("--{boundary}\r\nContent-Disposition: form-data; name={name}\r\n\r\n");
+        body.extend_from_slice(head.as_bytes());
+        body.extend_from_slice(bytes);
+        body.extend_from_slice(b"\r\n");
+    };
+    let file_name = request.file_name.replace(['"', '\r', '\n'], "_");
+    part(&format!("\"file\"; filename=\"{file_name}\""), &request.bytes);
+    if let Some(meta) = &request.meta {
+        part("\"meta\"", meta.as_bytes());
+    }
+    request.map.iter().for_each(|pair| part("\"map\"", pair.as_bytes()));
+    request.scale.iter().for_each(|pair| part("\"scale\"", pair.as_bytes()));
+    body.extend_from_slice(format!("--{boundary}--\r\n").as_bytes());
+    client.post_bytes("/runs/import", &format!("multipart/form-data; boundary={boundary}"), &body)
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Done {
+    fs::write(path, bytes).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))
+}

@@ -1,0 +1,98 @@
+//! The daemon: a lab behind a port.
+
+use crate::api::{self, Door};
+use crate::config::BenchDescription;
+use crate::lab::{Lab, LabError};
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use tokio::net::TcpListener;
+use tokio::task::JoinHandle;
+
+#[derive(Debug, Clone)]
+pub struct DaemonSettings {
+    pub listen: SocketAddr,
+    pub data: PathBuf,
+    /// Needed where `listen` is not a loopback address.
+    pub token: Option<String>,
+    pub benches: Vec<BenchDescription>,
+}
+
+pub struct Daemon {
+    pub lab: Lab,
+    /// Where it listens; the port is chosen by the system where 0 was asked for.
+    pub address: SocketAddr,
+    server: JoinHandle<()>,
+}
+
+impl Daemon {
+    /// Takes the port, opens the store, secures the benches, then answers. [`LabError::Setup`] says what is in the way.
+    pub async fn start(settings: DaemonSettings) -> Result<Daemon, LabError> {
+        let door = door(&settings)?;
+        let listener = TcpListener::bind(settings.listen).await.map_err(|fault| taken(settings.listen, &fault))?;
+        let address = listener.local_addr().map_err(|fault| taken(settings.listen, &fault))?;
+        let lab = Lab::open(&settings.data, settings.benches).await?;
+        let router = api::router(lab.clone(), door);
+        let server = tokio::spawn(async move {
+            if let Err(fault) = axum::serve(listener, router).await {
+                tracing::error!(%fault, "the server has ended");
+            }
+        });
+        tracing::info!(%address, data = %settings.data.display(), "listening");
+        Ok(Daemon { lab, address, server })
+    }
+
+    /// Ends all runs, secures all benches, closes the store.
+    pub async fn stop(self) {
+        // Requests are answered while the benches are being secured: a page shows how it goes.
+        self.lab.shut_down().await;
+        self.server.abort();
+        tracing::info!("stopped");
+    }
+}
+
+/// Ctrl-C, or the request of a service manager to end.
+#[cfg(unix)]
+pub async fn asked_to_end() {
+    use tokio::signal::unix::{SignalKind, signal};
+    let interrupt = tokio::signal::ctrl_c();
+    match signal(SignalKind::terminate()) {
+        Ok(mut terminate) => tokio::select! {
+            _ = interrupt => {}
+            _ = terminate.recv() => {}
+        },
+        Err(_) => drop(interrupt.await),
+    }
+}
+
+/// Ctrl-C.
+#[cfg(not(unix))]
+pub async fn asked_to_end() {
+    drop(tokio::signal::ctrl_c().await);
+}
+
+fn door(settings: &DaemonSettings) -> Result<Door, LabError> {
+    match &settings.token {
+        Some(token) if token.trim().len() < 8 => Err(LabError::Setup(
+            "the token is too short: give at least 8 characters with --token or JOINTBENCH_TOKEN".into(),
+        )),
+        Some(token) => Ok(Door::with_token(token.trim())),
+        None if settings.listen.ip().is_loopback() => Ok(Door::local()),
+        None => Err(LabError::Setup(format!(
+            "{} can be reached from other machines: give a token with --token or JOINTBENCH_TOKEN, or listen on 127.0.0.1",
+            settings.listen
+        ))),
+    }
+}
+
+fn taken(address: SocketAddr, fault: &std::io::Error) -> LabError {
+    LabError::Setup(match fault.kind() {
+        std::io::ErrorKind::AddrInUse => {
+            format!(
+                "port {} is taken: stop what listens there, or choose another with --listen {}:0",
+                address.port(),
+                address.ip()
+            )
+        }
+        _ => format!("cannot listen on {address} ({fault}): choose another address with --listen"),
+    })
+}
