@@ -148,7 +148,8 @@ function paintBackdrop(u: uPlot, { region, band }: Backdrop): void {
 		const from = u.valToPos(region[0], 'x', true);
 		const to = u.valToPos(region[1], 'x', true);
 		ctx.fillStyle = colour('--accent-wash');
-		ctx.fillRect(Math.min(from, to), top, Math.max(2, Math.abs(to - from)), height);
+		const width = Math.max(6 * devicePixelRatio, Math.abs(to - from));
+		ctx.fillRect((from + to - width) / 2, top, width, height);
 	}
 	if (band !== null) {
 		const high = u.valToPos(band, 'y', true);

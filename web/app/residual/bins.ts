@@ -1,48 +1,38 @@
-/**
- * Where to cut an axis. Measurements taken at set points fall into clusters: one bin each, with the borders halfway
- * between. Anything else is cut into equal widths.
- */
+import { levelsOf } from './levels';
+
+/** Where an axis is cut. */
 export interface Bins {
 	edges: number[];
-	/** True where the bins are set points. */
-	levels: boolean;
+	/**
+	 * What each bin stands for, where the bins are the set points of the run. Set points are drawn equally wide: they are
+	 * dense where the physics is, and on a linear axis the slow speeds would be a hair.
+	 */
+	levels: number[] | null;
 }
 
-const MAX_LEVELS = 40;
+/** Points for a bin that shows something. */
+const EACH = 12;
 
-export function binsFor(values: readonly number[], most = 24): Bins {
-	const sorted = values.filter(Number.isFinite).sort((a, b) => a - b);
-	const low = sorted[0];
-	const high = sorted.at(-1);
-	if (low === undefined || high === undefined) return { edges: [], levels: false };
-	if (high === low) return { edges: [low - 0.5, high + 0.5], levels: true };
-	return clusters(sorted, high - low) ?? { edges: equal(low, high, bandCount(sorted.length, most)), levels: false };
-}
-
-/** Enough bins to see a shape, few enough that each holds ten points. */
-function bandCount(points: number, most: number): number {
-	return Math.max(3, Math.min(most, Math.floor(points / 12)));
-}
-
-function equal(low: number, high: number, count: number): number[] {
-	return Array.from({ length: count + 1 }, (_, i) => low + ((high - low) * i) / count);
-}
-
-function clusters(sorted: readonly number[], span: number): Bins | null {
-	const edges = [sorted[0]! - span * 1e-3];
-	let begin = sorted[0]!;
-	for (let i = 1; i < sorted.length; i++) {
-		const [before, here] = [sorted[i - 1]!, sorted[i]!];
-		if (here - before <= 0.012 * span) continue;
-		if (before - begin > 0.05 * span || edges.length > MAX_LEVELS) return null;
-		edges.push((before + here) / 2);
-		begin = here;
+/** `segment` numbers the set point at which a value was taken. Values that are not finite count nowhere. */
+export function binsFor(values: readonly number[], segment: readonly number[], kept: Uint8Array, most = 24): Bins {
+	const points: { value: number; segment: number }[] = [];
+	let low = Number.POSITIVE_INFINITY;
+	let high = Number.NEGATIVE_INFINITY;
+	for (let i = 0; i < values.length; i++) {
+		const value = values[i]!;
+		if (!kept[i] || !Number.isFinite(value)) continue;
+		points.push({ value, segment: segment[i] ?? 0 });
+		low = Math.min(low, value);
+		high = Math.max(high, value);
 	}
-	const last = sorted.at(-1)!;
-	if (last - begin > 0.05 * span || edges.length < 2) return null;
-	if (sorted.length < 2 * edges.length) return null;
-	edges.push(last + span * 1e-3);
-	return { edges, levels: true };
+	if (points.length === 0 || high === low) return { edges: [], levels: null };
+	const levels = levelsOf(points, high - low);
+	if (levels) {
+		const middles = levels.slice(1).map((level, i) => (levels[i]! + level) / 2);
+		return { edges: [low, ...middles, high], levels };
+	}
+	const count = Math.max(3, Math.min(most, Math.floor(points.length / EACH)));
+	return { edges: Array.from({ length: count + 1 }, (_, i) => low + ((high - low) * i) / count), levels: null };
 }
 
 /** Index of the bin that holds the value, −1 outside. The last edge belongs to the last bin. */

@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import { binOf, binsFor } from './bins';
 import { curve, explainedShare } from './curve';
 import { residualMap } from './map';
+import { middle, place } from './place';
 import { score, Sums } from './tally';
 
 /** Repeatable noise in −1…1. */
@@ -12,19 +13,35 @@ function noise(seed = 1): () => number {
 const all = (n: number) => new Uint8Array(n).fill(1);
 
 describe('bins', () => {
-	it('puts set points into bins of their own', () => {
+	it('gives every set point a bin of its own, however dense they are', () => {
 		const jitter = noise();
-		const values = [-20, -5, 5, 20].flatMap((level) => Array.from({ length: 12 }, () => level + jitter() * 0.01));
-		const { edges, levels } = binsFor(values);
-		expect(levels).toBe(true);
-		expect(edges).toHaveLength(5);
-		expect(edges[2]).toBeCloseTo(0, 1);
+		const set = [-180, -4, -2, 2, 4, 180];
+		const values = set.flatMap((level) => Array.from({ length: 12 }, () => level + jitter() * 0.2));
+		const { edges, levels } = binsFor(values, values.map((_, i) => Math.floor(i / 12)), all(72));
+		expect(levels?.map(Math.round)).toEqual(set);
+		expect(edges).toHaveLength(7);
+		expect(edges[3]).toBeCloseTo(0, 0);
 	});
 
 	it('cuts a continuous axis evenly, with a dozen points in each bin', () => {
-		const { edges, levels } = binsFor(Array.from({ length: 120 }, (_, i) => i));
-		expect(levels).toBe(false);
+		const values = Array.from({ length: 120 }, (_, i) => i);
+		const { edges, levels } = binsFor(values, values.map(() => 1), all(120));
+		expect(levels).toBeNull();
 		expect(edges).toHaveLength(11);
+	});
+
+	it('does not take a slow drift for set points', () => {
+		const values = Array.from({ length: 600 }, (_, i) => 20 + i * 0.01);
+		expect(binsFor(values, values.map((_, i) => Math.floor(i / 5)), all(600)).levels).toBeNull();
+	});
+
+	it('draws set points equally wide, and finds the way back', () => {
+		const bins = { edges: [-180, -3, 0, 3, 180], levels: [-180, -2, 2, 180] };
+		const scale = place(bins, 0, 400, 10);
+		expect([-180, -3, -1.5, 0, 180].map(scale.at)).toEqual([0, 100, 150, 200, 400]);
+		expect([50, 150, 350].map(scale.value)).toEqual([-91.5, -1.5, 91.5]);
+		expect(scale.ticks).toEqual(bins.levels);
+		expect(middle(bins, scale, 3)).toBe(350);
 	});
 
 	it('knows the bin of a value', () => {
@@ -34,18 +51,19 @@ describe('bins', () => {
 
 describe('residuals', () => {
 	const random = noise(5);
+	const one = new Array<number>(400).fill(1);
 	const velocity = Array.from({ length: 400 }, () => random());
 	const load = Array.from({ length: 400 }, () => random());
 	const residual = load.map((l) => 0.01 * l + 0.001 * random());
 
 	it('gives the axis that matters the largest share', () => {
-		const share = (axis: number[]) => explainedShare(axis, binsFor(axis).edges, residual, all(400));
+		const share = (axis: number[]) => explainedShare(axis, binsFor(axis, one, all(400)).edges, residual, all(400));
 		expect(share(load)).toBeGreaterThan(0.95);
 		expect(share(velocity)).toBeLessThan(0.05);
 	});
 
 	it('shows a slope as a slope', () => {
-		const { edges } = binsFor(load);
+		const { edges } = binsFor(load, one, all(400));
 		const points = curve(load, edges, residual, all(400), 0);
 		expect(points[0]!.mean).toBeCloseTo(-0.0095, 2);
 		expect(points.at(-1)!.mean).toBeGreaterThan(0.008);
@@ -54,8 +72,8 @@ describe('residuals', () => {
 
 	it('fills the cells of a map and leaves out what is not kept', () => {
 		const kept = Uint8Array.from(load, (l) => (l > 0 ? 1 : 0));
-		const edges = [-1, 0, 1];
-		const map = residualMap({ values: velocity, edges }, { values: load, edges }, residual, kept, 0);
+		const bins = { edges: [-1, 0, 1], levels: null };
+		const map = residualMap({ values: velocity, bins }, { values: load, bins }, residual, kept, 0);
 		expect(map.cells.map((cell) => cell.n > 0)).toEqual([false, false, true, true]);
 		expect(map.cells[3]!.mean).toBeGreaterThan(0.003);
 	});

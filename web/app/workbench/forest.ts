@@ -22,7 +22,7 @@ export function forest(parameters: readonly Parameter[], tradeOffs: readonly Tra
 		const name = `${parameter.effect}.${parameter.name}`;
 		for (const { first, second, correlation } of tradeOffs) {
 			if (Math.abs(correlation) < TRADING || (name !== first && name !== second)) continue;
-			flags.push(`trades with ${name === first ? second : first} (ρ ${correlation.toFixed(2).replace('-', '−')})`);
+			flags.push(`ρ ${correlation.toFixed(2).replace('-', '−')} with ${name === first ? second : first}`);
 		}
 		const state = SAID[parameter.state];
 		if (state) flags.push(state);

@@ -21,8 +21,9 @@ export function overlay(
 	axis: ResidualSet['axes'][number],
 	region: Stretch | null,
 	residualFactor: number,
+	ramps: boolean,
 ): OverlayData {
-	const order = axis.values.flatMap((value, i) => (Number.isFinite(value) ? [i] : []));
+	const order = axis.values.flatMap((value, i) => (Number.isFinite(value) && (ramps || !set.held_out[i]) ? [i] : []));
 	order.sort((a, b) => axis.values[a]! - axis.values[b]!);
 	const along = region ? set.axes.find((one) => one.name === region.axis)?.values : undefined;
 	const inside = (i: number) => !!region && !!along && along[i]! >= region.from && along[i]! <= region.to;

@@ -1,6 +1,8 @@
 import { colour, diverging } from '../plot/colour';
-import { tickText, ticks } from '../plot/ticks';
+import { tickText } from '../plot/ticks';
+import type { Bins } from '../residual/bins';
 import type { ResidualMap } from '../residual/map';
+import { type Place, middle, place } from '../residual/place';
 import { CLIP, score } from '../residual/tally';
 
 export const MARGIN = { left: 58, right: 6, top: 6, bottom: 38 };
@@ -10,17 +12,10 @@ export interface Size {
 	height: number;
 }
 
-/** Where a value of x (or y) lies on the canvas. */
-export function place(edges: readonly number[], from: number, to: number): (value: number) => number {
-	const low = edges[0] ?? 0;
-	const span = (edges.at(-1) ?? 1) - low || 1;
-	return (value) => from + ((value - low) / span) * (to - from);
-}
-
-export function axesOf(map: ResidualMap, size: Size) {
+export function axesOf(map: ResidualMap, size: Size): { x: Place; y: Place } {
 	return {
-		x: place(map.x, MARGIN.left, size.width - MARGIN.right),
-		y: place(map.y, size.height - MARGIN.bottom, MARGIN.top),
+		x: place(map.x, MARGIN.left, size.width - MARGIN.right, map.x.levels ? 14 : 8),
+		y: place(map.y, size.height - MARGIN.bottom, MARGIN.top, map.y.levels ? 9 : 5),
 	};
 }
 
@@ -35,13 +30,13 @@ export function paintMap(
 	const { x, y } = axesOf(map, size);
 	const palette = [colour('--map-low'), colour('--map-mid'), colour('--map-high')] as const;
 	ctx.clearRect(0, 0, size.width, size.height);
-	const columns = map.x.length - 1;
+	const [right, up] = [map.x.edges.map(x.at), map.y.edges.map(y.at)];
+	const columns = right.length - 1;
 	map.cells.forEach((cell, i) => {
 		const column = i % columns;
 		const row = Math.floor(i / columns);
-		const [left, right] = [x(map.x[column]!), x(map.x[column + 1]!)];
-		const [top, bottom] = [y(map.y[row + 1]!), y(map.y[row]!)];
-		const box = [left, top, Math.max(1, right - left), Math.max(1, bottom - top)] as const;
+		const [left, top] = [right[column]!, up[row + 1]!];
+		const box = [left, top, Math.max(1, right[column + 1]! - left), Math.max(1, up[row]! - top)] as const;
 		if (cell.n === 0) return;
 		const z = score(cell);
 		ctx.fillStyle = z === null ? colour('--map-none') : diverging(z / CLIP, ...palette);
@@ -52,7 +47,7 @@ export function paintMap(
 		ctx.strokeRect(...box);
 	});
 	frame(ctx, size);
-	outline(ctx, size, region.x?.map(x) ?? null, region.y?.map(y) ?? null);
+	outline(ctx, size, region.x?.map(x.at) ?? null, region.y?.map(y.at) ?? null);
 	ink(ctx, map, size, titles);
 }
 
@@ -81,10 +76,17 @@ function hatch(ctx: CanvasRenderingContext2D, [left, top, width, height]: readon
 	ctx.restore();
 }
 
+/** Both ends in order, far enough apart to be seen. */
+function widen([a = 0, b = 0]: number[]): [number, number] {
+	const [low, high] = [Math.min(a, b), Math.max(a, b)];
+	const lack = Math.max(0, 8 - (high - low)) / 2;
+	return [low - lack, high + lack];
+}
+
 function outline(ctx: CanvasRenderingContext2D, size: Size, x: number[] | null, y: number[] | null): void {
 	if (!x && !y) return;
-	const [left = 0, right = 0] = x ?? [MARGIN.left, size.width - MARGIN.right];
-	const [bottom = 0, top = 0] = y ?? [size.height - MARGIN.bottom, MARGIN.top];
+	const [left, right] = widen(x ?? [MARGIN.left, size.width - MARGIN.right]);
+	const [top, bottom] = widen(y ?? [size.height - MARGIN.bottom, MARGIN.top]);
 	ctx.save();
 	ctx.beginPath();
 	ctx.rect(MARGIN.left - 2, 0, size.width - MARGIN.left - MARGIN.right + 4, size.height - MARGIN.bottom + 2);
@@ -103,11 +105,11 @@ function ink(ctx: CanvasRenderingContext2D, map: ResidualMap, size: Size, titles
 	ctx.font = '11px system-ui, sans-serif';
 	ctx.textBaseline = 'top';
 	ctx.textAlign = 'center';
-	for (const tick of ticks(map.x[0]!, map.x.at(-1)!, 8)) ctx.fillText(tickText(tick), x(tick), foot + 5);
+	for (const tick of x.ticks) ctx.fillText(say(tick), where(map.x, x, tick), foot + 5);
 	ctx.fillText(titles.x, (MARGIN.left + size.width) / 2, foot + 21);
 	ctx.textBaseline = 'middle';
 	ctx.textAlign = 'right';
-	for (const tick of ticks(map.y[0]!, map.y.at(-1)!, 5)) ctx.fillText(tickText(tick), MARGIN.left - 6, y(tick));
+	for (const tick of y.ticks) ctx.fillText(say(tick), MARGIN.left - 6, where(map.y, y, tick));
 	ctx.save();
 	ctx.translate(11, (MARGIN.top + foot) / 2);
 	ctx.rotate(-Math.PI / 2);
@@ -115,3 +117,9 @@ function ink(ctx: CanvasRenderingContext2D, map: ResidualMap, size: Size, titles
 	ctx.fillText(titles.y, 0, 0);
 	ctx.restore();
 }
+
+/** Set points were measured: two or three digits are enough to know them by. */
+const say = (tick: number): string => tickText(Number(tick.toPrecision(3)));
+
+const where = (bins: Bins, scale: Place, tick: number): number =>
+	bins.levels ? middle(bins, scale, bins.levels.indexOf(tick)) : scale.at(tick);

@@ -27,7 +27,8 @@ export function barsOf(path: readonly Model[], next: Suggestion | null): Bar[] {
 		};
 	});
 	if (next) {
-		const change = -next.error_reduction;
+		const before = path.at(-1)?.validation_rms;
+		const change = before ? next.validation_rms / before - 1 : null;
 		bars.push({ key: 'next', label: `+ ${next.effect.replaceAll('_', ' ')}?`, held: next.validation_rms, training: null, change, id: null });
 	}
 	return bars;

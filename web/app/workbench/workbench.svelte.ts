@@ -73,7 +73,7 @@ export function openWorkbench(id: number) {
 		const unit = after.fit.unit;
 		const figures = `${quantity(before.validation_rms, unit)} → ${quantity(after.validation_rms, unit)}`;
 		if (share > WORTH) return { text: `Held-out error fell by ${percent(share)}: ${figures}.`, good: true };
-		const verdict = share < -WORTH ? `It got worse by ${percent(-share, 1)}` : `No gain (${percent(share, 1)})`;
+		const verdict = share < -WORTH ? `The held-out error rose by ${percent(-share, 1)}` : `No gain in the held-out error (${percent(-share, 1)})`;
 		return { text: `${verdict}: ${figures}. Undo with z.`, good: false };
 	}
 

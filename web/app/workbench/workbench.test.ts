@@ -74,11 +74,12 @@ describe('regions', () => {
 			error: [-1, -1, -1],
 			held_out: [false, true, false],
 		} as unknown as ResidualSet;
-		const drawn = overlay(set, set.axes[0]!, { axis: 'load', from: 4, to: 6 }, 1000);
+		const drawn = overlay(set, set.axes[0]!, { axis: 'load', from: 4, to: 6 }, 1000, true);
 		expect(drawn.x).toEqual([1, 2, 3]);
 		expect(drawn.measuredInside).toEqual([null, null, 30]);
 		expect(drawn.measuredOutside).toEqual([10, null, null]);
 		expect(drawn.residual).toEqual([null, -1000, null]);
+		expect(overlay(set, set.axes[0]!, null, 1, false).x).toEqual([2, 3]);
 	});
 });
 
@@ -99,5 +100,5 @@ it('flags parameters in words', () => {
 	expect(rows.map((row) => row.flags)).toEqual([[], ['at its bound', 'may be zero'], ['given']]);
 	const pair = ['a', 'b'].map((name) => ({ effect: 'e', name, value: 1, ci95: [0.5, 1.5], state: 'ok' })) as Parameter[];
 	const [first] = forest(pair, [{ first: 'e.a', second: 'e.b', correlation: -0.96 }]);
-	expect(first!.flags).toEqual(['trades with e.b (ρ −0.96)']);
+	expect(first!.flags).toEqual(['ρ −0.96 with e.b']);
 });

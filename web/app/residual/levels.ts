@@ -1,0 +1,40 @@
+/** A run has few set points, or the axis is not one that was set. */
+const MOST = 40;
+/** Set points closer than this share of the span, or than their own scatter, are one. */
+const APART = 0.002;
+/** A segment that moves over more than this share of the span sweeps; it is not at a set point. */
+const STILL = 0.03;
+
+/** The set points of an axis in rising order, or `null` where the run does not dwell at any. */
+export function levelsOf(points: readonly { value: number; segment: number }[], span: number): number[] | null {
+	const segments = [...summaries(points)].filter((each) => each.scatter <= STILL * span);
+	const still = segments.reduce((n, each) => n + each.n, 0);
+	if (still < 0.7 * points.length) return null;
+	segments.sort((a, b) => a.mean - b.mean);
+	const scatter = Math.sqrt(segments.reduce((sum, each) => sum + each.n * each.scatter ** 2, 0) / still);
+	const apart = Math.max(APART * span, 3 * scatter);
+	const groups: { n: number; sum: number; last: number }[] = [];
+	for (const { n, mean } of segments) {
+		const group = groups.at(-1);
+		if (group && mean - group.last <= apart) Object.assign(group, { n: group.n + n, sum: group.sum + n * mean, last: mean });
+		else groups.push({ n, sum: n * mean, last: mean });
+	}
+	const chained = groups.some((group) => group.last - group.sum / group.n > 4 * Math.max(apart, STILL * span));
+	if (chained || groups.length < 2 || groups.length > MOST) return null;
+	return groups.map((group) => group.sum / group.n);
+}
+
+function* summaries(points: readonly { value: number; segment: number }[]) {
+	const bySegment = new Map<number, number[]>();
+	for (const { value, segment } of points) {
+		const list = bySegment.get(segment);
+		if (list) list.push(value);
+		else bySegment.set(segment, [value]);
+	}
+	for (const values of bySegment.values()) {
+		const n = values.length;
+		const mean = values.reduce((sum, value) => sum + value, 0) / n;
+		const scatter = Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / n);
+		yield { n, mean, scatter };
+	}
+}

@@ -1,0 +1,42 @@
+import { ticks } from '../plot/ticks';
+import { type Bins, binOf } from './bins';
+
+/** From a value to its place between two pixels, and back. Set points are equally wide, everything else is linear. */
+export interface Place {
+	at: (value: number) => number;
+	value: (px: number) => number;
+	ticks: number[];
+}
+
+export function place({ edges, levels }: Bins, from: number, to: number, count: number): Place {
+	const low = edges[0] ?? 0;
+	const high = edges.at(-1) ?? 1;
+	if (!levels) {
+		const span = high - low || 1;
+		return {
+			at: (value) => from + ((value - low) / span) * (to - from),
+			value: (px) => low + ((px - from) / (to - from)) * span,
+			ticks: ticks(low, high, count),
+		};
+	}
+	const n = levels.length;
+	const each = Math.max(1, Math.ceil(n / count));
+	return {
+		at: (value) => {
+			const bin = binOf(edges, Math.max(low, Math.min(high, value)));
+			const share = (value - edges[bin]!) / (edges[bin + 1]! - edges[bin]! || 1);
+			return from + ((bin + Math.max(0, Math.min(1, share))) / n) * (to - from);
+		},
+		value: (px) => {
+			const place = ((px - from) / (to - from)) * n;
+			const bin = Math.max(0, Math.min(n - 1, Math.floor(place)));
+			return edges[bin]! + (place - bin) * (edges[bin + 1]! - edges[bin]!);
+		},
+		ticks: levels.filter((_, i) => i % each === Math.floor(((n - 1) % each) / 2)),
+	};
+}
+
+/** Where a bin's own value lies: the set point in the middle of its column. */
+export function middle({ edges, levels }: Bins, scale: Place, bin: number): number {
+	return levels ? (scale.at(edges[bin]!) + scale.at(edges[bin + 1]!)) / 2 : scale.at((edges[bin]! + edges[bin + 1]!) / 2);
+}
