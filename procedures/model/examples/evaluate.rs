@@ -1,5 +1,6 @@
 //! Scores the model on measurements with a hidden effect: `cargo run --release -p jointbench-model --example evaluate
-//! [FOLDER] [name-part]`. Every folder below holds run.csv.gz, meta.json and answer.json.
+//! [FOLDER] [name-part]`. Every folder below holds run.csv.gz, meta.json and answer.json. A folder that holds a run
+//! without an answer is diagnosed and shown.
 
 use jointbench_instrument::{Channel, Meta, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover};
@@ -39,6 +40,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("skipped: {} is not there", folder.display());
         return Ok(());
     }
+    if folder.join("meta.json").is_file() && !folder.join("answer.json").is_file() {
+        return show(&folder);
+    }
     let mut cases: Vec<PathBuf> = std::fs::read_dir(&folder)?.filter_map(|e| Some(e.ok()?.path())).collect();
     cases.retain(|c| c.join("answer.json").is_file() && c.to_string_lossy().contains(&part));
     cases.sort();
@@ -51,6 +55,34 @@ fn main() -> Result<(), Box<dyn Error>> {
         "top-1 {}/{}  exact {}/{}  null {}/{}  unknown {}/{}  floor {}/{}  slowest diagnosis {slowest_s:.3} s",
         top1.0, top1.1, exact.0, exact.1, null.0, null.1, unknown.0, unknown.1, floor.0, floor.1
     );
+    Ok(())
+}
+
+/// One run without an answer: what is found, step by step.
+fn show(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let run = read(folder)?;
+    let start = Instant::now();
+    let first = diagnose(&run, &ModelSpec::baseline(&run)?, &Options::default())?;
+    println!("{} ({:.3} s)", first.summary, start.elapsed().as_secs_f64());
+    for s in &first.suggestions {
+        println!(
+            "  {} {:+.1} % p {:.3}, tied with {:?}",
+            s.effect,
+            -100.0 * s.error_reduction,
+            s.p_value,
+            s.confounded_with
+        );
+    }
+    first.regions.iter().take(3).for_each(|r| println!("  {}", r.sentence));
+    first.not_visible.iter().for_each(|n| println!("  not visible: {} ({})", n.effect, n.why));
+    let whole = discover(&run, &ModelSpec::baseline(&run)?, &Options::default(), 6, |_| {})?;
+    for s in &whole.steps {
+        println!("  {:24} rms {:.4e} held out {:.4e}", s.added.as_deref().unwrap_or("-"), s.rms, s.validation_rms);
+    }
+    for p in &whole.fit.parameters {
+        println!("  {}.{} = {:.5} {} [{:.5}, {:.5}]", p.effect, p.name, p.value, p.unit, p.ci95[0], p.ci95[1]);
+    }
+    println!("  relative error {:.3} %; {}", 100.0 * whole.fit.relative_error, whole.summary);
     Ok(())
 }
 

@@ -22,6 +22,15 @@ pub struct EffectInfo {
     pub needs: &'static [&'static str],
 }
 
+impl EffectInfo {
+    /// Unit of a parameter. `a_2` is the second of its kind and has the unit of `a`.
+    pub fn unit(&self, name: &str) -> &'static str {
+        let family = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
+        let find = |name: &str| self.parameters.iter().find(|p| p.name == name);
+        find(name).or_else(|| find(family)).map_or("1", |p| p.unit)
+    }
+}
+
 /// A parameter with what is physically sensible for it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ParameterInfo {

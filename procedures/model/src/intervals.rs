@@ -64,14 +64,14 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
             [slot.value - reach, slot.value + reach]
         };
         let info = terms.terms.iter().find(|t| t.id() == slot.effect).map(|t| t.effect.info());
-        let unit = info.and_then(|i| i.parameters.iter().find(|p| p.name == slot.name)).map_or("1", |p| p.unit);
+        let unit = info.map_or("1", |i| i.unit(slot.name));
         let (state, note) = judge(slot, ci95, spd.is_dead(k));
         let (effect, name) = (slot.effect.to_owned(), slot.name.to_owned());
         parameters.push(Parameter { effect, name, value: slot.value, unit: motion.label(unit), ci95, state, note });
     }
     for term in &terms.terms {
         for (shape, value) in term.form.shape.iter().zip(&term.shape).filter(|(s, _)| s.search != Search::Smooth) {
-            let unit = term.effect.info().parameters.iter().find(|p| p.name == shape.name).map_or("1", |p| p.unit);
+            let unit = term.effect.info().unit(shape.name);
             parameters.push(Parameter {
                 effect: term.id().into(),
                 name: shape.name.into(),

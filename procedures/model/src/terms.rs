@@ -29,6 +29,14 @@ impl Term {
         free.into_iter()
     }
 
+    /// The factors are physically possible.
+    pub fn allows(&self, factors: &[f64]) -> bool {
+        let info = self.effect.info();
+        self.form.linear.iter().zip(factors).all(|(name, value)| {
+            info.parameters.iter().find(|p| p.name == *name).is_none_or(|p| (p.min..=p.max).contains(value))
+        })
+    }
+
     /// Number of parameters, linear and shape.
     pub fn size(&self) -> usize {
         self.columns.len() + self.shape.len()

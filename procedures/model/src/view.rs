@@ -100,6 +100,8 @@ impl Signals {
 pub struct Constants {
     pub pole_pairs: Option<u32>,
     pub poles: Option<u32>,
+    /// The axis slides: nothing repeats with its angle.
+    pub slides: bool,
 }
 
 /// Signals at the points, and the samples behind them.

@@ -74,7 +74,7 @@ fn reversal_range(view: &View) -> Option<(f64, f64)> {
 /// A harmonic of an angle, searched over whole orders. Orders that turn further than half a wave between two samples
 /// at the slowest motion cannot be told from lower ones and are left out.
 fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form> {
-    let Some(samples) = view.samples.find(angle) else { return Vec::new() };
+    let Some(samples) = view.samples.find(angle).filter(|_| !view.constants.slides) else { return Vec::new() };
     let mut steps: Vec<f64> = samples.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
     steps.sort_by(f64::total_cmp);
     let Some(slow) = steps.get(steps.len() / 10) else { return Vec::new() };
@@ -86,4 +86,23 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
     }
     let shape = vec![Shape { name: "harmonic", min: first, max: last, search: Search::Whole }];
     vec![Form { name: "harmonic", linear: &["a", "b"], shape, grid }]
+}
+
+/// Name of the form of an effect that may have several harmonics.
+pub(crate) const SEVERAL_HARMONICS: &str = "harmonics";
+
+/// The form with a number of harmonics, each with two factors.
+pub(crate) fn several_harmonics(count: usize) -> Form {
+    const LINEAR: [&str; 16] =
+        ["a", "b", "a_2", "b_2", "a_3", "b_3", "a_4", "b_4", "a_5", "b_5", "a_6", "b_6", "a_7", "b_7", "a_8", "b_8"];
+    const SHAPE: [&str; 8] =
+        ["harmonic", "harmonic_2", "harmonic_3", "harmonic_4", "harmonic_5", "harmonic_6", "harmonic_7", "harmonic_8"];
+    let count = count.min(SHAPE.len());
+    let shape = |name: &&'static str| Shape { name, min: 1.0, max: f64::INFINITY, search: Search::Whole };
+    Form {
+        name: SEVERAL_HARMONICS,
+        linear: &LINEAR[..2 * count],
+        shape: SHAPE[..count].iter().map(shape).collect(),
+        grid: Vec::new(),
+    }
 }

@@ -41,7 +41,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         repeat: segments::integers(run, "repeat"),
         derived_velocity: false,
         time_s,
-        constants: Constants { pole_pairs: None, poles: run.meta().poles },
+        constants: Constants { pole_pairs: None, poles: run.meta().poles, ..Constants::default() },
     };
     sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Current], options)
 }

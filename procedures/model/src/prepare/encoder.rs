@@ -49,7 +49,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         repeat: segments::integers(run, "repeat"),
         derived_velocity: measured.is_none(),
         time_s,
-        constants: Constants { pole_pairs: run.meta().pole_pairs, poles: run.meta().poles },
+        constants: Constants { pole_pairs: run.meta().pole_pairs, poles: run.meta().poles, ..Constants::default() },
     };
     sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity], options)
 }

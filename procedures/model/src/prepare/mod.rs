@@ -47,22 +47,29 @@ impl Problem {
 pub enum Reduce {
     /// Points are rows.
     Same,
-    /// Every recording is filtered and every n-th sample kept.
-    Decimate { filter: Option<LowPass>, every: usize, skip: usize, starts: Vec<usize> },
+    /// Every recording is filtered and every n-th sample kept, but for rows that are left out.
+    Decimate { filter: Option<LowPass>, every: usize, skip: usize, starts: Vec<usize>, left_out: Vec<bool> },
 }
 
 impl Reduce {
     pub fn apply(&self, column: Vec<f64>) -> Vec<f64> {
         match self {
             Reduce::Same => column,
-            Reduce::Decimate { filter, every, skip, starts } => filter::by_recording(&column, starts, |_, values| {
-                let filtered = match filter {
-                    Some(filter) => filter.both_ways(values, 12 * every),
-                    None => values.to_vec(),
-                };
-                let end = values.len().saturating_sub(*skip);
-                (*skip..end).step_by(*every).map(|i| filtered[i]).collect()
-            }),
+            Reduce::Decimate { filter, every, skip, starts, left_out } => {
+                let mut rows = filter::by_recording(&column, starts, |_, values| {
+                    let filtered = match filter {
+                        Some(filter) => filter.both_ways(values, 12 * every),
+                        None => values.to_vec(),
+                    };
+                    let end = values.len().saturating_sub(*skip);
+                    (*skip..end).step_by(*every).map(|i| filtered[i]).collect()
+                });
+                if !left_out.is_empty() {
+                    let mut out = left_out.iter();
+                    rows.retain(|_| out.next() == Some(&false));
+                }
+                rows
+            }
         }
     }
 }

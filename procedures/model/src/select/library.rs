@@ -88,6 +88,20 @@ pub fn gain(columns: &[Vec<f64>], basis: &Basis, residual: &[f64], energy: f64) 
     Gain { share: if energy > 0.0 { explained / energy } else { 0.0 }, rest }
 }
 
+/// Factors of the columns beside a basis.
+pub fn factors(columns: &[Vec<f64>], basis: &Basis, residual: &[f64]) -> Vec<f64> {
+    let rest: Vec<Vec<f64>> = columns.iter().map(|c| basis.rest(c)).collect();
+    let p = rest.len();
+    let mut gram = vec![0.0; p * p];
+    for a in 0..p {
+        for b in 0..p {
+            gram[a * p + b] = dot(&rest[a], &rest[b]);
+        }
+    }
+    let side: Vec<f64> = rest.iter().map(|r| dot(r, residual)).collect();
+    Spd::new(&gram, p, 0.0).solve(&side)
+}
+
 fn true_share(rest: &[f64], columns: &[Vec<f64>]) -> bool {
     let largest = columns.iter().map(|c| dot(c, c)).fold(0.0, f64::max);
     dot(rest, rest) > OWN_SHARE * largest

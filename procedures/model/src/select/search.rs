@@ -1,7 +1,7 @@
 //! From a model to the model that is left when nothing more can be named.
 
 use super::flips::{Null, Score};
-use super::library::{Gain, Library, gain};
+use super::library::{Gain, Library, factors, gain};
 use crate::Options;
 use crate::linear::{Basis, BlockGrams, dot};
 use crate::prepare::Problem;
@@ -79,6 +79,7 @@ pub fn search<'p>(start: Terms<'p>, library: &Library, most: usize, options: &Op
         next.terms.push(rival.term.clone());
         next.refine();
         reform(&mut next, library);
+        extend(&mut next, library, options);
         path.moves.push((Move::Added { rival, ties }, next));
         added += 1;
         while let Some((id, less)) = drop_one(path.end(), &kept, options) {
@@ -87,6 +88,47 @@ pub fn search<'p>(start: Terms<'p>, library: &Library, most: usize, options: &Op
     }
     path.silent = silences(path.end(), library, options);
     path
+}
+
+/// Most harmonics of one effect.
+const MOST_HARMONICS: usize = 8;
+
+/// Gives an effect of several harmonics another one, as long as that explains more than any effect that is not in the
+/// model and passes the same tests.
+fn extend(terms: &mut Terms, library: &Library, options: &Options) {
+    let harmonic = |t: &Term| t.form.name == crate::effects::SEVERAL_HARMONICS && t.shape.len() < MOST_HARMONICS;
+    while let Some(at) = terms.terms.iter().position(harmonic) {
+        let basis = terms.tangent();
+        let residual = basis.rest(&terms.response());
+        let energy = dot(&residual, &residual);
+        let own = terms.terms[at].id();
+        let share = |c: &super::library::Candidate| gain(&c.columns, &basis, &residual, energy).share;
+        let (mut next, mut other) = ((0.0, None), 0.0f64);
+        for candidate in &library.candidates {
+            if candidate.id() != own {
+                if !terms.contains(candidate.id()) {
+                    other = other.max(share(candidate));
+                }
+            } else if !terms.terms[at].shape.contains(&candidate.shape[0]) {
+                let share = share(candidate);
+                if share > next.0 {
+                    next = (share, Some(candidate));
+                }
+            }
+        }
+        let (share, Some(candidate)) = next else { return };
+        if share < options.practical_share.max(other) {
+            return;
+        }
+        let p_value = significance(&candidate.term(), library, &basis, &residual, terms.problem, options);
+        if p_value > options.alpha {
+            return;
+        }
+        let term = &terms.terms[at];
+        let shape: Vec<f64> = term.shape.iter().chain(&candidate.shape).copied().collect();
+        let form = crate::effects::several_harmonics(shape.len());
+        terms.terms[at] = Term::new(term.effect, form, shape, terms.problem);
+    }
 }
 
 /// Another form must take this share off the squared error for each parameter that it has more.
@@ -194,6 +236,8 @@ fn step(now: &Terms, library: &Library, options: &Options) -> Option<(Rival, Vec
             let mut term = [library.candidates[open[*b]].term()];
             let sse = polish(&mut term, &basis, &residual, problem);
             let [term] = term;
+            let possible = term.allows(&factors(&term.columns, &basis, &residual));
+            let sse = if possible { sse } else { energy };
             let mut columns = now.columns();
             columns.extend(term.columns.iter().map(Vec::as_slice));
             let losses = losses(&columns, &residual, problem);
@@ -213,14 +257,13 @@ fn step(now: &Terms, library: &Library, options: &Options) -> Option<(Rival, Vec
     let first = rivals.first()?;
 
     let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(first, &rivals[*i])).collect();
-    let mut winner = 0;
-    // Of what explains the data equally well, the simplest.
-    for i in &ties {
-        let near = rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
-        if near && rivals[*i].term.size() < rivals[winner].term.size() {
-            winner = *i;
-        }
-    }
+    // Of what explains the data equally well, the simplest, and of those the one that the contract names first.
+    let near = |i: &usize| rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
+    let rank = |i: &usize| {
+        let id = rivals[*i].term.id();
+        (rivals[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
+    };
+    let winner = ties.iter().copied().filter(near).chain([0]).min_by_key(rank).unwrap_or(0);
     ties.push(0);
     ties.retain(|i| *i != winner);
 

@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Cogging",
     sentence: "The magnets of the rotor are drawn to the teeth of the stator: a torque that repeats with the motor's angle.",
-    formula: "a·cos(h·θ_m) + b·sin(h·θ_m), h found",
+    formula: "Σ a·cos(h·θ_m) + b·sin(h·θ_m), up to eight orders h found",
     source: "Hanselman, Brushless Permanent Magnet Motor Design, ch. 7",
     looks: "waves over the motor's angle, the same in both directions, gone at high speed",
     parameters: &[
@@ -28,10 +28,12 @@ impl Effect for Cogging {
     }
 
     fn forms(&self, view: &View) -> Vec<Form> {
-        crate::effects::harmonic_form(view, Signal::Position, 1..=120)
+        let mut forms = crate::effects::harmonic_form(view, Signal::Position, 1..=120);
+        forms.iter_mut().for_each(|f| f.name = crate::effects::SEVERAL_HARMONICS);
+        forms
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        view.harmonic(Signal::Position, shape[0]).into()
+        shape.iter().flat_map(|h| view.harmonic(Signal::Position, *h)).collect()
     }
 }

@@ -26,8 +26,8 @@ impl Effect for Gravity {
         &INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form> {
-        vec![Form::linear(&["g_c", "g_s"])]
+    fn forms(&self, view: &View) -> Vec<Form> {
+        if view.constants.slides { Vec::new() } else { vec![Form::linear(&["g_c", "g_s"])] }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {

@@ -11,10 +11,13 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Quadratic drag",
     sentence: "At high speed the drag grows faster than the speed, as stirred oil and fanned air do.",
-    formula: "c_2·ω·|ω|",
+    formula: "c_2·ω·|ω|, or c_2a·ω² where one direction has more of it",
     source: "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994",
     looks: "a curve over speed, odd in direction, steepest at top speed",
-    parameters: &[parameter("c_2", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY)],
+    parameters: &[
+        parameter("c_2", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_2a", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY),
+    ],
     needs: &[],
 };
 
@@ -24,10 +27,14 @@ impl Effect for ViscousQuadratic {
     }
 
     fn forms(&self, _: &View) -> Vec<Form> {
-        vec![Form::linear(&["c_2"])]
+        let even = Form { name: "one_sided", ..Form::linear(&["c_2a"]) };
+        vec![Form::linear(&["c_2"]), even]
     }
 
-    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
-        vec![view.map(Signal::Velocity, |w| w * w.abs())]
+    fn columns(&self, form: &str, _: &[f64], view: &View) -> Columns {
+        vec![match form {
+            "one_sided" => view.map(Signal::Velocity, |w| w * w),
+            _ => view.map(Signal::Velocity, |w| w * w.abs()),
+        }]
     }
 }

@@ -20,11 +20,18 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     // The first and last samples of a recording are where filters and derivatives guess.
     let skip = (50.min(run.len() / (20 * samples.starts.len().max(1)))).max(1);
     let starts = samples.starts.clone();
-    let reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone() };
-    let keep = |values: &[f64]| {
+    let pick = |values: &[f64]| {
         by_recording(values, &starts, |_, v| {
             (skip..v.len().saturating_sub(skip)).step_by(every).map(|i| v[i]).collect()
         })
+    };
+    let left_out = standstill(&pick(samples.signals.find(Signal::Velocity).unwrap_or_default()));
+    let reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone(), left_out: left_out.clone() };
+    let keep = |values: &[f64]| {
+        let mut out = left_out.iter();
+        let mut rows = pick(values);
+        rows.retain(|_| left_out.is_empty() || out.next() == Some(&false));
+        rows
     };
     let target = reduce.apply(samples.target.clone());
     if target.len() < 24 {
@@ -43,7 +50,8 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         .collect();
     let group: Vec<usize> = keep(&strokes).into_iter().map(|s| s as usize).collect();
     let (block, blocks) = layout::blocks(&group, 16);
-    let (fold, folds) = layout::folds(&vec![0; block.len()], &block, 8);
+    let folds = blocks.clamp(1, 8);
+    let fold: Vec<usize> = block.iter().map(|b| b % folds).collect();
 
     let column = |values: &Option<Vec<i64>>| -> Option<Vec<i64>> {
         values.as_ref().map(|v| {
@@ -79,7 +87,8 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         repeats_from: repeats_from.into(),
     };
     let points = std::mem::take(&mut samples.signals);
-    let view = View::new(points.clone(), points, Vec::new(), starts, samples.step_s);
+    let mut view = View::new(points.clone(), points, Vec::new(), starts, samples.step_s);
+    view.constants = samples.constants;
     let main = Problem { view, target, reduce, block, blocks, fold, folds, twins, segment, repeat };
     Ok(Prepared {
         kind: run.kind(),
@@ -90,6 +99,14 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         memory: None,
         about,
     })
+}
+
+/// Rows in which the axis rests, where it rests for more than a tenth of the run: friction at rest is whatever the load
+/// asks for, and no static effect can say how much. Empty where nothing is left out.
+fn standstill(velocity: &[f64]) -> Vec<bool> {
+    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let rests: Vec<bool> = velocity.iter().map(|v| v.abs() < 0.01 * fastest).collect();
+    if rests.iter().filter(|r| **r).count() * 10 > velocity.len() { rests } else { Vec::new() }
 }
 
 /// Rows since the repeat began.

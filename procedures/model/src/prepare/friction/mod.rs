@@ -7,7 +7,7 @@ use super::chunks::Source;
 use super::{Prepared, filter, median, sample_s, segments};
 use crate::view::{Constants, Signal, Signals};
 use crate::{ModelError, Options, ResidualKind};
-use jointbench_instrument::RunTable;
+use jointbench_instrument::{Motion, RunTable};
 
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
     let samples = read(run, options)?;
@@ -86,7 +86,7 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
         segment: segments::integers(run, "segment"),
         repeat: segments::integers(run, "repeat"),
         derived_velocity: measured.is_none(),
-        constants: Constants::default(),
+        constants: Constants { slides: run.meta().motion == Motion::Linear, ..Constants::default() },
         time_s,
     })
 }
