@@ -8,7 +8,7 @@ export class Refusal extends Error {
 	readonly column: string | null;
 
 	constructor(problem: Partial<Problem>) {
-		super(problem.detail ?? problem.title ?? 'the daemon gave no reason');
+		super(problem.detail || problem.title || 'the daemon gave no reason');
 		this.status = problem.status ?? 0;
 		this.title = problem.title ?? 'Refused';
 		this.line = problem.line ?? null;

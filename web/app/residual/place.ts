@@ -1,4 +1,4 @@
-import { ticks } from '../plot/ticks';
+import { tickText, ticks } from '../plot/ticks';
 import { type Bins, binOf } from './bins';
 
 /** From a value to its place between two pixels, and back. Set points are equally wide, everything else is linear. */
@@ -6,6 +6,8 @@ export interface Place {
 	at: (value: number) => number;
 	value: (px: number) => number;
 	ticks: number[];
+	/** A tick as text. */
+	say: (tick: number) => string;
 }
 
 export function place({ edges, levels }: Bins, from: number, to: number, count: number): Place {
@@ -17,9 +19,11 @@ export function place({ edges, levels }: Bins, from: number, to: number, count: 
 			at: (value) => from + ((value - low) / span) * (to - from),
 			value: (px) => low + ((px - from) / (to - from)) * span,
 			ticks: ticks(low, high, count),
+			say: tickText,
 		};
 	}
 	const n = levels.length;
+	const decimals = Math.max(0, Math.min(9, 2 - Math.floor(Math.log10(Math.max(Math.abs(low), Math.abs(high))))));
 	const each = Math.max(1, Math.ceil(n / count));
 	return {
 		at: (value) => {
@@ -33,6 +37,8 @@ export function place({ edges, levels }: Bins, from: number, to: number, count: 
 			return edges[bin]! + (place - bin) * (edges[bin + 1]! - edges[bin]!);
 		},
 		ticks: levels.filter((_, i) => i % each === Math.floor(((n - 1) % each) / 2)),
+		// Set points were measured; digits beyond the third of the largest tell nothing about which one it is.
+		say: (tick) => tickText(Number(tick.toFixed(decimals)) || 0),
 	};
 }
 

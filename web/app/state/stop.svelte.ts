@@ -33,6 +33,13 @@ class SoftwareStop {
 		clearTimeout(late);
 	}
 
+	/** There is nobody to send the stop to. */
+	refuse(why: string): void {
+		this.fault = why;
+		this.acknowledged_ms = null;
+		this.overdue = true;
+	}
+
 	dismiss(): void {
 		this.overdue = false;
 		this.pressed = false;

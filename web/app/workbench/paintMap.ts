@@ -1,5 +1,4 @@
 import { colour, diverging } from '../plot/colour';
-import { tickText } from '../plot/ticks';
 import type { Bins } from '../residual/bins';
 import type { ResidualMap } from '../residual/map';
 import { type Place, middle, place } from '../residual/place';
@@ -105,11 +104,11 @@ function ink(ctx: CanvasRenderingContext2D, map: ResidualMap, size: Size, titles
 	ctx.font = '11px system-ui, sans-serif';
 	ctx.textBaseline = 'top';
 	ctx.textAlign = 'center';
-	for (const tick of x.ticks) ctx.fillText(say(tick), where(map.x, x, tick), foot + 5);
+	for (const tick of x.ticks) ctx.fillText(x.say(tick), where(map.x, x, tick), foot + 5);
 	ctx.fillText(titles.x, (MARGIN.left + size.width) / 2, foot + 21);
 	ctx.textBaseline = 'middle';
 	ctx.textAlign = 'right';
-	for (const tick of y.ticks) ctx.fillText(say(tick), MARGIN.left - 6, where(map.y, y, tick));
+	for (const tick of y.ticks) ctx.fillText(y.say(tick), MARGIN.left - 6, where(map.y, y, tick));
 	ctx.save();
 	ctx.translate(11, (MARGIN.top + foot) / 2);
 	ctx.rotate(-Math.PI / 2);
@@ -117,9 +116,6 @@ function ink(ctx: CanvasRenderingContext2D, map: ResidualMap, size: Size, titles
 	ctx.fillText(titles.y, 0, 0);
 	ctx.restore();
 }
-
-/** Set points were measured: two or three digits are enough to know them by. */
-const say = (tick: number): string => tickText(Number(tick.toPrecision(3)));
 
 const where = (bins: Bins, scale: Place, tick: number): number =>
 	bins.levels ? middle(bins, scale, bins.levels.indexOf(tick)) : scale.at(tick);
