@@ -25,7 +25,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let start = &found.start.main;
     let basis = start.tangent();
     let residual = basis.rest(&start.response());
-    let maps = Maps::new(&prepared.main, &basis, &residual, options);
+    let maps = Maps::new(&prepared.main, &residual, options);
     let regions = if verdict == Verdict::Adequate { Vec::new() } else { regions(&prepared, &maps) };
     let mut not_visible = found.start.hidden.clone();
     not_visible.extend(found.invisible.iter().cloned());

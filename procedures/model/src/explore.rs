@@ -32,6 +32,9 @@ pub struct Exploration<'p> {
 /// 2 %, and what is left of well-explained runs 11 %.
 const STRUCTURE_SHARE: f64 = 0.15;
 
+/// More than this share of the remaining squared error, the same in every repeat, is structure.
+const REPEATABLE_SHARE: f64 = 0.6;
+
 impl<'p> Exploration<'p> {
     pub fn new(prepared: &'p Prepared, spec: &ModelSpec, options: &Options, most: usize) -> Result<Self, ModelError> {
         let start = Assembly::new(prepared, spec)?;
@@ -69,7 +72,7 @@ impl<'p> Exploration<'p> {
             let end = advances.last().map_or(&start.main, |a| &a.after.main);
             let basis = end.tangent();
             let residual = basis.rest(&end.response());
-            let maps = Maps::new(&prepared.main, &basis, &residual, options);
+            let maps = Maps::new(&prepared.main, &residual, options);
             (maps, floor::noise_floor(prepared, &residual), path.silent)
         };
         Ok(Self { start, advances, silent, invisible, maps, floor })
@@ -81,26 +84,29 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        match self.maps.removable {
-            Some((_, share)) if share > STRUCTURE_SHARE && !self.maps.findings.is_empty() => {
-                Verdict::UnexplainedStructure
-            }
-            _ => Verdict::Adequate,
-        }
+        let mapped = self.maps.removable.is_some_and(|(_, share)| share > STRUCTURE_SHARE);
+        if mapped || self.repeats_itself() { Verdict::UnexplainedStructure } else { Verdict::Adequate }
+    }
+
+    /// Most of what is left is the same in every repeat: no noise, whether or not a map shows where it comes from.
+    fn repeats_itself(&self) -> bool {
+        self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
     }
 
     /// Added effects that are still there, the most important first: by what the last model loses without them, so
     /// that effects that mask each other come out in the right order.
     pub fn ranking(&self) -> Vec<(&Advance<'p>, f64)> {
         let end = self.end();
-        let mut ranked: Vec<(&Advance, f64)> = self
-            .advances
-            .iter()
-            .filter_map(|a| {
-                let id = a.added.as_ref()?.term.id();
-                end.effects.iter().any(|e| e == id).then(|| (a, importance(end, id)))
-            })
-            .collect();
+        let mut seen: Vec<&str> = Vec::new();
+        let mut ranked: Vec<(&Advance, f64)> = Vec::new();
+        // From the end, because an effect that was dropped and came again has its present evidence there.
+        for advance in self.advances.iter().rev() {
+            let Some(id) = advance.added.as_ref().map(|r| r.term.id()) else { continue };
+            if !seen.contains(&id) && end.effects.iter().any(|e| e == id) {
+                seen.push(id);
+                ranked.push((advance, importance(end, id)));
+            }
+        }
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         ranked
     }

@@ -73,5 +73,5 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
     let twins = phase.map_or_else(Vec::new, |phase| layout::twins(&condition, &phase, &repeat, 1));
     let mut view = View::new(points, samples.signals.clone(), chunks, samples.starts.clone(), samples.step_s);
     view.constants = samples.constants;
-    Problem { view, target, reduce: Reduce::Same, block, blocks, fold, folds, twins, segment, repeat }
+    Problem { view, target, reduce: Reduce::Same, block, blocks, fold, folds, twins, segment, repeat, settled }
 }

@@ -34,6 +34,8 @@ pub struct Problem {
     pub twins: Vec<(usize, usize)>,
     pub segment: Vec<i64>,
     pub repeat: Vec<i64>,
+    /// Speed and load are constant within a block: what they seem to change there is their sensors' noise.
+    pub settled: bool,
 }
 
 impl Problem {

@@ -87,10 +87,4 @@ impl Null {
         let below = self.largest.partition_point(|l| *l < z);
         (1 + self.largest.len() - below) as f64 / (1 + self.largest.len()) as f64
     }
-
-    /// The score that only a share of `alpha` of the flips exceeds.
-    pub fn critical(&self, alpha: f64) -> f64 {
-        let index = ((1.0 - alpha) * self.largest.len() as f64).ceil() as usize;
-        self.largest.get(index.min(self.largest.len().saturating_sub(1))).copied().unwrap_or(f64::INFINITY)
-    }
 }

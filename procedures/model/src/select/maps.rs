@@ -1,10 +1,10 @@
 //! Residual maps: where the model fails, with bands that hold for all regions of all maps together.
 
-use super::flips::{Null, Score};
 use crate::Options;
-use crate::linear::{Basis, dot};
+use crate::linear::dot;
 use crate::prepare::Problem;
 use crate::view::Signal;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// One bin of one map.
 #[derive(Debug, Clone)]
@@ -17,7 +17,6 @@ pub struct MapFinding {
     pub mean: f64,
     pub half_width: f64,
     pub rows: usize,
-    pub z: f64,
 }
 
 /// All maps of one residual.
@@ -40,10 +39,9 @@ struct Map {
 }
 
 impl Maps {
-    pub fn new(problem: &Problem, basis: &Basis, residual: &[f64], options: &Options) -> Self {
+    pub fn new(problem: &Problem, residual: &[f64], options: &Options) -> Self {
         let maps = layouts(problem);
         let energy = dot(residual, residual);
-        let mut scores = Vec::new();
         let mut findings = Vec::new();
         let mut removable: Option<(Signal, f64)> = None;
         for map in &maps {
@@ -53,44 +51,58 @@ impl Maps {
             }
             let bins = map.bin.iter().max().map_or(0, |b| b + 1);
             for b in 0..bins {
-                let rows: Vec<usize> = (0..residual.len()).filter(|i| map.bin[*i] == b).collect();
-                let mut seen: Vec<usize> = rows.iter().map(|i| problem.block[*i]).collect();
-                seen.dedup();
-                if rows.len() < 3 || seen.len() < 3 {
-                    continue;
-                }
-                let mut indicator = vec![0.0; residual.len()];
-                rows.iter().for_each(|i| indicator[*i] = 1.0);
-                let own = basis.rest(&indicator);
-                let mean = rows.iter().map(|i| residual[*i]).sum::<f64>() / rows.len() as f64;
-                let score = Score::new(&[own], residual, &problem.block, problem.blocks);
-                let z = score.z();
-                scores.push(score);
+                let Some(Stretch { mean, error, pieces, rows }) = stretch(map, b, problem, residual) else { continue };
                 let (bin, direction) =
                     if map.by_direction { (b / 2, Some(if b % 2 == 0 { -1.0 } else { 1.0 })) } else { (b, None) };
-                findings.push(MapFinding {
-                    axis: map.axis,
-                    from: map.edges[bin],
-                    to: map.edges[bin + 1],
-                    direction,
-                    mean,
-                    half_width: 0.0,
-                    rows: rows.len(),
-                    z,
-                });
+                let (from, to) = (map.edges[bin], map.edges[bin + 1]);
+                findings
+                    .push((pieces, MapFinding { axis: map.axis, from, to, direction, mean, half_width: error, rows }));
             }
         }
-        let null = Null::new(&scores, problem.blocks, options.flips.min(299), options.seed ^ 0x6d61_7073);
-        let critical = null.critical(options.alpha);
-        let n = residual.len() as f64;
-        for f in &mut findings {
-            // The band in units of the mean: as far as the score would fall to the critical one.
-            f.half_width = f.mean.abs() * (critical.max(0.1) / f.z.max(0.1)).min(50.0);
-        }
-        findings.retain(|f| f.z > critical);
-        findings.sort_by(|a, b| (b.mean.powi(2) * b.rows as f64 / n).total_cmp(&(a.mean.powi(2) * a.rows as f64 / n)));
+        // Bonferroni over all bins of all maps: bands that hold together, whatever the maps have in common.
+        let alpha = options.alpha / findings.len().max(1) as f64;
+        let mut findings: Vec<MapFinding> = findings
+            .into_iter()
+            .filter_map(|(pieces, mut f)| {
+                let t = StudentsT::new(0.0, 1.0, (pieces - 1) as f64).ok()?;
+                f.half_width *= t.inverse_cdf(1.0 - alpha / 2.0);
+                (f.mean.abs() > f.half_width).then_some(f)
+            })
+            .collect();
+        findings.sort_by(|a, b| (b.mean.powi(2) * b.rows as f64).total_cmp(&(a.mean.powi(2) * a.rows as f64)));
         Self { findings, removable }
     }
+}
+
+/// Mean of the residual in one bin, with its standard error over the blocks that pass through it.
+struct Stretch {
+    mean: f64,
+    error: f64,
+    pieces: usize,
+    rows: usize,
+}
+
+/// `None` where fewer than three blocks pass: one bin of one block says nothing about the next.
+fn stretch(map: &Map, bin: usize, problem: &Problem, residual: &[f64]) -> Option<Stretch> {
+    let mut pieces: Vec<(usize, f64, f64)> = Vec::new();
+    for (i, _) in map.bin.iter().enumerate().filter(|(_, b)| **b == bin) {
+        match pieces.last_mut() {
+            Some((block, sum, n)) if *block == problem.block[i] => {
+                *sum += residual[i];
+                *n += 1.0;
+            }
+            _ => pieces.push((problem.block[i], residual[i], 1.0)),
+        }
+    }
+    let g = pieces.len();
+    if g < 3 {
+        return None;
+    }
+    let rows: f64 = pieces.iter().map(|p| p.2).sum();
+    let mean = pieces.iter().map(|p| p.1).sum::<f64>() / rows;
+    let spread: f64 = pieces.iter().map(|p| (p.1 - mean * p.2).powi(2)).sum();
+    let error = (spread * g as f64 / (g - 1) as f64).sqrt() / rows;
+    Some(Stretch { mean, error, pieces: g, rows: rows as usize })
 }
 
 fn layouts(problem: &Problem) -> Vec<Map> {
@@ -109,6 +121,8 @@ fn layouts(problem: &Problem) -> Vec<Map> {
     ] {
         let Some(values) = problem.view.find(axis) else { continue };
         let values = problem.reduce.apply(values.to_vec());
+        let steady = problem.settled && matches!(axis, Signal::Velocity | Signal::Load);
+        let values = if steady { block_means(&values, problem) } else { values };
         let values: Vec<f64> =
             if turn { values.iter().map(|a| a.rem_euclid(std::f64::consts::TAU)).collect() } else { values };
         let (mut bin, edges) = if turn { even_bins(&values, ANGLE_BINS) } else { equal_bins(&values, BINS) };
@@ -121,6 +135,17 @@ fn layouts(problem: &Problem) -> Vec<Map> {
         maps.push(Map { axis, by_direction, bin, edges });
     }
     maps
+}
+
+/// Each value replaced by the mean of its block. The residual holds the noise of the load sensor: sorted by the noisy
+/// load itself it would show a line that is not there.
+fn block_means(values: &[f64], problem: &Problem) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); problem.blocks];
+    for (v, b) in values.iter().zip(&problem.block) {
+        sums[*b].0 += v;
+        sums[*b].1 += 1.0;
+    }
+    problem.block.iter().map(|b| sums[*b].0 / sums[*b].1).collect()
 }
 
 /// Bins of equal width over the range.

@@ -11,12 +11,14 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Friction ripple",
     sentence: "Bearings or teeth that are not quite round rub harder at some link angles than at others.",
-    formula: "(a·cos(h·θ_link) + b·sin(h·θ_link))·sgn ω, h found",
+    formula: "(a·cos(h·θ_link) + b·sin(h·θ_link))·sgn ω, or with (a + a_v·|ω|) and (b + b_v·|ω|), h found",
     source: "contract section 2; Armstrong-Hélouvry 1991, position-dependent friction",
     looks: "waves over the link angle that change sign with the direction",
     parameters: &[
         parameter("a", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("b", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("a_v", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("b_v", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("harmonic", "1/turn", 1.0, 60.0),
     ],
     needs: &["link_position_rad"],
@@ -28,15 +30,20 @@ impl Effect for FrictionRipple {
     }
 
     fn forms(&self, view: &View) -> Vec<Form> {
-        crate::effects::harmonic_form(view, Signal::Link, 1..=60)
+        let mut forms = crate::effects::harmonic_form(view, Signal::Link, 1..=60);
+        let with_speed =
+            forms.iter().map(|f| Form { name: "with_speed", linear: &["a", "b", "a_v", "b_v"], ..f.clone() });
+        forms.extend(with_speed.collect::<Vec<_>>());
+        forms
     }
 
-    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        let direction = view.get(Signal::Direction);
-        let mut columns = view.harmonic(Signal::Link, shape[0]);
-        for column in &mut columns {
-            column.iter_mut().zip(direction).for_each(|(c, d)| *c *= d);
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
+        let [cos, sin] = view.harmonic(Signal::Link, shape[0]);
+        let times = |wave: &[f64], signal| wave.iter().zip(view.get(signal)).map(|(w, s)| w * s).collect::<Vec<f64>>();
+        let mut columns = vec![times(&cos, Signal::Direction), times(&sin, Signal::Direction)];
+        if form == "with_speed" {
+            columns.extend([times(&cos, Signal::Velocity), times(&sin, Signal::Velocity)]);
         }
-        columns.into()
+        columns
     }
 }

@@ -86,10 +86,12 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
         repeats_from: repeats_from.into(),
     };
+    let drive = super::drive(&samples.signals, &samples.target);
+    samples.signals.set(Signal::Drive, drive);
     let points = std::mem::take(&mut samples.signals);
     let mut view = View::new(points.clone(), points, Vec::new(), starts, samples.step_s);
     view.constants = samples.constants;
-    let main = Problem { view, target, reduce, block, blocks, fold, folds, twins, segment, repeat };
+    let main = Problem { view, target, reduce, block, blocks, fold, folds, twins, segment, repeat, settled: false };
     Ok(Prepared {
         kind: run.kind(),
         motion: run.meta().motion,

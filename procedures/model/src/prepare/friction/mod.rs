@@ -5,6 +5,7 @@ mod plateaus;
 
 use super::chunks::Source;
 use super::{Prepared, filter, median, sample_s, segments};
+use crate::linear::Basis;
 use crate::view::{Constants, Signal, Signals};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
@@ -89,4 +90,15 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
         constants: Constants { slides: run.meta().motion == Motion::Linear, ..Constants::default() },
         time_s,
     })
+}
+
+/// The motor torque as load, direction, speed and acceleration explain it: the measured one without its own noise, which
+/// would be found again in any power of itself.
+fn drive(signals: &Signals, torque_nm: &[f64]) -> Vec<f64> {
+    let of = |signal| signals.find(signal).map(<[f64]>::to_vec);
+    let inputs = [Signal::Direction, Signal::Velocity, Signal::Load, Signal::Acceleration];
+    let mut columns: Vec<Vec<f64>> = inputs.into_iter().filter_map(of).collect();
+    columns.push(vec![1.0; torque_nm.len()]);
+    let rest = Basis::of(&columns).rest(torque_nm);
+    torque_nm.iter().zip(rest).map(|(y, e)| y - e).collect()
 }

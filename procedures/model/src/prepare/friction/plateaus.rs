@@ -83,7 +83,9 @@ pub fn prepare(
     }
     let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
     let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
-    let main = problem(&samples, Layout { chunks, group, condition, phase: Some(phase), settled: true });
+    let mut main = problem(&samples, Layout { chunks, group, condition, phase: Some(phase), settled: true });
+    let drive = super::drive(&main.view.points, &main.target);
+    main.view.points.set(Signal::Drive, drive);
     let speed = |p: &Range<usize>| {
         median(samples.signals.find(Signal::Velocity).unwrap_or_default()[p.clone()].iter().map(|v| v.abs()))
     };
