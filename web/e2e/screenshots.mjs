@@ -28,6 +28,7 @@ await tell(`screens in ${folder}`, async () => {
 	await shoot(page, 'bench');
 
 	const run = await startRun(page, where.base);
+	await page.locator('.uplot').first().waitFor();
 	await page.waitForTimeout(2500);
 	await shoot(page, 'live');
 	const toWorkbench = await watchRun(page);

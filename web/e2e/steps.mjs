@@ -22,6 +22,7 @@ export async function startRun(page, base) {
 /** Waits on the live page until the run has completed. */
 export async function watchRun(page) {
 	const open = page.getByRole('link', { name: 'Open in the workbench' });
+	await page.locator('.uplot').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'no live plot was drawn'));
 	await open.waitFor({ timeout: RUN_MS }).catch(async () => {
 		expect(false, `the run did not end in ${RUN_MS / 1000} s: ${await page.locator('h1').locator('..').innerText()}`);
 	});
@@ -34,6 +35,7 @@ export async function watchRun(page) {
 export async function readVersion(page) {
 	await page.locator('section[data-verdict]').waitFor({ timeout: FIT_MS });
 	await page.locator('rect.held.here').waitFor({ timeout: FIT_MS });
+	await page.waitForFunction(() => !document.querySelector('main .old'), null, { timeout: FIT_MS });
 	return {
 		model: new URL(page.url()).searchParams.get('model'),
 		verdict: await page.locator('section[data-verdict]').getAttribute('data-verdict'),

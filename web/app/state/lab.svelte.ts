@@ -30,7 +30,8 @@ class LabState {
 	unauthorized = $state(false);
 	heard_ms = $state(performance.now());
 	now_ms = $state(performance.now());
-	tape: Tape | null = null;
+	/** Samples of the run that is on. The columns grow in place; `frames` tells of it. */
+	tape: Tape | null = $state.raw(null);
 
 	bench: Bench | null = $derived.by(() => {
 		const wanted = router.query.get('bench');

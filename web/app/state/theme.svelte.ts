@@ -3,19 +3,31 @@ export type Theme = 'light' | 'dark';
 const dark = matchMedia('(prefers-color-scheme: dark)');
 const KEPT = 'jointbench.theme';
 
+function read(): Theme {
+	const chosen = localStorage.getItem(KEPT);
+	if (chosen === 'light' || chosen === 'dark') return chosen;
+	return dark.matches ? 'dark' : 'light';
+}
+
 /** Follows the system until a person chooses. */
 class ThemeState {
-	private chosen = $state(localStorage.getItem(KEPT) as Theme | null);
-	private system: Theme = $state(dark.matches ? 'dark' : 'light');
-	now: Theme = $derived(this.chosen ?? this.system);
+	now: Theme = $state(read());
 
 	constructor() {
-		dark.addEventListener('change', () => (this.system = dark.matches ? 'dark' : 'light'));
+		document.documentElement.dataset.theme = this.now;
+		dark.addEventListener('change', () => this.put(read()));
 	}
 
 	toggle(): void {
-		this.chosen = this.now === 'dark' ? 'light' : 'dark';
-		localStorage.setItem(KEPT, this.chosen);
+		const next = this.now === 'dark' ? 'light' : 'dark';
+		localStorage.setItem(KEPT, next);
+		this.put(next);
+	}
+
+	/** The style sheet first: canvases read their colours from it as soon as the state changes. */
+	private put(next: Theme): void {
+		document.documentElement.dataset.theme = next;
+		this.now = next;
 	}
 }
 

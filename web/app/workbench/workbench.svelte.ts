@@ -63,7 +63,7 @@ export function openWorkbench(id: number) {
 	}
 
 	function show(next: Model, parent: Model | null): void {
-		router.set({ model: next.id, region: null }, parent === null ? 'replace' : 'push');
+		router.set({ model: next.id, region: null, side: null }, parent === null ? 'replace' : 'push');
 		undone = [];
 		notice = parent ? told(parent, next) : null;
 	}
@@ -87,14 +87,14 @@ export function openWorkbench(id: number) {
 		if (model?.parent == null) return;
 		undone = [...undone, model.id];
 		notice = null;
-		router.set({ model: model.parent, region: null }, 'push');
+		router.set({ model: model.parent, region: null, side: null }, 'push');
 	}
 
 	function redo(): void {
 		const next = undone.at(-1);
 		if (next === undefined) return;
 		undone = undone.slice(0, -1);
-		router.set({ model: next, region: null }, 'push');
+		router.set({ model: next, region: null, side: null }, 'push');
 	}
 
 	const baseline: string[] = $derived(baselineOf(run.data));
