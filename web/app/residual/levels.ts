@@ -1,7 +1,8 @@
 /** A run has few set points, or the axis is not one that was set. */
 const MOST = 40;
-/** Set points closer than this share of the span, or than their own scatter, are one. */
+/** Set points closer than this share of the span, of their own size, or than their scatter, are one. */
 const APART = 0.002;
+const ALIKE = 0.05;
 /** A segment that moves over more than this share of the span sweeps; it is not at a set point. */
 const STILL = 0.03;
 
@@ -16,7 +17,7 @@ export function levelsOf(points: readonly { value: number; segment: number }[], 
 	const groups: { n: number; sum: number; last: number }[] = [];
 	for (const { n, mean } of segments) {
 		const group = groups.at(-1);
-		if (group && mean - group.last <= apart) Object.assign(group, { n: group.n + n, sum: group.sum + n * mean, last: mean });
+		if (group && mean - group.last <= Math.max(apart, ALIKE * Math.abs(mean))) Object.assign(group, { n: group.n + n, sum: group.sum + n * mean, last: mean });
 		else groups.push({ n, sum: n * mean, last: mean });
 	}
 	const chained = groups.some((group) => group.last - group.sum / group.n > 4 * Math.max(apart, STILL * span));
