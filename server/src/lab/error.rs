@@ -64,7 +64,11 @@ impl From<crate::store::StoreError> for LabError {
 
 impl From<jointbench_files::FileError> for LabError {
     fn from(error: jointbench_files::FileError) -> Self {
-        let (line, column) = (error.place.line.or(error.place.row), error.place.column.clone());
+        let column = match &error.fault {
+            jointbench_files::FileFault::Table(fault) => fault.column().map(str::to_owned),
+            _ => error.place.column.clone(),
+        };
+        let line = error.place.line.or(error.place.row);
         if error.is_io() {
             return LabError::Setup(error.to_string());
         }

@@ -132,11 +132,15 @@ fn with_tail(pieces: Vec<TailPiece>, rows: Trace) -> Result<Trace, StoreError> {
     }
     let channels = rows.channels().to_vec();
     let columns = rows.columns().iter().enumerate().map(|(place, new)| {
-        let mut column = Vec::new();
+        let waiting: usize = pieces.iter().map(|piece| piece.rows as usize).sum();
+        let mut column = vec![0.0; waiting + new.len()];
+        let mut rest = &mut column[..];
         for piece in &pieces {
-            piece.unpack(place, &mut column)?;
+            let (here, behind) = rest.split_at_mut(piece.rows as usize);
+            pyramid::unpack_column(&piece.data, place, here)?;
+            rest = behind;
         }
-        column.extend_from_slice(new);
+        rest.copy_from_slice(new);
         Ok(column)
     });
     Ok(Trace::from_columns(channels, columns.collect::<Result<_, StoreError>>()?))

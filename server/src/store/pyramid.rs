@@ -57,8 +57,8 @@ pub fn pack_fine(channels: &[Extremes], resolutions: &[Option<f64>]) -> Vec<u8> 
 
 pub fn unpack_fine(packed: &[u8], rows: usize, place: usize) -> Result<Extremes, Broken> {
     let bins = rows.div_ceil(FINE_ROWS);
-    let mut values = Vec::with_capacity(2 * bins);
-    unpack_column(packed, 2 * bins, place, &mut values)?;
+    let mut values = vec![0.0; 2 * bins];
+    unpack_column(packed, place, &mut values)?;
     let max = values.split_off(bins);
     Ok(Extremes { min: values, max })
 }
@@ -74,14 +74,14 @@ pub fn pack_columns(columns: &[impl AsRef<[f64]>], resolutions: &[Option<f64>]) 
     piece
 }
 
-/// Appends the column at `place` of a piece of [`pack_columns`].
-pub fn unpack_column(piece: &[u8], rows: usize, place: usize, values: &mut Vec<f64>) -> Result<(), Broken> {
+/// Fills `values` with the column at `place` of a piece of [`pack_columns`].
+pub fn unpack_column(piece: &[u8], place: usize, values: &mut [f64]) -> Result<(), Broken> {
     let mut rest = piece;
     for at in 0.. {
         let (length, behind) = rest.split_first_chunk::<4>().ok_or(Broken)?;
         let (column, behind) = behind.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or(Broken)?;
         if at == place {
-            return codec::unpack(column, rows, values);
+            return codec::unpack(column, values);
         }
         rest = behind;
     }

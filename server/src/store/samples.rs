@@ -47,12 +47,20 @@ pub(super) async fn read(
     rows: Range<i64>,
 ) -> Result<Trace, StoreError> {
     let tail = Arc::new(tail(reader, run, rows.clone()).await?);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).div_ceil(chosen.len().max(1));
     let mut columns = Vec::new();
     // While one channel is unpacked on a blocking thread, the next is read.
     for (place, _) in &chosen {
         let (place, rows, tail) = (*place, rows.clone(), tail.clone());
         let blocks = blocks(reader, run, place, &rows).await?;
-        columns.push(tokio::task::spawn_blocking(move || unpack(&blocks, &tail, place, &rows)));
+        columns.push(tokio::task::spawn_blocking(move || {
+            let pieces: Vec<Piece<'_>> = blocks
+                .iter()
+                .map(Piece::of_block)
+                .chain(tail.iter().map(|piece| Piece::of_tail(piece, place)))
+                .collect();
+            unpack(&pieces, &rows, threads)
+        }));
     }
     let mut unpacked = Vec::new();
     for column in columns {
@@ -82,37 +90,73 @@ async fn blocks(
     .await?)
 }
 
-fn unpack(blocks: &[Block], tail: &[TailPiece], place: usize, rows: &Range<i64>) -> Result<Vec<f64>, StoreError> {
-    let within = |first: i64, count: i64| rows.end.min(first + count) - rows.start.max(first);
-    let expected: i64 = blocks.iter().map(|(first, count, _)| within(*first, *count).max(0)).sum::<i64>()
-        + tail.iter().map(|piece| within(piece.first_row, piece.rows).max(0)).sum::<i64>();
-    let mut column = Vec::with_capacity(expected as usize);
-    for (first, count, data) in blocks {
-        cut(*first, *count, rows, &mut column, |column| codec::unpack(data, *count as usize, column))?;
+/// One channel's packed rows, in a block of its own or among the other channels of a commit.
+struct Piece<'a> {
+    first_row: i64,
+    rows: i64,
+    data: &'a [u8],
+    /// Among the columns of `data`, where it holds several.
+    place: Option<usize>,
+}
+
+impl<'a> Piece<'a> {
+    fn of_block((first_row, rows, data): &'a Block) -> Self {
+        Piece { first_row: *first_row, rows: *rows, data, place: None }
     }
-    for piece in tail {
-        cut(piece.first_row, piece.rows, rows, &mut column, |column| {
-            pyramid::unpack_column(&piece.data, piece.rows as usize, place, column)
-        })?;
+
+    fn of_tail(tail: &'a TailPiece, place: usize) -> Self {
+        Piece { first_row: tail.first_row, rows: tail.rows, data: &tail.data, place: Some(place) }
     }
+
+    /// The rows of the piece that lie in the range, counted in the piece.
+    fn within(&self, rows: &Range<i64>) -> Range<usize> {
+        let in_piece = |row: i64| row.saturating_sub(self.first_row).clamp(0, self.rows) as usize;
+        in_piece(rows.start)..in_piece(rows.end).max(in_piece(rows.start))
+    }
+
+    fn unpack(&self, rows: &Range<i64>, values: &mut [f64]) -> Result<(), Broken> {
+        let whole = |values: &mut [f64]| match self.place {
+            None => codec::unpack(self.data, values),
+            Some(place) => pyramid::unpack_column(self.data, place, values),
+        };
+        if values.len() as i64 == self.rows {
+            return whole(values);
+        }
+        let mut all = vec![0.0; self.rows as usize];
+        whole(&mut all)?;
+        values.copy_from_slice(&all[self.within(rows)]);
+        Ok(())
+    }
+}
+
+fn unpack(pieces: &[Piece<'_>], rows: &Range<i64>, threads: usize) -> Result<Vec<f64>, StoreError> {
+    let mut column = vec![0.0; pieces.iter().map(|piece| piece.within(rows).len()).sum()];
+    std::thread::scope(|scope| {
+        let mut rest = &mut column[..];
+        let mut shares = Vec::new();
+        for share in pieces.chunks(pieces.len().div_ceil(threads).max(1)) {
+            let (here, behind) = rest.split_at_mut(share.iter().map(|piece| piece.within(rows).len()).sum());
+            rest = behind;
+            shares.push((share, here));
+        }
+        // The last share is this thread's own: with one thread, none is started.
+        let own = shares.pop();
+        let started: Vec<_> =
+            shares.into_iter().map(|(share, values)| scope.spawn(move || unpack_share(share, rows, values))).collect();
+        if let Some((share, values)) = own {
+            unpack_share(share, rows, values)?;
+        }
+        started.into_iter().try_for_each(|share| share.join().unwrap_or(Err(Broken)))
+    })?;
     Ok(column)
 }
 
-/// Appends the rows that were asked for of a piece that starts at `first`.
-fn cut(
-    first: i64,
-    count: i64,
-    rows: &Range<i64>,
-    column: &mut Vec<f64>,
-    unpack: impl FnOnce(&mut Vec<f64>) -> Result<(), Broken>,
-) -> Result<(), StoreError> {
-    if first >= rows.start && first + count <= rows.end {
-        return Ok(unpack(column)?);
+fn unpack_share(share: &[Piece<'_>], rows: &Range<i64>, mut values: &mut [f64]) -> Result<(), Broken> {
+    for piece in share {
+        let (here, behind) = std::mem::take(&mut values).split_at_mut(piece.within(rows).len());
+        piece.unpack(rows, here)?;
+        values = behind;
     }
-    let mut whole = Vec::with_capacity(count as usize);
-    unpack(&mut whole)?;
-    let (from, to) = ((rows.start - first).clamp(0, count), (rows.end - first).clamp(0, count));
-    column.extend_from_slice(&whole[from as usize..to.max(from) as usize]);
     Ok(())
 }
 
@@ -122,12 +166,6 @@ pub(super) struct TailPiece {
     pub first_row: i64,
     pub rows: i64,
     pub data: Vec<u8>,
-}
-
-impl TailPiece {
-    pub fn unpack(&self, place: usize, column: &mut Vec<f64>) -> Result<(), StoreError> {
-        Ok(pyramid::unpack_column(&self.data, self.rows as usize, place, column)?)
-    }
 }
 
 /// The pieces of the tail that share a row with the range, in order.

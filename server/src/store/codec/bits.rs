@@ -1,6 +1,6 @@
 //! A column as bit patterns, for values that no step explains.
 
-use super::planes::{Planes, unzigzag, zigzag};
+use super::planes::{Planes, zigzag};
 use super::{BITS, Broken, Reader};
 
 pub fn pack(values: &[f64]) -> Vec<u8> {
@@ -17,16 +17,16 @@ pub fn pack(values: &[f64]) -> Vec<u8> {
     packed
 }
 
-pub fn unpack(mut packed: Reader<'_>, rows: usize, values: &mut Vec<f64>) -> Result<(), Broken> {
+pub fn unpack(mut packed: Reader<'_>, values: &mut [f64]) -> Result<(), Broken> {
     let width = packed.byte()?;
     let mut bits = packed.word()?;
-    let planes = Planes::decompress(packed.0, rows, width, false)?;
-    planes.each(
-        |difference| {
-            bits = bits.wrapping_add(unzigzag(difference) as u64);
-            f64::from_bits(bits)
-        },
-        values,
-    );
-    Ok(())
+    Planes::decompress(packed.0, values.len(), width, false, |planes| {
+        planes.each(values, |differences, values| {
+            for (value, difference) in values.iter_mut().zip(differences) {
+                bits = bits.wrapping_add(*difference as u64);
+                *value = f64::from_bits(bits);
+            }
+        });
+        Ok(())
+    })
 }

@@ -1,6 +1,6 @@
 //! A column as whole counts of one step. Values that are no count stand beside, with their row.
 
-use super::planes::{Planes, unzigzag, zigzag};
+use super::planes::{CHUNK, Planes, Unpacked, unzigzag, zigzag};
 use super::{Broken, COUNTS, Reader, Scale};
 
 /// A column with more exceptions than one row in so many is not made of counts.
@@ -15,7 +15,7 @@ pub fn pack(values: &[f64], scale: Scale) -> Option<Vec<u8>> {
         *count = scale.count(*value, inverse);
         exact &= scale.value(*count).to_bits() == value.to_bits();
     }
-    // A count beyond the rounding range cannot give the value back, save by accident: the repair looks at the range too.
+    // A count beyond the rounding range is as good as any other where it gives the value back.
     let (corrections, exceptions) = if exact { (Vec::new(), Vec::new()) } else { repair(values, scale, &mut counts)? };
 
     let (kind, factor) = match scale {
@@ -68,39 +68,42 @@ fn repair(values: &[f64], scale: Scale, counts: &mut [i64]) -> Option<Repair> {
     Some((corrections, exceptions))
 }
 
-pub fn unpack(mut packed: Reader<'_>, rows: usize, values: &mut Vec<f64>) -> Result<(), Broken> {
+pub fn unpack(mut packed: Reader<'_>, values: &mut [f64]) -> Result<(), Broken> {
     let [kind, corrected, width] = packed.take()?;
     let factor = f64::from_bits(packed.word()?);
     let first = packed.word()? as i64;
     let exceptions = packed.half()?;
     let exceptions: Vec<(usize, u64)> =
         (0..exceptions).map(|_| Ok((packed.half()? as usize, packed.word()?))).collect::<Result<_, Broken>>()?;
-    let planes = Planes::decompress(packed.0, rows, width, corrected != 0)?;
 
-    let start = values.len();
-    match kind {
-        0 => append(&planes, first, values, |count| count as f64 * factor),
-        1 => append(&planes, first, values, |count| count as f64 / factor),
-        _ => return Err(Broken),
-    }
-    let column = &mut values[start..];
-    for (value, correction) in column.iter_mut().zip(planes.extra()) {
-        let miss = unzigzag(u64::from(*correction));
-        *value = f64::from_bits(value.to_bits().wrapping_add(miss as u64));
-    }
-    for (row, bits) in exceptions {
-        *column.get_mut(row).ok_or(Broken)? = f64::from_bits(bits);
-    }
-    Ok(())
+    Planes::decompress(packed.0, values.len(), width, corrected != 0, |planes| {
+        match kind {
+            0 => fill(planes, first, values, |count| Scale::Times(factor).value(count)),
+            1 => fill(planes, first, values, |count| Scale::Over(factor).value(count)),
+            _ => return Err(Broken),
+        }
+        for (value, correction) in values.iter_mut().zip(planes.extra()) {
+            let miss = unzigzag(u64::from(*correction));
+            *value = f64::from_bits(value.to_bits().wrapping_add(miss as u64));
+        }
+        for (row, bits) in exceptions {
+            *values.get_mut(row).ok_or(Broken)? = f64::from_bits(bits);
+        }
+        Ok(())
+    })
 }
 
-fn append(planes: &Planes, first: i64, values: &mut Vec<f64>, value: impl Fn(i64) -> f64) {
+fn fill(planes: &Unpacked<'_>, first: i64, values: &mut [f64], value: impl Fn(i64) -> f64) {
     let mut count = first;
-    planes.each(
-        |difference| {
-            count = count.wrapping_add(unzigzag(difference));
-            value(count)
-        },
-        values,
-    );
+    let mut counts = [0i64; CHUNK];
+    planes.each(values, |differences, values| {
+        // Two loops: the sums depend on each other, the values do not.
+        for (sum, difference) in counts.iter_mut().zip(differences) {
+            count = count.wrapping_add(*difference);
+            *sum = count;
+        }
+        for (to, count) in values.iter_mut().zip(&counts) {
+            *to = value(*count);
+        }
+    });
 }

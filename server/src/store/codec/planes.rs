@@ -10,7 +10,8 @@ const LEVEL: i32 = 1;
 thread_local! {
     /// zstd's working memory is larger than a column: made once for each thread.
     static COMPRESSOR: RefCell<Option<zstd::bulk::Compressor<'static>>> = const { RefCell::new(None) };
-    static DECOMPRESSOR: RefCell<Option<zstd::bulk::Decompressor<'static>>> = const { RefCell::new(None) };
+    static DECOMPRESSOR: RefCell<(Option<zstd::bulk::Decompressor<'static>>, Vec<u8>)> =
+        const { RefCell::new((None, Vec::new())) };
 }
 
 #[inline(always)]
@@ -23,9 +24,16 @@ pub fn unzigzag(word: u64) -> i64 {
     ((word >> 1) as i64) ^ -((word & 1) as i64)
 }
 
+/// Sought only where they are long: what matches in noise matches by accident, and costs time both ways.
+fn compressor_of_noise() -> zstd::bulk::Compressor<'static> {
+    let mut compressor = zstd::bulk::Compressor::new(LEVEL).expect("zstd has this level");
+    let longest = zstd::zstd_safe::CParameter::MinMatch(7);
+    compressor.set_parameter(longest).expect("zstd finds matches of 7 bytes and more");
+    compressor
+}
+
 /// `width` planes of one byte for each row, then what else goes along.
 pub struct Planes {
-    rows: usize,
     width: usize,
     bytes: Vec<u8>,
 }
@@ -42,7 +50,7 @@ impl Planes {
                 *byte = (word >> (8 * weight)) as u8;
             }
         }
-        Planes { rows, width, bytes }
+        Planes { width, bytes }
     }
 
     pub fn width(&self) -> u8 {
@@ -62,52 +70,80 @@ impl Planes {
         packed.truncate(start + size);
     }
 
-    pub fn decompress(packed: &[u8], rows: usize, width: u8, with_extra: bool) -> Result<Planes, Broken> {
+    /// Hands the planes to `read`; they lie in memory that the next column of this thread takes.
+    pub fn decompress<T>(
+        packed: &[u8],
+        rows: usize,
+        width: u8,
+        with_extra: bool,
+        read: impl FnOnce(&Unpacked<'_>) -> Result<T, Broken>,
+    ) -> Result<T, Broken> {
         let width = usize::from(width);
         if width > 8 {
             return Err(Broken);
         }
         let size = rows * (width + usize::from(with_extra));
-        let bytes = DECOMPRESSOR.with_borrow_mut(|decompressor| {
+        DECOMPRESSOR.with_borrow_mut(|(decompressor, bytes)| {
             let decompressor = decompressor
                 .get_or_insert_with(|| zstd::bulk::Decompressor::new().expect("zstd has memory for its tables"));
-            decompressor.decompress(packed, size).map_err(|_| Broken)
-        })?;
-        if bytes.len() == size { Ok(Planes { rows, width, bytes }) } else { Err(Broken) }
+            bytes.resize(size, 0);
+            match decompressor.decompress_to_buffer(packed, &mut bytes[..]) {
+                Ok(length) if length == size => read(&Unpacked { rows, width, bytes }),
+                _ => Err(Broken),
+            }
+        })
     }
+}
 
+/// Planes on their way back.
+pub struct Unpacked<'a> {
+    rows: usize,
+    width: usize,
+    bytes: &'a [u8],
+}
+
+/// Rows whose words are put together at a time: they stay in the nearest cache.
+pub const CHUNK: usize = 256;
+
+impl Unpacked<'_> {
     /// What went along behind the planes.
     pub fn extra(&self) -> &[u8] {
         &self.bytes[self.rows * self.width..]
     }
 
-    /// Appends `value` of every row's word, in order.
+    /// Hands over the differences of some rows, with the place for their values; all rows in order.
     #[inline(always)]
-    pub fn each(&self, mut value: impl FnMut(u64) -> f64, values: &mut Vec<f64>) {
-        // The narrow widths are what sensors give; each gets a loop of its own.
-        match self.width {
-            0 => values.extend((0..self.rows).map(|_| value(0))),
-            1 => self.gather::<1>(value, values),
-            2 => self.gather::<2>(value, values),
-            3 => self.gather::<3>(value, values),
-            4 => self.gather::<4>(value, values),
-            _ => values.extend((0..self.rows).map(|row| {
-                let word =
-                    (0..self.width).map(|weight| u64::from(self.bytes[weight * self.rows + row]) << (8 * weight));
-                value(word.fold(0, |all, byte| all | byte))
-            })),
+    pub fn each(&self, values: &mut [f64], mut take: impl FnMut(&[i64], &mut [f64])) {
+        let mut differences = [0i64; CHUNK];
+        for (chunk, values) in values.chunks_mut(CHUNK).enumerate() {
+            let differences = &mut differences[..values.len()];
+            let from = chunk * CHUNK;
+            // The narrow widths are what sensors give: each has a loop of its own, without a shift that varies.
+            match self.width {
+                1 => self.gather::<1>(from, differences),
+                2 => self.gather::<2>(from, differences),
+                3 => self.gather::<3>(from, differences),
+                width => self.gather_wide(width, from, differences),
+            }
+            take(differences, values);
         }
     }
 
     #[inline(always)]
-    fn gather<const WIDTH: usize>(&self, mut value: impl FnMut(u64) -> f64, values: &mut Vec<f64>) {
-        let planes: [&[u8]; WIDTH] = std::array::from_fn(|weight| &self.bytes[weight * self.rows..][..self.rows]);
-        values.extend((0..self.rows).map(|row| {
-            let mut word = 0;
-            for (weight, plane) in planes.iter().enumerate() {
-                word |= u64::from(plane[row]) << (8 * weight);
-            }
-            value(word)
-        }));
+    fn gather<const WIDTH: usize>(&self, from: usize, differences: &mut [i64]) {
+        let planes: [&[u8]; WIDTH] =
+            std::array::from_fn(|weight| &self.bytes[weight * self.rows + from..][..differences.len()]);
+        for (row, difference) in differences.iter_mut().enumerate() {
+            let word =
+                planes.iter().enumerate().fold(0, |word, (weight, plane)| word | u32::from(plane[row]) << (8 * weight));
+            *difference = i64::from((word >> 1) as i32 ^ -((word & 1) as i32));
+        }
+    }
+
+    fn gather_wide(&self, width: usize, from: usize, differences: &mut [i64]) {
+        for (row, difference) in differences.iter_mut().enumerate() {
+            let byte = |weight: usize| u64::from(self.bytes[weight * self.rows + from + row]) << (8 * weight);
+            *difference = unzigzag((0..width).fold(0, |word, weight| word | byte(weight)));
+        }
     }
 }

@@ -35,9 +35,11 @@ impl Scale {
 
     #[inline(always)]
     pub fn value(self, count: i64) -> f64 {
+        // The way of `count` back: unlike a conversion, it is done for several values at once.
+        let whole = f64::from_bits(count.wrapping_add(ROUNDER.to_bits() as i64) as u64) - ROUNDER;
         match self {
-            Scale::Times(step) => count as f64 * step,
-            Scale::Over(parts) => count as f64 / parts,
+            Scale::Times(step) => whole * step,
+            Scale::Over(parts) => whole / parts,
         }
     }
 

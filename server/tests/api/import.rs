@@ -1,0 +1,67 @@
+//! Files in and out over HTTP.
+
+use crate::daemon::TestDaemon;
+use serde_json::Value;
+
+const GOOD: &str = "time_s,motor_position_rad,motor_current_a\n0,0,0.1\n0.004,0.01,0.2\n0.008,0.02,0.1\n";
+const META: &str = r#"{"kind": "friction", "torque_constant_nm_per_a": 0.04}"#;
+
+fn upload(daemon: &TestDaemon, table: &str, more: &[(&str, &str)]) -> (u16, Value) {
+    let mut body = String::new();
+    let mut part = |name: &str, content: &str| {
+        body += &format!("--edge\r\nContent-Disposition: form-data; name={name}\r\n\r\n{content}\r\n");
+    };
+    part("\"file\"; filename=\"bench.csv\"", table);
+    more.iter().for_each(|(name, content)| part(&format!("\"{name}\""), content));
+    body += "--edge--\r\n";
+    let media_type = ("content-type", "multipart/form-data; boundary=edge");
+    daemon.post_with("/api/v1/runs/import", body.as_bytes(), &[media_type])
+}
+
+#[test]
+fn a_refused_file_is_located_and_leaves_nothing() {
+    let daemon = TestDaemon::start();
+    for (table, line, column) in [
+        (GOOD.replace("0.02,", "x,"), Some(4), Some("motor_position_rad")),
+        (GOOD.replace("0.004", "-1"), Some(3), Some("time_s")),
+        (GOOD.replace("0.01,0.2", "0.01"), Some(3), None),
+        (GOOD.replace("motor_current_a", "amps"), Some(1), Some("motor_current_a")),
+        (GOOD.replace("motor_position_rad", "motor_position_deg"), Some(1), Some("motor_position_deg")),
+        (String::new(), None, None),
+    ] {
+        let (status, problem) = upload(&daemon, &table, &[("meta", META)]);
+        assert_eq!(status, 422, "{problem}");
+        assert_eq!(problem["type"], "urn:jointbench:file_refused");
+        assert!(problem["detail"].as_str().unwrap().starts_with("bench.csv"), "{problem}");
+        if line.is_some() {
+            assert_eq!(problem["line"].as_u64(), line, "{problem}");
+        }
+        if column.is_some() {
+            assert_eq!(problem["column"].as_str(), column, "{problem}");
+        }
+    }
+    let (status, problem) = upload(&daemon, GOOD, &[("meta", META), ("scale", "motor_position_rad=deg")]);
+    assert_eq!(status, 422, "{problem}");
+    let (status, problem) = upload(&daemon, GOOD, &[]);
+    assert_eq!(status, 422, "the kind is not known: {problem}");
+    assert_eq!(daemon.get("/api/v1/runs").1["total"], 0);
+}
+
+#[test]
+fn what_goes_out_comes_in_again_unchanged() {
+    let daemon = TestDaemon::start();
+    let (status, run) = upload(&daemon, GOOD, &[("meta", META), ("scale", "motor_current_a=2")]);
+    assert_eq!(status, 201, "{run}");
+    assert_eq!((&run["state"], &run["rows"], &run["procedure"]), (&"completed".into(), &3.into(), &"import".into()));
+    let out = |id: &Value| {
+        daemon.get_raw(&format!("/api/v1/runs/{id}/export?format=csv")).into_body().read_to_string().unwrap()
+    };
+    let exported = out(&run["id"]);
+    assert!(exported.contains("0.4"), "{exported}");
+    let (status, again) = upload(&daemon, &exported, &[("meta", META)]);
+    assert_eq!(status, 201, "{again}");
+    assert_eq!(out(&again["id"]), exported);
+    let (_, samples) = daemon.get(&format!("/api/v1/runs/{}/samples?channels=motor_current_a", again["id"]));
+    assert_eq!(samples["channels"][0]["min"], serde_json::json!([0.2, 0.4, 0.2]));
+    assert_eq!((&samples["exact"], &samples["channels"][0]["unit"]), (&true.into(), &"A".into()));
+}

@@ -1,0 +1,50 @@
+//! The live stream.
+
+use crate::daemon::{SHORT_RUN, TestDaemon};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use tungstenite::Message;
+
+#[test]
+fn a_run_is_told_as_it_happens() {
+    let daemon = TestDaemon::start_with(Some(20.0), |_| {});
+    let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
+    let (status, run) = daemon.post("/api/v1/runs", SHORT_RUN);
+    assert_eq!(status, 201, "{run}");
+    let mut told: BTreeMap<String, usize> = BTreeMap::new();
+    let (mut channels, mut rows, mut next, mut newest_s) = (0, 0, 0, f64::NEG_INFINITY);
+    loop {
+        match socket.read().unwrap() {
+            Message::Text(text) => {
+                let message: Value = serde_json::from_str(&text).unwrap();
+                let kind = message["type"].as_str().unwrap().to_owned();
+                if kind == "channels" {
+                    channels = message["channels"].as_array().unwrap().len();
+                }
+                let over = kind == "state" && !message["safe"].is_null();
+                *told.entry(kind).or_default() += 1;
+                if over {
+                    assert_eq!((&message["state"], &message["run"]), (&"completed".into(), &run["id"]));
+                    break;
+                }
+            }
+            Message::Binary(frame) => {
+                let word = |i: usize| u32::from_le_bytes(frame[4 * i..4 * i + 4].try_into().unwrap());
+                assert_eq!(word(0), next, "frames are numbered");
+                assert_eq!((word(1), word(3) as usize), (0, channels), "nothing is dropped for a quick client");
+                assert_eq!(frame.len(), 24 + 4 * word(2) as usize * channels);
+                let t0_s = f64::from_le_bytes(frame[16..24].try_into().unwrap());
+                assert!(t0_s > newest_s, "{t0_s} s after {newest_s} s");
+                newest_s = t0_s;
+                next += 1;
+                rows += word(2);
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    assert_eq!(channels, 12);
+    assert!(rows > 500 && next > 2, "{rows} rows in {next} frames");
+    for kind in ["bench", "state", "progress", "event", "channels"] {
+        assert!(told.contains_key(kind), "{kind} in {told:?}");
+    }
+}

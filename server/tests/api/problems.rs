@@ -1,0 +1,63 @@
+//! What cannot be answered is answered with a problem document that says what to do.
+
+use crate::daemon::TestDaemon;
+
+#[test]
+fn every_refusal_is_a_problem_document() {
+    let daemon = TestDaemon::start();
+    let started = |body: &str| daemon.post("/api/v1/runs", body);
+    for (answer, status, kind, said) in [
+        (daemon.get("/api/v1/runs/99"), 404, "not_found", "there is no run 99"),
+        (daemon.get("/api/v1/models/99"), 404, "not_found", "there is no model version 99"),
+        (daemon.get("/api/v1/bench/attic"), 404, "not_found", "there is no bench attic"),
+        (daemon.get("/api/v1/nothing"), 404, "not_found", "openapi.json"),
+        (daemon.get("/api"), 404, "not_found", "openapi.json"),
+        (daemon.get("/api/v1/runs/one"), 400, "malformed", "one"),
+        (daemon.get("/api/v1/runs?limit=many"), 400, "malformed", "limit"),
+        (daemon.get("/api/v1/effects?kind=belt"), 422, "invalid", "friction, encoder"),
+        (started("{"), 400, "malformed", "JSON"),
+        (started(r#"{"bench": "joint-a-mock"}"#), 400, "malformed", "procedure"),
+        (started(r#"{"bench": "joint-a-mock", "procedure": "dance"}"#), 404, "not_found", "there are friction"),
+        (
+            started(r#"{"bench": "joint-a-mock", "procedure": "friction", "parameters": {"repeats": 0}}"#),
+            422,
+            "invalid",
+            "parameter repeats = 0",
+        ),
+        (
+            started(r#"{"bench": "joint-a-mock", "procedure": "friction", "parameters": {"top_speed_rad_s": 900}}"#),
+            422,
+            "invalid",
+            "motor velocity",
+        ),
+        (
+            daemon.post("/api/v1/bench/joint-a-mock/acknowledge", r#"{"reason": "looked"}"#),
+            409,
+            "conflict",
+            "not blocked",
+        ),
+        (daemon.post("/api/v1/runs", &"x".repeat(2 << 20)), 413, "too_large", ""),
+    ] {
+        let (found, problem) = answer;
+        assert_eq!(found, status, "{problem}");
+        assert_eq!(problem["type"], format!("urn:jointbench:{kind}"), "{problem}");
+        assert_eq!(problem["status"], status);
+        assert!(problem["instance"].as_str().is_some_and(|path| path.starts_with("/api")), "{problem}");
+        let detail = problem["detail"].as_str().unwrap();
+        assert!(detail.contains(said), "{said:?} in {detail:?}");
+    }
+}
+
+#[test]
+fn the_dashboard_answers_every_other_address() {
+    let daemon = TestDaemon::start();
+    let page = daemon.get_raw("/workbench/1");
+    let header = |name: &str| page.headers().get(name).map(|value| value.to_str().unwrap().to_owned());
+    assert_eq!(page.status().as_u16(), 200);
+    assert!(header("content-type").unwrap().starts_with("text/html"));
+    assert_eq!(header("vary").as_deref(), Some("Accept-Encoding"));
+    assert!(header("content-security-policy").unwrap().contains("default-src 'none'"));
+    let etag = header("etag").unwrap();
+    assert_eq!(daemon.get_with("/", &[("if-none-match", &etag)]).0, 304);
+    assert_eq!(daemon.get("/assets/none.js").0, 404);
+}

@@ -1,0 +1,138 @@
+//! The life of a run on the mock bench, over HTTP.
+
+use crate::daemon::{BENCH, SHORT_RUN, TestDaemon, settings};
+use jointbench::daemon::Daemon;
+use jointbench::store::{NewRun, Store};
+use serde_json::{Value, json};
+use tokio::runtime::Runtime;
+
+fn start(daemon: &TestDaemon) -> i64 {
+    let (status, run) = daemon.post("/api/v1/runs", SHORT_RUN);
+    assert_eq!(status, 201, "{run}");
+    run["id"].as_i64().unwrap()
+}
+
+#[test]
+fn a_run_is_measured_fitted_diagnosed_and_improved() {
+    let daemon = TestDaemon::start();
+    let preview = r#"{"bench": "joint-a-mock", "parameters": {}}"#;
+    let (status, preview) = daemon.post("/api/v1/procedures/friction/preview", preview);
+    assert_eq!(status, 200, "{preview}");
+    assert!(preview["checks"].as_array().unwrap().iter().all(|check| check["ok"] == true), "{preview}");
+
+    let id = start(&daemon);
+    let run = daemon.wait_for_end(id);
+    assert_eq!((&run["state"], &run["safe"]), (&"completed".into(), &"safe_verified".into()), "{run}");
+    assert_eq!(run["provenance"]["seed"], 7);
+    let rows = run["rows"].as_u64().unwrap();
+    assert!(rows > 500, "{rows} rows");
+
+    let (_, events) = daemon.get(&format!("/api/v1/runs/{id}/events"));
+    let events = events.as_array().unwrap();
+    let numbers: Vec<u64> = events.iter().map(|event| event["sequence"].as_u64().unwrap()).collect();
+    assert_eq!(numbers, (1..=events.len() as u64).collect::<Vec<_>>(), "the journal has no gaps");
+    assert!(events.iter().any(|event| event["kind"] == "safe"));
+
+    let (_, samples) = daemon.get(&format!("/api/v1/runs/{id}/samples?px=100&channels=time_s,motor_velocity_rad_s"));
+    assert_eq!((&samples["rows"], &samples["exact"]), (&rows.into(), &false.into()));
+
+    let body = json!({ "run": id, "effects": ["inertia", "load_transmission", "coulomb", "viscous"] });
+    let (status, model) = daemon.post("/api/v1/models", &body.to_string());
+    assert_eq!(status, 201, "{model}");
+    let (status, diagnosis) = daemon.post("/api/v1/diagnoses", &json!({ "model": model["id"] }).to_string());
+    assert_eq!(status, 201, "{diagnosis}");
+    assert_eq!((&diagnosis["model_id"], &diagnosis["fit"]), (&model["id"], &model["fit"]));
+    let (status, set) = daemon.get(&format!("/api/v1/models/{}/residuals", model["id"]));
+    assert_eq!(status, 200, "{set}");
+    assert_eq!(set["measured"].as_array().unwrap().len(), set["error"].as_array().unwrap().len());
+
+    let body = json!({ "run": id, "parent": model["id"],
+        "effects": ["inertia", "load_transmission", "coulomb", "viscous", "direction_offset"] });
+    let (_, child) = daemon.post("/api/v1/models", &body.to_string());
+    assert_eq!((&child["parent"], &child["added"]), (&model["id"], &json!(["direction_offset"])), "{child}");
+    assert_eq!(daemon.get(&format!("/api/v1/models?run={id}")).1.as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn a_run_can_be_paused_resumed_and_stopped_and_the_bench_has_one_run() {
+    let daemon = TestDaemon::start_with(Some(4.0), |_| {});
+    let id = start(&daemon);
+    let run = format!("/api/v1/runs/{id}");
+    daemon.wait_for(&run, |run| run["state"] == "running");
+    assert_eq!(daemon.post("/api/v1/runs", SHORT_RUN).0, 409);
+    assert_eq!(daemon.post(&format!("{run}/pause"), "").0, 200);
+    daemon.wait_for(&run, |run| run["state"] == "paused");
+    assert_eq!(daemon.get("/api/v1/bench").1[0]["state"], "paused");
+    assert_eq!(daemon.post(&format!("{run}/resume"), "").0, 200);
+    daemon.wait_for(&run, |run| run["state"] == "running");
+    assert_eq!(daemon.post(&format!("{run}/stop"), "").0, 200);
+    let ended = daemon.wait_for_end(id);
+    assert_eq!((&ended["state"], &ended["safe"]), (&"stopped".into(), &"safe_verified".into()), "{ended}");
+    assert_eq!(daemon.post(&format!("{run}/stop"), "").0, 409, "a run that is over cannot be steered");
+}
+
+#[test]
+fn the_software_stop_ends_a_run_and_the_end_of_the_daemon_too() {
+    let mut daemon = TestDaemon::start_with(Some(4.0), |_| {});
+    let id = start(&daemon);
+    daemon.wait_for(&format!("/api/v1/runs/{id}"), |run| run["state"] == "running");
+    assert_eq!(daemon.post(&format!("/api/v1/bench/{BENCH}/stop"), "").0, 200);
+    let ended = daemon.wait_for_end(id);
+    assert_eq!(ended["state"], "aborted", "{ended}");
+
+    daemon.wait_for(&format!("/api/v1/bench/{BENCH}"), |bench| bench["state"] == "idle");
+    let id = start(&daemon);
+    daemon.wait_for(&format!("/api/v1/runs/{id}"), |run| run["state"] == "running");
+    daemon.stop();
+    let record = Runtime::new().unwrap().block_on(async {
+        let store = Store::open(daemon.data.path()).await.unwrap();
+        store.run(id).await.unwrap()
+    });
+    assert_eq!(record.state.name(), "aborted");
+    assert!(record.safe.is_some() && record.rows > 0, "{record:?}");
+}
+
+#[test]
+fn an_interrupted_run_is_ended_secured_and_not_started_again() {
+    let data = tempfile::TempDir::new().unwrap();
+    let runtime = Runtime::new().unwrap();
+    // What a daemon that was killed leaves behind: a run that is open.
+    let id = runtime.block_on(async {
+        let store = Store::open(data.path()).await.unwrap();
+        let new =
+            NewRun { bench: BENCH.into(), procedure: "friction".into(), kind: "friction".into(), ..NewRun::default() };
+        let id = store.create_run(&new).await.unwrap();
+        store.close().await;
+        id
+    });
+    let run = runtime.block_on(async {
+        let daemon = Daemon::start(settings(data.path(), None)).await.unwrap();
+        let run = daemon.lab.run(id).await.unwrap();
+        assert_eq!(daemon.lab.runs(10, 0, None).await.unwrap().total, 1, "nothing was started");
+        daemon.stop().await;
+        run
+    });
+    let run: Value = serde_json::to_value(run).unwrap();
+    assert_eq!((&run["state"], &run["safe"]), (&"interrupted".into(), &"safe_verified".into()), "{run}");
+    assert!(run["reason"].as_str().unwrap().contains("the daemon ended before the run did"));
+}
+
+#[test]
+fn a_bench_that_may_be_unsafe_waits_for_a_person() {
+    let data = tempfile::TempDir::new().unwrap();
+    Runtime::new().unwrap().block_on(async {
+        let store = Store::open(data.path()).await.unwrap();
+        store.block_bench(BENCH, None, "the drive did not answer").await.unwrap();
+        store.close().await;
+    });
+    let daemon = TestDaemon::start_with(None, |settings| settings.data = data.path().to_owned());
+    let (status, problem) = daemon.post("/api/v1/runs", SHORT_RUN);
+    assert_eq!(status, 409, "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("the drive did not answer"), "{problem}");
+    let bench = format!("/api/v1/bench/{BENCH}");
+    assert_eq!(daemon.get(&bench).1["blocked"]["reason"], "the drive did not answer");
+    assert_eq!(daemon.post(&format!("{bench}/acknowledge"), r#"{"reason": " "}"#).0, 422);
+    let (status, answer) = daemon.post(&format!("{bench}/acknowledge"), r#"{"reason": "cable was loose"}"#);
+    assert_eq!((status, &answer["blocked"]), (200, &Value::Null), "{answer}");
+    assert_eq!(daemon.post("/api/v1/runs", SHORT_RUN).0, 201);
+}
