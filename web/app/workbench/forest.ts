@@ -8,7 +8,7 @@ export interface Row {
 	flags: string[];
 }
 
-const SAID: Record<string, string> = { at_bound: 'at its bound', unidentified: 'not decided by this data', fixed: 'given' };
+const SAID: Partial<Record<Parameter['state'], string>> = { at_bound: 'at its bound', unidentified: 'not decided by this data' };
 
 /** Pairs that the data can hardly tell apart are flagged from this correlation on. */
 const TRADING = 0.9;
@@ -26,7 +26,7 @@ export function forest(parameters: readonly Parameter[], tradeOffs: readonly Tra
 		}
 		const state = SAID[parameter.state];
 		if (state) flags.push(state);
-		if (!known && parameter.state !== 'fixed') flags.push('no interval');
+		if (!known) flags.push('no interval');
 		if (known && low < 0 && high > 0) flags.push('may be zero');
 		if (value === 0 || !known) return { parameter, interval: null, flags };
 		const ends = [low / value, high / value].sort((a, b) => a - b) as [number, number];
