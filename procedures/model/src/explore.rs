@@ -6,7 +6,7 @@ use crate::linear::dot;
 use crate::memory::memory;
 use crate::prepare::Prepared;
 use crate::report::{Invisible, NoiseFloor, Verdict};
-use crate::select::{Library, Maps, Move, Rival, Silence, search};
+use crate::select::{Library, Maps, Move, Rival, Silence, held_out, search};
 use crate::terms::Terms;
 use crate::{ModelError, ModelSpec, Options, ResidualKind, floor};
 
@@ -34,6 +34,9 @@ const STRUCTURE_SHARE: f64 = 0.15;
 
 /// More than this share of the remaining squared error, the same in every repeat, is structure.
 const REPEATABLE_SHARE: f64 = 0.6;
+
+/// Held-out error beyond this multiple of the noise floor is not noise.
+const FAR_FROM_FLOOR: f64 = 1.5;
 
 impl<'p> Exploration<'p> {
     pub fn new(prepared: &'p Prepared, spec: &ModelSpec, options: &Options, most: usize) -> Result<Self, ModelError> {
@@ -88,9 +91,13 @@ impl<'p> Exploration<'p> {
         if mapped || self.repeats_itself() { Verdict::UnexplainedStructure } else { Verdict::Adequate }
     }
 
-    /// Most of what is left is the same in every repeat: no noise, whether or not a map shows where it comes from.
+    /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
+    /// noise, whether or not a map shows where it comes from.
     fn repeats_itself(&self) -> bool {
+        let main = &self.end().main;
+        let held_out = (held_out(main).iter().sum::<f64>() / main.problem.rows() as f64).sqrt();
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
+            || self.floor.rms.is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
     }
 
     /// Added effects that are still there, the most important first: by what the last model loses without them, so

@@ -3,7 +3,7 @@
 mod brake;
 mod encoder;
 mod friction;
-mod memory;
+pub(crate) mod memory;
 mod stiffness;
 
 use crate::ModelError;

@@ -1,7 +1,9 @@
 //! Brake runs: braking torque over the coil current.
 
 use super::chunks::Source;
-use super::{Prepared, sample_s, segments, sweeps};
+use super::{Prepared, Problem, sample_s, segments, sweeps};
+use crate::effects::memory;
+use crate::linear::Basis;
 use crate::view::{Constants, Signal, Signals};
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
@@ -44,6 +46,17 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         constants: Constants { pole_pairs: None, poles: run.meta().poles, ..Constants::default() },
     };
     sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Current], options)
+}
+
+/// The torque as the current and its history explain it: what speed and temperature may scale as a whole.
+pub fn drive(problem: &Problem) -> Vec<f64> {
+    let view = &problem.view;
+    let current = view.samples.find(Signal::Current).unwrap_or_default();
+    let peak = view.peak(Signal::Current);
+    let mut columns: Vec<Vec<f64>> = (0..=3).map(|k| view.map(Signal::Current, |i| (i / peak).powi(k))).collect();
+    columns.extend((1..=8).map(|k| view.average(memory::stop(current, peak * f64::from(k) / 8.0, &view.starts))));
+    let rest = Basis::of(&columns).rest(&problem.target);
+    problem.target.iter().zip(rest).map(|(y, e)| y - e).collect()
 }
 
 /// Change of a signal over a window around each sample.

@@ -58,37 +58,44 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Load], options)
 }
 
+/// Most Chebyshev polynomials of one leg.
+const ORDERS: [usize; 5] = [3, 5, 8, 11, 15];
+
 /// One smooth curve for a leg: Chebyshev polynomials of the square root of the time since the reversal, which follow a
-/// fast beginning and a slow end. Noise in the torque would feed hysteresis and sign terms; a filter across the reversal
-/// would blur what those terms live from.
+/// fast beginning and a slow end, as many as the leg asks for (Schwarz 1978). Noise in the torque would feed hysteresis
+/// and sign terms; a filter across the reversal would blur what those terms live from.
 fn smooth_leg(values: &[f64]) -> Vec<f64> {
     let n = values.len();
-    let order = (n / 12).min(11);
-    if order < 2 {
+    let most = (n / 12).min(ORDERS[ORDERS.len() - 1]);
+    if most < ORDERS[0] {
         return values.to_vec();
     }
     let terms = |i: usize| {
         let x = 2.0 * ((i as f64 + 0.5) / n as f64).sqrt() - 1.0;
         let mut t = vec![1.0, x];
-        for k in 2..=order {
+        for k in 2..=most {
             t.push(2.0 * x * t[k - 1] - t[k - 2]);
         }
         t
     };
-    let p = order + 1;
-    let mut gram = vec![0.0; p * p];
-    let mut side = vec![0.0; p];
-    for (i, v) in values.iter().enumerate() {
-        let t = terms(i);
-        for a in 0..p {
-            side[a] += t[a] * v;
-            for b in 0..p {
-                gram[a * p + b] += t[a] * t[b];
+    let all: Vec<Vec<f64>> = (0..n).map(terms).collect();
+    let curve = |order: usize| {
+        let p = order + 1;
+        let mut gram = vec![0.0; p * p];
+        let mut side = vec![0.0; p];
+        for (t, v) in all.iter().zip(values) {
+            for a in 0..p {
+                side[a] += t[a] * v;
+                (0..p).for_each(|b| gram[a * p + b] += t[a] * t[b]);
             }
         }
-    }
-    let factors = Spd::new(&gram, p, 0.0).solve(&side);
-    (0..n).map(|i| terms(i).iter().zip(&factors).map(|(t, f)| t * f).sum()).collect()
+        let factors = Spd::new(&gram, p, 0.0).solve(&side);
+        let fit: Vec<f64> = all.iter().map(|t| t.iter().zip(&factors).map(|(t, f)| t * f).sum()).collect();
+        let sse: f64 = fit.iter().zip(values).map(|(f, v)| (f - v).powi(2)).sum();
+        (n as f64 * sse.max(1e-300).ln() + p as f64 * (n as f64).ln(), fit)
+    };
+    let curves = ORDERS.into_iter().filter(|o| *o <= most).map(curve);
+    curves.min_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(|| values.to_vec(), |c| c.1)
 }
 
 #[cfg(test)]

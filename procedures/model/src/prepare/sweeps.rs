@@ -5,7 +5,7 @@ use super::{Prepared, layout};
 use crate::report::Preparation;
 use crate::view::Signal;
 use crate::{ModelError, Options, ResidualKind};
-use jointbench_instrument::RunTable;
+use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
 
 pub fn prepare(
@@ -31,7 +31,11 @@ pub fn prepare(
     if chunks.len() < 12 {
         return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks" });
     }
-    let main = problem(&samples, Layout { chunks, group, condition, phase: Some(phase), settled: false });
+    let mut main = problem(&samples, Layout { chunks, group, condition, phase: Some(phase), settled: false });
+    if run.kind() == Kind::Brake {
+        let drive = super::brake::drive(&main);
+        main.view.points.set(Signal::Drive, drive);
+    }
     let repeats = main.repeat.iter().any(|r| *r != main.repeat[0]);
     let about = Preparation {
         residual: if raw { ResidualKind::Raw } else { ResidualKind::PlateauMean },

@@ -298,7 +298,7 @@ fn is_tie(a: &Rival, b: &Rival) -> bool {
     let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;
     let spread = (differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
-    differences.iter().sum::<f64>() < 2.0 * n.sqrt() * spread
+    differences.iter().sum::<f64>() <= 2.0 * n.sqrt() * spread + 1e-9 * a.held_out
 }
 
 /// The added term without which the model is as good, with the model without it.

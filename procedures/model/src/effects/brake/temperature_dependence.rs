@@ -11,10 +11,14 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Brake,
     title: "Temperature dependence",
     sentence: "A warm brake holds less.",
-    formula: "c_T·(T − 25 °C), or c_T·(T − 25 °C)·i",
+    formula: "c_T·(T − 25 °C), or times i, or times the torque that current and history explain",
     source: "makers' data of hysteresis brakes",
     looks: "a line over temperature",
-    parameters: &[parameter("c_t", "Nm/K", f64::NEG_INFINITY, f64::INFINITY)],
+    parameters: &[
+        parameter("c_t", "Nm/K", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_t_i", "Nm/(A·K)", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_t_tau", "1/K", f64::NEG_INFINITY, f64::INFINITY),
+    ],
     needs: &["temperature_c"],
 };
 
@@ -24,15 +28,15 @@ impl Effect for TemperatureDependence {
     }
 
     fn forms(&self, _: &View) -> Vec<Form> {
-        ["plain", "excited"]
-            .map(|name| Form { name, linear: &["c_t"], shape: Vec::new(), grid: vec![Vec::new()] })
-            .into()
+        let form = |name, linear| Form { name, ..Form::linear(linear) };
+        vec![form("plain", &["c_t"]), form("excited", &["c_t_i"]), form("scaled", &["c_t_tau"])]
     }
 
     fn columns(&self, form: &str, _: &[f64], view: &View) -> Columns {
         vec![match form {
             "plain" => view.map(Signal::Temperature, |t| t - 25.0),
-            _ => view.map2(Signal::Temperature, Signal::Current, |t, i| (t - 25.0) * i),
+            "excited" => view.map2(Signal::Temperature, Signal::Current, |t, i| (t - 25.0) * i),
+            _ => view.map2(Signal::Temperature, Signal::Drive, |t, d| (t - 25.0) * d),
         }]
     }
 }

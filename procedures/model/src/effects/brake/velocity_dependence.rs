@@ -11,10 +11,14 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Brake,
     title: "Velocity dependence",
     sentence: "The brake holds more or less at higher speed: eddy currents and windage.",
-    formula: "c_v·ω, or c_v·i·ω",
+    formula: "c_v·ω, or c_v·i·ω, or c_v·τ·ω with the torque τ that current and history explain",
     source: "makers' data of hysteresis brakes (eddy currents)",
     looks: "a line over speed",
-    parameters: &[parameter("c_v", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY)],
+    parameters: &[
+        parameter("c_v", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_v_i", "Nm·s/(rad·A)", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_v_tau", "s/rad", f64::NEG_INFINITY, f64::INFINITY),
+    ],
     needs: &["velocity_rad_s"],
 };
 
@@ -24,15 +28,15 @@ impl Effect for VelocityDependence {
     }
 
     fn forms(&self, _: &View) -> Vec<Form> {
-        ["plain", "excited"]
-            .map(|name| Form { name, linear: &["c_v"], shape: Vec::new(), grid: vec![Vec::new()] })
-            .into()
+        let form = |name, linear| Form { name, ..Form::linear(linear) };
+        vec![form("plain", &["c_v"]), form("excited", &["c_v_i"]), form("scaled", &["c_v_tau"])]
     }
 
     fn columns(&self, form: &str, _: &[f64], view: &View) -> Columns {
         vec![match form {
             "plain" => view.get(Signal::Velocity).to_vec(),
-            _ => view.map2(Signal::Velocity, Signal::Current, |w, i| w * i),
+            "excited" => view.map2(Signal::Velocity, Signal::Current, |w, i| w * i),
+            _ => view.map2(Signal::Velocity, Signal::Drive, |w, t| w * t),
         }]
     }
 }

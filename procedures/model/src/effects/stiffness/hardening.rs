@@ -28,9 +28,9 @@ impl Effect for Hardening {
 
     fn forms(&self, view: &View) -> Vec<Form> {
         let peak = view.peak(Signal::Load);
-        let shape = vec![Shape { name: "tau_h", min: 0.08 * peak, max: 2.0 * peak, search: Search::Smooth }];
+        let shape = vec![Shape { name: "tau_h", min: 0.01 * peak, max: 2.0 * peak, search: Search::Smooth }];
         let grid: Vec<Vec<f64>> =
-            crate::effects::log_grid(0.08 * peak, 2.0 * peak, 4).into_iter().map(|t| vec![t]).collect();
+            crate::effects::log_grid(0.01 * peak, 2.0 * peak, 6).into_iter().map(|t| vec![t]).collect();
         let curved = |name| Form { name, linear: &["kappa"], shape: shape.clone(), grid: grid.clone() };
         vec![
             Form { name: "cubic", linear: &["kappa"], shape: Vec::new(), grid: vec![Vec::new()] },
