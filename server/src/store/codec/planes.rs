@@ -24,14 +24,6 @@ pub fn unzigzag(word: u64) -> i64 {
     ((word >> 1) as i64) ^ -((word & 1) as i64)
 }
 
-/// Sought only where they are long: what matches in noise matches by accident, and costs time both ways.
-fn compressor_of_noise() -> zstd::bulk::Compressor<'static> {
-    let mut compressor = zstd::bulk::Compressor::new(LEVEL).expect("zstd has this level");
-    let longest = zstd::zstd_safe::CParameter::MinMatch(7);
-    compressor.set_parameter(longest).expect("zstd finds matches of 7 bytes and more");
-    compressor
-}
-
 /// `width` planes of one byte for each row, then what else goes along.
 pub struct Planes {
     width: usize,
