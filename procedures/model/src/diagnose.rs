@@ -117,8 +117,8 @@ fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<S
         let evidence = if apart {
             format!("Around reversals it takes {} off the squared error.", percent(rival.share))
         } else {
-            let larger = percent(importance / (1.0 - importance).max(1e-9));
-            format!("Without it the complete model's squared error would be {larger} larger.")
+            let times = 1.0 / (1.0 - importance).max(1e-3);
+            format!("Without it the complete model's squared error would be {times:.1} times as large.")
         };
         let why = format!("{} {evidence}{tie}", info.sentence);
         out.push(Suggestion {

@@ -68,6 +68,22 @@ mod tests {
     }
 
     #[test]
+    fn it_agrees_with_the_singular_value_decomposition_of_nalgebra() {
+        let n = 200;
+        let columns: Vec<Vec<f64>> = (1..=6)
+            .map(|k| (0..n).map(|i| (0.013 * f64::from(k) * i as f64).sin() * 10f64.powi(k - 3)).collect())
+            .collect();
+        let y: Vec<f64> = (0..n).map(|i| (0.07 * i as f64).cos()).collect();
+        let refs: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let own = solve(&refs, &y);
+        let matrix = nalgebra::DMatrix::from_fn(n, 6, |i, j| columns[j][i]);
+        let oracle = matrix.svd(true, true).solve(&nalgebra::DVector::from_vec(y), 1e-14).unwrap();
+        for (a, b) in own.factors.iter().zip(oracle.iter()) {
+            assert!((a / b - 1.0).abs() < 1e-8, "{a} {b}");
+        }
+    }
+
+    #[test]
     fn proportional_columns_are_refused() {
         let x: Vec<f64> = (0..50).map(f64::from).collect();
         let z: Vec<f64> = x.iter().map(|x| 1e6 * x).collect();

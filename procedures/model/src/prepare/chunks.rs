@@ -59,6 +59,11 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         let still = settled && matches!(signal, Signal::Acceleration | Signal::Jerk);
         points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
     }
+    if settled && let Some(velocity) = points.find(Signal::Velocity) {
+        // The sign of the filtered velocity rings after a hard reversal, far into a slow plateau.
+        let direction = velocity.iter().map(|v| v.signum()).collect();
+        points.set(Signal::Direction, direction);
+    }
     let target = mean(&samples.target);
     let (block, blocks) = layout::blocks(&group, 48);
     let (fold, folds) = layout::folds(&condition, &block, 10);

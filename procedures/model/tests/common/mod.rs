@@ -1,4 +1,8 @@
-//! Reads measured runs from beside the repository.
+//! Reads measured runs from beside the repository, and makes some up.
+
+#![allow(dead_code, reason = "each test binary uses its part")]
+
+pub mod bench;
 
 use jointbench_instrument::{Channel, Meta, RunTable, Trace};
 use std::io::Read;

@@ -1,0 +1,59 @@
+//! Measurements with a hidden effect from a simulator that shares nothing with the library.
+
+mod common;
+
+use common::{read, shared};
+use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover};
+use serde_json::Value;
+
+fn check_family(family: &str) {
+    let Some(folder) = shared("hidden-effects") else { return };
+    let mut cases: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    cases.retain(|c| c.is_dir() && c.file_name().unwrap().to_string_lossy().starts_with(family));
+    for case in cases {
+        let answer: Value = serde_json::from_str(&std::fs::read_to_string(case.join("answer.json")).unwrap()).unwrap();
+        let accept: Vec<Vec<String>> = serde_json::from_value(answer["accept"].clone()).unwrap();
+        let run = read(&case);
+        let spec = ModelSpec::baseline(&run).unwrap();
+        let first = diagnose(&run, &spec, &Options::default()).unwrap();
+        let whole = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();
+        let added: Vec<&String> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
+        let name = case.file_name().unwrap().to_string_lossy().into_owned();
+        match answer["verdict"].as_str().unwrap() {
+            "adequate" => {
+                assert_eq!(first.verdict, Verdict::Adequate, "{name}: {}", first.summary);
+                assert!(first.suggestions.is_empty() && added.is_empty(), "{name}: {added:?}");
+            }
+            "unexplained_structure" => {
+                assert_eq!(whole.verdict, Verdict::UnexplainedStructure, "{name}: {}", whole.summary);
+            }
+            _ => {
+                assert!(accept.iter().any(|g| g.contains(&first.suggestions[0].effect)), "{name}: {}", first.summary);
+                assert_eq!(added.len(), accept.len(), "{name}: {added:?}");
+                assert!(accept.iter().all(|g| added.iter().any(|a| g.contains(a))), "{name}: {added:?}");
+                let (end, floor) = (whole.steps.last().unwrap().validation_rms, whole.noise_floor_rms.unwrap());
+                assert!(end <= 1.1 * floor, "{name}: {end} over the floor {floor}");
+            }
+        }
+    }
+}
+
+#[test]
+fn friction() {
+    check_family("friction");
+}
+
+#[test]
+fn encoder() {
+    check_family("encoder");
+}
+
+#[test]
+fn stiffness() {
+    check_family("stiffness");
+}
+
+#[test]
+fn brake() {
+    check_family("brake");
+}

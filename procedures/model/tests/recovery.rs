@@ -1,0 +1,92 @@
+//! What was put in comes out: parameters within budgets, hidden effects by name, nothing where nothing is.
+
+mod common;
+
+use common::bench::{Moment, Staircase};
+use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover, fit};
+
+const COULOMB: f64 = 0.030;
+const VISCOUS: f64 = 1.5e-4;
+
+fn dry(m: Moment) -> f64 {
+    COULOMB * m.velocity.signum() + VISCOUS * m.velocity
+}
+
+fn bench(seed: u64) -> Staircase {
+    Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed }
+}
+
+#[test]
+fn parameters_come_back_within_their_budgets_and_intervals() {
+    let run = bench(1).run(dry);
+    let found = fit(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    for (name, truth, budget) in [("tau_c", COULOMB, 2e-4), ("c_v", VISCOUS, 2e-6)] {
+        let p = found.parameters.iter().find(|p| p.name == name).unwrap();
+        assert!((p.value - truth).abs() < budget, "{name} {}", p.value);
+        assert!(p.ci95[0] < p.value && p.value < p.ci95[1]);
+    }
+}
+
+#[test]
+fn intervals_hold_the_truth_in_spite_of_segment_scatter() {
+    let (runs, mut inside) = (60, 0);
+    for seed in 0..runs {
+        let run = Staircase { noise_nm: 2e-3, scatter_nm: 6e-4, seed: 100 + seed }.run(dry);
+        let found = fit(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+        let holds = |name: &str, truth: f64| {
+            let p = found.parameters.iter().find(|p| p.name == name).unwrap();
+            u32::from(p.ci95[0] < truth && truth < p.ci95[1])
+        };
+        inside += holds("tau_c", COULOMB) + holds("c_v", VISCOUS);
+    }
+    let share = f64::from(inside) / (2.0 * runs as f64);
+    assert!(share > 0.88, "95 % intervals hold the truth in {share}");
+}
+
+fn check_found(name: &str, seed: u64, friction: impl Fn(Moment) -> f64) {
+    let run = bench(seed).run(friction);
+    let spec = ModelSpec::baseline(&run).unwrap();
+    let first = diagnose(&run, &spec, &Options::default()).unwrap();
+    assert_eq!(first.suggestions.first().map(|s| s.effect.as_str()), Some(name), "{}", first.summary);
+    assert_eq!(first.verdict, Verdict::MissingEffect);
+    assert!(first.suggestions[0].p_value <= 0.05 && first.suggestions[0].error_reduction > 0.0);
+    let whole = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    let added: Vec<_> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
+    assert_eq!(added, [name], "{}", whole.summary);
+    let last = whole.steps.last().unwrap().validation_rms;
+    assert!(last < 1.1 * whole.noise_floor_rms.unwrap(), "{last} against the floor {:?}", whole.noise_floor_rms);
+}
+
+#[test]
+fn a_hidden_effect_is_named() {
+    check_found("stribeck", 2, |m| dry(m) + 0.012 * m.velocity.signum() / (1.0 + (m.velocity / 6.0).powi(2)).powi(2));
+    check_found("load_linear", 3, |m| dry(m) + 0.08 * m.load / 50.0);
+    check_found("direction_offset", 4, |m| dry(m) + 0.004);
+    check_found("viscous_asymmetry", 5, |m| dry(m) + 4e-5 * m.velocity.abs());
+    check_found("drift", 6, |m| dry(m) + 1e-4 * m.time);
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_missing() {
+    let mut alarms = Vec::new();
+    for seed in 0..40 {
+        let run = Staircase { noise_nm: 2e-3, scatter_nm: 4e-4, seed: 300 + seed }.run(dry);
+        let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+        if found.verdict != Verdict::Adequate {
+            alarms.push(found.summary);
+        }
+    }
+    assert!(alarms.len() <= 3, "{} of 40: {alarms:?}", alarms.len());
+}
+
+#[test]
+fn what_the_library_does_not_know_is_called_structure_and_shown() {
+    let run = bench(7).run(|m| {
+        let bump = (-((m.velocity.abs() - 20.3) / 2.0).powi(2)).exp();
+        dry(m) * (1.0 + 0.5 * bump)
+    });
+    let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
+    assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
+    let shown = |r: &jointbench_model::Region| r.axis == "motor_velocity_rad_s" && r.from < 21.0 && r.to > 19.0;
+    assert!(found.regions.iter().any(shown), "{:?}", found.regions);
+}
