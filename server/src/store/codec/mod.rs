@@ -145,11 +145,14 @@ mod tests {
             .collect()
     }
 
+    /// What it is, the resolution that is told, and the value of a count.
+    type Case = (&'static str, Option<f64>, fn(i64) -> f64);
+
     #[test]
     fn sensor_counts_take_about_a_byte() {
         const ROWS: usize = 32_768;
         let turn = std::f64::consts::TAU;
-        let cases: [(&str, Option<f64>, fn(i64) -> f64); 5] = [
+        let cases: [Case; 5] = [
             ("counts times the resolution", Some(std::f64::consts::TAU / 16_384.0), |c| {
                 c as f64 * (std::f64::consts::TAU / 16_384.0)
             }),
