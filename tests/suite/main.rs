@@ -1,3 +1,9 @@
-//! One integration binary: each folder or file is one subject, as a user or a reader of the code meets it.
+//! One integration binary: each folder is one subject, as a user or a reader of the code meets it.
 
+mod browser;
+mod daemon;
+mod demo;
 mod house;
+mod offline;
+mod program;
+mod shared;

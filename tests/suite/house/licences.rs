@@ -43,7 +43,9 @@ fn split_outside<'a>(text: &'a str, separator: &str) -> Option<(&'a str, &'a str
         match c {
             '(' => depth += 1,
             ')' => depth -= 1,
-            _ if depth == 0 && text[i..].starts_with(separator) => return Some((&text[..i], &text[i + separator.len()..])),
+            _ if depth == 0 && text[i..].starts_with(separator) => {
+                return Some((&text[..i], &text[i + separator.len()..]));
+            }
             _ => {}
         }
     }

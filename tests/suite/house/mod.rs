@@ -37,6 +37,7 @@ fn packages() -> impl Iterator<Item = (&'static str, &'static Value)> {
 fn normal_dependencies(id: &str) -> Vec<&'static str> {
     let nodes = METADATA["resolve"]["nodes"].as_array().expect("nodes");
     let node = nodes.iter().find(|n| n["id"] == id).expect("a node for every package");
-    let is_normal = |dep: &&Value| dep["dep_kinds"].as_array().is_some_and(|kinds| kinds.iter().any(|k| k["kind"].is_null()));
+    let is_normal =
+        |dep: &&Value| dep["dep_kinds"].as_array().is_some_and(|kinds| kinds.iter().any(|k| k["kind"].is_null()));
     node["deps"].as_array().expect("deps").iter().filter(is_normal).map(|d| d["pkg"].as_str().expect("pkg")).collect()
 }

@@ -118,8 +118,8 @@ impl Odrive {
     pub fn new(joint: Joint) -> Self {
         let sheet = joint.data_sheet();
         let inertia = sheet.rotor_inertia_kg_m2 + 0.017 / sheet.ratio.powi(2);
-        // Gains for a velocity loop of 200 rad/s with an integrator of 25 /s, in the drive's unit, Nm per turn/s.
-        let vel_gain = (inertia * 200.0 * TAU) as f32;
+        // Gains for a velocity loop of 300 rad/s with an integrator of 60 /s, in the drive's unit, Nm per turn/s.
+        let vel_gain = (inertia * 300.0 * TAU) as f32;
         let config = Config {
             torque_constant: sheet.torque_constant_nm_per_a as f32,
             current_lim: 10.0,
@@ -129,7 +129,7 @@ impl Odrive {
             vel_limit: 2.0,
             vel_limit_tolerance: 1.2,
             vel_gain,
-            vel_integrator_gain: 25.0 * vel_gain,
+            vel_integrator_gain: 60.0 * vel_gain,
             pos_gain: 20.0,
             vel_ramp_rate: 1.0,
             torque_mode_vel_limit: true,

@@ -1,0 +1,40 @@
+//! The main path in a real browser. Skipped loudly where there is none, unless `JOINTBENCH_REQUIRE_BROWSER=1`.
+
+use crate::house::root;
+use crate::program::Daemon;
+use std::path::Path;
+use std::process::Command;
+
+fn is_missing() -> Option<&'static str> {
+    let has =
+        |program: &str| Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+    if !["chromium", "chromium-browser", "google-chrome"].iter().any(|name| has(name)) {
+        return Some("Chromium is not installed (Debian: apt-get install chromium)");
+    }
+    if !has("node") {
+        return Some("Node is not installed");
+    }
+    (!root().join("web/node_modules/playwright-core").exists())
+        .then_some("web/node_modules is missing: run npm ci in web/")
+}
+
+#[test]
+fn an_engineer_walks_from_start_to_undo() {
+    if let Some(what) = is_missing() {
+        assert!(std::env::var("JOINTBENCH_REQUIRE_BROWSER").as_deref() != Ok("1"), "the browser is required: {what}");
+        eprintln!("SKIPPED: {what}. The browser tests did NOT run.");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = folder.path().join("bench.toml");
+    let text = "[[bench]]\nname = \"mock\"\n[bench.mock]\njoint = \"a\"\nseed = 2\neffects = [\"load_linear\"]\n";
+    std::fs::write(&config, text).expect("the bench description is written");
+    let daemon = Daemon::serve(&folder.path().join("data"), &config);
+    let output = Command::new("node")
+        .arg(root().join(Path::new("web/e2e/walk.mjs")))
+        .arg(&daemon.base)
+        .output()
+        .expect("node runs");
+    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    assert!(output.status.success(), "{}\n{}", said[0], said[1]);
+}

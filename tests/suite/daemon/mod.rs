@@ -1,0 +1,96 @@
+//! The daemon on a bad day, through REST.
+
+use crate::program::Daemon;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// A mock bench that takes its time, so that something can happen in mid-run.
+fn bench(folder: &Path, pace: f64) -> PathBuf {
+    let config = folder.join("bench.toml");
+    let text =
+        format!("[[bench]]\nname = \"mock\"\n[bench.mock]\njoint = \"b\"\nseed = 4\neffects = []\npace = {pace:.1}\n");
+    std::fs::write(&config, text).expect("the bench description is written");
+    config
+}
+
+fn start(daemon: &Daemon) -> i64 {
+    let (status, run) = daemon.post("/runs", &json!({ "bench": "mock", "procedure": "friction", "parameters": {} }));
+    assert_eq!(status, 201, "{run}");
+    run["id"].as_i64().expect("the run has a number")
+}
+
+fn rows(run: &Value) -> i64 {
+    run["rows"].as_i64().expect("the run counts its rows")
+}
+
+#[test]
+fn kill_9_loses_nothing_that_was_acknowledged() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = bench(folder.path(), 20.0);
+    let data = folder.path().join("data");
+
+    let daemon = Daemon::serve(&data, &config);
+    let id = start(&daemon);
+    let path = format!("/runs/{id}");
+    let before = daemon.wait_for(&path, Duration::from_secs(60), |run| rows(run) > 1000);
+    assert_eq!(before["state"], "running", "{before}");
+    daemon.kill();
+
+    let daemon = Daemon::serve(&data, &config);
+    let after = daemon.get(&path);
+    assert_eq!(after["state"], "interrupted", "{after}");
+    assert_eq!(after["safe"], "safe_verified", "the bench was secured at the start: {after}");
+    assert!(rows(&after) >= rows(&before), "{} rows were acknowledged, {} are left", rows(&before), rows(&after));
+
+    // Every committed sample once: as many as the run says, at rising times.
+    let samples = daemon.get(&format!("{path}/samples?channels=motor_position_rad&px=100000"));
+    let times: Vec<f64> = samples["time_s"].as_array().expect("times").iter().filter_map(Value::as_f64).collect();
+    assert_eq!(times.len() as i64, rows(&after));
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "a sample is there twice or out of order");
+
+    // The journal tells the same story without a gap.
+    let events = daemon.get(&format!("{path}/events"));
+    let numbers: Vec<i64> =
+        events.as_array().expect("events").iter().filter_map(|event| event["seq"].as_i64()).collect();
+    assert!(!numbers.is_empty() && numbers.windows(2).all(|pair| pair[1] > pair[0]), "{numbers:?}");
+
+    // Nothing restarts by itself, and the next run may start.
+    assert_eq!(daemon.get("/bench")[0]["run"], Value::Null);
+    assert_eq!(daemon.get("/runs")["total"], 1);
+    let next = start(&daemon);
+    let (status, _) = daemon.post(&format!("/runs/{next}/abort"), &json!({}));
+    assert!((200..300).contains(&status), "{status}");
+    let ended = daemon.wait_for(&format!("/runs/{next}"), Duration::from_secs(60), |run| run["safe"].is_string());
+    assert_eq!((&ended["state"], &ended["safe"]), (&json!("aborted"), &json!("safe_verified")));
+}
+
+#[test]
+fn a_second_daemon_on_the_same_folder_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = bench(folder.path(), 20.0);
+    let data = folder.path().join("data");
+    let _first = Daemon::serve(&data, &config);
+    let second = crate::program::jointbench()
+        .args(["serve", "--listen", "127.0.0.1:0", "--data"])
+        .arg(&data)
+        .arg("--config")
+        .arg(&config)
+        .output()
+        .expect("jointbench starts");
+    let said = crate::program::stderr(&second);
+    assert_eq!(second.status.code(), Some(2), "{said}");
+    assert!(said.contains(&data.display().to_string()), "the folder is named: {said}");
+}
+
+#[test]
+fn a_port_that_is_taken_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let address = taken.local_addr().expect("an address").to_string();
+    let data = folder.path().join("data");
+    let output = crate::program::run(&["serve", "--listen", &address, "--data", &data.display().to_string()]);
+    let said = crate::program::stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("is taken") && said.contains("--listen"), "{said}");
+}

@@ -1,0 +1,59 @@
+//! The practice cases with a hidden effect, judged as `hidden-effects/README.md` says.
+
+use super::{effects, json};
+use crate::shared::shared;
+use serde_json::Value;
+use std::path::Path;
+
+fn read(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
+}
+
+fn groups(answer: &Value) -> Vec<Vec<&str>> {
+    answer["accept"].as_array().expect("groups").iter().map(effects).collect()
+}
+
+/// Checks one case and says what is wrong with it.
+fn judge(folder: &Path) -> Result<(), String> {
+    let answer = read(&folder.join("answer.json"));
+    let meta = read(&folder.join("meta.json"));
+    let diagnosis = json("diagnose", folder, &[]);
+    let discovery = json("discover", folder, &[]);
+    let suggested = effects(&diagnosis["suggestions"]);
+    let baseline = effects(&meta["baseline"]);
+    let added: Vec<&str> =
+        effects(&discovery["model"]).into_iter().filter(|effect| !baseline.contains(effect)).collect();
+    let told = format!("suggested {suggested:?}, added {added:?}, verdict {}", discovery["verdict"]);
+    let is_right = match answer["verdict"].as_str() {
+        Some("adequate") => diagnosis["verdict"] == "adequate" && suggested.is_empty() && added.is_empty(),
+        Some("unexplained_structure") => discovery["verdict"] == "unexplained_structure",
+        _ => {
+            let accepted = groups(&answer);
+            let optional = effects(&answer["optional"]);
+            let in_group = |effect: &&str| accepted.iter().any(|group| group.contains(effect));
+            let counted = added.iter().filter(|effect| in_group(effect) || !optional.contains(effect)).count();
+            let floor = discovery["noise_floor_rms"].as_f64().unwrap_or(0.0);
+            let reached = discovery["steps"].as_array().and_then(|steps| steps.last()?["validation_rms"].as_f64());
+            suggested.first().is_some_and(|first| in_group(&first))
+                && counted == accepted.len()
+                && accepted.iter().all(|group| added.iter().any(|effect| group.contains(effect)))
+                && reached.is_some_and(|rms| rms <= 1.1 * floor)
+        }
+    };
+    if is_right { Ok(()) } else { Err(told) }
+}
+
+#[test]
+fn the_practice_cases_are_right() {
+    let Some(cases) = shared("hidden-effects") else { return };
+    let mut wrong = Vec::new();
+    for entry in std::fs::read_dir(cases).expect("a folder") {
+        let folder = entry.expect("an entry").path();
+        if folder.is_dir()
+            && let Err(told) = judge(&folder)
+        {
+            wrong.push(format!("{}: {told}", folder.file_name().unwrap_or_default().display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,0 +1,30 @@
+//! Malformed files are refused where they are wrong, and leave nothing behind.
+
+use crate::program::{jointbench, run, stderr, stdout};
+
+const HEADER: &str = "time_s,motor_position_rad,motor_current_a\n";
+
+#[test]
+fn the_place_of_the_fault_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let data = folder.path().join("data");
+    std::fs::write(folder.path().join("meta.json"), r#"{"kind":"friction","torque_constant_nm_per_a":0.04}"#)
+        .expect("facts");
+    for (what, rows, line, words) in [
+        ("text", "0,0,0\n0.1,abc,0\n", "3", "motor_position_rad"),
+        ("narrow", "0,0,0\n0.1,0,0\n0.2,0\n", "4", "3"),
+        ("back", "0,0,0\n0.2,0,0\n0.1,0,0\n", "4", "time_s"),
+        ("nan", "0,0,0\n0.1,0,NaN\n", "3", "motor_current_a"),
+    ] {
+        let path = folder.path().join(format!("{what}.csv"));
+        std::fs::write(&path, format!("{HEADER}{rows}")).expect("a table");
+        let output =
+            jointbench().arg("import").arg(&path).arg("--data").arg(&data).output().expect("jointbench starts");
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{what}: {said}");
+        assert!(said.contains(&format!("{what}.csv")) && said.contains(line) && said.contains(words), "{what}: {said}");
+    }
+    // The store knows of no run.
+    let output = run(&["export", "1", "--format", "csv", "--data", &data.display().to_string()]);
+    assert_ne!(output.status.code(), Some(0), "{}", stdout(&output));
+}

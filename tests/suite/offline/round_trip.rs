@@ -1,0 +1,32 @@
+//! What is imported comes out again unchanged.
+
+use crate::program::{jointbench, stderr};
+use crate::shared::shared;
+use jointbench_files::{ReadOptions, read};
+use jointbench_instrument::RunTable;
+use std::path::Path;
+
+fn done(command: &mut std::process::Command) {
+    let output = command.output().expect("jointbench starts");
+    assert!(output.status.success(), "{command:?}: {}", stderr(&output));
+}
+
+fn table(path: &Path) -> RunTable {
+    read(path, &ReadOptions::default()).unwrap_or_else(|fault| panic!("{fault}"))
+}
+
+#[test]
+fn import_and_export_keep_every_bit() {
+    let Some(source) = shared("data/placid-b5zd-brake/run.csv") else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let data = folder.path().join("data");
+    done(jointbench().arg("import").arg(&source).arg("--data").arg(&data));
+    for format in ["csv", "parquet"] {
+        let out = folder.path().join(format!("out.{format}"));
+        done(jointbench().args(["export", "1", "--format", format, "--output"]).arg(&out).arg("--data").arg(&data));
+        let (before, after) = (table(&source), table(&out));
+        assert_eq!(before.kind(), after.kind());
+        assert_eq!(before.trace().columns(), after.trace().columns(), "{format}");
+        assert_eq!(before.meta().baseline, after.meta().baseline);
+    }
+}

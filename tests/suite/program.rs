@@ -1,0 +1,127 @@
+//! The program `jointbench` as a user starts it.
+
+use crate::house::root;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
+
+/// Built once for each test run, with the profile of the tests.
+static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
+    let here = std::env::current_exe().expect("the test binary has a path");
+    let profile = here.parent().and_then(Path::parent).expect("target/PROFILE/deps");
+    let mut build = Command::new(env!("CARGO"));
+    build.args(["build", "--quiet", "--workspace", "--bin", "jointbench"]).current_dir(root());
+    build.env("CARGO_TARGET_DIR", profile.parent().expect("target"));
+    if profile.ends_with("release") {
+        build.arg("--release");
+    }
+    assert!(build.status().expect("cargo runs").success(), "jointbench does not build");
+    profile.join(format!("jointbench{}", std::env::consts::EXE_SUFFIX))
+});
+
+pub fn jointbench() -> Command {
+    let mut command = Command::new(&*PROGRAM);
+    command
+        .env_remove("JOINTBENCH_DATA")
+        .env_remove("JOINTBENCH_TOKEN")
+        .env_remove("JOINTBENCH_URL")
+        .env_remove("RUST_LOG");
+    command
+}
+
+pub fn run(arguments: &[&str]) -> Output {
+    jointbench().args(arguments).output().expect("jointbench starts")
+}
+
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A daemon in a process of its own, on a free port. Killed when it goes out of sight.
+pub struct Daemon {
+    child: Child,
+    pub base: String,
+}
+
+impl Daemon {
+    /// Returns when the daemon has named its address.
+    pub fn serve(data: &Path, config: &Path) -> Self {
+        let mut child = jointbench()
+            .args(["serve", "--listen", "127.0.0.1:0", "--data"])
+            .arg(data)
+            .arg("--config")
+            .arg(config)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("jointbench starts");
+        let mut said = BufReader::new(child.stdout.take().expect("piped"));
+        let mut line = String::new();
+        said.read_line(&mut line).expect("stdout can be read");
+        let base = line
+            .split_whitespace()
+            .find(|word| word.starts_with("http://"))
+            .map(|word| word.trim_end_matches('/').to_owned());
+        let Some(base) = base else {
+            let mut complaint = String::new();
+            child.stderr.take().expect("piped").read_to_string(&mut complaint).ok();
+            panic!("the daemon did not name its address: {line:?} {complaint}");
+        };
+        // Nobody must block on a full pipe: what is said from here on is read and forgotten.
+        let mut errors = child.stderr.take().expect("piped");
+        std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
+        std::thread::spawn(move || std::io::copy(&mut errors, &mut std::io::sink()));
+        Self { child, base }
+    }
+
+    /// `kill -9`: no destructor, no last word.
+    pub fn kill(mut self) {
+        self.child.kill().expect("the daemon runs");
+        self.child.wait().expect("the daemon ends");
+    }
+
+    pub fn get(&self, path: &str) -> serde_json::Value {
+        let mut answer = ureq::get(format!("{}/api/v1{path}", self.base))
+            .call()
+            .unwrap_or_else(|fault| panic!("GET {path}: {fault}"));
+        answer.body_mut().read_json().expect("JSON")
+    }
+
+    /// Status and body, whatever the status is.
+    pub fn post(&self, path: &str, body: &serde_json::Value) -> (u16, serde_json::Value) {
+        let agent = ureq::Agent::new_with_config(ureq::Agent::config_builder().http_status_as_error(false).build());
+        let mut answer = agent.post(format!("{}/api/v1{path}", self.base)).send_json(body).expect("the daemon answers");
+        (answer.status().as_u16(), answer.body_mut().read_json().unwrap_or_default())
+    }
+
+    /// Asks again until the answer is what is waited for.
+    pub fn wait_for(
+        &self,
+        path: &str,
+        within: Duration,
+        is_there: impl Fn(&serde_json::Value) -> bool,
+    ) -> serde_json::Value {
+        let until = Instant::now() + within;
+        loop {
+            let answer = self.get(path);
+            if is_there(&answer) {
+                return answer;
+            }
+            assert!(Instant::now() < until, "GET {path} still answers {answer} after {within:?}");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+}
+
+impl Drop for Daemon {
+    fn drop(&mut self) {
+        self.child.kill().ok();
+        self.child.wait().ok();
+    }
+}
