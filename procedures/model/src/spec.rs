@@ -81,7 +81,7 @@ impl Default for Options {
             chunk_s: None,
             alpha: 0.05,
             practical_share: 0.02,
-            flips: 999,
+            flips: 499,
             seed: 1,
         }
     }

@@ -66,9 +66,9 @@ fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Signal]) -> Vec
     for signal in inputs {
         let Some(values) = samples.signals.find(*signal) else { continue };
         let peak = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-        let parts: [&dyn Fn(&Range<usize>) -> Range<usize>; 2] =
-            [&|leg| leg.start + leg.len() / 4..leg.start + leg.len() / 2, &|leg| leg.end - leg.len() / 4..leg.end];
-        for part in parts {
+        let early = |leg: &Range<usize>| leg.start + leg.len() / 4..leg.start + leg.len() / 2;
+        let late = |leg: &Range<usize>| leg.end - leg.len() / 4..leg.end;
+        for part in [early as fn(&Range<usize>) -> Range<usize>, late] {
             let means: Vec<f64> = legs
                 .iter()
                 .map(|leg| {

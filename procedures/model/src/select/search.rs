@@ -269,7 +269,8 @@ fn step(now: &Terms, library: &Library, options: &Options) -> Option<(Rival, Vec
 
     let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
     let mut rival = rivals.swap_remove(winner);
-    rival.p_value = significance(&rival.term, library, &basis, &residual, problem, options);
+    let scores = gains.iter().map(|g| Score::new(&g.rest, &residual, &problem.block, problem.blocks)).collect();
+    rival.p_value = family_wise(&rival.term, scores, &basis, &residual, problem, options);
     (rival.p_value <= options.alpha).then_some((rival, ties))
 }
 
@@ -285,9 +286,22 @@ pub fn significance(
     let score = |columns: &[Vec<f64>]| {
         Score::new(&gain(columns, basis, residual, 1.0).rest, residual, &problem.block, problem.blocks)
     };
-    let own = score(&term.columns);
+    let scores = library.candidates.iter().map(|c| score(&c.columns)).collect();
+    family_wise(term, scores, basis, residual, problem, options)
+}
+
+/// The same from scores that are there already.
+fn family_wise(
+    term: &Term,
+    mut scores: Vec<Score>,
+    basis: &Basis,
+    residual: &[f64],
+    problem: &Problem,
+    options: &Options,
+) -> f64 {
+    let own = gain(&term.columns, basis, residual, 1.0);
+    let own = Score::new(&own.rest, residual, &problem.block, problem.blocks);
     let z = own.z();
-    let mut scores: Vec<Score> = library.candidates.iter().map(|c| score(&c.columns)).collect();
     scores.push(own);
     Null::new(&scores, problem.blocks, options.flips, options.seed).p_value(z)
 }
