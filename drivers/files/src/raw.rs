@@ -31,6 +31,8 @@ impl RawTable {
                     place.line = csv_in::gunzip(name, bytes).ok().and_then(|text| csv_in::line_of(&text, row));
                 }
                 (Some(row), _) => place.row = Some(row as u64 + 1),
+                // A column as a whole is at fault: the line of column names.
+                (None, Some(Form::Csv | Form::GzippedCsv)) if fault.column().is_some() => place.line = Some(1),
                 (None, _) => {}
             }
             FileError { place: Box::new(place), fault: FileFault::Table(fault) }

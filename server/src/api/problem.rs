@@ -18,26 +18,29 @@ pub struct Problem {
     /// `forbidden`, `unauthorized`, `too_large`, `internal`.
     #[serde(rename = "type")]
     pub type_: String,
-    pub title: String,
+    #[schema(value_type = String)]
+    pub title: Box<str>,
     pub status: u16,
     /// What is wrong and what to do about it.
     pub detail: String,
     /// The path that was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub instance: Option<String>,
+    #[schema(value_type = Option<String>)]
+    pub instance: Option<Box<str>>,
     /// Line of the uploaded file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub line: Option<u64>,
     /// Column of the uploaded file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub column: Option<String>,
+    #[schema(value_type = Option<String>)]
+    pub column: Option<Box<str>>,
 }
 
 impl Problem {
     pub fn new(status: StatusCode, kind: &str, title: &str, detail: impl Into<String>) -> Self {
         Self {
             type_: format!("urn:jointbench:{kind}"),
-            title: title.to_owned(),
+            title: title.into(),
             status: status.as_u16(),
             detail: detail.into(),
             instance: None,
@@ -79,7 +82,7 @@ impl From<LabError> for Problem {
             }
             LabError::File { line, column, .. } => Self {
                 line,
-                column,
+                column: column.map(String::into_boxed_str),
                 ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "file_refused", "The file is refused", detail)
             },
             LabError::Conflict(_) => Self::new(StatusCode::CONFLICT, "conflict", "Not at this moment", detail),
@@ -131,7 +134,7 @@ impl IntoResponse for Problem {
 
 /// Middleware: a problem names the path that was asked for.
 pub async fn name_instance(request: Request, next: Next) -> Response {
-    let path = request.uri().path().to_owned();
+    let path = request.uri().path().into();
     let mut response = next.run(request).await;
     match response.extensions_mut().remove::<Problem>() {
         Some(problem) => Problem { instance: Some(path), ..problem }.into_response(),

@@ -9,7 +9,7 @@ use super::serve::{runtime, settings};
 use crate::config::BenchDescription;
 use crate::daemon::{Daemon, asked_to_end};
 use crate::lab::{Lab, reread};
-use crate::view::{Model, Run, RunState, Verdict};
+use crate::view::{Model, Run, RunState, Suggestion};
 use jointbench_devices::sim::HIDDEN_EFFECTS;
 use jointbench_devices::{Joint, MockSettings};
 use rand::rngs::StdRng;
@@ -21,6 +21,8 @@ const BENCH: &str = "joint-a-mock";
 const PROCEDURE: &str = "friction";
 /// More than this never is missing in the demo; a surprise shall still come to an end.
 const MOST_EFFECTS: usize = 5;
+/// An effect is added where the error on data outside the fit falls below this share of what it was.
+const WORTH_ADDING: f64 = 0.98;
 
 pub fn demo(arguments: Demo) -> Done {
     let hidden = Hidden::choose(&arguments)?;
@@ -94,14 +96,14 @@ async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
 
     println!();
     println!("2  Fit the baseline, see where it fails, add what is missing");
-    let versions = improve(lab, &run).await?;
+    let improved = improve(lab, &run).await?;
 
     println!();
     println!("3  Error on data that took no part in the fit");
     println!();
-    report(&versions);
+    report(&improved.versions);
     println!();
-    conclude(&versions, hidden);
+    conclude(&improved, hidden);
     println!("Took {:.0} s.", began.elapsed().as_secs_f64());
     Ok(run.summary.id)
 }
@@ -131,25 +133,36 @@ async fn measure(lab: &Lab) -> Result<Run, Exit> {
 }
 
 /// Baseline, diagnosis, best effect, again: through the same calls as the dashboard.
-async fn improve(lab: &Lab, run: &Run) -> Result<Vec<Model>, Exit> {
+async fn improve(lab: &Lab, run: &Run) -> Result<Improved, Exit> {
     let meta: jointbench_instrument::Meta = reread(&run.meta)?;
     let mut versions = vec![lab.create_model(run.summary.id, &meta.baseline, None).await?];
     loop {
         let model = &versions[versions.len() - 1];
         let diagnosis = lab.diagnose(model.id).await?.finding;
         println!();
-        println!("   {}", model.effects.join(" + "));
+        println!("   model {}: {}", model.id, model.effects.join(" + "));
         println!("   {}", diagnosis.summary);
         print::regions(&reread::<_, Vec<_>>(&diagnosis.regions)?, &diagnosis.fit.unit);
-        print::suggestions(&reread::<_, Vec<_>>(&diagnosis.suggestions)?, &diagnosis.fit.unit);
-        let best = diagnosis.suggestions.first().filter(|_| diagnosis.verdict == Verdict::MissingEffect);
-        let Some(best) = best.filter(|_| versions.len() <= MOST_EFFECTS) else { return Ok(versions) };
+        let suggestions: Vec<_> = reread(&diagnosis.suggestions)?;
+        print::suggestions(&suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
+        let worth = |suggestion: &&Suggestion| suggestion.validation_rms < WORTH_ADDING * model.validation_rms;
+        let best = diagnosis.suggestions.iter().find(worth).filter(|_| versions.len() <= MOST_EFFECTS);
+        let Some(best) = best else {
+            let without_weight = diagnosis.suggestions.into_iter().map(|suggestion| suggestion.effect).collect();
+            return Ok(Improved { versions, without_weight });
+        };
         println!();
         println!("   → add {} and fit again", best.effect);
         let effects: Vec<String> = model.effects.iter().cloned().chain([best.effect.clone()]).collect();
         let next = lab.create_model(run.summary.id, &effects, Some(model.id)).await?;
         versions.push(next);
     }
+}
+
+struct Improved {
+    versions: Vec<Model>,
+    /// Seen, but where the error on settled motion does not look.
+    without_weight: Vec<String>,
 }
 
 fn report(versions: &[Model]) {
@@ -165,11 +178,16 @@ fn report(versions: &[Model]) {
     }
 }
 
-fn conclude(versions: &[Model], hidden: &Hidden) {
-    let added: Vec<&str> = versions.iter().skip(1).flat_map(|model| &model.added).map(String::as_str).collect();
+fn conclude(improved: &Improved, hidden: &Hidden) {
+    let added: Vec<&str> =
+        improved.versions.iter().skip(1).flat_map(|model| &model.added).map(String::as_str).collect();
     let found = match added.as_slice() {
         [] => "Nothing was found missing".to_owned(),
         added => format!("Found missing: {}", added.join(", ")),
     };
     println!("{found}. Hidden was: {}.", hidden.effect);
+    if !improved.without_weight.is_empty() {
+        let seen = improved.without_weight.join(", ");
+        println!("Also seen: {seen}, which does not change the error of settled motion.");
+    }
 }

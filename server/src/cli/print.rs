@@ -51,7 +51,7 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!();
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
-    suggestions(&diagnosis.suggestions, &diagnosis.fit.unit);
+    suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
     if let Some(experiment) = &diagnosis.experiment {
         println!();
         println!("a run that would tell: {} ({})", experiment.procedure, experiment.why);
@@ -117,21 +117,22 @@ pub fn regions(regions: &[Region], unit: &str) {
     }
 }
 
-pub fn suggestions(suggestions: &[Suggestion], unit: &str) {
+/// `present_rms`: error of the model at hand on data that took no part in its fit.
+pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     if suggestions.is_empty() {
         return;
     }
     println!();
     println!("what is missing, the most important first:");
     for (i, suggestion) in suggestions.iter().enumerate() {
-        println!(
-            "  {}. {}: error {:+.1} % to {} {unit}, p = {}",
-            i + 1,
-            suggestion.effect,
-            -100.0 * suggestion.error_reduction,
-            figure(suggestion.validation_rms),
-            figure(suggestion.p_value)
-        );
+        let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
+        // Effects of reversals and ramps are judged there, and leave the settled motion as it was.
+        let elsewhere = (1.0 - rms / present_rms - share).abs() > 0.01;
+        let gain = match elsewhere {
+            true => format!("error {:+.1} % where it acts, settled motion stays as it is", -100.0 * share),
+            false => format!("error {:+.1} % to {} {unit}", -100.0 * share, figure(rms)),
+        };
+        println!("  {}. {}: {gain}, p = {:.3}", i + 1, suggestion.effect, suggestion.p_value);
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
             let [low, high] = parameter.ci95;
