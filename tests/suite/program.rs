@@ -87,10 +87,14 @@ impl Daemon {
     }
 
     pub fn get(&self, path: &str) -> serde_json::Value {
+        serde_json::from_str(&self.get_text(path)).expect("JSON")
+    }
+
+    pub fn get_text(&self, path: &str) -> String {
         let mut answer = ureq::get(format!("{}/api/v1{path}", self.base))
             .call()
             .unwrap_or_else(|fault| panic!("GET {path}: {fault}"));
-        answer.body_mut().read_json().expect("JSON")
+        answer.body_mut().with_config().limit(1 << 30).read_to_string().expect("text")
     }
 
     /// Status and body, whatever the status is.

@@ -23,6 +23,10 @@ pub use exit::Exit;
 /// or bad input, 3 could not be decided.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    // `jointbench fit … | head` ends quietly. Never where a bench is ours: its end is the engine's business.
+    if !matches!(arguments.command, Command::Demo(_) | Command::Serve(_)) {
+        sigpipe::reset();
+    }
     let default_level = if matches!(arguments.command, Command::Serve(_)) { "info" } else { "warn" };
     log::start(arguments.log, default_level);
     let done = match arguments.command {

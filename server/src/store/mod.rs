@@ -38,5 +38,5 @@ pub struct Store {
     /// Readers see the last commit and never wait for the writer.
     readers: SqlitePool,
     /// Held for as long as the store is open: one daemon for each data folder.
-    _lock: Arc<File>,
+    lock: Arc<File>,
 }

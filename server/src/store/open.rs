@@ -41,13 +41,17 @@ impl Store {
         let writer = pool(1).connect_with(options.clone()).await.map_err(|fault| not_ours(fault, &file))?;
         migrate(&writer, &file).await?;
         let readers = pool(READERS).connect_with(options.read_only(true)).await?;
-        Ok(Store { writer, readers, _lock: Arc::new(lock) })
+        Ok(Store { writer, readers, lock: Arc::new(lock) })
     }
 
     /// Waits for what is under way and lets the file go. A store that is never closed loses nothing that was committed.
     pub async fn close(&self) {
         self.readers.close().await;
         self.writer.close().await;
+        // Clones of the store may live on, in requests for example: the folder is free all the same.
+        if let Err(fault) = self.lock.unlock() {
+            tracing::warn!(%fault, "the data folder stays locked until the process ends");
+        }
     }
 }
 

@@ -34,7 +34,7 @@ fn judge(folder: &Path) -> Result<(), String> {
             let counted = added.iter().filter(|effect| in_group(effect) || !optional.contains(effect)).count();
             let floor = discovery["noise_floor_rms"].as_f64().unwrap_or(0.0);
             let reached = discovery["steps"].as_array().and_then(|steps| steps.last()?["validation_rms"].as_f64());
-            suggested.first().is_some_and(|first| in_group(&first))
+            suggested.first().is_some_and(in_group)
                 && counted == accepted.len()
                 && accepted.iter().all(|group| added.iter().any(|effect| group.contains(effect)))
                 && reached.is_some_and(|rms| rms <= 1.1 * floor)

@@ -5,6 +5,24 @@ use crate::program::{jointbench, run, stderr, stdout};
 const HEADER: &str = "time_s,motor_position_rad,motor_current_a\n";
 
 #[test]
+#[cfg(unix)]
+fn a_reader_that_has_seen_enough_is_no_fault() {
+    use std::os::unix::process::ExitStatusExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = folder.path().join("run.csv");
+    std::fs::write(&table, format!("{HEADER}0,0,0\n0.1,0,0\n")).expect("a table");
+    std::fs::write(folder.path().join("meta.json"), r#"{"kind":"friction","torque_constant_nm_per_a":0.04}"#)
+        .expect("facts");
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let mut import = jointbench();
+    import.arg("import").arg(&table).arg("--data").arg(folder.path().join("data"));
+    let output = import.stdout(writer).output().expect("jointbench starts");
+    assert!(output.stderr.is_empty(), "{}", stderr(&output));
+    assert_eq!(output.status.signal(), Some(13), "the first word that nobody reads ends it");
+}
+
+#[test]
 fn the_place_of_the_fault_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let data = folder.path().join("data");

@@ -38,7 +38,7 @@ fn one_daemon_for_each_data_folder() {
         let clone = store.clone();
         drop(store);
         refusal(folder.path()).await;
-        drop(clone);
+        clone.close().await;
         Store::open(folder.path()).await.unwrap();
     });
 }
