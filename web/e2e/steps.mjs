@@ -51,3 +51,27 @@ export async function toAnotherVersion(page, act) {
 	await page.waitForFunction((id) => new URL(location.href).searchParams.get('model') !== id, before, { timeout: FIT_MS });
 	return readVersion(page);
 }
+
+/** Tries the first suggestion beside the version at hand and drops it again; says what error the preview shows. */
+export async function tryAndDrop(page) {
+	await page.locator('article[data-effect]').first().getByRole('button', { name: 'Try' }).click();
+	await page.locator('[data-beside=try] figure').first().waitFor({ timeout: FIT_MS });
+	const said = await page.locator('[data-beside] .said').innerText();
+	await page.keyboard.press('x');
+	await page.locator('[data-beside]').waitFor({ state: 'detached' });
+	return said;
+}
+
+/** Drags over the residual below the overlay; says how many samples the page calls chosen. */
+export async function brush(page) {
+	const plot = page.locator('.uplot .u-over').last();
+	await plot.scrollIntoViewIfNeeded();
+	const box = await plot.boundingBox();
+	await page.mouse.move(box.x + box.width * 0.55, box.y + box.height / 2);
+	await page.mouse.down();
+	await page.mouse.move(box.x + box.width * 0.95, box.y + box.height / 2, { steps: 4 });
+	await page.mouse.up();
+	await page.waitForURL(/region=/);
+	const note = await page.getByText(/\d chosen/).first().innerText();
+	return Number(/([\d,]+) chosen/.exec(note)[1].replaceAll(',', ''));
+}

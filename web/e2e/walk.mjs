@@ -3,7 +3,7 @@
 // Start the procedure, watch it finish, open the workbench, see where the model fails, add the first suggestion, see the
 // error fall, undo, and find the same through REST. Exits with 1 and a sentence where that does not hold.
 import { expect, open, settings, tell } from './browser.mjs';
-import { readVersion, startRun, toAnotherVersion, watchRun } from './steps.mjs';
+import { brush, readVersion, startRun, toAnotherVersion, tryAndDrop, watchRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const rest = async (path) => {
@@ -28,6 +28,17 @@ await tell('walk', async () => {
 	await region.click();
 	await page.waitForURL(/region=/);
 	expect((await page.locator('a.region[aria-current=true]').count()) === 1, 'the region is not marked');
+
+	await page.keyboard.press('c');
+	const chosen = await brush(page);
+	expect(chosen > 0, 'the brush chose no sample');
+	expect((await page.locator('svg line[stroke="var(--oi-purple)"]').count()) > 0, 'the chosen samples are not marked along the axes');
+	await page.keyboard.press('c');
+
+	const held = await page.evaluate(() => document.querySelector('rect.held.here').dataset.held);
+	const said = await tryAndDrop(page);
+	expect(/↓/.test(said), `the preview should promise a smaller error: ${said}`);
+	expect((await readVersion(page)).held === Number(held), 'a try must leave the version at hand alone');
 
 	const card = page.locator('article[data-effect]').first();
 	const second = await toAnotherVersion(page, () => card.getByRole('button', { name: 'Add and refit' }).click());

@@ -3,8 +3,8 @@ import { colour } from './colour';
 import { type Asked, type View, gestures } from './gestures';
 import { trace } from './trace';
 
-/** `line` joins the points; the others mark each point by itself. */
-export type Mark = 'line' | 'dot' | 'ring' | 'dash';
+/** `line` joins the points, `chord` only the first and the last; the others mark each point by itself. */
+export type Mark = 'line' | 'chord' | 'dot' | 'ring' | 'dash';
 
 export interface Curve {
 	label: string;
@@ -13,6 +13,8 @@ export interface Curve {
 	/** Custom property of the colour. */
 	stroke: string;
 	dash?: number[];
+	/** Half height of the box that a `dash` stands in: how far repeats scatter about it. */
+	spread?: number;
 }
 
 export interface Frame {
@@ -113,7 +115,11 @@ function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 	if (curve.mark === 'line') {
 		return { stroke, points: { show: false }, paths: trace(curve.dash, () => backdrop().gaps) };
 	}
-	if (curve.mark === 'dash') return { stroke, width: 2, points: { show: false }, paths: dashes };
+	if (curve.mark === 'chord') return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, paths: chord };
+	if (curve.mark === 'dash') {
+		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashes(u, i, from, to, curve.spread ?? 0);
+		return { stroke, width: 2, points: { show: false }, paths, fill: () => `color-mix(in srgb, ${stroke()} 22%, transparent)` };
+	}
 	const filled = curve.mark === 'dot';
 	return {
 		stroke,
@@ -122,9 +128,21 @@ function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 	};
 }
 
-/** A short level stroke at each point: where the model says the point should be. */
-function dashes(u: uPlot, index: number, from: number, to: number): uPlot.Series.Paths {
+function chord(u: uPlot, index: number): uPlot.Series.Paths {
 	const path = new Path2D();
+	const [xs, ys] = [u.data[0]!, u.data[index]!];
+	for (const i of [0, xs.length - 1]) {
+		const at = [u.valToPos(xs[i] ?? 0, 'x', true), u.valToPos(ys[i] ?? 0, 'y', true)] as const;
+		if (i === 0) path.moveTo(...at);
+		else path.lineTo(...at);
+	}
+	return { stroke: path };
+}
+
+/** A short level stroke at each point: where the model says the point should be, and the box that repeats would fill. */
+function dashes(u: uPlot, index: number, from: number, to: number, spread: number): uPlot.Series.Paths {
+	const path = new Path2D();
+	const boxes = new Path2D();
 	const half = 5 * devicePixelRatio;
 	for (let i = from; i <= to; i++) {
 		const value = u.data[index]![i];
@@ -133,8 +151,12 @@ function dashes(u: uPlot, index: number, from: number, to: number): uPlot.Series
 		const y = u.valToPos(value, 'y', true);
 		path.moveTo(x - half, y);
 		path.lineTo(x + half, y);
+		if (spread > 0) {
+			const top = u.valToPos(value + spread, 'y', true);
+			boxes.rect(x - half, top, 2 * half, 2 * (y - top));
+		}
 	}
-	return { stroke: path };
+	return { stroke: path, fill: boxes };
 }
 
 function paintBackdrop(u: uPlot, { region, band }: Backdrop): void {

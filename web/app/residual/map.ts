@@ -27,3 +27,16 @@ export function residualMap(
 	}
 	return { x: x.bins, y: y.bins, cells: sums.map((s) => s.tally(noise)) };
 }
+
+/** Indices of the cells that hold a chosen sample. */
+export function cellsOf({ x, y }: ResidualMap, xs: readonly number[], ys: readonly number[], chosen: Uint8Array): Set<number> {
+	const columns = x.edges.length - 1;
+	const cells = new Set<number>();
+	for (let i = 0; i < chosen.length; i++) {
+		if (!chosen[i]) continue;
+		const column = binOf(x.edges, xs[i]!);
+		const row = binOf(y.edges, ys[i]!);
+		if (column >= 0 && row >= 0) cells.add(row * columns + column);
+	}
+	return cells;
+}

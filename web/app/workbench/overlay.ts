@@ -1,43 +1,50 @@
 import type { ResidualSet } from '../api/types';
-import type { Stretch } from './region';
 
 type Column = (number | null)[];
 
-/** The points in the order of an axis, in one list for each way of drawing them. */
+/** The points in the order of x, in one list for each way of drawing them. */
 export interface OverlayData {
 	x: number[];
 	measured: Column;
 	measuredInside: Column;
 	measuredOutside: Column;
 	predicted: Column;
+	predictedInside: Column;
+	predictedOutside: Column;
 	residual: Column;
 	residualInside: Column;
 	residualOutside: Column;
+	/** Prediction and residual of the version beside; empty without one. */
+	other: Column;
+	otherResidual: Column;
 }
 
-/** `Inside`: points in the chosen stretch. `Outside`: points that took no part in the fit. */
+/** `Inside`: chosen points. `Outside`: points that took no part in the fit. */
 export function overlay(
 	set: ResidualSet,
-	axis: ResidualSet['axes'][number],
-	region: Stretch | null,
+	xs: readonly number[],
+	chosen: Uint8Array | null,
 	residualFactor: number,
 	ramps: boolean,
+	other: ResidualSet | null = null,
 ): OverlayData {
-	const order = axis.values.flatMap((value, i) => (Number.isFinite(value) && (ramps || !set.held_out[i]) ? [i] : []));
-	order.sort((a, b) => axis.values[a]! - axis.values[b]!);
-	const along = region ? set.axes.find((one) => one.name === region.axis)?.values : undefined;
-	const inside = (i: number) => !!region && !!along && along[i]! >= region.from && along[i]! <= region.to;
-	const kind = order.map((i) => (inside(i) ? 1 : set.held_out[i] ? 2 : 0));
+	const order = xs.flatMap((value, i) => (Number.isFinite(value) && (ramps || !set.held_out[i]) ? [i] : []));
+	order.sort((a, b) => xs[a]! - xs[b]!);
+	const kind = order.map((i) => (chosen?.[i] ? 1 : set.held_out[i] ? 2 : 0));
 	const pick = (values: readonly number[], which: number, factor = 1): Column =>
 		order.map((i, k) => (kind[k] === which ? values[i]! * factor : null));
 	return {
-		x: order.map((i) => axis.values[i]!),
+		x: order.map((i) => xs[i]!),
 		measured: pick(set.measured, 0),
 		measuredInside: pick(set.measured, 1),
 		measuredOutside: pick(set.measured, 2),
 		predicted: order.map((i) => set.predicted[i]!),
+		predictedInside: pick(set.predicted, 1),
+		predictedOutside: pick(set.predicted, 2),
 		residual: pick(set.error, 0, residualFactor),
 		residualInside: pick(set.error, 1, residualFactor),
 		residualOutside: pick(set.error, 2, residualFactor),
+		other: other ? order.map((i) => other.predicted[i]!) : [],
+		otherResidual: other ? order.map((i) => other.error[i]! * residualFactor) : [],
 	};
 }

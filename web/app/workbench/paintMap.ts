@@ -25,6 +25,7 @@ export function paintMap(
 	size: Size,
 	titles: { x: string; y: string },
 	region: { x: readonly [number, number] | null; y: readonly [number, number] | null },
+	marked: ReadonlySet<number>,
 ): void {
 	const { x, y } = axesOf(map, size);
 	const palette = [colour('--map-low'), colour('--map-mid'), colour('--map-high')] as const;
@@ -44,6 +45,7 @@ export function paintMap(
 		ctx.strokeStyle = colour('--panel');
 		ctx.lineWidth = 1;
 		ctx.strokeRect(...box);
+		if (marked.has(i)) mark(ctx, box);
 	});
 	frame(ctx, size);
 	outline(ctx, size, region.x?.map(x.at) ?? null, region.y?.map(y.at) ?? null);
@@ -73,6 +75,16 @@ function hatch(ctx: CanvasRenderingContext2D, [left, top, width, height]: readon
 	}
 	ctx.stroke();
 	ctx.restore();
+}
+
+/** A cell with samples that were chosen in another plot. */
+function mark(ctx: CanvasRenderingContext2D, [left, top, width, height]: readonly [number, number, number, number]): void {
+	ctx.strokeStyle = colour('--panel');
+	ctx.lineWidth = 3;
+	ctx.strokeRect(left + 3, top + 3, Math.max(1, width - 6), Math.max(1, height - 6));
+	ctx.strokeStyle = colour('--oi-purple');
+	ctx.lineWidth = 1.6;
+	ctx.strokeRect(left + 3, top + 3, Math.max(1, width - 6), Math.max(1, height - 6));
 }
 
 /** Both ends in order, far enough apart to be seen. */

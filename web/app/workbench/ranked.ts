@@ -1,6 +1,7 @@
 import type { ResidualSet } from '../api/types';
-import type { Bins } from '../residual/bins';
-import type { Point } from '../residual/curve';
+import { type Bins, binsFor } from '../residual/bins';
+import { type Point, curve, explainedShare } from '../residual/curve';
+import { type Side, keep, usefulAxes } from '../residual/points';
 
 /** One axis with the residual along it. */
 export interface Ranked {
@@ -11,4 +12,28 @@ export interface Ranked {
 	all: Point[];
 	positive: Point[];
 	negative: Point[];
+}
+
+/** Nobody sets these: they run along, and the means of the segments are no set points. */
+const RUNS_ALONG = /^time_s$|^run_order$|^temperature|position/;
+
+/** Every axis with the curve of some figure of each point, the axis that explains most of it first. */
+export function rankAxes(set: ResidualSet, figure: readonly number[], side: Side, ramps: boolean, noise: number): Ranked[] {
+	const kept = keep(set, side, ramps);
+	const sides = { positive: keep(set, 'positive', ramps), negative: keep(set, 'negative', ramps) };
+	return usefulAxes(set, kept)
+		.map((axis) => {
+			const bins = binsFor(axis.values, RUNS_ALONG.test(axis.name) ? [] : set.segment, kept);
+			const { edges } = bins;
+			const over = (which: Uint8Array) => curve(axis.values, edges, figure, which, noise);
+			return {
+				axis,
+				bins,
+				share: explainedShare(axis.values, edges, figure, kept),
+				all: over(kept),
+				positive: over(sides.positive),
+				negative: over(sides.negative),
+			};
+		})
+		.sort((a, b) => b.share - a.share);
 }

@@ -5,8 +5,16 @@ export interface Stretch {
 	to: number;
 }
 
-export function readStretch(text: string | null): Stretch | null {
-	const [axis = '', from = '', to = ''] = text?.split(':') ?? [];
+/** Stretches that must all hold: one for a brush along an axis, two for a rectangle on the map. */
+export type Region = readonly Stretch[];
+
+export function readRegion(text: string | null): Region | null {
+	const stretches = (text ? text.split(',') : []).map(readStretch);
+	return stretches.length > 0 && stretches.every((one) => one !== null) ? stretches : null;
+}
+
+function readStretch(text: string): Stretch | null {
+	const [axis = '', from = '', to = ''] = text.split(':');
 	const stretch = { axis, from: Number(from), to: Number(to) };
 	const whole = axis !== '' && from !== '' && to !== '' && Number.isFinite(stretch.from) && Number.isFinite(stretch.to);
 	return whole ? stretch : null;
@@ -14,6 +22,22 @@ export function readStretch(text: string | null): Stretch | null {
 
 export function writeStretch({ axis, from, to }: Stretch): string {
 	return [axis, Number(from.toPrecision(6)), Number(to.toPrecision(6))].join(':');
+}
+
+export function writeRegion(region: Region | null): string | null {
+	return region && region.length > 0 ? region.map(writeStretch).join(',') : null;
+}
+
+export function along(region: Region | null, axis: string): readonly [number, number] | null {
+	const stretch = region?.find((one) => one.axis === axis);
+	return stretch ? [stretch.from, stretch.to] : null;
+}
+
+/** The view that shows a stretch with its surroundings, never closer than the axis bears. */
+export function around({ from, to }: { from: number; to: number }, low: number, high: number): [number, number] {
+	const half = Math.max((to - from) * 1.2, (high - low) * 0.06) || 0.5;
+	const middle = (from + to) / 2;
+	return [middle - half, middle + half];
 }
 
 export type Strength = 'STRONG' | 'WEAK' | "CAN'T TELL APART";

@@ -14,7 +14,7 @@ export interface Bar {
 }
 
 /** One bar for each version on the way, and a last one for the effect that would come next. */
-export function barsOf(path: readonly Model[], next: Suggestion | null): Bar[] {
+export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' | 'validation_rms'> | null): Bar[] {
 	const bars: Bar[] = path.map((model, i) => {
 		const before = path[i - 1];
 		return {

@@ -8,7 +8,11 @@ import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
 import { router } from '../state/router.svelte';
 import { isFinal } from '../ui/states';
+import { type Side } from '../residual/points';
+import { selected } from '../residual/selected';
+import { readRegion } from './region';
 import { childWith, gain } from './tree';
+import { tries } from './tries.svelte';
 
 /** Less than this is no gain. */
 const WORTH = 0.005;
@@ -34,39 +38,80 @@ export function openWorkbench(id: number) {
 	);
 	const versions: Model[] = $derived(models.data ?? []);
 	const model: Model | null = $derived(
-		versions.find((one) => String(one.id) === router.query.get('model')) ?? versions.at(-1) ?? null,
+		versions.find((one) => String(one.id) === router.query.get('model')) ??
+			versions.findLast((one) => !tries.has(one.id)) ??
+			versions.at(-1) ??
+			null,
+	);
+	/** From now on the address says which version it shows, so that a version made elsewhere does not take its place. */
+	$effect(() => {
+		if (model && !router.query.has('model')) untrack(() => router.set({ model: model.id }));
+	});
+	/** A second version beside the one at hand: an effect that is being tried, or a version to compare with. */
+	const other: Model | null = $derived(
+		versions.find((one) => String(one.id) === router.query.get('with') && one.id !== model?.id) ?? null,
 	);
 	const residuals = resource(
 		() => model?.id ?? null,
 		async (version, signal) => ({ version, set: await api.residuals(version, signal) }),
 	);
+	const otherResiduals = resource(
+		() => other?.id ?? null,
+		async (version, signal) => ({ version, set: await api.residuals(version, signal) }),
+	);
+	const side = $derived((router.query.get('side') ?? 'both') as Side);
+	const ramps = $derived(router.query.has('ramps'));
+	const region = $derived(readRegion(router.query.get('region')));
+	const chosen = $derived(residuals.data ? selected(residuals.data.set, region, side, ramps) : null);
 	const diagnosis = resource(
 		() => model?.id ?? null,
 		async (version, signal) => (await api.diagnoses(version, signal)).at(-1) ?? (await api.diagnose(version, signal)),
 	);
 
-	/** Fits a set of effects and goes there; a set that was fitted before from the same parent is only visited. */
-	async function refit(set: string[], parent: Model | null, what: string): Promise<void> {
-		if (busy !== null) return;
+	/** A version with these effects. A set that was fitted before from the same parent needs no new fit. */
+	async function version(set: string[], parent: Model | null, what: string): Promise<Model | null> {
+		if (busy !== null) return null;
 		const known = childWith(versions, parent?.id ?? null, set);
-		if (known) return show(known, parent);
+		if (known) return known;
 		busy = what;
 		refused = null;
 		try {
 			const made = await api.fit(id, set, parent?.id);
 			models.put([...versions.filter((one) => one.id !== made.id), made]);
-			show(made, parent);
+			return made;
 		} catch (failure) {
 			refused = asRefusal(failure);
+			return null;
+		} finally {
+			busy = null;
 		}
-		busy = null;
+	}
+
+	async function refit(set: string[], parent: Model | null, what: string): Promise<void> {
+		const next = await version(set, parent, what);
+		if (next) show(next, parent);
 	}
 
 	function show(next: Model, parent: Model | null): void {
-		router.set({ model: next.id, region: null, side: null }, parent === null ? 'replace' : 'push');
+		tries.keep(next.id);
+		router.set({ model: next.id, with: null, region: null, side: null, zoom: null }, parent === null ? 'replace' : 'push');
 		undone = [];
 		notice = parent ? told(parent, next) : null;
 	}
+
+	/** Fits with the effect and shows the answer beside the version at hand, which stays where it is. */
+	async function attempt(effect: string): Promise<void> {
+		const from = model;
+		if (!from) return;
+		const known = versions.length;
+		const next = await version([...from.effects, effect], from, `Trying ${words(effect)}`);
+		if (!next) return;
+		if (versions.length > known) tries.put(next.id);
+		notice = null;
+		beside(next.id);
+	}
+
+	const beside = (version: number | null) => router.set({ with: version }, 'push');
 
 	function told(before: Model, after: Model): { text: string; good: boolean } {
 		const share = gain(before, after);
@@ -87,14 +132,14 @@ export function openWorkbench(id: number) {
 		if (model?.parent == null) return;
 		undone = [...undone, model.id];
 		notice = null;
-		router.set({ model: model.parent, region: null, side: null }, 'push');
+		router.set({ model: model.parent, with: null, region: null, side: null, zoom: null }, 'push');
 	}
 
 	function redo(): void {
 		const next = undone.at(-1);
 		if (next === undefined) return;
 		undone = undone.slice(0, -1);
-		router.set({ model: next, region: null, side: null }, 'push');
+		router.set({ model: next, with: null, region: null, side: null, zoom: null }, 'push');
 	}
 
 	const baseline: string[] = $derived(baselineOf(run.data));
@@ -111,6 +156,10 @@ export function openWorkbench(id: number) {
 		residuals,
 		diagnosis,
 		add,
+		attempt,
+		beside,
+		/** Makes the version beside the one at hand the one at hand. */
+		keep: () => other && model && show(other, model),
 		remove,
 		begin,
 		undo,
@@ -120,6 +169,32 @@ export function openWorkbench(id: number) {
 		},
 		get model() {
 			return model;
+		},
+		get other() {
+			return other;
+		},
+		/** Residuals of the version beside, where both versions hold the same samples. */
+		get otherSet() {
+			const [mine, theirs] = [residuals.data, otherResiduals.data];
+			const alike = theirs?.version === other?.id && theirs?.set.error.length === mine?.set.error.length;
+			return other && alike ? (theirs?.set ?? null) : null;
+		},
+		/** The version beside only tries an effect on the version at hand. */
+		get trying() {
+			return other !== null && other.parent === model?.id && tries.has(other.id);
+		},
+		get side() {
+			return side;
+		},
+		get ramps() {
+			return ramps;
+		},
+		get region() {
+			return region;
+		},
+		/** The samples of the region, one flag each: the same in every plot. */
+		get chosen() {
+			return chosen;
 		},
 		get baseline() {
 			return baseline;

@@ -2,7 +2,11 @@ import { describe, expect, it } from 'vitest';
 import type { Model, Parameter, ResidualSet, Suggestion } from '../api/types';
 import { forest } from './forest';
 import { overlay } from './overlay';
-import { readStretch, strength, writeStretch } from './region';
+import { differences } from './differences';
+import { readView, writeView } from './lens';
+import { readRegion, strength, writeRegion, writeStretch } from './region';
+import { sharesOf } from '../residual/line';
+import { selected } from '../residual/selected';
 import { branches, chain, childWith, gain, stepName } from './tree';
 import { barsOf, topOf } from './waterfall';
 
@@ -58,9 +62,34 @@ it('lets the waterfall end with what would come next', () => {
 describe('regions', () => {
 	it('live in the address', () => {
 		const stretch = { axis: 'motor_velocity_rad_s', from: -3.25, to: 8 };
-		expect(readStretch(writeStretch(stretch))).toEqual(stretch);
-		expect(readStretch('motor_velocity_rad_s:1')).toBeNull();
-		expect(readStretch(null)).toBeNull();
+		expect(readRegion(writeStretch(stretch))).toEqual([stretch]);
+		const rectangle = [stretch, { axis: 'load', from: 0, to: 1 }];
+		expect(readRegion(writeRegion(rectangle))).toEqual(rectangle);
+		expect(readRegion('motor_velocity_rad_s:1')).toBeNull();
+		expect(readRegion(null)).toBeNull();
+		expect(readView(writeView([1.5, 2]))).toEqual([1.5, 2]);
+		expect(readView('2:1')).toBeNull();
+	});
+
+	it('are the samples for which all stretches hold, on the chosen side', () => {
+		const set = {
+			axes: [
+				{ name: 'direction', unit: '1', values: [1, 1, -1, 1] },
+				{ name: 'load', unit: 'Nm', values: [5, 5, 5, 9] },
+			],
+			measured: [1, 2, 2, 2],
+			error: [0, 0, 0, 0],
+			held_out: [false, false, false, false],
+		} as unknown as ResidualSet;
+		const region = [
+			{ axis: 'load', from: 4, to: 6 },
+			{ axis: 'measured', from: 1.5, to: 3 },
+		];
+		expect([...selected(set, region, 'both', false)!]).toEqual([0, 1, 1, 0]);
+		expect([...selected(set, region, 'negative', false)!]).toEqual([0, 0, 1, 0]);
+		expect(selected(set, [{ axis: 'absent', from: 0, to: 1 }], 'both', false)).toBeNull();
+		const bins = { edges: [0, 4, 10], levels: null };
+		expect(sharesOf(set.axes[1]!.values, bins, new Uint8Array([1, 1, 1, 1]), new Uint8Array([0, 1, 1, 0]))).toEqual([0, 0.5]);
 	});
 
 	it('are seen in the overlay, whatever its axis', () => {
@@ -74,12 +103,14 @@ describe('regions', () => {
 			error: [-1, -1, -1],
 			held_out: [false, true, false],
 		} as unknown as ResidualSet;
-		const drawn = overlay(set, set.axes[0]!, { axis: 'load', from: 4, to: 6 }, 1000, true);
+		const chosen = selected(set, [{ axis: 'load', from: 4, to: 6 }], 'both', true);
+		const times = set.axes[0]!.values;
+		const drawn = overlay(set, times, chosen, 1000, true);
 		expect(drawn.x).toEqual([1, 2, 3]);
 		expect(drawn.measuredInside).toEqual([null, null, 30]);
 		expect(drawn.measuredOutside).toEqual([10, null, null]);
 		expect(drawn.residual).toEqual([null, -1000, null]);
-		expect(overlay(set, set.axes[0]!, null, 1, false).x).toEqual([2, 3]);
+		expect(overlay(set, times, null, 1, false).x).toEqual([2, 3]);
 	});
 });
 
@@ -101,4 +132,19 @@ it('flags parameters in words', () => {
 	const pair = ['a', 'b'].map((name) => ({ effect: 'e', name, value: 1, ci95: [0.5, 1.5], state: 'ok' })) as Parameter[];
 	const [first] = forest(pair, [{ first: 'e.a', second: 'e.b', correlation: -0.96 }]);
 	expect(first!.flags).toEqual(['ρ −0.96 with e.b']);
+});
+
+it('tells where two versions differ', () => {
+	const of = (...parameters: [string, number, number | null, number | null][]) =>
+		({ fit: { parameters: parameters.map(([name, value, low, high]) => ({ effect: 'e', name, value, ci95: [low, high] })) } }) as unknown as Model;
+	const mine = of(['a', 1, 0.9, 1.1], ['b', 1, 0.9, 1.1], ['c', 1, 0.9, 1.1], ['d', 1, null, null], ['gone', 1, 0, 2]);
+	const theirs = of(['a', 1.05, 0.95, 1.15], ['b', 1.15, 1.05, 1.25], ['c', 2, 1.9, 2.1], ['d', 1, 0, 2], ['new', 1, 0, 2]);
+	expect(differences(mine, theirs).map(({ key, word }) => [key, word])).toEqual([
+		['e.a', 'same'],
+		['e.b', 'overlap'],
+		['e.c', 'apart'],
+		['e.d', 'unknown'],
+		['e.gone', 'gone'],
+		['e.new', 'new'],
+	]);
 });

@@ -1,0 +1,40 @@
+import { type Bins, binOf } from './bins';
+import type { Point } from './curve';
+import { type Place, middle } from './place';
+import { ENOUGH } from './tally';
+
+/** One curve of means, and how it is drawn. */
+export interface Line {
+	points: Point[];
+	stroke: string;
+	dash: string;
+	/** Without points and standard errors. */
+	bare?: boolean;
+	wide?: boolean;
+}
+
+/** Points of a curve that say something, with their places. */
+export function seen(points: readonly Point[], bins: Bins, scale: Place): (Point & { at: number })[] {
+	return points.flatMap((p, i) => (says(p) ? [{ ...p, at: middle(bins, scale, i) }] : []));
+}
+
+const says = (p: Point) => p.n >= ENOUGH && Number.isFinite(p.se);
+
+/** Half height of an axis that shows all these curves. */
+export function reach(curves: readonly (readonly Point[])[]): number {
+	const sizes = curves.flatMap((points) => points.filter(says).map((p) => Math.abs(p.mean) + p.se));
+	return Math.max(1e-12, ...sizes) * 1.15;
+}
+
+/** Share of each bin's points that are chosen. */
+export function sharesOf(values: readonly number[], { edges }: Bins, kept: Uint8Array, chosen: Uint8Array | null): number[] | null {
+	if (!chosen) return null;
+	const bins = edges.slice(1).map(() => ({ all: 0, chosen: 0 }));
+	for (let i = 0; i < values.length; i++) {
+		const bin = kept[i] ? bins[binOf(edges, values[i]!)] : undefined;
+		if (!bin) continue;
+		bin.all += 1;
+		bin.chosen += chosen[i]!;
+	}
+	return bins.map(({ all, chosen: some }) => (all ? some / all : 0));
+}
