@@ -1,7 +1,6 @@
 //! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
 
 use crate::effect::Stage;
-use crate::effects::find;
 use crate::linear::Basis;
 use crate::prepare::{Prepared, Problem};
 use crate::report::Invisible;
@@ -12,6 +11,8 @@ use crate::{Effect, ModelError, ModelSpec};
 #[derive(Clone)]
 pub struct Assembly<'p> {
     pub prepared: &'p Prepared,
+    /// What the model was at first, and the effects that it may hold.
+    pub spec: &'p ModelSpec,
     /// Ids in the order of the model.
     pub effects: Vec<String>,
     pub main: Terms<'p>,
@@ -22,19 +23,23 @@ pub struct Assembly<'p> {
 
 impl<'p> Assembly<'p> {
     /// Finds forms and starting shapes of every effect and refines them.
-    pub fn new(prepared: &'p Prepared, spec: &ModelSpec) -> Result<Self, ModelError> {
+    pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec) -> Result<Self, ModelError> {
         if spec.kind != prepared.kind {
             return Err(ModelError::WrongKind { run: prepared.kind, model: spec.kind });
         }
         let mut assembly = Self {
             prepared,
+            spec,
             effects: spec.effects.clone(),
             main: Terms::new(&prepared.main),
             moving: prepared.moving.as_ref().map(Terms::new),
             hidden: Vec::new(),
         };
         for id in &spec.effects {
-            let effect = find(spec.kind, id)?;
+            let effect = spec.find(id)?;
+            if let Some(own) = spec.own.iter().find(|own| own.id() == id) {
+                own.check(&prepared.main.view)?;
+            }
             if let Some(why) = effect.hidden(&prepared.main.view) {
                 assembly.hidden.push(Invisible { effect: id.clone(), why });
             } else if effect.is_given() {
@@ -45,7 +50,7 @@ impl<'p> Assembly<'p> {
             }
         }
         assembly.main.refine();
-        assembly.enter_moving(spec);
+        assembly.enter_moving();
         Ok(assembly)
     }
 
@@ -55,7 +60,7 @@ impl<'p> Assembly<'p> {
     }
 
     /// The same model with an effect that was found where the motion changes.
-    pub fn with_memory(&self, term: &Term) -> Self {
+    pub fn with_memory(&self, term: &Term<'p>) -> Self {
         let mut next = self.clone();
         next.effects.push(term.id().into());
         if let Some(moving) = &mut next.moving {
@@ -69,7 +74,7 @@ impl<'p> Assembly<'p> {
     pub fn predict(&self, problem: &Problem) -> Vec<f64> {
         let mut sum = vec![0.0; problem.rows()];
         for id in &self.effects {
-            let Ok(effect) = find(self.prepared.kind, id) else { continue };
+            let Ok(effect) = self.spec.find(id) else { continue };
             if effect.is_given() && !self.hidden.iter().any(|h| h.effect == *id) {
                 add(&mut sum, &columns(effect, "linear", &[], problem), &[1.0]);
             }
@@ -87,7 +92,7 @@ impl<'p> Assembly<'p> {
         let Some(moving) = &mut self.moving else { return };
         moving.given.fill(0.0);
         for id in &self.effects {
-            let Ok(effect) = find(self.prepared.kind, id) else { continue };
+            let Ok(effect) = self.spec.find(id) else { continue };
             if effect.is_given() && !self.hidden.iter().any(|h| h.effect == *id) {
                 add(&mut moving.given, &columns(effect, "linear", &[], moving.problem), &[1.0]);
             }
@@ -100,11 +105,12 @@ impl<'p> Assembly<'p> {
     }
 
     /// Enters the effects that are judged where the motion changes.
-    fn enter_moving(&mut self, spec: &ModelSpec) {
-        let apart: Vec<&'static dyn Effect> = spec
+    fn enter_moving(&mut self) {
+        let apart: Vec<&'p dyn Effect> = self
+            .spec
             .effects
             .iter()
-            .filter_map(|id| find(spec.kind, id).ok())
+            .filter_map(|id| self.spec.find(id).ok())
             .filter(|e| self.is_apart(*e) && !self.hidden.iter().any(|h| h.effect == e.info().id))
             .collect();
         if self.moving.is_none() {
@@ -133,13 +139,13 @@ fn add(sum: &mut [f64], columns: &[Vec<f64>], factors: &[f64]) {
 }
 
 /// Enters the form and shape of an effect that explain most of what is left.
-fn enter(terms: &mut Terms, effect: &'static dyn Effect) {
+fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
     let problem: &Problem = terms.problem;
     let forms = effect.forms(&problem.view);
     let simple = forms.len() == 1 && forms[0].grid.len() == 1;
     let basis = if simple { Basis::default() } else { terms.tangent() };
     let residual = if simple { Vec::new() } else { basis.rest(&terms.response()) };
-    let mut best: Option<(f64, Term)> = None;
+    let mut best: Option<(f64, Term<'p>)> = None;
     for form in forms {
         for shape in form.grid.clone() {
             let term = Term::new(effect, form.clone(), shape, problem);

@@ -99,7 +99,8 @@ fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<S
     for (advance, importance) in found.ranking() {
         let Some(rival) = &advance.added else { continue };
         let id = rival.term.id();
-        let alone = Assembly::new(found.start.prepared, &spec.with(id)?)?;
+        let with = spec.with(id)?;
+        let alone = Assembly::new(found.start.prepared, &with)?;
         let with = report(&alone)?;
         let apart = alone.is_apart(rival.term.effect);
         let reduction = if apart {

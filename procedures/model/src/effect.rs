@@ -3,46 +3,48 @@
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 use serde::Serialize;
+use std::borrow::Cow;
 
-/// What people read about an effect, and what it needs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EffectInfo {
-    pub id: &'static str,
+/// What people read about an effect, and what it needs. Borrowed: from the program for an effect of the library, from
+/// the model for one that a user wrote.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EffectInfo<'e> {
+    pub id: &'e str,
     pub kind: Kind,
-    pub title: &'static str,
+    pub title: &'e str,
     /// One sentence that a technician understands.
-    pub sentence: &'static str,
-    pub formula: &'static str,
+    pub sentence: &'e str,
+    pub formula: &'e str,
     /// Document and equation, or paper.
-    pub source: &'static str,
+    pub source: &'e str,
     /// How the residual looks when the effect is missing.
-    pub looks: &'static str,
-    pub parameters: &'static [ParameterInfo],
+    pub looks: &'e str,
+    pub parameters: &'e [ParameterInfo],
     /// Columns beside the required ones, without which the effect is not visible.
-    pub needs: &'static [&'static str],
+    pub needs: &'e [&'static str],
 }
 
-impl EffectInfo {
+impl<'e> EffectInfo<'e> {
     /// Unit of a parameter. `a_2` is the second of its kind and has the unit of `a`.
-    pub fn unit(&self, name: &str) -> &'static str {
+    pub fn unit(&self, name: &str) -> &'e str {
         let family = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
         let find = |name: &str| self.parameters.iter().find(|p| p.name == name);
-        find(name).or_else(|| find(family)).map_or("1", |p| p.unit)
+        find(name).or_else(|| find(family)).map_or("1", |p| &p.unit)
     }
 }
 
 /// A parameter with what is physically sensible for it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParameterInfo {
-    pub name: &'static str,
-    pub unit: &'static str,
+    pub name: Cow<'static, str>,
+    pub unit: Cow<'static, str>,
     pub min: f64,
     pub max: f64,
 }
 
 /// Shorthand for the tables in the effects' files.
 pub(crate) const fn parameter(name: &'static str, unit: &'static str, min: f64, max: f64) -> ParameterInfo {
-    ParameterInfo { name, unit, min, max }
+    ParameterInfo { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), min, max }
 }
 
 /// Columns of an effect at the points of a view: the effect is their sum, each times its factor.
@@ -50,20 +52,20 @@ pub type Columns = Vec<Vec<f64>>;
 
 /// One way of writing an effect. The forms of one effect are one group: at most one of them is in a model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Form {
-    pub name: &'static str,
+pub struct Form<'e> {
+    pub name: &'e str,
     /// Names of the factors, one for each column.
-    pub linear: &'static [&'static str],
+    pub linear: Vec<&'e str>,
     /// Parameters that the columns depend on.
-    pub shape: Vec<Shape>,
+    pub shape: Vec<Shape<'e>>,
     /// Starting points of the search, one value for each shape parameter.
     pub grid: Vec<Vec<f64>>,
 }
 
 /// A parameter that an effect is not linear in, with the range that this data can speak about.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shape {
-    pub name: &'static str,
+pub struct Shape<'e> {
+    pub name: &'e str,
     pub min: f64,
     pub max: f64,
     pub search: Search,
@@ -74,16 +76,32 @@ pub struct Shape {
 pub enum Search {
     /// Refined continuously, in its logarithm.
     Smooth,
+    /// Refined continuously, in itself: it may be zero or negative.
+    Signed,
     /// A whole number: found on the grid and not refined.
     Whole,
     /// A moment at which the columns jump: narrowed down by halving.
     Jump,
 }
 
-impl Form {
+impl Shape<'_> {
+    /// The value after a step: in its logarithm, or in shares of its range.
+    pub fn moved(&self, value: f64, step: f64) -> f64 {
+        match self.search {
+            Search::Signed => value + step * (self.max - self.min),
+            Search::Smooth | Search::Whole | Search::Jump => value * step.exp(),
+        }
+    }
+
+    pub fn is_smooth(&self) -> bool {
+        matches!(self.search, Search::Smooth | Search::Signed)
+    }
+}
+
+impl<'e> Form<'e> {
     /// A form without shape parameters.
-    pub fn linear(linear: &'static [&'static str]) -> Self {
-        Self { name: "linear", linear, shape: Vec::new(), grid: vec![Vec::new()] }
+    pub fn linear(linear: &[&'e str]) -> Self {
+        Self { name: "linear", linear: linear.to_vec(), shape: Vec::new(), grid: vec![Vec::new()] }
     }
 }
 
@@ -99,10 +117,10 @@ pub enum Stage {
 }
 
 pub trait Effect: Sync {
-    fn info(&self) -> &'static EffectInfo;
+    fn info(&self) -> EffectInfo<'_>;
 
     /// Ways of writing the effect that this data can speak about. Empty: not visible.
-    fn forms(&self, view: &View) -> Vec<Form>;
+    fn forms(&self, view: &View) -> Vec<Form<'_>>;
 
     /// The columns of one form at the points of the view.
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns;
@@ -116,16 +134,21 @@ pub trait Effect: Sync {
         false
     }
 
+    /// The first column without which the effect cannot be computed here.
+    fn missing(&self, view: &View) -> Option<&'static str> {
+        let absent = |need: &&&str| Signal::of_column(need).is_some_and(|s| view.find(s).is_none());
+        self.info().needs.iter().find(absent).copied()
+    }
+
     /// Why this data cannot show the effect: a needed signal is missing or never changes.
     fn hidden(&self, view: &View) -> Option<String> {
         let info = self.info();
-        for need in info.needs {
-            let Some(signal) = Signal::of_column(need) else { continue };
-            match view.find(signal) {
-                None => return Some(format!("the run has no column {need}")),
-                Some(values) if is_constant(values) => return Some(format!("{need} never changes")),
-                Some(_) => {}
-            }
+        if let Some(need) = self.missing(view) {
+            return Some(format!("the run has no column {need}"));
+        }
+        let still = |need: &&&str| Signal::of_column(need).and_then(|s| view.find(s)).is_some_and(is_constant);
+        if let Some(need) = info.needs.iter().find(still) {
+            return Some(format!("{need} never changes"));
         }
         if self.forms(view).is_empty() { Some(format!("it would not show: {}", info.looks)) } else { None }
     }

@@ -26,6 +26,22 @@ pub enum ModelError {
     Collinear { first: String, second: String },
     #[error("{column} never changes: nothing can be identified; record a run in which it does")]
     Constant { column: String },
+    /// A user's effect is not written as it should be, with the character.
+    #[error(transparent)]
+    Formula(#[from] Box<crate::FormulaFault>),
+    #[error(
+        "effect {effect} is not finite at {points} points of this data, first where {first}; \
+         write a formula that is defined there, or give its parameters bounds that keep it so"
+    )]
+    NotFinite { effect: String, points: usize, first: String },
+    #[error("signal {signal}: {why}")]
+    BadSignal { signal: String, why: String },
+    #[error("the fit does not say where it holds: it was made by another version; fit the run again")]
+    NoScope,
+    #[error("a {kind} model cannot be written as {what}: {why}")]
+    NoExport { kind: Kind, what: &'static str, why: &'static str },
+    #[error("this is no exported model: {0}; export one with `jointbench model export`")]
+    BadFile(String),
     #[error("the option {option} is out of range: {why}")]
     BadOption { option: &'static str, why: String },
     #[error("the stored fit has no form {form} of effect {effect}: it was made by another version; fit the run again")]

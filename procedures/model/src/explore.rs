@@ -12,16 +12,16 @@ use crate::{ModelError, ModelSpec, Options, ResidualKind, floor};
 
 /// What was added or removed, and the model after it.
 pub struct Advance<'p> {
-    pub added: Option<Rival>,
-    pub removed: Option<&'static str>,
-    pub ties: Vec<&'static str>,
+    pub added: Option<Rival<'p>>,
+    pub removed: Option<&'p str>,
+    pub ties: Vec<&'p str>,
     pub after: Assembly<'p>,
 }
 
 pub struct Exploration<'p> {
     pub start: Assembly<'p>,
     pub advances: Vec<Advance<'p>>,
-    pub silent: Vec<Silence>,
+    pub silent: Vec<Silence<'p>>,
     pub invisible: Vec<Invisible>,
     /// Maps of what the last model leaves.
     pub maps: Maps,
@@ -39,12 +39,17 @@ const REPEATABLE_SHARE: f64 = 0.6;
 const FAR_FROM_FLOOR: f64 = 1.5;
 
 impl<'p> Exploration<'p> {
-    pub fn new(prepared: &'p Prepared, spec: &ModelSpec, options: &Options, most: usize) -> Result<Self, ModelError> {
+    pub fn new(
+        prepared: &'p Prepared,
+        spec: &'p ModelSpec,
+        options: &Options,
+        most: usize,
+    ) -> Result<Self, ModelError> {
         let start = Assembly::new(prepared, spec)?;
         let all = [Stage::Settled, Stage::Ramp, Stage::Memory];
         let apart = prepared.about.residual == ResidualKind::PlateauMean;
         let stages = if apart { &all[..1] } else { &all[..] };
-        let library = Library::new(prepared.kind, &prepared.main, stages);
+        let library = Library::new(spec, &prepared.main, stages);
         let path = search(start.main.clone(), &library, most, options);
         let mut advances: Vec<Advance> = Vec::new();
         let mut effects = start.effects.clone();
@@ -52,7 +57,7 @@ impl<'p> Exploration<'p> {
             let (added, removed, ties) = match step {
                 Move::Added { rival, ties } => {
                     effects.push(rival.term.id().into());
-                    (Some(rival), None, ties)
+                    (Some(*rival), None, ties)
                 }
                 Move::Removed(id) => {
                     effects.retain(|e| e != id);

@@ -1,12 +1,14 @@
 //! Fitting a model to a run, and holding a fit against another run.
 
 use crate::assembly::Assembly;
+use crate::formula::{NamedSignal, signals};
 use crate::intervals::intervals;
 use crate::linear::{dot, solve};
 use crate::prepare::{Prepared, Problem, prepare};
-use crate::report::{Evaluation, Fit, Parameter, ParameterState, Term as TermReport};
+use crate::report::{Evaluation, Fit, Parameter, ParameterState, Scope, SignalRange, Term as TermReport};
 use crate::select::held_out;
-use crate::terms::{Terms, columns};
+use crate::terms::Terms;
+use crate::view::View;
 use crate::{ModelError, ModelSpec, Options, effects};
 use jointbench_instrument::RunTable;
 
@@ -44,10 +46,18 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
                 form: term.form.name.into(),
                 shape: term.shape.clone(),
                 linear: factors,
+                names: term
+                    .form
+                    .linear
+                    .iter()
+                    .copied()
+                    .chain(term.form.shape.iter().map(|s| s.name))
+                    .map(String::from)
+                    .collect(),
             });
         }
     }
-    parameters.extend(assembly.hidden.iter().flat_map(|h| unseen(prepared, &h.effect, &h.why)));
+    parameters.extend(assembly.hidden.iter().flat_map(|h| unseen(assembly, &h.effect, &h.why)));
     let order = |effect: &str| assembly.effects.iter().position(|e| e == effect);
     parameters.sort_by_key(|p| order(&p.effect));
     terms.sort_by_key(|t| order(&t.effect));
@@ -65,6 +75,7 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
     Ok(Fit {
         kind: prepared.kind,
         effects: assembly.effects.clone(),
+        own: assembly.spec.own.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect(),
         rms: (linear.sse / n).sqrt(),
         validation_rms: (held_out(main).iter().sum::<f64>() / n).sqrt(),
         unit: prepared.unit(),
@@ -76,7 +87,23 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         notes,
         preparation: prepared.about.clone(),
         terms,
+        scope: Some(scope(prepared)),
     })
+}
+
+fn scope(prepared: &Prepared) -> Scope {
+    let view = &prepared.main.view;
+    let range = |s: &NamedSignal| {
+        let values = view.find(s.signal)?;
+        let (min, max) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        Some(SignalRange { name: s.name.into(), unit: prepared.motion.label(s.unit), min, max })
+    };
+    Scope {
+        motion: prepared.motion,
+        load_scale: prepared.load_scale,
+        sample_s: view.sample_s,
+        signals: signals(prepared.kind).iter().filter_map(range).collect(),
+    }
 }
 
 /// Condition of the scaled columns by QR; refuses columns that depend on each other.
@@ -96,17 +123,17 @@ fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
     }
 }
 
-fn unseen(prepared: &Prepared, id: &str, why: &str) -> Vec<Parameter> {
-    let Ok(effect) = effects::find(prepared.kind, id) else { return Vec::new() };
+fn unseen(assembly: &Assembly, id: &str, why: &str) -> Vec<Parameter> {
+    let Ok(effect) = assembly.spec.find(id) else { return Vec::new() };
     effect
         .info()
         .parameters
         .iter()
         .map(|p| Parameter {
             effect: id.into(),
-            name: p.name.into(),
+            name: p.name.to_string(),
             value: 0.0,
-            unit: prepared.motion.label(p.unit),
+            unit: assembly.prepared.motion.label(&p.unit),
             ci95: [0.0, 0.0],
             state: ParameterState::Unidentified,
             note: Some(format!("not visible in this data: {why}")),
@@ -146,24 +173,35 @@ pub(crate) fn prepare_alike(fit: &Fit, run: &RunTable) -> Result<Prepared, Model
 
 /// What a fit predicts at the rows of a problem.
 pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
-    let mut predicted = vec![0.0; problem.rows()];
+    predict_on(fit, &problem.view, problem.rows(), |column| problem.reduce.apply(column))
+}
+
+/// The same at the points of a view, each column reduced to rows.
+pub(crate) fn predict_on(
+    fit: &Fit,
+    view: &View,
+    rows: usize,
+    reduce: impl Fn(Vec<f64>) -> Vec<f64>,
+) -> Result<Vec<f64>, ModelError> {
+    let mut predicted = vec![0.0; rows];
     let mut add = |columns: Vec<Vec<f64>>, factors: &[f64]| {
-        for (column, factor) in columns.iter().zip(factors) {
-            predicted.iter_mut().zip(column).for_each(|(p, c)| *p += factor * c);
+        for (column, factor) in columns.into_iter().zip(factors) {
+            predicted.iter_mut().zip(reduce(column)).for_each(|(p, c)| *p += factor * c);
         }
     };
     for id in &fit.effects {
-        let effect = effects::find(fit.kind, id)?;
-        if effect.is_given() && effect.hidden(&problem.view).is_none() {
-            add(columns(effect, "linear", &[], problem), &[1.0]);
+        let effect = effects::find_with_own(fit.kind, &fit.own, id)?;
+        if effect.is_given() && effect.missing(view).is_none() {
+            add(effect.columns("linear", &[], view), &[1.0]);
         }
     }
     for term in &fit.terms {
-        let effect = effects::find(fit.kind, &term.effect)?;
-        if let Some(why) = effect.hidden(&problem.view) {
+        let effect = effects::find_with_own(fit.kind, &fit.own, &term.effect)?;
+        if let Some(column) = effect.missing(view) {
+            let why = format!("there is no column {column}");
             return Err(ModelError::NotVisible { effect: term.effect.clone(), why });
         }
-        let found = columns(effect, &term.form, &term.shape, problem);
+        let found = effect.columns(&term.form, &term.shape, view);
         if found.len() != term.linear.len() {
             return Err(ModelError::UnknownForm { effect: term.effect.clone(), form: term.form.clone() });
         }

@@ -1,6 +1,6 @@
 //! Parameters with intervals that survive autocorrelation: a jackknife over blocks.
 
-use crate::effect::Search;
+use crate::effect::{Search, Shape};
 use crate::linear::{BlockGrams, Spd};
 use crate::report::{Parameter, ParameterState, TradeOff};
 use crate::terms::Terms;
@@ -15,13 +15,12 @@ pub struct Intervals {
 /// Two parameters whose estimates are correlated more than this are one combination that the data decides.
 const TRADE_OFF: f64 = 0.95;
 
-struct Slot {
-    effect: &'static str,
-    name: &'static str,
+struct Slot<'a> {
+    effect: &'a str,
+    name: &'a str,
     value: f64,
-    /// The estimate moves by value·δ instead of δ.
-    logarithmic: bool,
-    bounds: Option<(f64, f64)>,
+    /// `None` for a factor.
+    shape: Option<Shape<'a>>,
 }
 
 /// Parameters of the terms with 95 % intervals: delete-one-block jackknife of the linearised model, Student's t with
@@ -33,15 +32,13 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
     let mut slots: Vec<Slot> = Vec::new();
     for (term, factors) in terms.terms.iter().zip(&linear.factors) {
         for (name, value) in term.form.linear.iter().zip(factors) {
-            slots.push(Slot { effect: term.id(), name, value: *value, logarithmic: false, bounds: None });
+            slots.push(Slot { effect: term.id(), name, value: *value, shape: None });
         }
     }
     for (i, k, slope) in &slopes {
         let (term, shape) = (&terms.terms[*i], terms.terms[*i].form.shape[*k]);
         columns.push(slope);
-        let bounds = Some((shape.min, shape.max));
-        let value = term.shape[*k];
-        slots.push(Slot { effect: term.id(), name: shape.name, value, logarithmic: true, bounds });
+        slots.push(Slot { effect: term.id(), name: shape.name, value: term.shape[*k], shape: Some(shape) });
     }
     let p = columns.len();
     let grams = BlockGrams::new(&columns, &linear.residual, &terms.problem.block, terms.problem.blocks);
@@ -58,10 +55,9 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
     let mut parameters = Vec::new();
     for (k, slot) in slots.iter().enumerate() {
         let reach = t * covariance(k, k).sqrt();
-        let ci95 = if slot.logarithmic {
-            [slot.value * (-reach).max(-50.0).exp(), slot.value * reach.min(50.0).exp()]
-        } else {
-            [slot.value - reach, slot.value + reach]
+        let ci95 = match slot.shape {
+            Some(shape) => [-reach, reach].map(|step| shape.moved(slot.value, step.clamp(-50.0, 50.0))),
+            None => [slot.value - reach, slot.value + reach],
         };
         let info = terms.terms.iter().find(|t| t.id() == slot.effect).map(|t| t.effect.info());
         let unit = info.map_or("1", |i| i.unit(slot.name));
@@ -70,7 +66,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
         parameters.push(Parameter { effect, name, value: slot.value, unit: motion.label(unit), ci95, state, note });
     }
     for term in &terms.terms {
-        for (shape, value) in term.form.shape.iter().zip(&term.shape).filter(|(s, _)| s.search != Search::Smooth) {
+        for (shape, value) in term.form.shape.iter().zip(&term.shape).filter(|(s, _)| !s.is_smooth()) {
             let unit = term.effect.info().unit(shape.name);
             parameters.push(Parameter {
                 effect: term.id().into(),
@@ -101,17 +97,18 @@ fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<Str
     if dead {
         return (ParameterState::Unidentified, Some("this data says nothing about it".into()));
     }
-    if let Some((min, max)) = slot.bounds {
-        if slot.value <= min * 1.001 || slot.value >= max * 0.999 {
+    if let Some(shape) = slot.shape {
+        let edge = |bound: f64| (slot.value - bound).abs() <= 1e-3 * bound.abs().max(1e-3 * (shape.max - shape.min));
+        if edge(shape.min) || edge(shape.max) {
             let words = "the best value lies at the edge of what this data can speak about";
             return (ParameterState::AtBound, Some(words.into()));
         }
-        if ci95[1] > 10.0 * ci95[0].abs() {
+        if shape.search == Search::Smooth && ci95[1] > 10.0 * ci95[0].abs() {
             let words = format!("hardly identified: anything from {:.3} to {:.3} fits", ci95[0], ci95[1]);
             return (ParameterState::Unidentified, Some(words));
         }
     }
-    if slot.bounds.is_none() && ci95[0] < 0.0 && ci95[1] > 0.0 {
+    if slot.shape.is_none() && ci95[0] < 0.0 && ci95[1] > 0.0 {
         return (ParameterState::Unidentified, Some("the interval holds zero".into()));
     }
     (ParameterState::Ok, None)

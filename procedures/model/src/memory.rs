@@ -15,14 +15,14 @@ use crate::terms::{Terms, polish};
 const MOST: f64 = 0.6;
 
 /// The memory effect that this run shows beyond the model, if one does.
-pub fn memory(now: &Assembly, options: &Options) -> Option<Rival> {
+pub fn memory<'p>(now: &Assembly<'p>, options: &Options) -> Option<Rival<'p>> {
     let prepared = now.prepared;
     let problem = prepared.memory.as_ref()?;
     let mut terms = Terms::new(problem);
     terms.given = now.predict(problem);
     let rest = terms.response();
     let energy = dot(&rest, &rest);
-    let mut library = Library::new(prepared.kind, problem, &[Stage::Memory]);
+    let mut library = Library::new(now.spec, problem, &[Stage::Memory]);
     library.candidates.retain(|c| !now.effects.iter().any(|e| e == c.id()));
     let basis = Basis::default();
     let shares = library.candidates.iter().map(|c| crate::select::gain(&c.columns, &basis, &rest, energy).share);

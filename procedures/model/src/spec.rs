@@ -1,31 +1,49 @@
 //! What is asked: a model as a kind plus a set of effects, and how to go about it.
 
-use crate::{ModelError, effects};
+use crate::effect::Effect;
+use crate::{ModelError, OwnEffect, effects};
 use jointbench_instrument::{Kind, RunTable};
 use serde::{Deserialize, Serialize};
 
 /// A model: a kind and the effects that it is the sum of.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelSpec {
     pub kind: Kind,
     /// Stable effect ids, in the order in which they were added.
     pub effects: Vec<String>,
+    /// Effects that the user wrote: the model may hold them, and a diagnosis may suggest them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<OwnEffect>,
 }
 
 impl ModelSpec {
     /// Checks that every effect is known for the kind and named once.
     pub fn new(kind: Kind, effects: impl IntoIterator<Item = impl Into<String>>) -> Result<Self, ModelError> {
-        let effects: Vec<String> = effects.into_iter().map(Into::into).collect();
-        if effects.is_empty() {
+        Self::with_own(kind, effects, Vec::new())
+    }
+
+    /// The same with effects that the user wrote; those of other kinds are left out.
+    pub fn with_own(
+        kind: Kind,
+        effects: impl IntoIterator<Item = impl Into<String>>,
+        mut own: Vec<OwnEffect>,
+    ) -> Result<Self, ModelError> {
+        own.retain(|effect| effect.kind() == kind);
+        let spec = Self { kind, effects: effects.into_iter().map(Into::into).collect(), own };
+        if spec.effects.is_empty() {
             return Err(ModelError::EmptyModel);
         }
-        for (i, id) in effects.iter().enumerate() {
-            effects::find(kind, id)?;
-            if effects[..i].contains(id) {
+        let own = spec.own.iter().enumerate().find(|(i, own)| spec.own[..*i].iter().any(|o| o.id() == own.id()));
+        if let Some((_, twice)) = own {
+            return Err(ModelError::TwiceNamed(twice.id().to_owned()));
+        }
+        for (i, id) in spec.effects.iter().enumerate() {
+            spec.find(id)?;
+            if spec.effects[..i].contains(id) {
                 return Err(ModelError::TwiceNamed(id.clone()));
             }
         }
-        Ok(Self { kind, effects })
+        Ok(spec)
     }
 
     /// The `baseline` of the run's meta file.
@@ -38,16 +56,27 @@ impl ModelSpec {
         Self::new(kind, list.split(',').map(str::trim).filter(|id| !id.is_empty()))
     }
 
+    /// Every effect that a model of this kind may hold.
+    pub fn known(&self) -> impl Iterator<Item = &dyn Effect> {
+        effects::with_own(self.kind, &self.own)
+    }
+
+    /// The effect with an id. [`ModelError::UnknownEffect`] names those that are known.
+    pub fn find(&self, id: &str) -> Result<&dyn Effect, ModelError> {
+        effects::find_with_own(self.kind, &self.own, id)
+    }
+
     pub fn contains(&self, id: &str) -> bool {
         self.effects.iter().any(|e| e == id)
     }
 
     pub fn with(&self, id: &str) -> Result<Self, ModelError> {
-        Self::new(self.kind, self.effects.iter().map(String::as_str).chain([id]))
+        Self::with_own(self.kind, self.effects.iter().map(String::as_str).chain([id]), self.own.clone())
     }
 
     pub fn without(&self, id: &str) -> Self {
-        Self { kind: self.kind, effects: self.effects.iter().filter(|e| *e != id).cloned().collect() }
+        let effects = self.effects.iter().filter(|e| *e != id).cloned().collect();
+        Self { effects, ..self.clone() }
     }
 }
 

@@ -6,26 +6,26 @@ use crate::prepare::Problem;
 
 /// One effect of the model in one form.
 #[derive(Clone)]
-pub struct Term {
-    pub effect: &'static dyn Effect,
-    pub form: Form,
+pub struct Term<'e> {
+    pub effect: &'e dyn Effect,
+    pub form: Form<'e>,
     pub shape: Vec<f64>,
     pub columns: Columns,
 }
 
-impl Term {
-    pub fn new(effect: &'static dyn Effect, form: Form, shape: Vec<f64>, problem: &Problem) -> Self {
+impl<'e> Term<'e> {
+    pub fn new(effect: &'e dyn Effect, form: Form<'e>, shape: Vec<f64>, problem: &Problem) -> Self {
         let columns = columns(effect, form.name, &shape, problem);
         Self { effect, form, shape, columns }
     }
 
-    pub fn id(&self) -> &'static str {
+    pub fn id(&self) -> &'e str {
         self.effect.info().id
     }
 
     /// Shape parameters that are refined continuously.
     fn free(&self) -> impl Iterator<Item = usize> {
-        let free: Vec<usize> = (0..self.shape.len()).filter(|i| self.form.shape[*i].search == Search::Smooth).collect();
+        let free: Vec<usize> = (0..self.shape.len()).filter(|i| self.form.shape[*i].is_smooth()).collect();
         free.into_iter()
     }
 
@@ -54,7 +54,7 @@ pub struct Terms<'p> {
     pub problem: &'p Problem,
     /// Sum of what enters with a factor of one.
     pub given: Vec<f64>,
-    pub terms: Vec<Term>,
+    pub terms: Vec<Term<'p>>,
 }
 
 /// The least squares solution of a model: factors of every term's columns and what they leave.
@@ -120,7 +120,7 @@ impl<'p> Terms<'p> {
         basis
     }
 
-    /// Slopes of the model in every free shape parameter (per unit of its logarithm), term by term.
+    /// Slopes of the model in every free shape parameter, term by term.
     pub fn slopes(&self, factors: &[Vec<f64>]) -> Vec<(usize, usize, Vec<f64>)> {
         let mut out = Vec::new();
         for (i, (term, factors)) in self.terms.iter().zip(factors).enumerate() {
@@ -139,7 +139,7 @@ impl<'p> Terms<'p> {
         let fixed = (0..self.terms.len()).filter(|i| !free.contains(i)).flat_map(|i| &self.terms[i].columns);
         let basis = Basis::of(fixed);
         let rest = basis.rest(&self.response());
-        let mut moving: Vec<Term> = free.iter().map(|i| self.terms[*i].clone()).collect();
+        let mut moving: Vec<Term<'p>> = free.iter().map(|i| self.terms[*i].clone()).collect();
         polish(&mut moving, &basis, &rest, self.problem);
         for (i, term) in free.into_iter().zip(moving) {
             self.terms[i] = term;
@@ -147,14 +147,16 @@ impl<'p> Terms<'p> {
     }
 }
 
-/// ∂(Σ factor·column)/∂ln(shape) of each free shape parameter, by a central difference.
+/// ∂(Σ factor·column) by a step of each free shape parameter (see [`Shape::moved`]), by a central difference.
+///
+/// [`Shape::moved`]: crate::effect::Shape::moved
 fn slopes(term: &Term, factors: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
     const STEP: f64 = 1e-4;
     term.free()
         .map(|k| {
             let at = |sign: f64| {
                 let mut shape = term.shape.clone();
-                shape[k] *= (sign * STEP).exp();
+                shape[k] = term.form.shape[k].moved(shape[k], sign * STEP);
                 columns(term.effect, term.form.name, &shape, problem)
             };
             let (up, down) = (at(1.0), at(-1.0));
@@ -227,7 +229,7 @@ fn narrow(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) ->
 }
 
 /// Variable projection with Kaufman's Jacobian (Golub, Pereyra 2003; Kaufman 1975) in a Levenberg–Marquardt loop over
-/// the logarithms of the shape parameters, held within their bounds.
+/// the steps of the shape parameters (in their logarithms, where they cannot be negative), held within their bounds.
 pub fn polish(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> f64 {
     let mut best = narrow(terms, basis, rest, problem);
     let index: Vec<(usize, usize)> =
@@ -264,7 +266,7 @@ pub fn polish(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem
             let mut trial = terms.to_vec();
             for ((i, k), s) in index.iter().zip(&step) {
                 let bounds = trial[*i].form.shape[*k];
-                let value = trial[*i].shape[*k] * s.clamp(-1.0, 1.0).exp();
+                let value = bounds.moved(trial[*i].shape[*k], s.clamp(-1.0, 1.0));
                 trial[*i].shape[*k] = value.clamp(bounds.min, bounds.max);
             }
             for term in &mut trial {

@@ -12,7 +12,7 @@ impl Lab {
             None => Kind::ALL.to_vec(),
             Some(name) => vec![find_kind(name)?],
         };
-        Ok(kinds.into_iter().flat_map(jointbench_model::effects).map(|effect| effect_view(effect.info())).collect())
+        Ok(kinds.into_iter().flat_map(jointbench_model::effects).map(|effect| effect_view(&effect.info())).collect())
     }
 
     /// Fits effects to a run and keeps the fit as a version, with its diagnosis.
@@ -136,8 +136,8 @@ fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
             .parameters
             .iter()
             .map(|parameter| view::EffectParameter {
-                name: parameter.name.to_owned(),
-                unit: parameter.unit.to_owned(),
+                name: parameter.name.to_string(),
+                unit: parameter.unit.to_string(),
                 // A bound without end is none.
                 min: finite(parameter.min),
                 max: finite(parameter.max),

@@ -6,9 +6,9 @@ mod friction;
 pub(crate) mod memory;
 mod stiffness;
 
-use crate::ModelError;
 use crate::effect::{Effect, Form, Search, Shape};
 use crate::view::{Signal, View};
+use crate::{ModelError, OwnEffect};
 use jointbench_instrument::Kind;
 use std::ops::RangeInclusive;
 
@@ -24,15 +24,24 @@ pub fn effects(kind: Kind) -> &'static [&'static dyn Effect] {
 
 /// The effect with an id. [`ModelError::UnknownEffect`] names those that are known.
 pub fn find(kind: Kind, id: &str) -> Result<&'static dyn Effect, ModelError> {
-    effects(kind).iter().copied().find(|e| e.info().id == id).ok_or_else(|| ModelError::UnknownEffect {
+    find_with_own(kind, &[], id)
+}
+
+/// The library with the effects that a user wrote, which come last.
+pub(crate) fn with_own(kind: Kind, own: &[OwnEffect]) -> impl Iterator<Item = &dyn Effect> {
+    effects(kind).iter().copied().chain(own.iter().map(|effect| effect as &dyn Effect))
+}
+
+pub(crate) fn find_with_own<'e>(kind: Kind, own: &'e [OwnEffect], id: &str) -> Result<&'e dyn Effect, ModelError> {
+    with_own(kind, own).find(|e| e.info().id == id).ok_or_else(|| ModelError::UnknownEffect {
         id: id.to_owned(),
         kind,
-        known: effects(kind).iter().map(|e| e.info().id.to_owned()).collect(),
+        known: with_own(kind, own).map(|e| e.info().id.to_owned()).collect(),
     })
 }
 
 /// `count` values from `low` to `high`, each the same factor above the last.
-fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
+pub(crate) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
     let ratio = (high / low).ln();
     (0..count).map(|i| low * (ratio * i as f64 / (count - 1).max(1) as f64).exp()).collect()
 }
@@ -73,7 +82,7 @@ fn reversal_range(view: &View) -> Option<(f64, f64)> {
 
 /// A harmonic of an angle, searched over whole orders. Orders that turn further than half a wave between two samples
 /// at the slowest motion cannot be told from lower ones and are left out.
-fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form> {
+fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form<'static>> {
     let Some(samples) = view.samples.find(angle).filter(|_| !view.constants.slides) else { return Vec::new() };
     let mut steps: Vec<f64> = samples.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
     steps.sort_by(f64::total_cmp);
@@ -85,14 +94,14 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
         return Vec::new();
     }
     let shape = vec![Shape { name: "harmonic", min: first, max: last, search: Search::Whole }];
-    vec![Form { name: "harmonic", linear: &["a", "b"], shape, grid }]
+    vec![Form { name: "harmonic", linear: vec!["a", "b"], shape, grid }]
 }
 
 /// Name of the form of an effect that may have several harmonics.
 pub(crate) const SEVERAL_HARMONICS: &str = "harmonics";
 
 /// The form with a number of harmonics, each with two factors.
-pub(crate) fn several_harmonics(count: usize) -> Form {
+pub(crate) fn several_harmonics(count: usize) -> Form<'static> {
     const LINEAR: [&str; 16] =
         ["a", "b", "a_2", "b_2", "a_3", "b_3", "a_4", "b_4", "a_5", "b_5", "a_6", "b_6", "a_7", "b_7", "a_8", "b_8"];
     const SHAPE: [&str; 8] =
@@ -101,7 +110,7 @@ pub(crate) fn several_harmonics(count: usize) -> Form {
     let shape = |name: &&'static str| Shape { name, min: 1.0, max: f64::INFINITY, search: Search::Whole };
     Form {
         name: SEVERAL_HARMONICS,
-        linear: &LINEAR[..2 * count],
+        linear: LINEAR[..2 * count].to_vec(),
         shape: SHAPE[..count].iter().map(shape).collect(),
         grid: Vec::new(),
     }

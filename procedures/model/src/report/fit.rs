@@ -1,6 +1,7 @@
 //! A fitted model.
 
-use jointbench_instrument::Kind;
+use crate::OwnEffect;
+use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Serialize};
 
 /// What RMS figures and residuals are made of.
@@ -18,6 +19,9 @@ pub enum ResidualKind {
 pub struct Fit {
     pub kind: Kind,
     pub effects: Vec<String>,
+    /// Definitions of the effects that a user wrote: without them the fit means nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<OwnEffect>,
     /// Root mean square of the residual on the data that was fitted, in `unit`.
     pub rms: f64,
     /// The same on data that did not take part in the fit: every condition is predicted by the others.
@@ -36,6 +40,9 @@ pub struct Fit {
     pub preparation: Preparation,
     /// The same parameters as the effects hold them, to compute the model again.
     pub terms: Vec<Term>,
+    /// `None` in fits of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scope: Option<Scope>,
 }
 
 /// One number of the model.
@@ -102,6 +109,29 @@ pub struct Term {
     pub shape: Vec<f64>,
     /// Factors of the effect's columns.
     pub linear: Vec<f64>,
+    /// Names of the factors, then of the shape parameters.
+    #[serde(default)]
+    pub names: Vec<String>,
+}
+
+/// Where a fit holds: what someone needs who uses it far from its run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scope {
+    pub motion: Motion,
+    /// Factor from the load as the model sees it to the link torque: the gear ratio of friction runs, else 1.
+    pub load_scale: f64,
+    /// Step of the samples that memory effects were simulated on [s].
+    pub sample_s: f64,
+    /// Signals at the points of the fit, by the names that formulas use.
+    pub signals: Vec<SignalRange>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SignalRange {
+    pub name: String,
+    pub unit: String,
+    pub min: f64,
+    pub max: f64,
 }
 
 /// A fit on a run that took no part in it.

@@ -7,5 +7,7 @@ mod residuals;
 pub use diagnosis::{
     Diagnosis, Discovery, Experiment, Invisible, NoiseFloor, Region, Silent, Step, Suggestion, Verdict,
 };
-pub use fit::{Evaluation, Fit, Parameter, ParameterState, Preparation, ResidualKind, Term, TradeOff};
+pub use fit::{
+    Evaluation, Fit, Parameter, ParameterState, Preparation, ResidualKind, Scope, SignalRange, Term, TradeOff,
+};
 pub use residuals::{Axis, ResidualSet};

@@ -1,33 +1,32 @@
 //! Every effect that the model does not have, in every form, at every starting point of its shape.
 
+use crate::ModelSpec;
 use crate::effect::{Effect, Form, Stage};
-use crate::effects::effects;
 use crate::linear::{Basis, Spd, dot};
 use crate::prepare::Problem;
 use crate::report::Invisible;
 use crate::terms::{Term, columns};
-use jointbench_instrument::Kind;
 
 /// An effect in one form at one shape.
-pub struct Candidate {
-    pub effect: &'static dyn Effect,
-    pub form: Form,
+pub struct Candidate<'e> {
+    pub effect: &'e dyn Effect,
+    pub form: Form<'e>,
     pub shape: Vec<f64>,
     pub columns: Vec<Vec<f64>>,
 }
 
-impl Candidate {
-    pub fn id(&self) -> &'static str {
+impl<'e> Candidate<'e> {
+    pub fn id(&self) -> &'e str {
         self.effect.info().id
     }
 
-    pub fn term(&self) -> Term {
+    pub fn term(&self) -> Term<'e> {
         Term { effect: self.effect, form: self.form.clone(), shape: self.shape.clone(), columns: self.columns.clone() }
     }
 }
 
-pub struct Library {
-    pub candidates: Vec<Candidate>,
+pub struct Library<'e> {
+    pub candidates: Vec<Candidate<'e>>,
     pub invisible: Vec<Invisible>,
 }
 
@@ -40,11 +39,11 @@ pub struct Gain {
     pub rest: Vec<Vec<f64>>,
 }
 
-impl Library {
+impl<'e> Library<'e> {
     /// All candidates of the stages that this problem can judge.
-    pub fn new(kind: Kind, problem: &Problem, stages: &[Stage]) -> Self {
+    pub fn new(spec: &'e ModelSpec, problem: &Problem, stages: &[Stage]) -> Self {
         let mut library = Self { candidates: Vec::new(), invisible: Vec::new() };
-        for effect in effects(kind) {
+        for effect in spec.known() {
             if effect.is_given() || !stages.contains(&effect.stage()) {
                 continue;
             }
@@ -54,13 +53,8 @@ impl Library {
             }
             for form in effect.forms(&problem.view) {
                 for shape in &form.grid {
-                    let columns = columns(*effect, form.name, shape, problem);
-                    library.candidates.push(Candidate {
-                        effect: *effect,
-                        form: form.clone(),
-                        shape: shape.clone(),
-                        columns,
-                    });
+                    let columns = columns(effect, form.name, shape, problem);
+                    library.candidates.push(Candidate { effect, form: form.clone(), shape: shape.clone(), columns });
                 }
             }
         }

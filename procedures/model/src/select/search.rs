@@ -12,8 +12,8 @@ const SHORT_LIST: usize = 8;
 
 /// A candidate of one step with its evidence.
 #[derive(Clone)]
-pub struct Rival {
-    pub term: Term,
+pub struct Rival<'p> {
+    pub term: Term<'p>,
     /// Share of the remaining squared error.
     pub share: f64,
     /// Held-out squared error of the model with it.
@@ -23,30 +23,30 @@ pub struct Rival {
     losses: Vec<f64>,
 }
 
-impl Rival {
+impl<'p> Rival<'p> {
     /// A candidate that was judged apart from the others, without folds.
-    pub fn alone(term: Term, share: f64, p_value: f64) -> Self {
+    pub fn alone(term: Term<'p>, share: f64, p_value: f64) -> Self {
         Self { term, share, held_out: f64::NAN, p_value, losses: Vec::new() }
     }
 }
 
-pub enum Move {
-    Added { rival: Rival, ties: Vec<&'static str> },
-    Removed(&'static str),
+pub enum Move<'p> {
+    Added { rival: Box<Rival<'p>>, ties: Vec<&'p str> },
+    Removed(&'p str),
 }
 
 /// What the search did, and what it left.
 pub struct Path<'p> {
     pub start: Terms<'p>,
     /// Every move with the model after it.
-    pub moves: Vec<(Move, Terms<'p>)>,
+    pub moves: Vec<(Move<'p>, Terms<'p>)>,
     /// Candidates that were not added.
-    pub silent: Vec<Silence>,
+    pub silent: Vec<Silence<'p>>,
 }
 
 /// A candidate that was looked for and not found.
-pub struct Silence {
-    pub effect: &'static str,
+pub struct Silence<'p> {
+    pub effect: &'p str,
     /// RMS of the smallest one that would have been found with 80 % probability.
     pub detectable_rms: f64,
 }
@@ -68,9 +68,9 @@ fn losses(columns: &[&[f64]], residual: &[f64], problem: &Problem) -> Vec<f64> {
 }
 
 /// Adds the best effect again and again until none passes, and drops what lost its reason.
-pub fn search<'p>(start: Terms<'p>, library: &Library, most: usize, options: &Options) -> Path<'p> {
+pub fn search<'p>(start: Terms<'p>, library: &Library<'p>, most: usize, options: &Options) -> Path<'p> {
     let mut path = Path { start, moves: Vec::new(), silent: Vec::new() };
-    let kept: Vec<&'static str> = path.start.terms.iter().map(Term::id).collect();
+    let kept: Vec<&'p str> = path.start.terms.iter().map(Term::id).collect();
     let mut added = 0;
     while added < most {
         let now = path.end().clone();
@@ -80,7 +80,7 @@ pub fn search<'p>(start: Terms<'p>, library: &Library, most: usize, options: &Op
         next.refine();
         reform(&mut next, library);
         extend(&mut next, library, options);
-        path.moves.push((Move::Added { rival, ties }, next));
+        path.moves.push((Move::Added { rival: rival.into(), ties }, next));
         added += 1;
         while let Some((id, less)) = drop_one(path.end(), &kept, options) {
             path.moves.push((Move::Removed(id), less));
@@ -135,7 +135,7 @@ fn extend(terms: &mut Terms, library: &Library, options: &Options) {
 const BETTER_FORM: f64 = 0.01;
 
 /// Asks of every effect with several forms whether another one fits better beside the effects that came in since.
-fn reform(terms: &mut Terms, library: &Library) {
+fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
     for i in 0..terms.terms.len() {
         let mut others = terms.clone();
         let term = others.terms.remove(i);
@@ -145,7 +145,7 @@ fn reform(terms: &mut Terms, library: &Library) {
         }
         let basis = others.tangent();
         let rest = basis.rest(&terms.response());
-        let sse = |term: &Term| {
+        let sse = |term: &Term<'p>| {
             let mut one = [term.clone()];
             let sse = polish(&mut one, &basis, &rest, terms.problem);
             let [term] = one;
@@ -172,13 +172,13 @@ fn reform(terms: &mut Terms, library: &Library) {
 }
 
 /// For each effect that is not in the model, its best form and shape: what would have been seen.
-fn silences(end: &Terms, library: &Library, options: &Options) -> Vec<Silence> {
+fn silences<'p>(end: &Terms, library: &Library<'p>, options: &Options) -> Vec<Silence<'p>> {
     let problem = end.problem;
     let basis = end.tangent();
     let residual = basis.rest(&end.response());
     let n = problem.rows() as f64;
     let rms = (dot(&residual, &residual) / n).sqrt();
-    let mut out: Vec<Silence> = Vec::new();
+    let mut out: Vec<Silence<'p>> = Vec::new();
     for candidate in library.candidates.iter().filter(|c| !end.contains(c.id())) {
         let found = gain(&candidate.columns, &basis, &residual, 1.0);
         // z₀.₉₇₅ + z₀.₈ standard errors of the amplitude, and never less than the practical share.
@@ -202,7 +202,7 @@ fn silences(end: &Terms, library: &Library, options: &Options) -> Vec<Silence> {
     out
 }
 
-fn step(now: &Terms, library: &Library, options: &Options) -> Option<(Rival, Vec<&'static str>)> {
+fn step<'p>(now: &Terms<'p>, library: &Library<'p>, options: &Options) -> Option<(Rival<'p>, Vec<&'p str>)> {
     let problem = now.problem;
     let basis = now.tangent();
     let residual = basis.rest(&now.response());
@@ -316,7 +316,7 @@ fn is_tie(a: &Rival, b: &Rival) -> bool {
 }
 
 /// The added term without which the model is as good, with the model without it.
-fn drop_one<'p>(now: &Terms<'p>, kept: &[&'static str], options: &Options) -> Option<(&'static str, Terms<'p>)> {
+fn drop_one<'p>(now: &Terms<'p>, kept: &[&'p str], options: &Options) -> Option<(&'p str, Terms<'p>)> {
     let full = now.linear().sse;
     let mut worst: Option<(f64, usize, Terms)> = None;
     for i in 0..now.terms.len() {

@@ -23,11 +23,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Cogging {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let orders = view.constants.poles.map_or(1..=60, |p| p..=p);
         let mut forms = crate::effects::harmonic_form(view, Signal::Position, orders);
         let excited = forms.iter().map(|f| Form { name: "excited", ..f.clone() }).collect::<Vec<_>>();

@@ -36,11 +36,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Hysteresis {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Current);
         let shape = vec![Shape { name: "r", min: 0.02 * peak, max: peak, search: Search::Smooth }];
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(0.05 * peak, peak, 4).into_iter().map(|t| vec![t]).collect();
@@ -48,12 +48,12 @@ impl Effect for Hysteresis {
         if !turns {
             return Vec::new();
         }
-        let one = |name| Form { name, linear: &["h"], shape: shape.clone(), grid: grid.clone() };
+        let one = |name| Form { name, linear: vec!["h"], shape: shape.clone(), grid: grid.clone() };
 
         vec![
             one("stop"),
             one("dahl"),
-            Form { name: "bands", linear: &BANDS, shape: Vec::new(), grid: vec![Vec::new()] },
+            Form { name: "bands", linear: BANDS.to_vec(), shape: Vec::new(), grid: vec![Vec::new()] },
         ]
     }
 

@@ -25,11 +25,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Saturation {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Current);
         let bend = Shape { name: "i_s", min: 0.05 * peak, max: 2.0 * peak, search: Search::Smooth };
         let onset = Shape { name: "i_0", min: 0.01 * peak, max: peak, search: Search::Smooth };
@@ -37,9 +37,14 @@ impl Effect for Saturation {
         let onsets = [0.1, 0.3, 0.6].map(|o| o * peak);
         let pairs = onsets.iter().flat_map(|o| widths.iter().map(|w| vec![*o, *w])).collect();
         vec![
-            Form { name: "polynomial", linear: &["c_2", "c_3"], shape: Vec::new(), grid: vec![Vec::new()] },
-            Form { name: "tanh", linear: &["c"], shape: vec![bend], grid: widths.iter().map(|w| vec![*w]).collect() },
-            Form { name: "s_shape", linear: &["c"], shape: vec![onset, bend], grid: pairs },
+            Form { name: "polynomial", linear: vec!["c_2", "c_3"], shape: Vec::new(), grid: vec![Vec::new()] },
+            Form {
+                name: "tanh",
+                linear: vec!["c"],
+                shape: vec![bend],
+                grid: widths.iter().map(|w| vec![*w]).collect(),
+            },
+            Form { name: "s_shape", linear: vec!["c"], shape: vec![onset, bend], grid: pairs },
         ]
     }
 

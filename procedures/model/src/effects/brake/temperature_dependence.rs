@@ -23,11 +23,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for TemperatureDependence {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form> {
+    fn forms(&self, _: &View) -> Vec<Form<'_>> {
         let form = |name, linear| Form { name, ..Form::linear(linear) };
         vec![form("plain", &["c_t"]), form("excited", &["c_t_i"]), form("scaled", &["c_t_tau"])]
     }

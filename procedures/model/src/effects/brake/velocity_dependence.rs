@@ -23,11 +23,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for VelocityDependence {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form> {
+    fn forms(&self, _: &View) -> Vec<Form<'_>> {
         let form = |name, linear| Form { name, ..Form::linear(linear) };
         vec![form("plain", &["c_v"]), form("excited", &["c_v_i"]), form("scaled", &["c_v_tau"])]
     }

@@ -23,11 +23,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for HarmonicN {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let poles = view.constants.pole_pairs.map(f64::from);
         let own = |h: f64| poles.is_some_and(|p| h == p || h == 2.0 * p);
         let mut forms =

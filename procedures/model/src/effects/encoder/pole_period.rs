@@ -25,18 +25,18 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for PolePeriod {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let orders = match view.constants.pole_pairs {
             Some(p) => p..=p,
             None => 16..=128,
         };
         let mut forms = crate::effects::harmonic_form(view, Signal::Position, orders);
         for form in &mut forms {
-            form.linear = &["a", "b", "c", "d"];
+            form.linear = vec!["a", "b", "c", "d"];
             form.shape = vec![Shape { name: "pole_pairs", min: 1.0, max: 128.0, search: Search::Whole }];
         }
         forms

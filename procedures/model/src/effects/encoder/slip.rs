@@ -19,17 +19,17 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Slip {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let time = view.get(Signal::Time);
         let (Some(first), Some(last)) = (time.first(), time.last()) else { return Vec::new() };
         let (low, high) = (first + 0.02 * (last - first), last - 0.02 * (last - first));
         let grid = (0..=160).map(|i| vec![low + (high - low) * f64::from(i) / 160.0]).collect();
         let shape = vec![Shape { name: "t_s", min: low, max: high, search: Search::Jump }];
-        vec![Form { name: "step", linear: &["s"], shape, grid }]
+        vec![Form { name: "step", linear: vec!["s"], shape, grid }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -23,11 +23,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for StartupOffset {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let most = view.get(Signal::Repeat).iter().fold(0.0f64, |m, r| m.max(*r));
         match most as usize {
             0 => Vec::new(),

@@ -23,11 +23,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Cogging {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let mut forms = crate::effects::harmonic_form(view, Signal::Position, 1..=120);
         forms.iter_mut().for_each(|f| f.name = crate::effects::SEVERAL_HARMONICS);
         forms

@@ -25,14 +25,14 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for FrictionRipple {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let mut forms = crate::effects::harmonic_form(view, Signal::Link, 1..=60);
         let with_speed =
-            forms.iter().map(|f| Form { name: "with_speed", linear: &["a", "b", "a_v", "b_v"], ..f.clone() });
+            forms.iter().map(|f| Form { name: "with_speed", linear: vec!["a", "b", "a_v", "b_v"], ..f.clone() });
         forms.extend(with_speed.collect::<Vec<_>>());
         forms
     }

@@ -22,11 +22,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Gravity {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         if view.constants.slides { Vec::new() } else { vec![Form::linear(&["g_c", "g_s"])] }
     }
 

@@ -20,15 +20,17 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Presliding {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let Some((low, high)) = crate::effects::reversal_range(view) else { return Vec::new() };
         let shape = vec![Shape { name: "theta_p", min: low, max: high, search: Search::Smooth }];
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(low, high, 7).into_iter().map(|d| vec![d]).collect();
-        ["dahl", "stop"].map(|name| Form { name, linear: &["tau_p"], shape: shape.clone(), grid: grid.clone() }).into()
+        ["dahl", "stop"]
+            .map(|name| Form { name, linear: vec!["tau_p"], shape: shape.clone(), grid: grid.clone() })
+            .into()
     }
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {

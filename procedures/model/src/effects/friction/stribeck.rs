@@ -28,7 +28,7 @@ pub(super) fn fading(velocity_rad_s: f64, shape: &[f64]) -> f64 {
 }
 
 /// Speeds and exponents that this data can tell apart: between its slowest motion and a third of its fastest.
-pub(super) fn search(view: &View) -> Option<(Vec<Shape>, Vec<Vec<f64>>)> {
+pub(super) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)> {
     let (slow, fast) = crate::effects::speed_range(view)?;
     let (low, high) = (slow * 0.7, fast / 3.0);
     if high < 2.0 * low {
@@ -44,13 +44,13 @@ pub(super) fn search(view: &View) -> Option<(Vec<Shape>, Vec<Vec<f64>>)> {
 }
 
 impl Effect for Stribeck {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let Some((shape, grid)) = search(view) else { return Vec::new() };
-        vec![Form { name: "exponential", linear: &["tau_s"], shape, grid }]
+        vec![Form { name: "exponential", linear: vec!["tau_s"], shape, grid }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

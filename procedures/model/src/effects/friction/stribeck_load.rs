@@ -23,13 +23,13 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for StribeckLoad {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let Some((shape, grid)) = super::stribeck::search(view) else { return Vec::new() };
-        vec![Form { name: "exponential", linear: &["mu_s"], shape, grid }]
+        vec![Form { name: "exponential", linear: vec!["mu_s"], shape, grid }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

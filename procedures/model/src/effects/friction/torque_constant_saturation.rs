@@ -19,11 +19,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for TorqueConstantSaturation {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form> {
+    fn forms(&self, _: &View) -> Vec<Form<'_>> {
         vec![Form::linear(&["s"])]
     }
 

@@ -22,11 +22,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for ViscousQuadratic {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form> {
+    fn forms(&self, _: &View) -> Vec<Form<'_>> {
         let even = Form { name: "one_sided", ..Form::linear(&["c_2a"]) };
         vec![Form::linear(&["c_2"]), even]
     }

@@ -19,17 +19,17 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for ViscousSublinear {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         if crate::effects::speed_range(view).is_none_or(|(slow, fast)| fast < 3.0 * slow) {
             return Vec::new();
         }
         let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, search: Search::Smooth }];
         let grid = [0.25, 0.4, 0.55, 0.7].iter().map(|a| vec![*a]).collect();
-        vec![Form { name: "power", linear: &["c_alpha"], shape, grid }]
+        vec![Form { name: "power", linear: vec!["c_alpha"], shape, grid }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

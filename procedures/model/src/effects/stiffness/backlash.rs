@@ -19,15 +19,15 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Backlash {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
         let shape = vec![Shape { name: "tau_b", min: 3e-3 * peak, max: 0.05 * peak, search: Search::Smooth }];
         let grid = crate::effects::log_grid(3e-3 * peak, 0.05 * peak, 3).into_iter().map(|t| vec![t]).collect();
-        vec![Form { name: "dead_zone", linear: &["beta"], shape, grid }]
+        vec![Form { name: "dead_zone", linear: vec!["beta"], shape, grid }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -20,11 +20,11 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Creep {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let step = view.sample_s;
         let (low, high) = (5.0 * step, 0.2 * step * view.samples.len() as f64);
         if high <= 2.0 * low {
@@ -32,7 +32,7 @@ impl Effect for Creep {
         }
         let shape = vec![Shape { name: "t_c", min: low, max: high, search: Search::Smooth }];
         let grid = crate::effects::log_grid(low, high, 8).into_iter().map(|t| vec![t]).collect();
-        vec![Form { name: "lag", linear: &["kappa_c"], shape, grid }]
+        vec![Form { name: "lag", linear: vec!["kappa_c"], shape, grid }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -22,18 +22,18 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for Hardening {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
         let shape = vec![Shape { name: "tau_h", min: 0.01 * peak, max: 2.0 * peak, search: Search::Smooth }];
         let grid: Vec<Vec<f64>> =
             crate::effects::log_grid(0.01 * peak, 2.0 * peak, 6).into_iter().map(|t| vec![t]).collect();
-        let curved = |name| Form { name, linear: &["kappa"], shape: shape.clone(), grid: grid.clone() };
+        let curved = |name| Form { name, linear: vec!["kappa"], shape: shape.clone(), grid: grid.clone() };
         vec![
-            Form { name: "cubic", linear: &["kappa"], shape: Vec::new(), grid: vec![Vec::new()] },
+            Form { name: "cubic", linear: vec!["kappa"], shape: Vec::new(), grid: vec![Vec::new()] },
             curved("root"),
             curved("tanh"),
         ]

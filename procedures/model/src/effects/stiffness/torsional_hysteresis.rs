@@ -20,16 +20,16 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Effect for TorsionalHysteresis {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
+    fn info(&self) -> EffectInfo<'_> {
+        INFO
     }
 
-    fn forms(&self, view: &View) -> Vec<Form> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
         let shape = vec![Shape { name: "tau_eta", min: 0.004 * peak, max: peak, search: Search::Smooth }];
         let grid: Vec<Vec<f64>> =
             crate::effects::log_grid(0.004 * peak, peak, 9).into_iter().map(|t| vec![t]).collect();
-        let one = |name| Form { name, linear: &["eta"], shape: shape.clone(), grid: grid.clone() };
+        let one = |name| Form { name, linear: vec!["eta"], shape: shape.clone(), grid: grid.clone() };
         vec![one("dahl"), one("stop")]
     }
 

@@ -1,0 +1,64 @@
+//! The functions that a formula may call.
+
+/// Name in a formula and in C, and the number of arguments.
+macro_rules! functions {
+    ($($variant:ident $name:literal $c:literal $arity:literal $apply:expr;)*) => {
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Function { $($variant),* }
+
+        impl Function {
+            pub const ALL: &'static [Function] = &[$(Function::$variant),*];
+
+            pub fn name(self) -> &'static str {
+                match self { $(Function::$variant => $name),* }
+            }
+
+            /// What C99's math.h calls it; `sign` is written out.
+            pub fn c_name(self) -> &'static str {
+                match self { $(Function::$variant => $c),* }
+            }
+
+            pub fn arity(self) -> usize {
+                match self { $(Function::$variant => $arity),* }
+            }
+
+            /// The value; a function of one argument does not look at the second.
+            pub fn apply(self, x: f64, y: f64) -> f64 {
+                let apply: fn(f64, f64) -> f64 = match self { $(Function::$variant => $apply),* };
+                apply(x, y)
+            }
+        }
+    };
+}
+
+functions! {
+    Abs "abs" "fabs" 1 |x, _| x.abs();
+    Sign "sign" "" 1 |x, _| if x > 0.0 { 1.0 } else if x < 0.0 { -1.0 } else { 0.0 };
+    Sqrt "sqrt" "sqrt" 1 |x, _| x.sqrt();
+    Exp "exp" "exp" 1 |x, _| x.exp();
+    Ln "ln" "log" 1 |x, _| x.ln();
+    Log10 "log10" "log10" 1 |x, _| x.log10();
+    Sin "sin" "sin" 1 |x, _| x.sin();
+    Cos "cos" "cos" 1 |x, _| x.cos();
+    Tan "tan" "tan" 1 |x, _| x.tan();
+    Asin "asin" "asin" 1 |x, _| x.asin();
+    Acos "acos" "acos" 1 |x, _| x.acos();
+    Atan "atan" "atan" 1 |x, _| x.atan();
+    Atan2 "atan2" "atan2" 2 f64::atan2;
+    Sinh "sinh" "sinh" 1 |x, _| x.sinh();
+    Cosh "cosh" "cosh" 1 |x, _| x.cosh();
+    Tanh "tanh" "tanh" 1 |x, _| x.tanh();
+    Min "min" "fmin" 2 f64::min;
+    Max "max" "fmax" 2 f64::max;
+}
+
+impl Function {
+    pub fn find(name: &str) -> Option<Function> {
+        Function::ALL.iter().copied().find(|f| f.name() == name)
+    }
+
+    /// A mean over an interval is far from the value at its middle.
+    pub fn is_periodic(self) -> bool {
+        matches!(self, Function::Sin | Function::Cos | Function::Tan)
+    }
+}

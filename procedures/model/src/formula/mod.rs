@@ -1,0 +1,72 @@
+//! Formulas that users write: `tau = a * tanh(velocity / w0) * abs(load)`.
+//!
+//! Text becomes a tree (winnow), names become signals and parameters, and the tree becomes a sum of factors times
+//! columns. Every mistake stands at a character.
+
+mod expression;
+mod factors;
+mod fault;
+mod function;
+mod signals;
+pub(crate) mod syntax;
+
+pub use expression::{Expression, What};
+pub use fault::FormulaFault;
+pub(crate) use fault::Mistake;
+pub use function::Function;
+pub use signals::{NamedSignal, left_hand_side, signals};
+pub use syntax::Operator;
+
+use jointbench_instrument::Kind;
+
+/// A formula that makes sense for a kind of run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Formula {
+    /// Parameters that enter linearly, by their place in the list, each with what it multiplies.
+    pub columns: Vec<(usize, Expression)>,
+    /// The other parameters.
+    pub shape: Vec<usize>,
+    /// Signals that it names, in the order of the kind's table.
+    pub signals: Vec<&'static NamedSignal>,
+    /// A mean over an interval is far from the value at its middle: a sine or cosine of a signal.
+    pub is_periodic: bool,
+}
+
+impl Formula {
+    pub(crate) fn parse(kind: Kind, text: &str, parameters: &[&str]) -> Result<Self, Mistake> {
+        let ((left, at), tree) = syntax::equation(text)?;
+        let wanted = left_hand_side(kind);
+        if left != wanted {
+            return Err(Mistake::new(at, format!("a formula of {kind} runs begins with {wanted} =, not {left} =")));
+        }
+        let whole = Expression::resolve(tree, kind, parameters)?;
+        let factors = factors::factors(&whole, parameters.len());
+        if let Some(alone) = factors.alone {
+            let message = match factors.columns.is_empty() {
+                true => "no parameter scales this: multiply it by one, such as k * (…)",
+                false => "no parameter scales this part of the sum: multiply it by one",
+            };
+            return Err(Mistake::new(alone.at, message));
+        }
+        let linear = |p: &usize| factors.columns.iter().any(|(q, _)| q == p);
+        let periodic = |what: &What| matches!(what, What::Call(f, a) if f.is_periodic() && a.iter().any(has_signal));
+        Ok(Self {
+            shape: (0..parameters.len()).filter(|p| !linear(p) && whole.uses(*p)).collect(),
+            signals: signals(kind).iter().filter(|s| whole.uses_signal(s.signal)).collect(),
+            is_periodic: whole.any(&mut |what| periodic(what)),
+            columns: factors.columns,
+        })
+    }
+
+    /// The parameter occurs.
+    pub fn uses(&self, parameter: usize) -> bool {
+        self.shape.contains(&parameter) || self.columns.iter().any(|(p, _)| *p == parameter)
+    }
+}
+
+fn has_signal(e: &Expression) -> bool {
+    e.any(&mut |what| matches!(what, What::Signal(_)))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,85 @@
+//! The signals of each kind of run under the names that a formula uses.
+
+use crate::view::Signal;
+use jointbench_instrument::Kind;
+
+/// A signal as a formula sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NamedSignal {
+    pub name: &'static str,
+    pub signal: Signal,
+    pub unit: &'static str,
+    /// The column that it comes from; empty where it is derived.
+    pub column: &'static str,
+    pub meaning: &'static str,
+}
+
+const fn named(
+    name: &'static str,
+    signal: Signal,
+    unit: &'static str,
+    column: &'static str,
+    meaning: &'static str,
+) -> NamedSignal {
+    NamedSignal { name, signal, unit, column, meaning }
+}
+
+const TIME: NamedSignal = named("time", Signal::Time, "s", "time_s", "time since the first sample");
+const TEMPERATURE: NamedSignal = named("temperature", Signal::Temperature, "°C", "temperature_c", "temperature");
+const DIRECTION: NamedSignal = named("direction", Signal::Direction, "1", "", "+1 or −1, sign of the velocity");
+
+const FRICTION: &[NamedSignal] = &[
+    TIME,
+    named("position", Signal::Position, "rad", "motor_position_rad", "motor position"),
+    named("velocity", Signal::Velocity, "rad/s", "motor_velocity_rad_s", "motor velocity"),
+    named("acceleration", Signal::Acceleration, "rad/s²", "", "motor acceleration"),
+    named("jerk", Signal::Jerk, "rad/s³", "", "change of the acceleration"),
+    DIRECTION,
+    named("link_position", Signal::Link, "rad", "link_position_rad", "link position"),
+    named("load", Signal::Load, "Nm", "link_torque_nm", "link torque on the motor side, divided by the gear ratio"),
+    TEMPERATURE,
+    named("motor_torque", Signal::Drive, "Nm", "", "smooth estimate of the motor torque"),
+];
+const ENCODER: &[NamedSignal] = &[
+    TIME,
+    named("position", Signal::Position, "rad", "reference_position_rad", "reference position"),
+    named("velocity", Signal::Velocity, "rad/s", "velocity_rad_s", "velocity"),
+    DIRECTION,
+    TEMPERATURE,
+];
+const STIFFNESS: &[NamedSignal] = &[
+    TIME,
+    named("position", Signal::Position, "rad", "motor_position_rad", "motor position"),
+    named("link_position", Signal::Link, "rad", "link_position_rad", "link position"),
+    named("velocity", Signal::Velocity, "rad/s", "link_velocity_rad_s", "link velocity"),
+    DIRECTION,
+    named("load", Signal::Load, "Nm", "link_torque_nm", "link torque"),
+    TEMPERATURE,
+];
+const BRAKE: &[NamedSignal] = &[
+    TIME,
+    named("current", Signal::Current, "A", "brake_current_a", "coil current"),
+    named("velocity", Signal::Velocity, "rad/s", "velocity_rad_s", "shaft velocity"),
+    named("position", Signal::Position, "rad", "position_rad", "shaft position"),
+    named("direction", Signal::Direction, "1", "", "+1 where the current rises, −1 where it falls"),
+    TEMPERATURE,
+];
+
+/// What a formula of a kind may name.
+pub fn signals(kind: Kind) -> &'static [NamedSignal] {
+    match kind {
+        Kind::Friction => FRICTION,
+        Kind::Encoder => ENCODER,
+        Kind::Stiffness => STIFFNESS,
+        Kind::Brake => BRAKE,
+    }
+}
+
+/// What stands left of the equals sign: the quantity that models of the kind predict.
+pub fn left_hand_side(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Friction | Kind::Brake => "tau",
+        Kind::Encoder => "error",
+        Kind::Stiffness => "torsion",
+    }
+}

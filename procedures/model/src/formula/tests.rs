@@ -1,0 +1,103 @@
+use super::*;
+use crate::view::{Signal, Signals};
+
+fn parse(text: &str, parameters: &[&str]) -> Result<Formula, Mistake> {
+    Formula::parse(Kind::Friction, text, parameters)
+}
+
+/// A mistake from where `§` stands on, with some of its words.
+fn check_mistake(marked: &str, parameters: &[&str], words: &str) {
+    let text = marked.replacen('§', "", 1);
+    let at = marked.find('§').unwrap();
+    let mistake = parse(&text, parameters).unwrap_err();
+    assert!(mistake.at.start == at && mistake.message.contains(words), "{marked}: {mistake:?}");
+}
+
+#[test]
+fn every_mistake_stands_at_its_character() {
+    let p = &["a", "w0"];
+    check_mistake("tau = a * tanh(§velocty / w0)", p, "did you mean velocity");
+    check_mistake("tau = a * tanh(§motor_velocity_rad_s)", p, "write velocity");
+    check_mistake("tau = a * §w1", p, "load");
+    check_mistake("tau = a * §thanh(load)", p, "did you mean tanh");
+    check_mistake("tau = a * §sinc(load)", p, "did you mean sin?");
+    check_mistake("tau = a * §bessel(load)", p, "there are abs, sign");
+    check_mistake("tau = a * §tanh + 1", p, "arguments in brackets");
+    check_mistake("tau = a * §tanh(load, 2)", p, "takes 1 argument, not 2");
+    check_mistake("tau = a * §min(load)", p, "takes 2 arguments, not 1");
+    check_mistake("tau = a * §", p, "a function or a bracket");
+    check_mistake("tau = a * (load §", p, "closing bracket");
+    check_mistake("tau = a * load§)", p, "operator");
+    check_mistake("tau = a * min(load §velocity)", p, "comma");
+    check_mistake("tau = a * min(load, §)", p, "expected");
+    check_mistake("tau = 2§x", p, "operator");
+    check_mistake("tau = a §$ load", p, "operator");
+    check_mistake(" §", p, "left-hand side");
+    check_mistake("tau §a * load", p, "= after");
+    check_mistake("§torque = a * load", p, "begins with tau");
+    check_mistake("tau = §load", &[], "multiply it");
+    check_mistake("tau = a * load + §abs(velocity)", p, "this part of the sum");
+    check_mistake("tau = §tanh(a * velocity)", p, "multiply it");
+    check_mistake("tau = a * §temperatur", p, "did you mean temperature");
+    assert_eq!(parse("tau = a * ω", &["a"]).unwrap_err().at, 10..12, "bytes, not characters");
+    assert_eq!(parse(&format!("tau = {}", "1".repeat(900)), &[]).unwrap_err().at.start, 400);
+}
+
+#[test]
+fn what_nests_deeply_is_read_or_refused() {
+    assert_eq!(parse(&format!("tau = {}a", "-".repeat(380)), &["a"]).unwrap().columns.len(), 1);
+    for text in ["(".repeat(380), "sin(".repeat(90), "a^".repeat(180)] {
+        let whole = format!("tau = {text}a");
+        assert!(parse(&whole, &["a"]).is_err(), "{whole}");
+    }
+    assert!(parse(&format!("tau = {}a*load{}", "(".repeat(180), ")".repeat(180)), &["a"]).is_ok());
+}
+
+/// Rows of `load` and `velocity`, and the value with every parameter given.
+fn check_value(text: &str, parameters: &[(&str, f64)], truth: impl Fn(f64, f64) -> f64) {
+    let names: Vec<&str> = parameters.iter().map(|p| p.0).collect();
+    let values: Vec<f64> = parameters.iter().map(|p| p.1).collect();
+    let formula = parse(text, &names).unwrap();
+    let rows = [(-2.0, 3.0), (0.5, -7.0), (4.0, 0.25)];
+    let mut signals = Signals::new(rows.len());
+    signals.set(Signal::Load, rows.map(|r| r.0).into());
+    signals.set(Signal::Velocity, rows.map(|r| r.1).into());
+    let mut sum = vec![0.0; rows.len()];
+    for (factor, column) in &formula.columns {
+        let column = column.column(&values, &signals);
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += values[*factor] * c);
+    }
+    for ((load, velocity), found) in rows.into_iter().zip(sum) {
+        let truth = truth(load, velocity);
+        assert!((found - truth).abs() <= 1e-14 * truth.abs(), "{text}: {found} and {truth}");
+    }
+}
+
+#[test]
+fn operators_bind_as_everywhere() {
+    check_value("tau = a*-load^2", &[("a", 3.0)], |l, _| 3.0 * -(l * l));
+    check_value("tau = a*2^3^load", &[("a", 3.0)], |l, _| 3.0 * 2f64.powf(3f64.powf(l)));
+    check_value("tau = a*(load - velocity - 1)", &[("a", 3.0)], |l, v| 3.0 * (l - v - 1.0));
+    check_value("tau = a*load/velocity/2", &[("a", 3.0)], |l, v| 3.0 * l / v / 2.0);
+    check_value("tau = a*load**2 * 1.5e-3 + .5*a", &[("a", 3.0)], |l, _| 3.0 * (l * l * 1.5e-3 + 0.5));
+    check_value("tau = a * min(load, velocity) * sign(velocity)", &[("a", 2.0)], |l, v| 2.0 * l.min(v) * v.signum());
+}
+
+#[test]
+fn factors_are_told_from_shapes() {
+    let split = |text: &str, parameters: &[&str]| {
+        let formula = parse(text, parameters).unwrap();
+        let linear: Vec<usize> = formula.columns.iter().map(|c| c.0).collect();
+        (linear, formula.shape)
+    };
+    assert_eq!(split("tau = a * tanh(velocity / w0) * abs(load)", &["a", "w0"]), (vec![0], vec![1]));
+    assert_eq!(split("tau = a*(b*load + c*velocity)", &["a", "b", "c"]), (vec![1, 2], vec![0]));
+    assert_eq!(split("tau = a*load + b*velocity - (c - a)*load^2", &["a", "b", "c"]), (vec![0, 1, 2], vec![]));
+    check_value("tau = a*load - (c - a)*load^2 + a/2", &[("a", 3.0), ("c", 5.0)], |l, _| 3.0 * l - 2.0 * l * l + 1.5);
+}
+
+#[test]
+fn a_wave_is_known() {
+    assert!(parse("tau = a * cos(7 * position)", &["a"]).unwrap().is_periodic);
+    assert!(!parse("tau = a * cos(b) * velocity", &["a", "b"]).unwrap().is_periodic);
+}

@@ -1,0 +1,172 @@
+//! Effects that users write: a formula with parameters, used like an effect of the library.
+
+mod definition;
+mod inline;
+mod ranges;
+
+pub use definition::{Definition, OwnParameter};
+
+use crate::ModelError;
+use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Shape, Stage};
+use crate::formula::{Formula, FormulaFault};
+use crate::view::{Signal, View};
+use jointbench_instrument::Kind;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// A user's effect whose definition makes sense.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Definition", into = "Definition")]
+pub struct OwnEffect {
+    definition: Definition,
+    formula: Formula,
+    parameters: Vec<ParameterInfo>,
+    needs: Vec<&'static str>,
+}
+
+impl OwnEffect {
+    /// Reads the short form `id: formula; parameter [unit] min..max; …`.
+    ///
+    /// ```
+    /// use jointbench_instrument::Kind;
+    /// use jointbench_model::OwnEffect;
+    ///
+    /// let text = "rub: tau = a * tanh(velocity / w0) * abs(load); a [1] 0..1; w0 [rad/s] 0.1..10";
+    /// assert_eq!(OwnEffect::inline(Kind::Friction, text).unwrap().id(), "rub");
+    /// let fault = OwnEffect::inline(Kind::Friction, "rub: tau = a * velocty; a [Nm]").unwrap_err();
+    /// assert_eq!((fault.position, fault.length), (15, 7));
+    /// ```
+    pub fn inline(kind: Kind, text: &str) -> Result<Self, FormulaFault> {
+        inline::read(kind, text)
+    }
+
+    pub fn id(&self) -> &str {
+        &self.definition.id
+    }
+
+    pub fn kind(&self) -> Kind {
+        self.definition.kind
+    }
+
+    pub fn definition(&self) -> &Definition {
+        &self.definition
+    }
+
+    pub fn formula(&self) -> &Formula {
+        &self.formula
+    }
+
+    /// [`ModelError::NotFinite`] where a signal that this data has makes the formula fail at every shape.
+    pub(crate) fn check(&self, view: &View) -> Result<(), ModelError> {
+        let present = self.formula.signals.iter().all(|s| view.find(s.signal).is_some());
+        let tried: Vec<Columns> = self.grid(&self.shapes(view)).iter().map(|s| self.evaluate(s, view)).collect();
+        if !present || tried.iter().any(is_finite) {
+            return Ok(());
+        }
+        let bad = |column: &Vec<f64>| column.iter().position(|x| !x.is_finite());
+        let point = tried.iter().flatten().find_map(bad).unwrap_or(0);
+        let bad_points = tried.iter().flatten().map(|c| c.iter().filter(|x| !x.is_finite()).count()).min().unwrap_or(0);
+        let values: Vec<String> = self
+            .formula
+            .signals
+            .iter()
+            .map(|s| format!("{} = {:.4} {}", s.name, view.get(s.signal)[point], s.unit))
+            .collect();
+        Err(ModelError::NotFinite { effect: self.id().to_owned(), points: bad_points.max(1), first: values.join(", ") })
+    }
+
+    fn shapes(&self, view: &View) -> Vec<Shape<'_>> {
+        let range = |p: &usize| ranges::shape(&self.definition.parameters[*p], &self.formula.signals, view);
+        self.formula.shape.iter().map(range).collect()
+    }
+
+    fn grid(&self, shapes: &[Shape]) -> Vec<Vec<f64>> {
+        ranges::grid(shapes, self.formula.shape.iter().map(|p| self.definition.parameters[*p].start))
+    }
+
+    fn evaluate(&self, shape: &[f64], view: &View) -> Columns {
+        let mut parameters = vec![f64::NAN; self.parameters.len()];
+        self.formula.shape.iter().zip(shape).for_each(|(p, value)| parameters[*p] = *value);
+        let on_samples = self.formula.is_periodic
+            && !view.chunks.is_empty()
+            && self.formula.signals.iter().all(|s| view.samples.find(s.signal).is_some());
+        let signals = if on_samples { &view.samples } else { &view.points };
+        let columns = self.formula.columns.iter().map(|(_, e)| e.column(&parameters, signals));
+        if on_samples { columns.map(|c| view.average(c)).collect() } else { columns.collect() }
+    }
+}
+
+impl Effect for OwnEffect {
+    fn info(&self) -> EffectInfo<'_> {
+        EffectInfo {
+            id: &self.definition.id,
+            kind: self.definition.kind,
+            title: &self.definition.title,
+            sentence: &self.definition.sentence,
+            formula: &self.definition.formula,
+            source: "written by a user",
+            looks: "its formula is zero or not finite on this data",
+            parameters: &self.parameters,
+            needs: &self.needs,
+        }
+    }
+
+    /// Starting points at which the formula is finite and says something.
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        let shape = self.shapes(view);
+        let tells = |columns: &Columns| is_finite(columns) && columns.iter().all(|c| c.iter().any(|x| *x != 0.0));
+        let mut grid = self.grid(&shape);
+        grid.retain(|start| tells(&self.evaluate(start, view)));
+        if grid.is_empty() {
+            return Vec::new();
+        }
+        let name = |p: usize| self.definition.parameters[p].name.as_str();
+        let linear = self.formula.columns.iter().map(|(p, _)| name(*p)).collect();
+        vec![Form { name: "formula", linear, shape, grid }]
+    }
+
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        self.evaluate(shape, view)
+    }
+
+    fn stage(&self) -> Stage {
+        let of_ramps = |s: Signal| matches!(s, Signal::Acceleration | Signal::Jerk);
+        if self.formula.signals.iter().any(|s| of_ramps(s.signal)) { Stage::Ramp } else { Stage::Settled }
+    }
+}
+
+impl TryFrom<Definition> for OwnEffect {
+    type Error = FormulaFault;
+
+    fn try_from(definition: Definition) -> Result<Self, FormulaFault> {
+        let formula = definition.check()?;
+        let parameters = definition.parameters.iter().map(OwnParameter::info).collect();
+        let optional = |s: &&&crate::formula::NamedSignal| definition.kind.optional_columns().contains(&s.column);
+        let needs = formula.signals.iter().filter(optional).map(|s| s.column).collect();
+        Ok(Self { definition, formula, parameters, needs })
+    }
+}
+
+impl From<OwnEffect> for Definition {
+    fn from(effect: OwnEffect) -> Self {
+        effect.definition
+    }
+}
+
+impl OwnParameter {
+    fn info(&self) -> ParameterInfo {
+        ParameterInfo {
+            name: Cow::Owned(self.name.clone()),
+            unit: Cow::Owned(self.unit.clone()),
+            min: self.min.unwrap_or(f64::NEG_INFINITY),
+            max: self.max.unwrap_or(f64::INFINITY),
+        }
+    }
+}
+
+fn is_finite(columns: &Columns) -> bool {
+    columns.iter().flatten().all(|x| x.is_finite())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,94 @@
+//! A fitted model as a C99 header for a controller: one function, no memory of its own, no library but math.h.
+
+mod body;
+mod expression;
+
+use super::parts::Parts;
+use super::suffix;
+use crate::ModelError;
+use crate::report::{Fit, Parameter};
+use body::Body;
+use expression::number;
+use std::fmt::Write;
+
+/// The header. Effects that a controller cannot compute are named in its first comment.
+pub fn header(fit: &Fit) -> Result<String, ModelError> {
+    let parts = Parts::of(fit)?;
+    let body = Body::new(fit, &parts);
+    let name = format!("joint_{}", fit.kind);
+    let guard = format!("{}_H", name.to_uppercase());
+    let mut text = String::new();
+    let mut line = |words: &str| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{words}");
+    };
+    line("/*");
+    super::about(fit, &parts.left_out).iter().for_each(|words| line(&format!(" * {}", suffix::ascii(words))));
+    line(" * SI units; the unit is the suffix of a name. C99; link with -lm.");
+    line(" */");
+    line(&format!("#ifndef {guard}\n#define {guard}\n\n#include <math.h>\n"));
+
+    line("typedef struct {");
+    for signal in &body.inputs {
+        line(&format!("    double {}; /* {} */", body.field(signal), suffix::ascii(signal.meaning)));
+    }
+    if body.uses_step {
+        line("    double sample_s; /* time since the last call */");
+    }
+    line(&format!("}} {name}_input;\n"));
+
+    line("typedef struct {");
+    for (field, _, parameter) in parameters(fit, &parts) {
+        line(&format!("    double {field};{}", parameter.map(comment).unwrap_or_default()));
+    }
+    line(&format!("}} {name}_parameters;\n"));
+    line(&format!("static const {name}_parameters {name}_fitted = {{"));
+    for (field, value, _) in parameters(fit, &parts) {
+        line(&format!("    .{field} = {},", number(value)));
+    }
+    line("};\n");
+
+    if !body.states.is_empty() {
+        line("/* Begin with all zero: = {0}. One for each joint; the function keeps it. */\ntypedef struct {");
+        line("    int started;");
+        body.states.iter().for_each(|state| line(&format!("    {state}")));
+        line(&format!("}} {name}_state;\n"));
+    }
+    let state = if body.states.is_empty() { String::new() } else { format!("{name}_state *s, ") };
+    line(&format!("/* {} */", suffix::ascii(&super::predicted(fit))));
+    line(&format!(
+        "static inline double {name}_{}(const {name}_parameters *p, {state}const {name}_input *u)\n{{",
+        suffix::of(&fit.unit)
+    ));
+    line("    double sum = 0.0;\n    (void)p;\n    (void)u;");
+    body.statements.iter().for_each(|statement| line(&format!("    {statement}")));
+    if !body.states.is_empty() {
+        line("    s->started = 1;");
+    }
+    line("    return sum;\n}\n");
+    line(&format!("#endif /* {guard} */"));
+    Ok(text)
+}
+
+/// Field, value and what the fit says about it. A struct must not be empty.
+fn parameters<'f>(fit: &'f Fit, parts: &Parts<'f>) -> Vec<(String, f64, Option<&'f Parameter>)> {
+    let mut all: Vec<_> = parts
+        .parts
+        .iter()
+        .flat_map(|part| part.factors.iter().chain(&part.shape).map(move |(name, value)| (part.effect, *name, *value)))
+        .map(|(effect, name, value)| {
+            let told = fit.parameters.iter().find(|p| p.effect == effect && p.name == name);
+            (format!("{effect}_{name}"), value, told)
+        })
+        .collect();
+    if all.is_empty() {
+        all.push(("nothing".to_owned(), 0.0, None));
+    }
+    all
+}
+
+fn comment(parameter: &Parameter) -> String {
+    let [low, high] = parameter.ci95;
+    let note = parameter.note.as_ref().map(|note| format!("; {note}")).unwrap_or_default();
+    suffix::ascii(&format!(" /* [{}] 95 %: {low:.4e} to {high:.4e}{note} */", parameter.unit))
+}

@@ -1,0 +1,64 @@
+//! Attributes of a joint in MuJoCo's MJCF and in URDF, at the link.
+//!
+//! MuJoCo XML reference, body/joint: armature [kg·m²], damping [Nm·s/rad], frictionloss [Nm]. URDF XML specification,
+//! joint/dynamics: damping [Nm·s/rad], friction [Nm]. The fit is on the motor side: torques grow by the gear ratio N,
+//! damping and inertia by N².
+
+use super::about;
+use crate::ModelError;
+use crate::report::Fit;
+use jointbench_instrument::Kind;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dialect {
+    Mujoco,
+    Urdf,
+}
+
+/// The element with a comment that names what it cannot hold.
+pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
+    if fit.kind != Kind::Friction {
+        return Err(ModelError::NoExport {
+            kind: fit.kind,
+            what: "joint attributes",
+            why: "only friction models have them",
+        });
+    }
+    let scope = fit.scope.as_ref().ok_or(ModelError::NoScope)?;
+    let gear = scope.load_scale;
+    let of = |effect: &str, name: &str, scale: f64| {
+        let found = fit.parameters.iter().find(|p| p.effect == effect && p.name == name);
+        // What is negative is no physical joint, and simulators refuse it.
+        found.map(|p| p.value * scale).filter(|v| *v >= 0.0 && v.is_finite())
+    };
+    let friction = ("coulomb", of("coulomb", "tau_c", gear));
+    let damping = ("viscous", of("viscous", "c_v", gear * gear));
+    let armature = ("inertia", of("inertia", "j", gear * gear));
+    let carried = match dialect {
+        Dialect::Mujoco => vec![("frictionloss", friction), ("damping", damping), ("armature", armature)],
+        Dialect::Urdf => vec![("damping", damping), ("friction", friction)],
+    };
+    let held =
+        |id: &str| id == "load_transmission" || carried.iter().any(|(_, (e, value))| *e == id && value.is_some());
+    let left_out: Vec<(&str, String)> =
+        fit.effects.iter().filter(|id| !held(id)).map(|id| (id.as_str(), reason(id, dialect).to_owned())).collect();
+    let attributes: Vec<String> =
+        carried.iter().filter_map(|(name, (_, value))| value.map(|v| format!("{name}=\"{v}\""))).collect();
+    let mut words = about(fit, &left_out);
+    words.push(format!("At the link: torque times the gear ratio {gear}, damping and inertia times its square."));
+    // Two hyphens end a comment.
+    let comment: String = words.iter().map(|w| format!("  {}\n", w.replace("--", "- -"))).collect();
+    let element = match dialect {
+        Dialect::Mujoco => format!("<joint {}/>", attributes.join(" ")),
+        Dialect::Urdf => format!("<dynamics {}/>", attributes.join(" ")),
+    };
+    Ok(format!("<!--\n{comment}-->\n{element}\n"))
+}
+
+fn reason(effect: &str, dialect: Dialect) -> &'static str {
+    match (effect, dialect) {
+        ("inertia", Dialect::Urdf) => "URDF has no armature; add it to the inertia of the link",
+        ("coulomb" | "viscous" | "inertia", _) => "its value is negative or not known",
+        _ => "there is no attribute for it",
+    }
+}

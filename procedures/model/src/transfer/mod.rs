@@ -1,0 +1,101 @@
+//! Fitted models out of the program and in again: JSON, C for a controller, tables, attributes of simulators.
+
+mod c;
+mod file;
+mod joint;
+mod parts;
+mod predict;
+mod suffix;
+mod table;
+mod written;
+
+pub use file::ModelFile;
+pub use predict::{Moments, predict};
+
+use crate::ModelError;
+use crate::report::Fit;
+use jointbench_instrument::Kind;
+
+/// What a fit can be written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// The complete fit; the only one that comes in again.
+    Json,
+    /// A self-contained C99 header.
+    C,
+    /// CSV over at most two signals.
+    Table,
+    /// `<joint …/>` of MuJoCo.
+    Mujoco,
+    /// `<dynamics …/>` of URDF.
+    Urdf,
+}
+
+impl Format {
+    pub const ALL: [Format; 5] = [Format::Json, Format::C, Format::Table, Format::Mujoco, Format::Urdf];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Json => "json",
+            Format::C => "c",
+            Format::Table => "lut",
+            Format::Mujoco => "mujoco",
+            Format::Urdf => "urdf",
+        }
+    }
+
+    /// Ending of the file's name.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Json => "json",
+            Format::C => "h",
+            Format::Table => "csv",
+            Format::Mujoco | Format::Urdf => "xml",
+        }
+    }
+}
+
+/// Writes a fit. What the format cannot hold is named in its first comment.
+pub fn export(fit: &Fit, format: Format) -> Result<String, ModelError> {
+    match format {
+        Format::Json => ModelFile::new(fit.clone()).to_json(),
+        Format::C => c::header(fit),
+        Format::Table => table::table(fit),
+        Format::Mujoco => joint::joint(fit, joint::Dialect::Mujoco),
+        Format::Urdf => joint::joint(fit, joint::Dialect::Urdf),
+    }
+}
+
+/// What the model predicts, in a word.
+fn quantity(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Friction => "motor_torque",
+        Kind::Encoder => "error",
+        Kind::Stiffness => "torsion",
+        Kind::Brake => "brake_torque",
+    }
+}
+
+fn predicted(fit: &Fit) -> String {
+    let what = match fit.kind {
+        Kind::Friction => "torque that the motor needs, motor side",
+        Kind::Encoder => "test encoder minus reference",
+        Kind::Stiffness => "motor position by the gear ratio minus link position",
+        Kind::Brake => "braking torque",
+    };
+    format!("{what} [{}]", fit.unit)
+}
+
+/// What everyone should know who meets the export without its run, a line each.
+fn about(fit: &Fit, left_out: &[(&str, String)]) -> Vec<String> {
+    let mut lines = vec![
+        format!("jointbench {}: {} model, {}", env!("CARGO_PKG_VERSION"), fit.kind, predicted(fit)),
+        format!("Effects: {}", fit.effects.join(", ")),
+        format!("Error: {:.4e} {} rms on data that took no part in the fit", fit.validation_rms, fit.unit),
+    ];
+    for signal in fit.scope.iter().flat_map(|s| &s.signals).filter(|s| s.name != "direction") {
+        lines.push(format!("Fitted where {} is {:.4} to {:.4} {}", signal.name, signal.min, signal.max, signal.unit));
+    }
+    lines.extend(left_out.iter().map(|(effect, why)| format!("NOT CARRIED OVER: {effect} ({why})")));
+    lines
+}

@@ -1,0 +1,113 @@
+//! Effects that users write, on made-up runs: fitted, suggested, discovered, refused.
+
+mod common;
+
+use common::bench::{Moment, Staircase};
+use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::{
+    Fit, ModelError, ModelSpec, Options, OwnEffect, Verdict, diagnose, discover, evaluate, fit, residuals,
+};
+
+const RUB: &str = "rub: tau = a * sqrt(abs(load) * abs(velocity)) * exp(-abs(velocity) / w0) * direction; \
+                   a [1] 0..1; w0 [rad/s] 1..100";
+
+fn truth(m: Moment) -> f64 {
+    let rub = (m.load.abs() / 50.0 * m.velocity.abs()).sqrt() * (-m.velocity.abs() / 18.0).exp();
+    0.03 * m.velocity.signum() + 1.5e-4 * m.velocity + 0.05 * rub * m.velocity.signum()
+}
+
+fn measured(seed: u64) -> RunTable {
+    Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed }.run(truth)
+}
+
+fn own(text: &str) -> Vec<OwnEffect> {
+    vec![OwnEffect::inline(Kind::Friction, text).unwrap()]
+}
+
+fn spec(run: &RunTable, more: &[&str], text: &str) -> ModelSpec {
+    let baseline = run.meta().baseline.iter().map(String::as_str);
+    ModelSpec::with_own(Kind::Friction, baseline.chain(more.iter().copied()), own(text)).unwrap()
+}
+
+fn parameter(fit: &Fit, name: &str) -> f64 {
+    fit.parameters.iter().find(|p| p.name == name).unwrap().value
+}
+
+#[test]
+fn a_formula_is_fitted_with_its_shape() {
+    let run = measured(1);
+    let found = fit(&run, &spec(&run, &["rub"], RUB), &Options::default()).unwrap();
+    for (name, truth, budget) in [("a", 0.05, 5e-4), ("w0", 18.0, 0.2), ("tau_c", 0.03, 2e-4)] {
+        assert!((parameter(&found, name) - truth).abs() < budget, "{name} {}", parameter(&found, name));
+    }
+    let shape = found.parameters.iter().find(|p| p.name == "w0").unwrap();
+    assert!(shape.unit == "rad/s" && shape.ci95[0] < 18.0 && 18.0 < shape.ci95[1], "{shape:?}");
+}
+
+#[test]
+fn a_fit_carries_its_formulas() {
+    let run = measured(2);
+    let found = fit(&run, &spec(&run, &["rub"], RUB), &Options::default()).unwrap();
+    let again: Fit = serde_json::from_str(&serde_json::to_string(&found).unwrap()).unwrap();
+    let other = measured(3);
+    let held = evaluate(&again, &other).unwrap();
+    assert!((held.rms / found.rms - 1.0).abs() < 0.1, "{} and {}", held.rms, found.rms);
+    let set = residuals(&run, &again, &Options::default()).unwrap();
+    let judged: Vec<f64> = set.error.iter().zip(&set.held_out).filter(|(_, h)| !**h).map(|(e, _)| *e).collect();
+    let rms = (judged.iter().map(|e| e * e).sum::<f64>() / judged.len() as f64).sqrt();
+    assert!((rms / found.rms - 1.0).abs() < 1e-9, "{rms} {}", found.rms);
+}
+
+#[test]
+fn a_formula_is_a_candidate_like_any_other() {
+    let run = measured(4);
+    let spec = spec(&run, &[], RUB);
+    let first = diagnose(&run, &spec, &Options::default()).unwrap();
+    assert_eq!(first.suggestions.first().map(|s| s.effect.as_str()), Some("rub"), "{}", first.summary);
+    let whole = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    assert_eq!(whole.model.last().map(String::as_str), Some("rub"), "{:?}", whole.model);
+    assert_eq!((whole.verdict, whole.fit.own.len()), (Verdict::Adequate, 1), "{}", whole.summary);
+}
+
+#[test]
+fn a_formula_that_is_not_needed_stays_silent() {
+    let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 5 }
+        .run(|m| 0.03 * m.velocity.signum() + 1.5e-4 * m.velocity);
+    let found = diagnose(&run, &spec(&run, &[], RUB), &Options::default()).unwrap();
+    assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+    assert!(found.silent.iter().any(|s| s.effect == "rub" && s.minimum_detectable_rms > 0.0));
+}
+
+#[test]
+fn a_shape_may_be_negative() {
+    let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 6 }
+        .run(|m| 0.03 * m.velocity.signum() + 1.5e-4 * m.velocity + 0.02 * ((m.velocity + 15.0) / 9.0).tanh());
+    let text = "edge: tau = a * tanh((velocity - v0) / 9); a [Nm]; v0 [rad/s] -40..40";
+    let found = fit(&run, &spec(&run, &["edge"], text), &Options::default()).unwrap();
+    assert!((parameter(&found, "v0") + 15.0).abs() < 0.3, "{}", parameter(&found, "v0"));
+}
+
+#[test]
+fn whole_numbers_are_found() {
+    let run = Staircase { noise_nm: 1e-3, scatter_nm: 1e-4, seed: 7 }
+        .run(|m| 0.03 * m.velocity.signum() + 1.5e-4 * m.velocity + 0.006 * (7.0 * m.link + 0.4).cos());
+    let text = "wave: tau = a * cos(h * link_position) + b * sin(h * link_position); \
+                a [Nm]; b [Nm]; h [1/turn] 1..20 whole";
+    let found = fit(&run, &spec(&run, &["wave"], text), &Options::default()).unwrap();
+    assert_eq!(parameter(&found, "h"), 7.0);
+    let amplitude = parameter(&found, "a").hypot(parameter(&found, "b"));
+    assert!((amplitude - 0.006).abs() < 1e-4, "{amplitude}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_words() {
+    let run = measured(8);
+    let broken = spec(&run, &["bad"], "bad: tau = a * sqrt(velocity); a [Nm]");
+    let error = fit(&run, &broken, &Options::default()).unwrap_err();
+    assert!(matches!(&error, ModelError::NotFinite { first, .. } if first.contains("velocity = -")), "{error}");
+    let cold = spec(&run, &["warm"], "warm: tau = a * temperature; a [Nm]");
+    let found = fit(&run, &cold, &Options::default()).unwrap();
+    assert!(found.notes.iter().any(|n| n.contains("no column temperature_c")), "{:?}", found.notes);
+    let twice = [own(RUB), own(RUB)].concat();
+    assert_eq!(ModelSpec::with_own(Kind::Friction, ["coulomb"], twice), Err(ModelError::TwiceNamed("rub".into())));
+}
