@@ -1,0 +1,60 @@
+import type { Samples } from '../api/types';
+
+/** One channel of a run over whatever the runs are aligned by. */
+export interface Course {
+	x: number[];
+	low: (number | null)[];
+	high: (number | null)[];
+}
+
+/** A channel over time, or over another channel of the same samples. */
+export function courseOf(samples: Samples, channel: string, by: string): Course | null {
+	const values = samples.channels.find((one) => one.name === channel);
+	if (!values) return null;
+	if (by === 'time_s') return { x: samples.time_s, low: values.min, high: values.max };
+	const along = samples.channels.find((one) => one.name === by);
+	if (!along) return null;
+	return { x: along.min.map((low, i) => ((low ?? Number.NaN) + (along.max[i] ?? Number.NaN)) / 2), low: values.min, high: values.max };
+}
+
+/**
+ * All courses on one x, for a plot that has only one: smallest and largest value of each run in each bin, both at the same
+ * x, so that a spike is still seen. `null` where a run has nothing.
+ */
+export function alignCourses(courses: readonly (Course | null)[], most = 500): { x: number[]; columns: (number | null)[][] } {
+	const there = courses.filter((one) => one !== null);
+	const xs = there.flatMap((one) => one.x.filter(Number.isFinite));
+	if (xs.length === 0) return { x: [], columns: courses.map(() => []) };
+	const [from, to] = xs.reduce(([low, high], x) => [Math.min(low, x), Math.max(high, x)], [Infinity, -Infinity] as [number, number]);
+	const bins = Math.max(1, Math.min(most, ...there.map((one) => Math.ceil(one.x.length / 2))));
+	const width = (to - from) / bins || 1;
+	const columns = courses.map((course) => {
+		const column: (number | null)[] = new Array<number | null>(2 * bins).fill(null);
+		course?.x.forEach((x, i) => {
+			const [low, high] = [course.low[i], course.high[i]];
+			if (!Number.isFinite(x) || low == null || high == null) return;
+			const bin = Math.min(bins - 1, Math.floor((x - from) / width));
+			column[2 * bin] = Math.min(column[2 * bin] ?? Infinity, low);
+			column[2 * bin + 1] = Math.max(column[2 * bin + 1] ?? -Infinity, high);
+		});
+		return column;
+	});
+	return { x: Array.from({ length: 2 * bins }, (_, i) => from + ((i >> 1) + 0.5) * width), columns };
+}
+
+/** Facts of several runs side by side, with dotted names. */
+export function factTable(facts: readonly Record<string, unknown>[]): { name: string; values: string[]; differs: boolean }[] {
+	const flat = facts.map((one) => new Map(flatten(one)));
+	const names = [...new Set(flat.flatMap((one) => [...one.keys()]))];
+	return names.map((name) => {
+		const values = flat.map((one) => one.get(name) ?? '–');
+		return { name, values, differs: new Set(values).size > 1 };
+	});
+}
+
+function flatten(value: unknown, name = ''): [string, string][] {
+	if (value !== null && typeof value === 'object' && !Array.isArray(value)) {
+		return Object.entries(value).flatMap(([key, inner]) => flatten(inner, name ? `${name}.${key}` : key));
+	}
+	return [[name, Array.isArray(value) ? value.map(String).join(', ') : String(value)]];
+}

@@ -1,0 +1,12 @@
+/** Runs that are compared, as the address carries them: `compare=12,9`. More than six curves cannot be told apart. */
+export const MOST = 6;
+
+export function readMarked(text: string | null): number[] {
+	const ids = (text ?? '').split(',').map(Number);
+	return [...new Set(ids.filter((id) => Number.isInteger(id) && id > 0))].slice(0, MOST);
+}
+
+export function toggleMarked(marked: readonly number[], id: number): number[] {
+	if (marked.includes(id)) return marked.filter((one) => one !== id);
+	return marked.length < MOST ? [...marked, id] : [...marked];
+}

@@ -1,0 +1,46 @@
+import { expect, it } from 'vitest';
+import type { Samples } from '../api/types';
+import { alignCourses, courseOf, factTable } from './align';
+import { readMarked, toggleMarked } from './marked';
+
+const samples = {
+	time_s: [0, 1, 2, 3],
+	channels: [
+		{ name: 'torque', min: [1, 2, 3, 4], max: [1, 2, 9, 4] },
+		{ name: 'speed', min: [4, 3, 2, null], max: [4, 3, 2, null] },
+	],
+} as unknown as Samples;
+
+it('puts runs on one axis and keeps a spike', () => {
+	const course = courseOf(samples, 'torque', 'time_s');
+	const { x, columns } = alignCourses([course, null]);
+	expect(x).toEqual([0.75, 0.75, 2.25, 2.25]);
+	expect(columns[0]).toEqual([1, 2, 3, 9]);
+	expect(columns[1]).toEqual([null, null, null, null]);
+});
+
+it('aligns by another channel, and leaves out what has no place there', () => {
+	const course = courseOf(samples, 'torque', 'speed')!;
+	expect(course.x.slice(0, 3)).toEqual([4, 3, 2]);
+	expect(alignCourses([course]).columns[0]).toEqual([3, 9, 1, 2]);
+	expect(courseOf(samples, 'torque', 'absent')).toBeNull();
+	expect(alignCourses([null])).toEqual({ x: [], columns: [[]] });
+});
+
+it('shows where settings differ', () => {
+	const table = factTable([
+		{ kind: 'friction', oil: { name: 'A', age_h: 1 } },
+		{ kind: 'friction', oil: { name: 'B' } },
+	]);
+	expect(table).toEqual([
+		{ name: 'kind', values: ['friction', 'friction'], differs: false },
+		{ name: 'oil.name', values: ['A', 'B'], differs: true },
+		{ name: 'oil.age_h', values: ['1', '–'], differs: true },
+	]);
+});
+
+it('compares at most six runs', () => {
+	expect(readMarked('3,1,x,3')).toEqual([3, 1]);
+	expect(toggleMarked([3, 1], 1)).toEqual([3]);
+	expect(toggleMarked([1, 2, 3, 4, 5, 6], 7)).toEqual([1, 2, 3, 4, 5, 6]);
+});
