@@ -16,10 +16,12 @@ export function pair(files: readonly File[]): Upload[] {
 }
 
 /** Sent as a form, which the typed client does not build. */
-export async function importRun({ file, meta }: Upload): Promise<Run> {
+export async function importRun({ file, meta }: Upload, { map, scale }: { map: string[]; scale: string[] } = { map: [], scale: [] }): Promise<Run> {
 	const form = new FormData();
 	form.append('file', file, file.name);
 	if (meta) form.append('meta', await meta.text());
+	for (const one of map) form.append('map', one);
+	for (const one of scale) form.append('scale', one);
 	try {
 		const response = await fetch(`${BASE}/runs/import`, { method: 'POST', body: form, headers: authorization() });
 		const body: unknown = await response.json();

@@ -1,0 +1,15 @@
+// Accessibility of the page as it stands, by axe-core; through the debugger, so that the page's own policy stays as strict as it is.
+import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
+import { expect } from './browser.mjs';
+
+const source = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+export async function audit(page, name) {
+	if (!(await page.evaluate('typeof axe === "object"'))) await page.evaluate(source);
+	const found = await page.evaluate(async () => {
+		const { violations } = await axe.run(document, { resultTypes: ['violations'] });
+		return violations.map(({ id, help, nodes }) => `${id}: ${help}; ${nodes.slice(0, 3).map((node) => `${node.html.slice(0, 160)} ${node.any[0]?.message ?? ''}`).join(' | ')}`);
+	});
+	expect(found.length === 0, `${name} breaks rules of accessibility:\n  ${found.join('\n  ')}`);
+}
