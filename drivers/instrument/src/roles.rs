@@ -3,9 +3,10 @@
 //! Calls block until the instrument has answered or its deadline has passed; none blocks for ever. After a missed or
 //! garbled reply a driver returns the fault; the caller may [`Instrument::recover`] and try again.
 
-use crate::Fault;
-use crate::units::{Amperes, Celsius, NewtonMetres, RadPerSec, Radians, Volts};
+use crate::units::{Amperes, Celsius, NewtonMetres, RadPerSec, Radians, Seconds, Volts};
+use crate::{Clock, Fault};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Who answers on a port.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,6 +79,38 @@ pub trait TorqueSensor: Instrument {
     /// Full scale of the range in use; a reading beyond it is a fault, never a number.
     fn range(&self) -> NewtonMetres;
     fn resolution(&self) -> Option<NewtonMetres>;
+}
+
+/// One sample of a torque stream.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TorqueSample {
+    /// Counted from 0 at the start of the stream; lost samples count.
+    pub number: u64,
+    /// When it was taken, on the bench's clock, as its number tells.
+    pub at_s: f64,
+    /// How far [`TorqueSample::at_s`] may be off, either way.
+    pub uncertainty_s: f64,
+    /// `None`: beyond the large range.
+    pub coarse: Option<NewtonMetres>,
+    /// `None`: beyond the small range.
+    pub fine: Option<NewtonMetres>,
+}
+
+impl TorqueSample {
+    /// From the smallest range that holds it.
+    pub fn torque(&self) -> Option<NewtonMetres> {
+        self.fine.or(self.coarse)
+    }
+}
+
+/// Feels torque at the pace of its own clock. While a stream runs single readings are refused.
+pub trait TorqueStream: Instrument {
+    /// Starts at the period nearest to `period` that the sensor has, and returns it.
+    fn start_stream(&mut self, period: Seconds, clock: Arc<dyn Clock>) -> Result<Seconds, Fault>;
+    /// The samples since the last call, in order. After those before a gap comes [`crate::FaultKind::StreamGap`], then
+    /// those behind it. Any other fault ends the stream.
+    fn collect(&mut self) -> Result<Vec<TorqueSample>, Fault>;
+    fn stop_stream(&mut self) -> Result<(), Fault>;
 }
 
 /// How a supply holds its output.

@@ -9,7 +9,7 @@ use jointbench_instrument::{Bench, Clock, Fault, SystemClock};
 use std::sync::Arc;
 
 /// Simulated instruments share the machine with everything else.
-const MOCK_DEADLINE_MS: u64 = 500;
+const MOCK_DEADLINE_MS: u64 = 3000;
 
 /// What opening has brought: the instruments one by one, and the bench where all of them answer.
 pub struct Opened {

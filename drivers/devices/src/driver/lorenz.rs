@@ -1,9 +1,10 @@
 //! A rotating torque sensor with two ranges behind a Lorenz telegram interface.
 
+use super::lorenz_stream::Stream;
 use super::{Recovers, same};
 use crate::protocol::lorenz::{Hello, NOMINAL_COUNTS, ReadConfig, ReadRaw, ReadStatusShort, StopStream, nack_text};
 use crate::transport::{Command, Link, PortSettings};
-use jointbench_instrument::roles::{Identity, Instrument, TorqueSensor};
+use jointbench_instrument::roles::{Identity, Instrument, TorqueSensor, TorqueStream};
 use jointbench_instrument::units::NewtonMetres;
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
@@ -34,8 +35,9 @@ pub struct LorenzSettings {
 }
 
 pub struct LorenzSensor {
-    settings: LorenzSettings,
-    link: Link,
+    pub(super) settings: LorenzSettings,
+    pub(super) link: Link,
+    pub(super) stream: Option<Stream>,
     identity: Option<Identity>,
 }
 
@@ -43,7 +45,7 @@ impl LorenzSensor {
     /// Opens the port, ends a stream that may run, and identifies the sensor.
     pub fn open(settings: LorenzSettings) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
-        let mut sensor = Self { settings, link, identity: None };
+        let mut sensor = Self { settings, link, stream: None, identity: None };
         sensor.ready()?;
         Ok(sensor)
     }
@@ -75,6 +77,7 @@ impl Recovers for LorenzSensor {
     }
 
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
+        self.stream = None;
         let mut stop = Vec::new();
         StopStream.encode(&mut stop);
         self.link.drain(&stop, false)?;
@@ -91,7 +94,9 @@ impl Instrument for LorenzSensor {
         self.link.address()
     }
 
+    /// Ends a stream.
     fn identify(&mut self) -> Result<Identity, Fault> {
+        self.stop_stream()?;
         self.ready()?;
         self.who()
     }
@@ -103,6 +108,10 @@ impl Instrument for LorenzSensor {
 
 impl TorqueSensor for LorenzSensor {
     fn read(&mut self) -> Result<NewtonMetres, Fault> {
+        if self.stream.is_some() {
+            let what = "a single reading while the stream runs, which it would end: collect, or stop the stream";
+            return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
+        }
         let reading = self.ready()?.request(&ReadRaw)?;
         if reading.check_signal {
             let what = "the 100 % check signal is switched in: unload the shaft and switch it off";

@@ -1,8 +1,10 @@
 //! One driver for each instrument, behind the narrow role that the bench needs.
 
 mod lorenz;
+mod lorenz_stream;
 mod odrive;
 mod scpi;
+mod stream_clock;
 
 pub use lorenz::{LorenzSensor, LorenzSettings, Range};
 pub use odrive::{OdriveJoint, OdriveSettings, Thermistor};

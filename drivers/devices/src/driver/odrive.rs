@@ -51,13 +51,14 @@ pub struct OdriveJoint {
     identity: Option<Identity>,
     /// The set-point that the drive is known to hold, and since when on the bench's clock.
     held: Option<(f64, f64)>,
+    armed: bool,
 }
 
 impl OdriveJoint {
     /// Opens the port and identifies the drive. Nothing is commanded.
     pub fn open(settings: OdriveSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
-        let mut joint = Self { settings, link, clock, identity: None, held: None };
+        let mut joint = Self { settings, link, clock, identity: None, held: None, armed: false };
         joint.identify()?;
         Ok(joint)
     }
@@ -108,7 +109,14 @@ impl Recovers for OdriveJoint {
         // Ends a line that broke off; its error reply is thrown away with the rest.
         self.link.drain(b"\n", true)?;
         let found = self.link.probe(&ReadInfo)?;
-        same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))
+        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        // Positions after a power-up count from elsewhere: no reading may follow one from before.
+        if self.armed && self.link.probe(&ReadNumber { path: "axis0.current_state" })? != CLOSED_LOOP {
+            self.armed = false;
+            let what = "the drive was armed and is not any more: its supply or its watchdog has interrupted it".into();
+            return Err(self.link.fault(FaultKind::Reported { what }));
+        }
+        Ok(identity)
     }
 }
 
@@ -154,7 +162,9 @@ impl JointController for OdriveJoint {
             return Err(self.link.fault(FaultKind::Reported { what: errors.join(", ") }));
         }
         self.link.send(&RequestState(CLOSED_LOOP))?;
-        self.reach(CLOSED_LOOP, "close the velocity loop")
+        self.reach(CLOSED_LOOP, "close the velocity loop")?;
+        self.armed = true;
+        Ok(())
     }
 
     /// Every set is read back. An unchanged set-point goes out again only as often as the watchdog needs it.
@@ -208,6 +218,7 @@ impl JointController for OdriveJoint {
 
     fn disarm(&mut self) -> Result<(), Fault> {
         self.held = None;
+        self.armed = false;
         self.link.send(&StandDown { after_broken_line: !self.link.is_trusted() })
     }
 

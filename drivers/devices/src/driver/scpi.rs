@@ -29,6 +29,8 @@ pub struct ScpiSource {
     link: Link,
     line_end: Terminator,
     identity: Option<Identity>,
+    /// The output was switched on, and not off again.
+    on: bool,
 }
 
 impl ScpiSource {
@@ -39,7 +41,7 @@ impl ScpiSource {
             Address::Serial(_) => Terminator::CrLf,
             Address::Tcp(_) => Terminator::Lf,
         };
-        let mut source = Self { settings, link, line_end, identity: None };
+        let mut source = Self { settings, link, line_end, identity: None, on: false };
         source.ready()?;
         Ok(source)
     }
@@ -80,6 +82,15 @@ impl ScpiSource {
         Ok(())
     }
 
+    /// A supply that switches off by itself, without a trip, has lost its state.
+    fn still_on(&mut self, on: bool) -> Result<(), Fault> {
+        if std::mem::replace(&mut self.on, on) && !on {
+            let what = "the output is off although nobody switched it off: the supply's mains were interrupted".into();
+            return Err(self.link.fault(FaultKind::Reported { what }));
+        }
+        Ok(())
+    }
+
     fn output(&mut self, on: bool) -> Result<(), Fault> {
         let word = if on { "ON" } else { "OFF" };
         self.set(format!(":OUTP CH1,{word}"))?;
@@ -106,7 +117,10 @@ impl Recovers for ScpiSource {
             let found = format!("{} {}", found.maker, found.model);
             return Err(self.link.fault(FaultKind::WrongInstrument { expected: "RIGOL DP8xx".into(), found }));
         }
-        same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))
+        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        let on = self.on && self.link.probe(&QueryOutput(self.line_end))?;
+        self.still_on(on)?;
+        Ok(identity)
     }
 }
 
@@ -131,11 +145,14 @@ impl Instrument for ScpiSource {
 
 impl CurrentSource for ScpiSource {
     fn prepare(&mut self, compliance: Volts) -> Result<(), Fault> {
+        self.on = false;
         self.set(":SYST:REM".into())?;
         self.output(false)?;
         self.set_and_read_back(":SOUR1:CURR", ":SOUR1:CURR?", 0.0, CURRENT_STEP_A)?;
         self.set_and_read_back(":SOUR1:VOLT", ":SOUR1:VOLT?", compliance.0, VOLTAGE_STEP_V)?;
-        self.output(true)
+        self.output(true)?;
+        self.on = true;
+        Ok(())
     }
 
     fn set_current(&mut self, current: Amperes) -> Result<(), Fault> {
@@ -157,10 +174,13 @@ impl CurrentSource for ScpiSource {
             (true, true) => Regulation::Unregulated,
             (false, false) => Regulation::Off,
         };
+        let on = regulation != Regulation::Off || link.request(&QueryOutput(line_end))?;
+        self.still_on(self.on && on)?;
         Ok(SupplyReading { current: Amperes(measured.current_a), voltage: Volts(measured.voltage_v), regulation })
     }
 
     fn output_off(&mut self) -> Result<(), Fault> {
+        self.on = false;
         // Out first, whatever the state of the link; then the question whether it was taken.
         self.link.send(&SwitchOff(self.line_end))?;
         self.output(false)

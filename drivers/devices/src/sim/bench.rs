@@ -6,8 +6,9 @@ use super::firmware::Odrive;
 use super::plant::{HIDDEN_EFFECTS, Hidden, Plant, Truth};
 #[cfg(unix)]
 use super::port::serve_terminal;
-use super::port::{Port, Trouble, serve_tcp};
+use super::port::{Port, lock, serve_tcp};
 use super::rig::{MockInstrument, Rig};
+use super::trouble::{PlannedTrouble, Trouble};
 use crate::driver::{
     LorenzSensor, LorenzSettings, OdriveJoint, OdriveSettings, Range, ScpiSettings, ScpiSource, Thermistor,
 };
@@ -18,7 +19,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
 /// Generous: other programs share the machine with a simulated instrument.
-const DEADLINE_MS: u64 = 500;
+const DEADLINE_MS: u64 = 3000;
 
 /// What the instruments' wires are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,11 +40,20 @@ pub struct MockSettings {
     pub transport: Transport,
     /// For the drivers that [`MockBench::open_bench`] opens.
     pub deadline_ms: u64,
+    pub troubles: Vec<PlannedTrouble>,
 }
 
 impl MockSettings {
     pub fn new(joint: Joint, seed: u64) -> Self {
-        Self { joint, seed, effects: Vec::new(), pace: None, transport: Transport::Terminal, deadline_ms: DEADLINE_MS }
+        Self {
+            joint,
+            seed,
+            effects: Vec::new(),
+            pace: None,
+            transport: Transport::Terminal,
+            deadline_ms: DEADLINE_MS,
+            troubles: Vec::new(),
+        }
     }
 
     pub fn hiding(mut self, effects: &[&str]) -> Self {
@@ -91,7 +101,7 @@ impl MockBench {
             Hidden::draw(settings.joint, settings.seed, &settings.effects).map_err(MockError::UnknownEffect)?;
         let plant = Plant::new(settings.joint, settings.seed, hidden);
         let truth = plant.truth(settings.joint, settings.seed);
-        let rig = Arc::new(Mutex::new(Rig::new(plant, Odrive::new(settings.joint))));
+        let rig = Arc::new(Mutex::new(Rig::new(plant, Odrive::new(settings.joint), &settings.troubles)));
         let clock = Arc::new(SteppedClock::new(Arc::clone(&rig), settings.pace));
         let mut bench = Self { settings, truth, rig, clock, ports: Vec::new(), threads: Vec::new() };
         for instrument in MockInstrument::ALL {
@@ -132,7 +142,7 @@ impl MockBench {
 
     /// Gives an instrument a bad day, or ends it.
     pub fn trouble(&self, instrument: MockInstrument, trouble: Trouble) {
-        self.port(instrument).set_trouble(trouble);
+        lock(&self.rig).afflict(instrument, trouble);
     }
 
     /// The bench with the ordinary drivers on the ports of this mock bench.

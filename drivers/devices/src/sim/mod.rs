@@ -17,12 +17,13 @@ mod port;
 #[cfg(unix)]
 mod pty;
 mod rig;
+mod trouble;
 
 pub use bench::{MockBench, MockError, MockPorts, MockSettings, Transport};
 pub use data_sheet::Joint;
 pub use plant::{HIDDEN_EFFECTS, HiddenEffect, Truth};
-pub use port::Trouble;
 pub use rig::MockInstrument;
+pub use trouble::{PlannedTrouble, Trouble};
 
 #[cfg(doc)]
 use jointbench_instrument::Clock;

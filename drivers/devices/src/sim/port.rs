@@ -3,6 +3,7 @@
 #[cfg(unix)]
 use super::pty::Pty;
 use super::rig::{MockInstrument, Rig};
+use super::trouble::{Cable, Trouble};
 use crate::transport::Address;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -11,29 +12,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How soon a thread notices that it shall end, or that its trouble has changed.
+/// How soon a thread notices that it shall end, or that its cable is pulled.
 const GLANCE: Duration = Duration::from_millis(20);
-const GLANCE_STREAMING: Duration = Duration::from_millis(1);
-
-/// A bad day of one instrument.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Trouble {
-    #[default]
-    None,
-    /// Hears and does what it is told, but its replies are lost.
-    Silent,
-    /// Replies are held back until the trouble ends, and come all at once then.
-    Late,
-    /// One byte of every reply is wrong.
-    Garbled,
-    /// The cable is out. A pseudo-terminal comes back under another name, a TCP port under the same.
-    Unplugged,
-}
+const GLANCE_STREAMING: Duration = Duration::from_micros(200);
 
 /// What the bench's owner and the threads share about one connector.
 pub struct Port {
     instrument: MockInstrument,
-    trouble: Mutex<Trouble>,
     address: Mutex<Address>,
     closing: AtomicBool,
 }
@@ -47,10 +32,6 @@ impl Port {
         lock(&self.address).clone()
     }
 
-    pub fn set_trouble(&self, trouble: Trouble) {
-        *lock(&self.trouble) = trouble;
-    }
-
     pub fn close(&self) {
         self.closing.store(true, Ordering::Release);
     }
@@ -59,8 +40,8 @@ impl Port {
         self.closing.load(Ordering::Acquire)
     }
 
-    fn trouble(&self) -> Trouble {
-        *lock(&self.trouble)
+    fn is_unplugged(&self, rig: &Mutex<Rig>) -> bool {
+        lock(rig).trouble(self.instrument) == Trouble::Unplugged
     }
 }
 
@@ -70,7 +51,6 @@ pub fn serve_terminal(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::R
     let pty = Pty::open()?;
     let port = Arc::new(Port {
         instrument,
-        trouble: Mutex::default(),
         address: Mutex::new(Address::Serial(pty.path().to_owned())),
         closing: AtomicBool::new(false),
     });
@@ -78,7 +58,7 @@ pub fn serve_terminal(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::R
     let thread = std::thread::Builder::new().name(format!("mock {}", instrument.label())).spawn(move || {
         let mut wire = Some(pty);
         while !shared.is_closing() {
-            if shared.trouble() == Trouble::Unplugged {
+            if shared.is_unplugged(&rig) {
                 wire = None;
                 std::thread::sleep(GLANCE);
             } else if let Some(wire) = &mut wire {
@@ -106,7 +86,6 @@ pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result
     listener.set_nonblocking(true)?;
     let port = Arc::new(Port {
         instrument,
-        trouble: Mutex::default(),
         address: Mutex::new(Address::Tcp(listener.local_addr()?.to_string())),
         closing: AtomicBool::new(false),
     });
@@ -115,7 +94,7 @@ pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result
         std::thread::scope(|clients| {
             while !shared.is_closing() {
                 match listener.accept() {
-                    Ok((stream, _)) if shared.trouble() != Trouble::Unplugged => {
+                    Ok((stream, _)) if !shared.is_unplugged(&rig) => {
                         clients.spawn(|| match plain(&stream) {
                             Ok(()) => converse(&shared, &rig, &mut { stream }),
                             Err(error) => tracing::warn!(%error, "client lost"),
@@ -134,14 +113,14 @@ fn plain(stream: &TcpStream) -> io::Result<()> {
     stream.set_nodelay(true)
 }
 
-trait Cable {
+trait Wire {
     /// `Ok(0)`: nothing came within `wait`.
     fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
     fn say(&mut self, bytes: &[u8]) -> io::Result<()>;
 }
 
 #[cfg(unix)]
-impl Cable for Pty {
+impl Wire for Pty {
     fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         self.read(buffer, wait)
     }
@@ -151,7 +130,7 @@ impl Cable for Pty {
     }
 }
 
-impl Cable for TcpStream {
+impl Wire for TcpStream {
     fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         self.set_read_timeout(Some(wait))?;
         match self.read(buffer) {
@@ -166,13 +145,14 @@ impl Cable for TcpStream {
     }
 }
 
-/// Carries bytes until the cable breaks, is pulled, or the bench closes.
-fn converse(port: &Port, rig: &Mutex<Rig>, cable: &mut impl Cable) {
+/// Carries bytes until the wire breaks, is pulled, or the bench closes.
+fn converse(port: &Port, rig: &Mutex<Rig>, wire: &mut impl Wire) {
     let instrument = port.instrument;
-    let (mut input, mut output, mut held, mut chunk) = (Vec::new(), Vec::new(), Vec::new(), [0; 1024]);
+    let (mut input, mut output, mut chunk) = (Vec::new(), Vec::new(), [0; 1024]);
+    let mut cable = Cable::default();
     let mut wait = GLANCE;
-    while !port.is_closing() && port.trouble() != Trouble::Unplugged {
-        let count = match cable.hear(&mut chunk, wait) {
+    while !port.is_closing() && !port.is_unplugged(rig) {
+        let count = match wire.hear(&mut chunk, wait) {
             Ok(count) => count,
             Err(error) => {
                 tracing::debug!(%error, instrument = instrument.label(), "client left");
@@ -180,29 +160,21 @@ fn converse(port: &Port, rig: &Mutex<Rig>, cable: &mut impl Cable) {
             }
         };
         input.extend_from_slice(&chunk[..count]);
-        {
+        let trouble = {
             let mut rig = lock(rig);
             if count > 0 {
                 rig.receive(instrument, &mut input, &mut output);
             }
             rig.unasked(instrument, &mut output);
             wait = if rig.is_streaming(instrument) { GLANCE_STREAMING } else { GLANCE };
+            rig.trouble(instrument)
+        };
+        if trouble == Trouble::Unplugged {
+            return;
         }
-        match port.trouble() {
-            Trouble::Silent => output.clear(),
-            Trouble::Late => held.append(&mut output),
-            // The middle of a line or telegram; a flipped high bit is wrong in each of the protocols.
-            Trouble::Garbled => {
-                let middle = output.len() / 2;
-                if let Some(byte) = output.get_mut(middle) {
-                    *byte ^= 0x40;
-                }
-            }
-            Trouble::None => drop(output.splice(0..0, held.drain(..))),
-            Trouble::Unplugged => {}
-        }
+        cable.carry(trouble, &mut output);
         if !output.is_empty() {
-            if let Err(error) = cable.say(&output) {
+            if let Err(error) = wire.say(&output) {
                 tracing::debug!(%error, instrument = instrument.label(), "client left");
                 return;
             }

@@ -2,6 +2,7 @@
 
 use super::firmware::{Dp800, Firmware, Lorenz, Odrive};
 use super::plant::{Plant, STEP_S};
+use super::trouble::{PlannedTrouble, Trouble};
 use serde::{Deserialize, Serialize};
 
 /// The instruments of a mock bench.
@@ -25,19 +26,37 @@ impl MockInstrument {
     }
 }
 
+/// Beyond 131 % of the small range, where the converter ends, and well within the large one.
+const SENSOR_SHIFT_NM: f64 = 27.0;
+const LOOSE_CONTACT_OHM: f64 = 250.0;
+const THERMISTOR_FAULT_K: f64 = 70.0;
+
 pub(super) struct Rig {
     pub plant: Plant,
     joint: Odrive,
     torque_sensor: Lorenz,
     brake: Dp800,
+    troubles: [Trouble; MockInstrument::ALL.len()],
+    /// What begins, or ends, at which moment. The next one last.
+    planned: Vec<(f64, MockInstrument, Trouble)>,
 }
 
 impl Rig {
-    pub fn new(plant: Plant, joint: Odrive) -> Self {
-        Self { plant, joint, torque_sensor: Lorenz::new(), brake: Dp800::new() }
+    pub fn new(plant: Plant, joint: Odrive, planned: &[PlannedTrouble]) -> Self {
+        let mut moments = Vec::new();
+        for plan in planned {
+            moments.push((plan.from_s, plan.instrument, plan.trouble));
+            moments.extend(plan.until_s.map(|until_s| (until_s, plan.instrument, Trouble::None)));
+        }
+        moments.sort_by(|(a_s, ..), (b_s, ..)| b_s.total_cmp(a_s));
+        let (torque_sensor, brake) = (Lorenz::new(), Dp800::new());
+        Self { plant, joint, torque_sensor, brake, troubles: Default::default(), planned: moments }
     }
 
     pub fn advance(&mut self) {
+        while let Some((_, instrument, trouble)) = self.planned.pop_if(|(at_s, ..)| *at_s <= self.plant.now_s()) {
+            self.afflict(instrument, trouble);
+        }
         self.joint.step(&mut self.plant);
         self.brake.step(&mut self.plant);
         self.torque_sensor.step(&mut self.plant);
@@ -51,14 +70,34 @@ impl Rig {
         }
     }
 
+    pub fn trouble(&self, instrument: MockInstrument) -> Trouble {
+        self.troubles[instrument as usize]
+    }
+
+    /// Gives an instrument a bad day, or ends it.
+    pub fn afflict(&mut self, instrument: MockInstrument, trouble: Trouble) {
+        let before = std::mem::replace(&mut self.troubles[instrument as usize], trouble);
+        let (firmware, plant) = self.firmware(instrument);
+        firmware.afflict(trouble);
+        if before != trouble && [before, trouble].contains(&Trouble::PowerCycled) {
+            firmware.power_cycle(plant);
+        }
+        let is = |instrument, trouble| self.trouble(instrument) == trouble;
+        let saturated = is(MockInstrument::TorqueSensor, Trouble::Saturated);
+        let loose = is(MockInstrument::Brake, Trouble::CurrentLost);
+        let hot = is(MockInstrument::Joint, Trouble::OverTemperature);
+        self.plant.sensor_shift_nm = if saturated { SENSOR_SHIFT_NM } else { 0.0 };
+        self.plant.brake.contact_ohm = if loose { LOOSE_CONTACT_OHM } else { 0.0 };
+        self.plant.thermistor_fault_k = if hot { THERMISTOR_FAULT_K } else { 0.0 };
+    }
+
     /// Hands `input` to an instrument; what it does not understand yet stays in `input`.
     pub fn receive(&mut self, instrument: MockInstrument, input: &mut Vec<u8>, output: &mut Vec<u8>) {
-        let firmware: &mut dyn Firmware = match instrument {
-            MockInstrument::Joint => &mut self.joint,
-            MockInstrument::TorqueSensor => &mut self.torque_sensor,
-            MockInstrument::Brake => &mut self.brake,
-        };
-        firmware.receive(input, &mut self.plant, output);
+        if self.trouble(instrument) == Trouble::PowerCycled {
+            return input.clear();
+        }
+        let (firmware, plant) = self.firmware(instrument);
+        firmware.receive(input, plant, output);
     }
 
     /// What an instrument sends without being asked.
@@ -70,5 +109,14 @@ impl Rig {
 
     pub fn is_streaming(&self, instrument: MockInstrument) -> bool {
         instrument == MockInstrument::TorqueSensor && self.torque_sensor.is_streaming()
+    }
+
+    fn firmware(&mut self, instrument: MockInstrument) -> (&mut dyn Firmware, &mut Plant) {
+        let firmware: &mut dyn Firmware = match instrument {
+            MockInstrument::Joint => &mut self.joint,
+            MockInstrument::TorqueSensor => &mut self.torque_sensor,
+            MockInstrument::Brake => &mut self.brake,
+        };
+        (firmware, &mut self.plant)
     }
 }

@@ -12,6 +12,9 @@ const QUIET: Duration = Duration::from_millis(20);
 /// More than any reply of any instrument: what exceeds it is noise.
 const MAX_PENDING: usize = 4096;
 
+/// One call of [`Link::overhear`] ends after this much: a flooded line must not keep its owner.
+const MAX_OVERHEARD: usize = 1 << 16;
+
 /// How far the next reply can be trusted to belong to the next request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Trust {
@@ -71,6 +74,29 @@ impl Link {
         self.trust = Trust::Trusted;
     }
 
+    /// The next reply may belong to something else: drain and identify before the next request.
+    pub fn distrust(&mut self) {
+        if self.trust == Trust::Trusted {
+            self.trust = Trust::Stale;
+        }
+    }
+
+    /// Appends what has come in to `bytes`, for instruments that send without being asked. Waits at most `patience` for the
+    /// first byte; returns how many came.
+    pub fn overhear(&mut self, bytes: &mut Vec<u8>, patience: Duration) -> Result<usize, Fault> {
+        let before = bytes.len();
+        bytes.append(&mut self.received);
+        let mut until = Instant::now() + patience;
+        loop {
+            let count = self.next_chunk(until).map_err(|kind| self.broken(kind))?;
+            bytes.append(&mut self.received);
+            if count == 0 || bytes.len() - before >= MAX_OVERHEARD {
+                return Ok(bytes.len() - before);
+            }
+            until = Instant::now();
+        }
+    }
+
     /// Writes a command that has no reply. Goes out on a stale link too: a command to stop must not wait.
     pub fn send(&mut self, command: &impl Command) -> Result<(), Fault> {
         let deadline = Instant::now() + self.deadline;
@@ -114,6 +140,7 @@ impl Link {
     }
 
     fn exchange<R: Request>(&mut self, request: &R, deadline: Instant) -> Result<R::Reply, FaultKind> {
+        self.next_chunk(Instant::now())?;
         if !self.received.is_empty() {
             return Err(FaultKind::Garbled { what: format!("{} without a request", shown(&self.received)) });
         }
@@ -167,6 +194,17 @@ impl Link {
     fn write(&mut self, deadline: Instant) -> Result<(), FaultKind> {
         let wire = self.wire.as_mut().ok_or_else(port_is_closed)?;
         wire.write(&self.outgoing, deadline).map_err(lost)
+    }
+
+    /// What waits to be read, or else what comes until `until`.
+    fn next_chunk(&mut self, until: Instant) -> Result<usize, FaultKind> {
+        let now = Instant::now();
+        if until > now {
+            return self.read(until);
+        }
+        let wire = self.wire.as_mut().ok_or_else(port_is_closed)?;
+        // Bytes are there: this read does not wait for them.
+        if wire.has_input().map_err(lost)? { self.read(now + QUIET) } else { Ok(0) }
     }
 
     fn read(&mut self, deadline: Instant) -> Result<usize, FaultKind> {

@@ -61,6 +61,23 @@ impl Wire {
         }
     }
 
+    /// Whether bytes wait to be read. Asks the system, waits for nothing.
+    pub fn has_input(&mut self) -> io::Result<bool> {
+        match self {
+            Wire::Serial(port) => Ok(serialport::SerialPort::bytes_to_read(port)? > 0),
+            Wire::Tcp(stream) => {
+                stream.set_nonblocking(true)?;
+                let peeked = stream.peek(&mut [0]);
+                stream.set_nonblocking(false)?;
+                match peeked {
+                    Err(error) if is_wait_over(&error) => Ok(false),
+                    // The end of the stream is for `read` to tell.
+                    result => result.map(|_| true),
+                }
+            }
+        }
+    }
+
     fn io(&mut self) -> &mut dyn ReadWrite {
         match self {
             Wire::Serial(port) => port,

@@ -2,12 +2,14 @@
 //!
 //! `STX CMD TO FROM N P1..PN CS WCS`; every 02 after the first STX is sent twice, checksums included.
 
+mod frames;
 mod nack;
 mod requests;
 mod telegram;
 
+pub use frames::{Frame, Frames, Item, PERIOD_STEP_S};
 pub use nack::nack_text;
-pub use requests::{ConfigBlock, Hello, RawReading, ReadConfig, ReadRaw, ReadStatusShort, StopStream};
+pub use requests::{ConfigBlock, Hello, RawReading, ReadConfig, ReadRaw, ReadStatusShort, StartStream, StopStream};
 pub use telegram::{HOST, SENSOR, STX, Telegram, command};
 
 /// Counts of the calibrated value at nominal torque; at and beyond it the reading is an overload (LCTSfunctions v2).

@@ -118,6 +118,22 @@ request!(ReadConfig, command::READ_CONFIG, "ReadConfig", ConfigBlock, |this| &[t
     Ok(block)
 });
 
+/// Both channels on the sensor's own clock, without end (SOSM mode 3). What follows the reply are frames, no telegrams.
+#[derive(Debug, Clone, Copy)]
+pub struct StartStream {
+    /// In steps of 200 µs.
+    pub period: u8,
+}
+
+request!(
+    StartStream,
+    command::SPECIAL_MODE,
+    "GotoSpecialMode",
+    (),
+    |this| &[3, this.period, 0, 0, b'C'],
+    |self, packet| answer::<0>(packet, command::ACK).map(|_| ())
+);
+
 /// Ends a stream that somebody left running: any STX does. Three, because one may meet a byte on its way.
 #[derive(Debug, Clone, Copy)]
 pub struct StopStream;

@@ -16,6 +16,7 @@ pub mod command {
     pub const READ_RAW: u8 = 0x41;
     pub const READ_STATUS_SHORT: u8 = 0x43;
     pub const READ_CONFIG: u8 = 0x44;
+    pub const SPECIAL_MODE: u8 = 0x5A;
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -3,6 +3,7 @@
 use super::Firmware;
 use super::scpi::{Error, Pattern, Status, Unit, number, units};
 use crate::sim::plant::{CoilSupply, Plant, Signal};
+use crate::sim::trouble::Trouble;
 use std::collections::VecDeque;
 use std::sync::LazyLock;
 
@@ -134,6 +135,7 @@ pub struct Dp800 {
     status: Status,
     /// Changes on their way to the output.
     underway: VecDeque<(f64, Option<CoilSupply>)>,
+    trouble: Trouble,
 }
 
 impl Dp800 {
@@ -143,6 +145,7 @@ impl Dp800 {
             selected: 0,
             status: Status::power_on(),
             underway: VecDeque::new(),
+            trouble: Trouble::None,
         }
     }
 
@@ -167,6 +170,9 @@ impl Dp800 {
         }
         let found = COMMANDS.iter().find_map(|(pattern, command)| Some((*command, pattern.matches(&header)?)));
         let (command, numbers) = found.ok_or(Error::UndefinedHeader)?;
+        if self.trouble == Trouble::Refusing && !matches!(command, Command::SystemError) {
+            return Err(Error::Execution);
+        }
         let before = self.channels[0].wanted();
         let reply = if unit.query {
             self.query(command, unit, &numbers, plant).map(Some)
@@ -181,6 +187,9 @@ impl Dp800 {
         let text = |text: &str| Ok(Some(text.to_owned()));
         let mask = || unit.parameters.first().ok_or(Error::Missing)?.parse().map_err(|_| Error::DataType);
         match (command, unit.query) {
+            ("*IDN", true) if self.trouble == Trouble::Exchanged => {
+                text("RIGOL TECHNOLOGIES,DP821A,DP8E204500999,00.01.16")
+            }
             ("*IDN", true) => text("RIGOL TECHNOLOGIES,DP821A,DP8E204500123,00.01.16"),
             ("*OPT", true) => text("0,0,0,0,0"),
             ("*OPC", true) => text("1"),
@@ -379,5 +388,14 @@ impl Firmware for Dp800 {
             self.underway.clear();
             plant.inputs.coil = None;
         }
+    }
+
+    fn afflict(&mut self, trouble: Trouble) {
+        self.trouble = trouble;
+    }
+
+    fn power_cycle(&mut self, plant: &mut Plant) {
+        *self = Self { trouble: self.trouble, ..Self::new() };
+        plant.inputs.coil = None;
     }
 }

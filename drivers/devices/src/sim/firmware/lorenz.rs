@@ -4,6 +4,7 @@
 
 use super::Firmware;
 use crate::sim::plant::{Plant, STEP_S, Signal};
+use crate::sim::trouble::Trouble;
 
 pub(super) const STX: u8 = 0x02;
 const ACK: u8 = 0x06;
@@ -28,6 +29,14 @@ pub(super) const UNKNOWN_COMMAND: u8 = 41;
 pub(super) const WRONG_CHECKSUM: u8 = 42;
 pub(super) const WRONG_PARAMETER: u8 = 43;
 pub(super) const WRITE_ONCE: u8 = 45;
+/// The inductive link to the rotor is dead.
+pub(super) const ROTOR_NOT_FOUND: u8 = 9;
+
+/// A bad stream loses this many frames of every so many.
+const LOST_FRAMES: u64 = 7;
+const LOST_OF: u64 = 500;
+/// The sensor's quartz is off by up to this (assumed; specimens differ).
+const QUARTZ_TOLERANCE: f64 = 40e-6;
 
 struct Stream {
     period_s: f64,
@@ -35,7 +44,7 @@ struct Stream {
     left: Option<u16>,
     channels: &'static [usize],
     due_s: f64,
-    index: u8,
+    sent: u64,
 }
 
 pub struct Lorenz {
@@ -43,6 +52,7 @@ pub struct Lorenz {
     stream: Option<Stream>,
     pending: Vec<u8>,
     blocks: Vec<(u8, [u8; 32])>,
+    trouble: Trouble,
 }
 
 impl Lorenz {
@@ -82,7 +92,7 @@ impl Lorenz {
             (131, rotor_operation),
         ];
         let blocks = blocks.into_iter().map(|(number, data)| (number, sealed(data))).collect();
-        Self { check_signal: false, stream: None, pending: Vec::new(), blocks }
+        Self { check_signal: false, stream: None, pending: Vec::new(), blocks, trouble: Trouble::None }
     }
 
     pub fn is_streaming(&self) -> bool {
@@ -91,6 +101,10 @@ impl Lorenz {
 
     pub fn take_stream(&mut self, output: &mut Vec<u8>) {
         output.append(&mut self.pending);
+    }
+
+    fn restart(&mut self) {
+        *self = Self { blocks: std::mem::take(&mut self.blocks), trouble: self.trouble, ..Self::new() };
     }
 
     fn counts(&self, plant: &Plant, channel: usize) -> i16 {
@@ -110,6 +124,9 @@ impl Lorenz {
 
     fn execute(&mut self, command: u8, parameters: &[u8], plant: &Plant) -> (u8, Vec<u8>) {
         let refuse = |code| (NACK, vec![code]);
+        if self.trouble == Trouble::Refusing {
+            return refuse(ROTOR_NOT_FOUND);
+        }
         let expected = match command {
             0x40..=0x43 | 0x49 | 0x4B => 0,
             0x44 | 0x45 => 1,
@@ -131,6 +148,11 @@ impl Lorenz {
             0x42 => (0x42, vec![0; 14]),
             0x43 => (0x43, vec![0]),
             0x44 => match self.blocks.iter().find(|(number, _)| *number == parameters[0]) {
+                Some((0, block)) if self.trouble == Trouble::Exchanged => {
+                    let mut data: [u8; 28] = std::array::from_fn(|at| block[at]);
+                    data[7] ^= 0x55;
+                    (0x44, [&[0][..], &sealed(data)].concat())
+                }
                 Some((number, block)) => (0x44, [&[*number][..], block].concat()),
                 None => refuse(WRONG_PARAMETER),
             },
@@ -147,7 +169,7 @@ impl Lorenz {
                 None => refuse(WRONG_PARAMETER),
             },
             0x49 => {
-                *self = Self { blocks: std::mem::take(&mut self.blocks), ..Self::new() };
+                self.restart();
                 (0x40, vec![0x01])
             }
             // An angle output is what LCV-USB does not have.
@@ -170,7 +192,8 @@ impl Lorenz {
         }
         let count = u16::from_be_bytes([parameters[2], parameters[3]]);
         let left = (count > 0).then_some(count);
-        self.stream = Some(Stream { period_s, left, channels, due_s: plant.now_s() + period_s, index: 0 });
+        let period_s = period_s * (1.0 + QUARTZ_TOLERANCE * plant.noise.trait_of(Signal::SensorQuartz));
+        self.stream = Some(Stream { period_s, left, channels, due_s: plant.now_s() + period_s, sent: 0 });
         (ACK, vec![])
     }
 }
@@ -273,14 +296,25 @@ impl Firmware for Lorenz {
         let now_s = plant.now_s();
         let Some(mut stream) = self.stream.take() else { return };
         while now_s + 0.5 * STEP_S >= stream.due_s && stream.left != Some(0) {
-            self.pending.push(stream.index);
-            for channel in stream.channels {
-                self.pending.extend(self.counts(plant, *channel).to_be_bytes());
+            if self.trouble != Trouble::StreamGap || stream.sent % LOST_OF >= LOST_FRAMES {
+                // One byte of index, which wraps.
+                self.pending.push(stream.sent as u8);
+                for channel in stream.channels {
+                    self.pending.extend(self.counts(plant, *channel).to_be_bytes());
+                }
             }
-            stream.index = stream.index.wrapping_add(1);
+            stream.sent += 1;
             stream.due_s += stream.period_s;
             stream.left = stream.left.map(|left| left - 1);
         }
         self.stream = (stream.left != Some(0)).then_some(stream);
+    }
+
+    fn afflict(&mut self, trouble: Trouble) {
+        self.trouble = trouble;
+    }
+
+    fn power_cycle(&mut self, _plant: &mut Plant) {
+        self.restart();
     }
 }

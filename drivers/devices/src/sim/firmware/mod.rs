@@ -15,6 +15,7 @@ pub use lorenz::Lorenz;
 pub use odrive::Odrive;
 
 use super::plant::Plant;
+use super::trouble::Trouble;
 
 pub trait Firmware {
     /// Handles the complete requests at the front of `input` and takes them out; replies go to `output`.
@@ -22,4 +23,10 @@ pub trait Firmware {
 
     /// One control period of the instrument, before the plant moves on.
     fn step(&mut self, plant: &mut Plant);
+
+    /// The bad day that it has. Troubles of the cable and of the plant are none of its business.
+    fn afflict(&mut self, trouble: Trouble);
+
+    /// Power went and came back: what is not kept in memory is lost.
+    fn power_cycle(&mut self, plant: &mut Plant);
 }

@@ -4,6 +4,7 @@
 use super::Firmware;
 use crate::sim::data_sheet::Joint;
 use crate::sim::plant::{AMBIENT_C, LINK_COUNTS, MOTOR_COUNTS, Plant, STEP_S, Signal};
+use crate::sim::trouble::Trouble;
 use std::f64::consts::TAU;
 
 pub const IDLE: u8 = 1;
@@ -112,6 +113,7 @@ pub struct Odrive {
     reboot_until_s: Option<f64>,
     /// Value buffer of `w`: what an earlier command left there is what a later one without a value writes.
     pub stale_value: String,
+    pub trouble: Trouble,
 }
 
 impl Odrive {
@@ -162,6 +164,7 @@ impl Odrive {
             iq_setpoint: 0.0,
             reboot_until_s: None,
             stale_value: String::new(),
+            trouble: Trouble::None,
         }
     }
 
@@ -349,5 +352,13 @@ impl Firmware for Odrive {
         }
         // A poisoned controller turns off rather than on: nan is no current.
         plant.inputs.motor_current_a = if self.iq_setpoint.is_finite() { self.iq_setpoint.into() } else { 0.0 };
+    }
+
+    fn afflict(&mut self, trouble: Trouble) {
+        self.trouble = trouble;
+    }
+
+    fn power_cycle(&mut self, plant: &mut Plant) {
+        self.reboot(plant.now_s());
     }
 }

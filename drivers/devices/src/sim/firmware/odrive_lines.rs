@@ -4,6 +4,7 @@ use super::odrive::{Odrive, TRAP_TRAJ};
 use super::odrive_properties::{Refused, read, write};
 use super::scan::{float, print_float, unsigned};
 use crate::sim::plant::Plant;
+use crate::sim::trouble::Trouble;
 
 /// Receive buffer: a longer line is thrown away up to its end.
 const LONGEST_LINE: usize = 256;
@@ -81,6 +82,7 @@ fn answer(drive: &mut Odrive, line: &[u8], plant: &Plant, output: &mut Vec<u8>) 
     let letter = characters.next();
     let rest = characters.as_str();
     match letter {
+        _ if drive.trouble == Trouble::Refusing => reply.line("unknown command"),
         Some('p' | 'q' | 'v' | 'c' | 't') => setpoint(drive, letter.unwrap_or_default(), rest, &mut reply),
         Some('f') => feedback(drive, rest, &mut reply),
         Some('u') => match unsigned(rest) {
@@ -95,7 +97,10 @@ fn answer(drive: &mut Odrive, line: &[u8], plant: &Plant, output: &mut Vec<u8>) 
         Some('i') => {
             reply.line("Hardware version: 3.6-56V");
             reply.line("Firmware version: 0.5.6");
-            reply.line("Serial number: 376E35743231");
+            reply.line(match drive.trouble {
+                Trouble::Exchanged => "Serial number: 376E35743299",
+                _ => "Serial number: 376E35743231",
+            });
         }
         Some('h') => HELP.iter().for_each(|line| reply.line(line)),
         _ => reply.line("unknown command"),

@@ -45,6 +45,8 @@ const PER_K: f64 = -0.0007;
 const PER_RAD_S: f64 = 0.03 / 104.7;
 
 pub struct Brake {
+    /// Of a bad contact in the coil's circuit.
+    pub contact_ohm: f64,
     current_a: f64,
     /// Play between the branches: follows the current at a distance.
     memory_a: f64,
@@ -58,6 +60,7 @@ pub struct Brake {
 impl Brake {
     pub fn new() -> Self {
         Self {
+            contact_ohm: 0.0,
             current_a: 0.0,
             memory_a: -PLAY * RATED_CURRENT_A,
             magnetic_nm: 0.0,
@@ -73,7 +76,7 @@ impl Brake {
     }
 
     pub fn coil_ohm(&self) -> f64 {
-        COIL_OHM_25C * (1.0 + COPPER_PER_K * (self.housing_c - 25.0))
+        COIL_OHM_25C * (1.0 + COPPER_PER_K * (self.housing_c - 25.0)) + self.contact_ohm
     }
 
     /// Current that a supply drives in the end: what it is set to, or what its voltage reaches.

@@ -56,6 +56,10 @@ pub(super) struct Plant {
     pub brake: Brake,
     pub noise: Noise,
     pub torque_constant_nm_per_a: f64,
+    /// The torque sensor's zero is off by this, as after an overload.
+    pub sensor_shift_nm: f64,
+    /// What a failing thermistor shows too much.
+    pub thermistor_fault_k: f64,
     sheet: DataSheet,
     friction: Friction,
     gear: Gear,
@@ -83,6 +87,8 @@ impl Plant {
             inputs: Inputs::default(),
             brake: Brake::new(),
             torque_constant_nm_per_a: sheet.torque_constant_nm_per_a,
+            sensor_shift_nm: 0.0,
+            thermistor_fault_k: 0.0,
             friction: Friction::new(coulomb_nm, viscous_nm_s, sheet.rotor_inertia_kg_m2),
             gear: Gear::new(&sheet, LINK_INERTIA_KG_M2 + COUPLING_INERTIA_KG_M2 + data_sheet::brake::INERTIA_KG_M2),
             thermal: Thermal::new(AMBIENT_C),
@@ -154,12 +160,12 @@ impl Plant {
     /// Torque at the sensor with its drift, before each channel's noise.
     pub fn sensor_torque_nm(&self) -> f64 {
         // Five minutes of warm-up (burster manual 86-2208).
-        self.sensor_torque_nm + self.sensor_drift_nm * (1.0 - (-self.now_s() / 300.0).exp())
+        self.sensor_torque_nm + self.sensor_shift_nm + self.sensor_drift_nm * (1.0 - (-self.now_s() / 300.0).exp())
     }
 
-    /// Housing of the gear, where the thermistor sits.
+    /// Housing of the gear, as its thermistor shows it.
     pub fn gear_c(&self) -> f64 {
-        self.thermal.gear_c()
+        self.thermal.gear_c() + self.thermistor_fault_k
     }
 
     /// A draw for `signal` at this moment: asking twice gives the same.

@@ -19,6 +19,7 @@ pub enum Signal {
     SupplyVoltage,
     SupplyCurrent,
     Hidden,
+    SensorQuartz,
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -1,36 +1,13 @@
-//! What drivers make of instruments that fail: the right verdict, no invented sample, a link that recovers.
+//! What a cable can do to replies.
 
+use super::{DEADLINE, ask, start};
 use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
 use jointbench_devices::{
     Joint, MockBench, MockSettings, OdriveJoint, OdriveSettings, PortSettings, ScpiSettings, ScpiSource,
 };
-use jointbench_instrument::units::{Amperes, NewtonMetres, RadPerSec, Volts};
-use jointbench_instrument::{Bench, Fault, FaultKind};
+use jointbench_instrument::FaultKind;
+use jointbench_instrument::units::{Amperes, NewtonMetres, RadPerSec};
 use std::time::{Duration, Instant};
-
-const DEADLINE: Duration = Duration::from_millis(400);
-
-fn settings(transport: Transport) -> MockSettings {
-    let deadline_ms = DEADLINE.as_millis() as u64;
-    MockSettings { transport, deadline_ms, ..MockSettings::new(Joint::JointA, 4) }
-}
-
-fn start(transport: Transport) -> (MockBench, Bench) {
-    let mock = MockBench::start(settings(transport)).unwrap();
-    let mut bench = mock.open_bench("mock").unwrap();
-    bench.joint.arm(RadPerSec(100.0), Amperes(5.0)).unwrap();
-    bench.brake.as_mut().unwrap().prepare(Volts(45.0)).unwrap();
-    (mock, bench)
-}
-
-/// Any use of an instrument that needs a reply.
-fn ask(bench: &mut Bench, instrument: MockInstrument) -> Result<(), Fault> {
-    match instrument {
-        MockInstrument::Joint => bench.joint.read().map(drop),
-        MockInstrument::TorqueSensor => bench.torque_sensor.as_mut().unwrap().read().map(drop),
-        MockInstrument::Brake => bench.brake.as_mut().unwrap().read().map(drop),
-    }
-}
 
 /// The fault is seen within two deadlines, stays while the trouble lasts, and is over when the trouble is.
 fn check_passing(trouble: Trouble, expected: impl Fn(&FaultKind) -> bool) {
@@ -58,6 +35,31 @@ fn a_silent_instrument_is_seen_and_comes_back() {
 #[test]
 fn a_garbled_reply_is_no_reading() {
     check_passing(Trouble::Garbled, |kind| matches!(kind, FaultKind::Garbled { .. }));
+}
+
+#[test]
+fn half_a_reply_is_no_reading() {
+    check_passing(Trouble::Truncated, |kind| matches!(kind, FaultKind::Garbled { .. }));
+}
+
+#[test]
+fn the_reply_to_an_earlier_question_answers_no_later_one() {
+    check_passing(Trouble::Stale, |kind| matches!(kind, FaultKind::Silent { .. }));
+}
+
+#[test]
+fn a_second_copy_of_a_reply_is_nobodys() {
+    for transport in [Transport::Terminal, Transport::Tcp] {
+        let (mock, mut bench) = start(transport);
+        for instrument in MockInstrument::ALL {
+            mock.trouble(instrument, Trouble::Doubled);
+            // The first reply is right; its copy waits for the next question, or comes with it.
+            let fault = (0..2).find_map(|_| ask(&mut bench, instrument).err()).expect("the copy is noticed");
+            assert!(matches!(fault.kind, FaultKind::Garbled { .. }), "{instrument:?} over {transport:?}: {fault}");
+            mock.trouble(instrument, Trouble::None);
+            ask(&mut bench, instrument).unwrap_or_else(|fault| panic!("{instrument:?} does not recover: {fault}"));
+        }
+    }
 }
 
 #[test]

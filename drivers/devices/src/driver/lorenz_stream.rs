@@ -1,0 +1,169 @@
+//! The stream of a Lorenz sensor: both ranges on the sensor's own clock.
+
+use super::stream_clock::StreamClock;
+use super::{LorenzSensor, Range, Recovers};
+use crate::protocol::lorenz::{Frames, Item, NOMINAL_COUNTS, PERIOD_STEP_S, ReadConfig, StartStream, StopStream};
+use crate::transport::Link;
+use jointbench_instrument::roles::{TorqueSample, TorqueStream};
+use jointbench_instrument::units::{NewtonMetres, Seconds};
+use jointbench_instrument::{Clock, Fault, FaultKind};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Nominal load of both channels.
+const ROTOR_HEADER: u8 = 128;
+const LOADS: [usize; 2] = [10, 14];
+/// For samples that are due and not there: another look after this long finds them, or they are late.
+const PATIENCE: Duration = Duration::from_millis(20);
+
+pub(super) struct Stream {
+    clock: Arc<dyn Clock>,
+    placed: StreamClock,
+    frames: Frames,
+    nominal_nm: [f64; 2],
+    /// Of the next frame.
+    number: u64,
+    heard_s: f64,
+    gap: Option<u64>,
+}
+
+impl Stream {
+    /// Samples in order, up to a gap, which is kept for the next call.
+    fn sort(&mut self, now_s: f64) -> Vec<TorqueSample> {
+        let mut samples = Vec::new();
+        while self.gap.is_none()
+            && let Some(item) = self.frames.next()
+        {
+            match item {
+                Item::Frame(frame) => {
+                    let moment = self.placed.moment(self.number);
+                    let [coarse, fine] = [0, 1].map(|channel| torque(frame.counts[channel], self.nominal_nm[channel]));
+                    let (at_s, uncertainty_s) = (moment.at_s, moment.uncertainty_s);
+                    samples.push(TorqueSample { number: self.number, at_s, uncertainty_s, coarse, fine });
+                    self.number += 1;
+                }
+                Item::Gap { count } => {
+                    // The index says how many are missing but for multiples of 256, the clock the rest.
+                    let known = self.number + u64::from(count) + self.frames.waiting();
+                    let behind = self.placed.due(now_s).saturating_sub(known);
+                    let missing = u64::from(count) + (behind + 128) / 256 * 256;
+                    self.gap = Some(missing);
+                    self.number += missing;
+                }
+            }
+        }
+        samples
+    }
+
+    fn arrived(&self) -> u64 {
+        self.number + self.frames.waiting()
+    }
+
+    /// Takes in what is there, and waits a moment for what should be.
+    fn listen(&mut self, link: &mut Link) -> Result<f64, Fault> {
+        let now_s = self.clock.now_s();
+        let deadline = link.deadline();
+        let mut bytes = Vec::new();
+        let mut patience = Duration::ZERO;
+        while link.overhear(&mut bytes, patience)? > 0 || patience.is_zero() {
+            if !bytes.is_empty() {
+                self.heard_s = now_s;
+                self.frames.push(&bytes);
+                bytes.clear();
+            }
+            if self.arrived() >= self.placed.due(now_s) {
+                break;
+            }
+            patience = PATIENCE;
+        }
+        if now_s - self.heard_s > deadline.as_secs_f64() {
+            if link.overhear(&mut bytes, deadline)? == 0 {
+                let deadline_ms = deadline.as_millis() as u64;
+                return Err(link.fault(FaultKind::Silent { request: "the stream".into(), deadline_ms }));
+            }
+            self.heard_s = now_s;
+            self.frames.push(&bytes);
+        }
+        Ok(now_s)
+    }
+}
+
+/// `None` at and beyond the nominal torque, where the counts are an overload.
+fn torque(counts: i16, nominal_nm: f64) -> Option<NewtonMetres> {
+    let within = counts.unsigned_abs() < NOMINAL_COUNTS.unsigned_abs();
+    within.then(|| NewtonMetres(f64::from(counts) / f64::from(NOMINAL_COUNTS) * nominal_nm))
+}
+
+impl LorenzSensor {
+    /// The rotor's own word for the range of each channel. It must agree with the bench description.
+    fn nominals(&mut self) -> Result<[f64; 2], Fault> {
+        let header = self.ready()?.request(&ReadConfig { block: ROTOR_HEADER })?;
+        let nominals = LOADS.map(|offset| f64::from(header.number::<2>(offset)));
+        let (described_nm, found_nm) = match self.settings.range {
+            Range::Coarse => (self.settings.nominal_nm, nominals[0]),
+            Range::Fine => (self.settings.nominal_nm, nominals[1]),
+        };
+        if found_nm != described_nm {
+            let what = format!(
+                "the rotor's header says ±{found_nm} Nm for the range in use, the bench description ±{described_nm} Nm: \
+                 correct nominal_nm"
+            );
+            return Err(self.link.fault(FaultKind::Refused { what }));
+        }
+        Ok(nominals)
+    }
+}
+
+impl TorqueStream for LorenzSensor {
+    fn start_stream(&mut self, period: Seconds, clock: Arc<dyn Clock>) -> Result<Seconds, Fault> {
+        let steps = (period.0 / PERIOD_STEP_S).round();
+        if !(1.0..=255.0).contains(&steps) {
+            let what = format!("a stream with a period of {period}: choose 0.0002 s to 0.051 s");
+            return Err(self.link.fault(FaultKind::Refused { what }));
+        }
+        self.stop_stream()?;
+        let nominal_nm = self.nominals()?;
+        let before_s = clock.now_s();
+        self.ready()?.request(&StartStream { period: steps as u8 })?;
+        let heard_s = clock.now_s();
+        let period_s = steps * PERIOD_STEP_S;
+        let placed = StreamClock::new(period_s, before_s, heard_s);
+        let frames = Frames::default();
+        self.stream = Some(Stream { clock, placed, frames, nominal_nm, number: 0, heard_s, gap: None });
+        Ok(Seconds(period_s))
+    }
+
+    fn collect(&mut self) -> Result<Vec<TorqueSample>, Fault> {
+        let Some(stream) = &mut self.stream else {
+            let what = "samples of a stream that was not started, or that has broken off: start it";
+            return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
+        };
+        if let Some(count) = stream.gap.take() {
+            return Err(self.link.fault(FaultKind::StreamGap { count }));
+        }
+        match stream.listen(&mut self.link) {
+            Ok(now_s) => {
+                let samples = stream.sort(now_s);
+                if let Some(newest) = stream.arrived().checked_sub(1)
+                    && stream.gap.is_none()
+                {
+                    stream.placed.newest(newest, now_s);
+                }
+                Ok(samples)
+            }
+            Err(fault) => {
+                self.stream = None;
+                self.link.distrust();
+                Err(fault)
+            }
+        }
+    }
+
+    fn stop_stream(&mut self) -> Result<(), Fault> {
+        if self.stream.take().is_some() {
+            self.link.distrust();
+            self.link.send(&StopStream)?;
+        }
+        Ok(())
+    }
+}

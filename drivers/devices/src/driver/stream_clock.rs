@@ -1,0 +1,154 @@
+//! When the samples of a stream were taken, on the bench's clock, from their numbers alone.
+//!
+//! A stream carries no time. Its first sample is one period younger than the command that started it, which left between
+//! two readings of the bench's clock. From there on the sensor's own quartz counts, at a rate of its own. Every look at
+//! the stream narrows what start and rate can be: the newest sample was taken before it was there, and the one after it
+//! had not been taken, or was still on its way. What is left is a polygon, and its width at a sample is how far that
+//! sample may be off (set membership; Milanese and Vicino 1991).
+
+/// Quartzes are off by less than this (assumed: 50 ppm parts on both sides).
+const QUARTZ_TOLERANCE: f64 = 100e-6;
+/// The shortest way from the sensor to us takes no longer (assumed: 5 bytes at 230400 baud take 0.22 ms).
+const SHORTEST_WAY_S: f64 = 0.25e-3;
+/// Readings of the bench's clock may be off the moment that they are for by this.
+const GRAIN_S: f64 = 0.1e-3;
+/// Of so many samples the one that was there the soonest speaks for all.
+const BLOCK: u64 = 500;
+
+pub struct StreamClock {
+    period_s: f64,
+    started_s: f64,
+    /// Corners of what (start, drift for each sample) can be, relative to the nominal moments.
+    possible: Vec<(f64, f64)>,
+    block: u64,
+    soonest: Option<(u64, f64)>,
+}
+
+/// A moment on the bench's clock, and how far it may be off either way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    pub at_s: f64,
+    pub uncertainty_s: f64,
+}
+
+impl StreamClock {
+    /// `before_s`, `after_s`: around the command that started the stream.
+    pub fn new(period_s: f64, before_s: f64, after_s: f64) -> Self {
+        let (first, last) = (-GRAIN_S, after_s - before_s + GRAIN_S);
+        let drift = QUARTZ_TOLERANCE * period_s;
+        let possible = vec![(first, -drift), (last, -drift), (last, drift), (first, drift)];
+        Self { period_s, started_s: before_s, possible, block: 0, soonest: None }
+    }
+
+    /// At `now_s` sample `number`, counted from 0, was the newest.
+    pub fn newest(&mut self, number: u64, now_s: f64) {
+        let late_s = now_s - self.nominal_s(number);
+        if number / BLOCK > self.block {
+            self.block = number / BLOCK;
+            if let Some((number, late_s)) = self.soonest.take() {
+                self.narrow(number as f64, late_s);
+            }
+        }
+        if self.soonest.is_none_or(|(_, soonest_s)| late_s < soonest_s) {
+            self.soonest = Some((number, late_s));
+        }
+    }
+
+    pub fn moment(&self, number: u64) -> Moment {
+        let (least_s, most_s) = self.range_s(number);
+        let at_s = self.nominal_s(number) + 0.5 * (least_s + most_s);
+        Moment { at_s, uncertainty_s: 0.5 * (most_s - least_s) }
+    }
+
+    /// How many samples must be there at `now_s`, unless the line is slower than usual.
+    pub fn due(&self, now_s: f64) -> u64 {
+        let count = |late_s: f64| ((now_s - self.started_s - late_s) / self.period_s).max(0.0) as u64;
+        let (_, most_s) = self.range_s(count(0.0));
+        count(most_s + SHORTEST_WAY_S + GRAIN_S)
+    }
+
+    fn nominal_s(&self, number: u64) -> f64 {
+        self.started_s + (number + 1) as f64 * self.period_s
+    }
+
+    /// How late a sample can be, at least and at most.
+    fn range_s(&self, number: u64) -> (f64, f64) {
+        let late_s = self.possible.iter().map(|(start_s, drift_s)| start_s + drift_s * number as f64);
+        late_s.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), late| (least.min(late), most.max(late)))
+    }
+
+    fn narrow(&mut self, number: f64, late_s: f64) {
+        let most_s = late_s + GRAIN_S;
+        let least_s = late_s - self.period_s - SHORTEST_WAY_S - GRAIN_S;
+        let below = clip(&self.possible, |(start_s, drift_s)| most_s - start_s - drift_s * number);
+        let within = clip(&below, |(start_s, drift_s)| start_s + drift_s * number - least_s);
+        // Nothing left: the way was longer than assumed all through the block. Then it says nothing.
+        if within.len() > 2 {
+            self.possible = within;
+        }
+    }
+}
+
+/// The part of a convex polygon where `inside` is not negative (Sutherland and Hodgman 1974).
+fn clip(polygon: &[(f64, f64)], inside: impl Fn((f64, f64)) -> f64) -> Vec<(f64, f64)> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (i, corner) in polygon.iter().enumerate() {
+        let next = polygon[(i + 1) % polygon.len()];
+        let (here, there) = (inside(*corner), inside(next));
+        if here >= 0.0 {
+            kept.push(*corner);
+        }
+        if (here < 0.0) != (there < 0.0) {
+            let share = here / (here - there);
+            kept.push((corner.0 + share * (next.0 - corner.0), corner.1 + share * (next.1 - corner.1)));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten minutes of 1000 samples a second, looked at every 4 ms, over a cable that takes 0.2 ms and now and then longer.
+    fn check(quartz: f64, command_s: f64) {
+        let period_s = 1e-3;
+        let real_s = period_s * (1.0 + quartz);
+        let taken_s = |number: u64| 2.0 + 0.4 * command_s + (number + 1) as f64 * real_s;
+        let mut clock = StreamClock::new(period_s, 2.0, 2.0 + command_s);
+        for look in 1..150_000_u64 {
+            let now_s = 2.0 + look as f64 * 4e-3;
+            let way_s = 0.2e-3 + if look.is_multiple_of(7) { 9e-3 } else { 0.0 };
+            let count = (now_s - way_s - taken_s(0)) / real_s;
+            if count < 0.0 {
+                continue;
+            }
+            let number = count as u64;
+            clock.newest(number, now_s);
+            let moment = clock.moment(number);
+            let off_s = (moment.at_s - taken_s(number)).abs();
+            assert!(off_s <= moment.uncertainty_s, "{off_s} s off, {moment:?}, quartz {quartz}");
+            assert!(moment.uncertainty_s < 0.85e-3, "{moment:?} at {now_s} s, quartz {quartz}");
+            assert!(way_s > 1e-3 || clock.due(now_s) <= number + 1, "{number} at {now_s} s");
+        }
+        assert!(clock.possible.len() < 20, "{} corners", clock.possible.len());
+        let end = clock.moment(600_000);
+        assert!(quartz.abs() < 20e-6 || end.uncertainty_s < 0.5e-3, "{end:?}, quartz {quartz}");
+    }
+
+    #[test]
+    fn samples_are_placed_within_what_is_claimed() {
+        for quartz in [0.0, 40e-6, -40e-6, 7e-6, -13e-6, 77e-6] {
+            check(quartz, 0.0);
+            check(quartz, 0.2e-3);
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_always_slow_narrows_nothing() {
+        let mut clock = StreamClock::new(1e-3, 0.0, 0.0);
+        let before = clock.moment(100);
+        (0..3000).for_each(|number| clock.newest(number, number as f64 * 1e-3 + 0.2));
+        assert_eq!(clock.moment(100), before);
+    }
+}

@@ -1,0 +1,192 @@
+//! The stream of special mode 3: `index A B`, five bytes, not framed, not stuffed, without a checksum. The index, which
+//! wraps after 255, is all there is to find the frames by and to notice what was lost.
+
+/// Periods of the stream count in this.
+pub const PERIOD_STEP_S: f64 = 200e-6;
+const LENGTH: usize = 5;
+/// Frames that must follow each other before any of them is believed after a loss.
+const RUN: usize = 8;
+/// Kept while no run is found. A stream of noise costs no more memory than this.
+const LIMIT: usize = 4096;
+
+/// Calibrated counts of channels A and B.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Frame {
+    pub index: u8,
+    pub counts: [i16; 2],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Item {
+    Frame(Frame),
+    /// So many frames are missing here, or 256 more, or any multiple of that: the index does not tell.
+    Gap {
+        count: u8,
+    },
+}
+
+/// Finds the frames in what comes in, from the first byte after the reply that started the stream.
+#[derive(Debug, Default)]
+pub struct Frames {
+    bytes: Vec<u8>,
+    next: u8,
+}
+
+impl Frames {
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// Frames that have come in and are not believed yet.
+    pub fn waiting(&self) -> u64 {
+        (self.bytes.len() / LENGTH) as u64
+    }
+
+    /// Whether `count` frames from `at` on carry rising indices from `index` on.
+    fn run(&self, at: usize, index: u8, count: usize) -> bool {
+        let indices = self.bytes.get(at..).unwrap_or_default().iter().step_by(LENGTH).take(count);
+        let mut found = 0;
+        for byte in indices {
+            if *byte != index.wrapping_add(found as u8) {
+                return false;
+            }
+            found += 1;
+        }
+        found == count
+    }
+
+    fn take(&mut self) -> Item {
+        let word = |at: usize| i16::from_be_bytes([self.bytes[at], self.bytes[at + 1]]);
+        let frame = Frame { index: self.bytes[0], counts: [word(1), word(3)] };
+        self.bytes.drain(..LENGTH);
+        self.next = self.next.wrapping_add(1);
+        Item::Frame(frame)
+    }
+}
+
+impl Iterator for Frames {
+    type Item = Item;
+
+    /// A frame counts once the two behind it have come with the right index. Where bytes are lost inside a frame its
+    /// index is right and its torque is not: without this it would be believed.
+    fn next(&mut self) -> Option<Item> {
+        if self.run(0, self.next, 3) {
+            return Some(self.take());
+        }
+        if self.bytes.len() < 3 * LENGTH {
+            return None;
+        }
+        let ends = self.bytes.len().saturating_sub((RUN - 1) * LENGTH);
+        let mut starts = (0..ends).filter(|at| self.run(*at, self.bytes[*at], RUN));
+        let first = starts.next();
+        // A torque that rises by one count a frame looks like an index. Then more frames must tell.
+        let Some(start) = first.filter(|start| starts.all(|other| (other - start).is_multiple_of(LENGTH))) else {
+            let surplus = self.bytes.len().saturating_sub(LIMIT);
+            self.bytes.drain(..surplus);
+            return None;
+        };
+        // Whole frames are lost, or bytes inside one. What stood before is whole in the first case, all but its last
+        // frame: that may be the head of one and the tail of another.
+        let whole = start.is_multiple_of(LENGTH) && start > LENGTH && self.run(0, self.next, 2);
+        if whole {
+            return Some(self.take());
+        }
+        let count = self.bytes[start].wrapping_sub(self.next);
+        self.next = self.bytes[start];
+        self.bytes.drain(..start);
+        Some(Item::Gap { count })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(number: usize) -> [u8; LENGTH] {
+        let torque = 37 * number as i16;
+        let [a, b] = [torque.to_be_bytes(), (-torque).to_be_bytes()];
+        [number as u8, a[0], a[1], b[0], b[1]]
+    }
+
+    fn stream(numbers: impl Iterator<Item = usize>) -> Vec<u8> {
+        numbers.flat_map(frame).collect()
+    }
+
+    /// All items of a stream that arrives in pieces; what is believed must be what was sent.
+    fn items(bytes: &[u8], piece: usize) -> Vec<Item> {
+        let mut frames = Frames::default();
+        let mut items = Vec::new();
+        for bytes in bytes.chunks(piece) {
+            frames.push(bytes);
+            items.extend(frames.by_ref());
+        }
+        items
+    }
+
+    fn check(bytes: &[u8], believed: &[usize], gaps: &[u8]) {
+        for piece in [1, 7, 64, 10_000] {
+            let items = items(bytes, piece);
+            let frames: Vec<[u8; LENGTH]> = items
+                .iter()
+                .filter_map(|item| match item {
+                    Item::Frame(Frame { index, counts: [a, b] }) => {
+                        Some([*index, a.to_be_bytes()[0], a.to_be_bytes()[1], b.to_be_bytes()[0], b.to_be_bytes()[1]])
+                    }
+                    Item::Gap { .. } => None,
+                })
+                .collect();
+            assert_eq!(frames, believed.iter().map(|number| frame(*number)).collect::<Vec<_>>(), "pieces of {piece}");
+            let found: Vec<u8> = items
+                .iter()
+                .filter_map(|item| if let Item::Gap { count } = item { Some(*count) } else { None })
+                .collect();
+            assert_eq!(found, gaps, "pieces of {piece}");
+        }
+    }
+
+    fn upto(range: std::ops::Range<usize>) -> Vec<usize> {
+        range.collect()
+    }
+
+    #[test]
+    fn frames_in_order_are_all_believed_but_the_last_two() {
+        check(&stream(0..600), &upto(0..598), &[]);
+    }
+
+    #[test]
+    fn lost_frames_are_counted_with_the_one_that_nobody_can_vouch_for() {
+        let bytes = stream((0..100).chain(107..300));
+        let believed = [upto(0..99), upto(107..298)].concat();
+        check(&bytes, &believed, &[8]);
+    }
+
+    #[test]
+    fn lost_bytes_cost_the_frames_they_hit_and_no_more_than_two_before() {
+        let whole = stream(0..300);
+        for lost in 1..12 {
+            for at in 500..505 {
+                let bytes = [&whole[..at], &whole[at + lost..]].concat();
+                let items = items(&bytes, 64);
+                let gap: u32 =
+                    items.iter().map(|i| if let Item::Gap { count } = i { u32::from(*count) } else { 0 }).sum();
+                assert!((1..=6).contains(&gap), "{lost} bytes lost at {at}: {gap}");
+                for item in &items {
+                    if let Item::Frame(Frame { index, counts: [a, b] }) = item {
+                        let expected = [usize::from(*index), usize::from(*index) + 256].map(|n| 37 * n as i16);
+                        assert!(expected.contains(a) && *b == -a, "{lost} bytes lost at {at}: {item:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn noise_is_never_a_frame_and_costs_bounded_memory() {
+        let mut frames = Frames::default();
+        for _ in 0..100 {
+            frames.push(&[0x55; 1000]);
+            assert_eq!(frames.next(), None);
+        }
+        assert!(frames.bytes.len() <= LIMIT, "{}", frames.bytes.len());
+    }
+}

@@ -1,0 +1,163 @@
+//! What instruments themselves, and the plant, can do.
+
+use super::{ask, settings, start};
+use jointbench_devices::driver::{LorenzSettings, Range};
+use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Transport, Trouble};
+use jointbench_devices::{LorenzSensor, MockBench, MockSettings, PortSettings};
+use jointbench_instrument::roles::{Regulation, TorqueSensor};
+use jointbench_instrument::units::{Amperes, RadPerSec};
+use jointbench_instrument::{Bench, Fault, FaultKind};
+
+fn wait(bench: &Bench, seconds: f64) {
+    bench.clock.sleep_until_s(bench.clock.now_s() + seconds);
+}
+
+fn check_reported(result: Result<(), Fault>, said: &str) {
+    let fault = result.expect_err(said);
+    assert!(matches!(fault.kind, FaultKind::Reported { .. }) && !fault.is_retryable(), "{fault}");
+    assert!(fault.to_string().contains(said), "{fault}");
+}
+
+#[test]
+fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_told() {
+    let (mock, mut bench) = start(Transport::Terminal);
+    bench.joint.set_velocity(RadPerSec(30.0)).unwrap();
+    wait(&bench, 0.2);
+    assert!(bench.joint.read().unwrap().motor_position.0 > 1.0);
+    mock.trouble(MockInstrument::Joint, Trouble::PowerCycled);
+    for _ in 0..2 {
+        let fault = bench.joint.read().unwrap_err();
+        assert!(matches!(fault.kind, FaultKind::Silent { .. }), "{fault}");
+    }
+    mock.trouble(MockInstrument::Joint, Trouble::None);
+    // The drive boots for a second, and stays silent meanwhile.
+    wait(&bench, 1.5);
+    check_reported(bench.joint.read().map(drop), "armed and is not any more");
+    assert!(!bench.joint.health().unwrap().armed);
+    assert!(bench.joint.read().unwrap().motor_position.0.abs() < 0.5, "counts from where it was at power-up");
+    bench.joint.arm(RadPerSec(100.0), Amperes(5.0)).unwrap();
+    assert!(bench.joint.health().unwrap().armed, "usable again");
+}
+
+#[test]
+fn a_supply_that_lost_its_state_is_told() {
+    let (mock, mut bench) = start(Transport::Tcp);
+    let brake = bench.brake.as_mut().unwrap();
+    brake.set_current(Amperes(0.3)).unwrap();
+    mock.trouble(MockInstrument::Brake, Trouble::PowerCycled);
+    let fault = brake.read().unwrap_err();
+    assert!(matches!(fault.kind, FaultKind::Silent { .. }), "{fault}");
+    mock.trouble(MockInstrument::Brake, Trouble::None);
+    check_reported(ask(&mut bench, MockInstrument::Brake), "nobody switched it off");
+    let reading = bench.brake.as_mut().unwrap().read().unwrap();
+    assert_eq!(reading.regulation, Regulation::Off, "{reading:?}");
+
+    // Too short for any request to be missed: the reading itself shows it.
+    let (mock, mut bench) = start(Transport::Terminal);
+    mock.trouble(MockInstrument::Brake, Trouble::PowerCycled);
+    mock.trouble(MockInstrument::Brake, Trouble::None);
+    check_reported(ask(&mut bench, MockInstrument::Brake), "nobody switched it off");
+}
+
+#[test]
+fn another_unit_of_the_same_model_is_not_ours() {
+    let (mock, mut bench) = start(Transport::Tcp);
+    for instrument in MockInstrument::ALL {
+        mock.trouble(instrument, Trouble::Unplugged);
+        while ask(&mut bench, instrument).is_ok() {}
+        mock.trouble(instrument, Trouble::Exchanged);
+        for _ in 0..2 {
+            let fault = ask(&mut bench, instrument).unwrap_err();
+            assert!(matches!(fault.kind, FaultKind::WrongInstrument { .. }), "{instrument:?}: {fault}");
+        }
+        mock.trouble(instrument, Trouble::None);
+        ask(&mut bench, instrument).unwrap();
+    }
+}
+
+#[test]
+fn an_instrument_that_refuses_everything_gives_no_reading() {
+    let (mock, mut bench) = start(Transport::Terminal);
+    for instrument in MockInstrument::ALL {
+        mock.trouble(instrument, Trouble::Refusing);
+        let fault = ask(&mut bench, instrument).unwrap_err();
+        match instrument {
+            MockInstrument::Joint => assert!(fault.to_string().contains("unknown command"), "{fault}"),
+            MockInstrument::TorqueSensor => assert!(fault.to_string().contains("rotor: not found"), "{fault}"),
+            // A query that cannot be executed is never answered.
+            MockInstrument::Brake => assert!(matches!(fault.kind, FaultKind::Silent { .. }), "{fault}"),
+        }
+        assert!(ask(&mut bench, instrument).is_err(), "{instrument:?} still refuses");
+        mock.trouble(instrument, Trouble::None);
+        ask(&mut bench, instrument).unwrap_or_else(|fault| panic!("{instrument:?} does not recover: {fault}"));
+    }
+    mock.trouble(MockInstrument::Brake, Trouble::Refusing);
+    let fault = bench.brake.as_mut().unwrap().set_current(Amperes(0.1)).unwrap_err();
+    assert!(matches!(&fault.kind, FaultKind::Refused { what } if what.contains("-200")), "{fault}");
+}
+
+#[test]
+fn a_supply_out_of_voltage_says_that_it_does_not_hold_the_current() {
+    let (mock, mut bench) = start(Transport::Terminal);
+    bench.brake.as_mut().unwrap().set_current(Amperes(0.4)).unwrap();
+    let mut settled = |trouble| {
+        mock.trouble(MockInstrument::Brake, trouble);
+        wait(&bench, 1.0);
+        bench.brake.as_mut().unwrap().read().unwrap()
+    };
+    let held = settled(Trouble::None);
+    assert!(held.regulation == Regulation::ConstantCurrent && (held.current.0 - 0.4).abs() < 2e-3, "{held:?}");
+    let lost = settled(Trouble::CurrentLost);
+    assert!(lost.regulation == Regulation::ConstantVoltage && lost.current.0 < 0.2, "{lost:?}");
+    assert!((lost.voltage.0 - 45.0).abs() < 0.1, "{lost:?}");
+    assert_eq!(settled(Trouble::None).regulation, Regulation::ConstantCurrent);
+}
+
+#[test]
+fn a_hot_joint_is_seen() {
+    let (mock, mut bench) = start(Transport::Terminal);
+    let limit_c = bench.limits.temperature_c;
+    let mut temperature_c = || bench.joint.health().unwrap().temperature.unwrap().0;
+    assert!(temperature_c() < 40.0);
+    mock.trouble(MockInstrument::Joint, Trouble::OverTemperature);
+    assert!(temperature_c() > limit_c);
+    mock.trouble(MockInstrument::Joint, Trouble::None);
+    assert!(temperature_c() < 40.0);
+}
+
+#[test]
+fn a_saturated_range_is_a_fault_and_the_larger_one_a_number() {
+    for (range, nominal_nm) in [(Range::Fine, 20.0), (Range::Coarse, 200.0)] {
+        let mock = MockBench::start(settings(Transport::Terminal)).unwrap();
+        let port = PortSettings::new(mock.ports().torque_sensor, 230_400);
+        let sensor = LorenzSettings { name: "torque".into(), port, deadline_ms: 400, range, nominal_nm };
+        let mut sensor = LorenzSensor::open(sensor).unwrap();
+        mock.trouble(MockInstrument::TorqueSensor, Trouble::Saturated);
+        match (range, sensor.read()) {
+            (Range::Coarse, Ok(torque)) => assert!((torque.0 - 27.0).abs() < 0.2, "{torque}"),
+            (Range::Fine, Err(fault)) => {
+                assert!(matches!(fault.kind, FaultKind::Saturated { .. }) && !fault.is_retryable(), "{fault}");
+            }
+            (_, other) => panic!("{range:?}: {other:?}"),
+        }
+        mock.trouble(MockInstrument::TorqueSensor, Trouble::None);
+        assert!(sensor.read().unwrap().0.abs() < 0.2);
+    }
+}
+
+#[test]
+fn a_planned_trouble_comes_and_goes_by_itself() {
+    let planned = PlannedTrouble {
+        instrument: MockInstrument::TorqueSensor,
+        trouble: Trouble::Silent,
+        from_s: 0.5,
+        until_s: Some(0.6),
+    };
+    let mock = MockBench::start(MockSettings { troubles: vec![planned], ..settings(Transport::Terminal) }).unwrap();
+    let mut bench = mock.open_bench("mock").unwrap();
+    let heard = [0.4, 0.55, 0.7].map(|at_s| {
+        bench.clock.sleep_until_s(at_s);
+        ask(&mut bench, MockInstrument::TorqueSensor).is_ok()
+    });
+    assert_eq!(heard, [true, false, true]);
+}
