@@ -1,11 +1,10 @@
 //! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
 
 use crate::effect::Stage;
-use crate::linear::Basis;
 use crate::prepare::{Prepared, Problem};
 use crate::report::Invisible;
 use crate::select::gain;
-use crate::terms::{Term, Terms, columns};
+use crate::terms::{Term, Terms, columns, polish};
 use crate::{Effect, ModelError, ModelSpec};
 
 #[derive(Clone)]
@@ -49,6 +48,7 @@ impl<'p> Assembly<'p> {
                 enter(&mut assembly.main, effect);
             }
         }
+        choose_again(&mut assembly.main);
         assembly.main.refine();
         assembly.enter_moving();
         Ok(assembly)
@@ -138,24 +138,50 @@ fn add(sum: &mut [f64], columns: &[Vec<f64>], factors: &[f64]) {
     }
 }
 
-/// Enters the form and shape of an effect that explain most of what is left.
+/// A form must take this share off the squared error for each parameter that it has more than a simpler one.
+const BETTER_FORM: f64 = 0.01;
+
+/// Enters an effect in the form that explains most of what is left, each form at its own best shape.
 fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
     let problem: &Problem = terms.problem;
     let forms = effect.forms(&problem.view);
-    let simple = forms.len() == 1 && forms[0].grid.len() == 1;
-    let basis = if simple { Basis::default() } else { terms.tangent() };
-    let residual = if simple { Vec::new() } else { basis.rest(&terms.response()) };
-    let mut best: Option<(f64, Term<'p>)> = None;
+    if let [form] = &forms[..]
+        && form.grid.len() == 1
+    {
+        terms.terms.push(Term::new(effect, form.clone(), form.grid[0].clone(), problem));
+        return;
+    }
+    let basis = terms.tangent();
+    let residual = basis.rest(&terms.response());
+    let mut best: Vec<Term<'p>> = Vec::new();
     for form in forms {
-        for shape in form.grid.clone() {
-            let term = Term::new(effect, form.clone(), shape, problem);
-            let share = if simple { 0.0 } else { gain(&term.columns, &basis, &residual, 1.0).share };
-            if best.as_ref().is_none_or(|b| share > b.0) {
-                best = Some((share, term));
-            }
+        let shapes = form.grid.iter().map(|shape| Term::new(effect, form.clone(), shape.clone(), problem));
+        let shares = shapes.map(|term| (gain(&term.columns, &basis, &residual, 1.0).share, term));
+        best.extend(shares.max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1));
+    }
+    best.sort_by_key(Term::size);
+    let mut chosen: Option<(f64, Term<'p>)> = None;
+    for term in best {
+        let mut term = [term];
+        let sse = polish(&mut term, &basis, &residual, problem);
+        let [term] = term;
+        let needed = |(least, simple): &(f64, Term)| {
+            least * (1.0 - BETTER_FORM * term.size().saturating_sub(simple.size()) as f64)
+        };
+        if chosen.as_ref().is_none_or(|c| sse < needed(c)) {
+            chosen = Some((sse, term));
         }
     }
-    if let Some((_, term)) = best {
-        terms.terms.push(term);
+    terms.terms.extend(chosen.map(|c| c.1));
+}
+
+/// Chooses the forms again, each beside all other effects of the model: the first to enter did not know of the last.
+fn choose_again<'p>(terms: &mut Terms<'p>) {
+    let problem: &Problem = terms.problem;
+    let several = |e: &&'p dyn Effect| e.forms(&problem.view).len() > 1;
+    let effects: Vec<&'p dyn Effect> = terms.terms.iter().map(|t| t.effect).filter(several).collect();
+    for effect in effects {
+        terms.terms.retain(|t| t.id() != effect.info().id);
+        enter(terms, effect);
     }
 }

@@ -4,16 +4,19 @@ use crate::assembly::Assembly;
 use crate::explore::{Advance, Exploration};
 use crate::fit::report;
 use crate::linear::dot;
+use crate::maps::{Maps, spoken, yardstick};
 use crate::prepare::{Prepared, prepare};
-use crate::regions::regions;
-use crate::report::{Diagnosis, Discovery, Experiment, Silent, Step, Suggestion, Verdict};
-use crate::select::{Maps, held_out};
+use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Region, Silent, Step, Suggestion, Verdict};
+use crate::select::held_out;
 use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
 
 /// How far the search looks ahead for a diagnosis.
 const MOST_EFFECTS: usize = 6;
+
+/// A picture that takes less than this off held-out squared error shows nothing.
+const LEAST_SHOWN: f64 = 0.02;
 
 /// Compares a model with a run: where it fails, which effects are missing, how sure that is.
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
@@ -25,8 +28,8 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let start = &found.start.main;
     let basis = start.tangent();
     let residual = basis.rest(&start.response());
-    let maps = Maps::new(&prepared.main, &residual, options);
-    let regions = if verdict == Verdict::Adequate { Vec::new() } else { regions(&prepared, &maps) };
+    let maps = Maps::new(&prepared, residual, options);
+    let structure = structure(&found, verdict);
     let mut not_visible = found.start.hidden.clone();
     not_visible.extend(found.invisible.iter().cloned());
     Ok(Diagnosis {
@@ -36,8 +39,9 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        summary: summary(&found, &fit, verdict, &suggestions),
-        regions,
+        summary: summary(&found, &fit, verdict, &suggestions, structure.as_ref()),
+        regions: regions(&maps, &fit, &found, verdict),
+        structure,
         experiment: experiment(&found, &prepared),
         silent: found
             .silent
@@ -67,6 +71,7 @@ pub fn discover(
     steps.iter().for_each(&mut on_step);
     let fit = report(found.end())?;
     let verdict = found.end_verdict();
+    let structure = structure(&found, verdict);
     Ok(Discovery {
         kind: prepared.kind,
         steps,
@@ -74,9 +79,10 @@ pub fn discover(
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        summary: summary(&found, &fit, verdict, &[]),
+        summary: summary(&found, &fit, verdict, &[], structure.as_ref()),
         model: found.end().effects.clone(),
-        regions: if verdict == Verdict::Adequate { Vec::new() } else { regions(&prepared, &found.maps) },
+        regions: regions(&found.maps, &fit, &found, verdict),
+        structure,
         experiment: experiment(&found, &prepared),
         fit,
     })
@@ -135,7 +141,25 @@ fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<S
     Ok(out)
 }
 
-fn summary(found: &Exploration, fit: &Fit, verdict: Verdict, suggestions: &[Suggestion]) -> String {
+/// Where a model fails. Nowhere that counts, where it is adequate.
+fn regions(maps: &Maps, fit: &Fit, found: &Exploration, verdict: Verdict) -> Vec<Region> {
+    match verdict {
+        Verdict::Adequate => Vec::new(),
+        _ => maps.regions(&fit.unit, yardstick(fit, Some(&found.floor)).as_ref()),
+    }
+}
+
+fn structure(found: &Exploration, verdict: Verdict) -> Option<PairMap> {
+    (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(found.start.prepared))?
+}
+
+fn summary(
+    found: &Exploration,
+    fit: &Fit,
+    verdict: Verdict,
+    suggestions: &[Suggestion],
+    structure: Option<&PairMap>,
+) -> String {
     let error = figure(fit.validation_rms, &fit.unit);
     let floor = match found.floor.rms {
         Some(floor) => format!("the run repeats itself to {}", figure(floor, &fit.unit)),
@@ -156,13 +180,23 @@ fn summary(found: &Exploration, fit: &Fit, verdict: Verdict, suggestions: &[Sugg
             )
         }
         Verdict::UnexplainedStructure => {
-            let (axis, share) = found.maps.removable.unwrap_or((crate::view::Signal::Time, 0.0));
-            format!(
-                "Structure remains that no effect of the library explains: a function of {} alone would take {} off \
-                 the squared error that remains ({error}); {floor}.",
-                found.start.prepared.column_name(axis),
-                percent(share),
-            )
+            let repeats = match found.floor.repeatable_share {
+                Some(share) => format!(", {} of it the same in every repeat", percent(share)),
+                None => String::new(),
+            };
+            let shows = match structure {
+                Some(s) if s.removable_share > LEAST_SHOWN => format!(
+                    "it shows most over {} and {}, a function of which would take {} off the squared error that \
+                     remains ({error}{repeats})",
+                    spoken(&s.x),
+                    spoken(&s.y),
+                    percent(s.removable_share),
+                ),
+                _ => format!(
+                    "no axis of this run shows where it comes from (the error that remains is {error}{repeats})"
+                ),
+            };
+            format!("Structure remains that no effect of the library explains: {shows}; {floor}.")
         }
     }
 }

@@ -3,10 +3,11 @@
 use crate::assembly::Assembly;
 use crate::effect::Stage;
 use crate::linear::dot;
+use crate::maps::Maps;
 use crate::memory::memory;
 use crate::prepare::Prepared;
 use crate::report::{Invisible, NoiseFloor, Verdict};
-use crate::select::{Library, Maps, Move, Rival, Silence, held_out, search};
+use crate::select::{Library, Move, Rival, Silence, held_out, search};
 use crate::terms::Terms;
 use crate::{ModelError, ModelSpec, Options, ResidualKind, floor};
 
@@ -80,8 +81,8 @@ impl<'p> Exploration<'p> {
             let end = advances.last().map_or(&start.main, |a| &a.after.main);
             let basis = end.tangent();
             let residual = basis.rest(&end.response());
-            let maps = Maps::new(&prepared.main, &residual, options);
-            (maps, floor::noise_floor(prepared, &residual), path.silent)
+            let floor = floor::noise_floor(prepared, &residual);
+            (Maps::new(prepared, residual, options), floor, path.silent)
         };
         Ok(Self { start, advances, silent, invisible, maps, floor })
     }
@@ -92,7 +93,7 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        let mapped = self.maps.removable.is_some_and(|(_, share)| share > STRUCTURE_SHARE);
+        let mapped = self.maps.removable().is_some_and(|(_, share)| share > STRUCTURE_SHARE);
         if mapped || self.repeats_itself() { Verdict::UnexplainedStructure } else { Verdict::Adequate }
     }
 

@@ -68,10 +68,6 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
     if assembly.effects.iter().any(|e| e == "direction_offset") {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
     }
-    notes.extend(parameters.iter().filter_map(|p| p.note.as_ref().map(|n| format!("{}.{}: {n}", p.effect, p.name))));
-    notes.extend(
-        trade_offs.iter().map(|t| format!("{} and {} trade off (correlation {:.2})", t.first, t.second, t.correlation)),
-    );
     Ok(Fit {
         kind: prepared.kind,
         effects: assembly.effects.clone(),

@@ -1,44 +1,63 @@
 //! How well the measurement repeats itself, from rows that should be equal but for noise.
 
+use crate::pieces::pieces;
 use crate::prepare::Prepared;
 use crate::report::NoiseFloor;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+/// Fewer pairs than these have no scatter that could be told.
+const FEWEST: usize = 8;
+
 /// From the residual, not from the response, so that small differences of speed or load between repeats cancel.
+///
+/// Pure error of pairs, σ² = Σ (e_a − e_b)²/2 over their number; the mean product of the same pairs is what repeats
+/// itself, whatever the noise within a repeat remembers.
 pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
     let problem = &prepared.main;
-    if problem.twins.len() < 8 {
-        let source = "no noise floor: the run has no repeats of the same profile".to_owned();
-        return NoiseFloor { rms: None, ci95: None, source, repeatable_share: None };
+    if problem.twins.len() < FEWEST {
+        let source = match problem.repeat.iter().any(|r| *r != problem.repeat[0]) {
+            true => "no noise floor: the repeats have no moments of the same condition and phase in common",
+            false => "no noise floor: the run has no repeats of the same profile",
+        };
+        return NoiseFloor { rms: None, ci95: None, source: source.to_owned(), repeatable_share: None };
     }
-    let mut by_block = vec![(0.0, 0.0); problem.blocks];
-    let mut common = 0.0;
+    let (piece, count) = pieces(problem, 1);
+    let mut of_piece = vec![(0.0, 0.0); count];
+    let (mut noise, mut common) = (0.0, 0.0);
     for (a, b) in &problem.twins {
         let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
+        noise += half;
         common += residual[*a] * residual[*b];
-        let entry = &mut by_block[problem.block[*a]];
-        entry.0 += half;
-        entry.1 += 1.0;
+        for row in [a, b] {
+            let (sum, pairs) = &mut of_piece[piece[*row]];
+            (*sum, *pairs) = (*sum + half, *pairs + 1.0);
+        }
     }
     let pairs = problem.twins.len() as f64;
-    let variance = by_block.iter().map(|b| b.0).sum::<f64>() / pairs;
-    // Jackknife over blocks: the pairs of one block are not independent of each other.
-    let used: Vec<&(f64, f64)> = by_block.iter().filter(|b| b.1 > 0.0).collect();
-    let groups = used.len() as f64;
-    let without = |b: &(f64, f64)| (variance * pairs - b.0) / (pairs - b.1).max(1.0);
-    let spread = (groups - 1.0) / groups * used.iter().map(|b| (without(b) - variance).powi(2)).sum::<f64>();
-    let t = StudentsT::new(0.0, 1.0, (groups - 1.0).max(1.0)).map_or(2.0, |t| t.inverse_cdf(0.975));
-    let reach = t * spread.sqrt();
+    let variance = noise / pairs;
     let common = (common / pairs).max(0.0);
-    let share = if common + variance > 0.0 { common / (common + variance) } else { 0.0 };
+    let total = common + variance;
     NoiseFloor {
         rms: Some(variance.sqrt()),
-        ci95: Some([(variance - reach).max(0.0).sqrt(), (variance + reach).sqrt()]),
+        ci95: Some(interval(noise, pairs, &of_piece)),
         source: format!(
-            "{} pairs of the same condition and phase in different repeats ({})",
+            "{} pairs of moments of the same condition and phase in different repeats ({})",
             problem.twins.len(),
             if prepared.about.repeats_from == "column" { "as numbered" } else { "found by the period of the motion" }
         ),
-        repeatable_share: Some(share),
+        repeatable_share: Some(if total > 0.0 { common / total } else { 0.0 }),
     }
+}
+
+/// 95 % interval of the root: jackknife over pieces, because the pairs of one are not independent of each other, on the
+/// logarithm, because a variance is skew.
+fn interval(noise: f64, pairs: f64, of_piece: &[(f64, f64)]) -> [f64; 2] {
+    let whole = noise / pairs;
+    let without = |(sum, n): &(f64, f64)| ((noise - sum).max(0.0) / (pairs - n).max(1.0)).max(1e-12 * whole);
+    let steps: Vec<f64> = of_piece.iter().filter(|p| p.1 > 0.0).map(|p| (without(p) / whole).ln()).collect();
+    let groups = steps.len().max(2) as f64;
+    let spread = (groups - 1.0) / groups * steps.iter().map(|s| s * s).sum::<f64>();
+    let t = StudentsT::new(0.0, 1.0, groups - 1.0).map_or(2.0, |t| t.inverse_cdf(0.975));
+    let factor = if whole > 0.0 { (0.5 * t * spread.sqrt()).min(50.0).exp() } else { 1.0 };
+    [whole.sqrt() / factor, whole.sqrt() * factor]
 }

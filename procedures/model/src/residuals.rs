@@ -12,9 +12,7 @@ use jointbench_instrument::RunTable;
 /// The run is prepared as it was for the fit; `options` is there for callers that keep one set for every call and only
 /// its limits are checked.
 pub fn residuals(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualSet, ModelError> {
-    if !(options.alpha > 0.0 && options.alpha < 1.0) {
-        return Err(ModelError::BadOption { option: "alpha", why: "expected a share between 0 and 1".into() });
-    }
+    options.check()?;
     let prepared = prepare_alike(fit, run)?;
     let mut set = ResidualSet {
         residual: prepared.about.residual,

@@ -101,6 +101,23 @@ pub struct Options {
     pub seed: u64,
 }
 
+impl Options {
+    /// Refuses what no run can be prepared or judged with.
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
+        let positive = |value: Option<f64>| value.is_none_or(|v| v.is_finite() && v > 0.0);
+        let share = |value: f64| value > 0.0 && value < 1.0;
+        let (option, why) = match self {
+            _ if !positive(self.cutoff_hz) => ("cutoff_hz", "expected a positive frequency"),
+            _ if self.decimation == Some(0) => ("decimation", "expected 1 or more"),
+            _ if !positive(self.chunk_s) => ("chunk_s", "expected a positive time"),
+            _ if !share(self.alpha) => ("alpha", "expected a share between 0 and 1"),
+            _ if !share(self.practical_share) => ("practical_share", "expected a share between 0 and 1"),
+            _ => return Ok(()),
+        };
+        Err(ModelError::BadOption { option, why: why.into() })
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {

@@ -3,8 +3,9 @@
 mod common;
 
 use common::bench::meta;
-use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
-use jointbench_model::{ModelError, ModelSpec, Options, diagnose, fit};
+use common::tables::{Shape, scatter, try_table};
+use jointbench_instrument::{Channel, Kind, Meta, RunTable, TableFault, Trace};
+use jointbench_model::{Diagnosis, ModelError, ModelSpec, Options, Verdict, diagnose, fit, maps};
 use proptest::prelude::*;
 
 fn table(rows: usize, current: impl Fn(usize) -> f64, position: impl Fn(usize) -> f64) -> RunTable {
@@ -24,14 +25,9 @@ fn what_cannot_be_identified_is_refused_in_words() {
     assert!(matches!(error(&table(500, |_| 1.0, |_| 2.0)), ModelError::Constant { .. }));
 }
 
-/// Scatter without any order.
-fn scatter(i: usize) -> f64 {
-    ((i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64 - 0.5
-}
-
 #[test]
 fn one_direction_at_one_speed_names_what_cannot_be_told_apart() {
-    let run = table(500, |i| 1.0 + 0.01 * scatter(i), |i| i as f64 * 0.1);
+    let run = table(500, |i| 1.0 + 0.01 * scatter(i, 0), |i| i as f64 * 0.1);
     let spec = ModelSpec::baseline(&run).unwrap();
     match diagnose(&run, &spec, &Options::default()) {
         Ok(found) => {
@@ -62,18 +58,86 @@ fn an_effect_without_its_signal_stays_in_the_model_as_not_visible() {
     assert!(found.notes.iter().any(|n| n.contains("load_linear is not visible")), "{:?}", found.notes);
 }
 
+#[test]
+fn a_clock_that_runs_back_and_numbers_that_are_none_never_become_a_run() {
+    for kind in Kind::ALL {
+        let shape = Shape { rows: 200, ..Shape::default() };
+        let spoilt = |column: &'static str, value: f64| {
+            try_table(kind, &shape, move |name, i, v| if name == column && i == 120 { value } else { v })
+        };
+        assert!(matches!(spoilt("time_s", 0.1), Err(TableFault::TimeNotRising { .. })), "{kind}");
+        let still = try_table(kind, &shape, |name, _, v| if name == "time_s" { 1.0 } else { v });
+        assert!(matches!(still, Err(TableFault::TimeNotRising { .. })), "{kind}");
+        for column in kind.required_columns() {
+            assert!(matches!(spoilt(column, f64::NAN), Err(TableFault::NotFinite { .. })), "{kind} {column}");
+        }
+    }
+}
+
+#[test]
+fn a_column_that_never_changes_is_a_clear_error_or_nothing_to_say() {
+    for kind in Kind::ALL {
+        for column in kind.required_columns().iter().filter(|c| **c != "time_s") {
+            let run = try_table(kind, &Shape::default(), |name, _, v| if name == *column { 0.7 } else { v }).unwrap();
+            match diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()) {
+                Ok(found) => assert_finite(&found),
+                Err(refused) => assert!(refused.to_string().len() > 20, "{kind} {column}: {refused}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn options_out_of_range_are_refused_by_name() {
+    let run = table(500, |i| (i as f64 * 0.3).cos(), |i| (i as f64 * 0.05).sin());
+    let spec = ModelSpec::baseline(&run).unwrap();
+    for (name, options) in [
+        ("alpha", Options { alpha: f64::NAN, ..Options::default() }),
+        ("practical_share", Options { practical_share: 1.0, ..Options::default() }),
+        ("cutoff_hz", Options { cutoff_hz: Some(f64::INFINITY), ..Options::default() }),
+        ("decimation", Options { decimation: Some(0), ..Options::default() }),
+        ("chunk_s", Options { chunk_s: Some(-1.0), ..Options::default() }),
+    ] {
+        match diagnose(&run, &spec, &options) {
+            Err(ModelError::BadOption { option, .. }) => assert_eq!(option, name),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+}
+
+/// What is said is said in numbers, and nothing is suggested without evidence.
+fn assert_finite(found: &Diagnosis) {
+    assert!(found.fit.rms.is_finite() && found.fit.validation_rms.is_finite(), "{}", found.summary);
+    assert!(found.suggestions.is_empty() || found.verdict == Verdict::MissingEffect, "{}", found.summary);
+    for s in &found.suggestions {
+        assert!(s.p_value <= 0.05 && s.validation_rms.is_finite(), "{s:?}");
+    }
+    let drawn = found.regions.iter().all(|r| r.mean_residual.is_finite() && r.from <= r.to && r.samples > 0);
+    assert!(drawn, "{:?}", found.regions);
+    assert!(!found.summary.contains("NaN") && !found.summary.contains("inf"), "{}", found.summary);
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn no_table_makes_it_panic(
-        rows in 1usize..600,
-        size in prop::sample::select(vec![0.0, 1e-12, 1.0, 1e9]),
-        turn in prop::sample::select(vec![0.0, 0.001, 0.3, 40.0]),
+    fn no_table_of_any_kind_makes_it_panic(
+        kind in prop::sample::select(Kind::ALL.to_vec()),
+        rows in 1usize..900,
+        size in prop::sample::select(vec![0.0, 1e-12, 1.0, 1e9, 1e150]),
+        turn in prop::sample::select(vec![0.0, 1e-6, 0.3, 40.0, 1e9]),
+        noise in prop::sample::select(vec![0.0, 1e-3, 1.0, 100.0]),
+        segment in prop::sample::select(vec![0usize, 1, 7, 100, 1000]),
+        repeats in 1usize..5,
         mix in 0u64..1000,
     ) {
-        let jitter = |i: usize| ((i as u64 * 2654435761 + mix) % 1000) as f64 / 1000.0 - 0.5;
-        let run = table(rows, |i| size * jitter(i), |i| turn * (i as f64 * 0.05).sin() + 1e-3 * turn * jitter(i + 7));
-        let _ = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default());
+        let shape = Shape { rows, turn, size, noise, mix, segment, repeats };
+        let run = common::tables::table(kind, &shape);
+        let spec = ModelSpec::baseline(&run).unwrap();
+        if let Ok(found) = diagnose(&run, &spec, &Options::default()) {
+            assert_finite(&found);
+            let drawn = maps(&run, &found.fit, &Options::default()).unwrap();
+            prop_assert!(drawn.axes.iter().flat_map(|a| &a.bins).all(|b| b.mean.is_finite() && b.rows > 0));
+        }
     }
 }

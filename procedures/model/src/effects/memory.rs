@@ -2,7 +2,7 @@
 
 /// Dahl: dz = (1 − z·sgn dx)·dx/reach, from 0 at every start. What is left to ±1 shrinks exponentially.
 pub fn dahl(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
-    remember(x, starts, 0.0, |z, step| {
+    remember(x, starts, 0.0, |_, z, step| {
         let end = if step < 0.0 { -1.0 } else { 1.0 };
         end + (z - end) * (-step.abs() / reach).exp()
     })
@@ -10,7 +10,30 @@ pub fn dahl(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
 
 /// An elastic element that slips at ±1: dz = dx/reach within ±1, from 0 at every start.
 pub fn stop(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
-    remember(x, starts, 0.0, |z, step| (z + step / reach).clamp(-1.0, 1.0))
+    remember(x, starts, 0.0, |_, z, step| (z + step / reach).clamp(-1.0, 1.0))
+}
+
+/// Generalised Maxwell slip with elements of equal strength whose reaches are spread evenly up to `reach`: a stop that
+/// yields little by little. One number more than that would be one more that reversals hardly decide.
+pub fn maxwell_slip(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
+    const ELEMENTS: usize = 4;
+    let mut sum = vec![0.0; x.len()];
+    for k in 1..=ELEMENTS {
+        let element = stop(x, reach * k as f64 / ELEMENTS as f64, starts);
+        sum.iter_mut().zip(element).for_each(|(s, z)| *s += z / ELEMENTS as f64);
+    }
+    sum
+}
+
+/// LuGre without bristle damping: a Dahl state that ends at ±`strength`, which falls with speed as Stribeck's curve does.
+///
+/// dz = (1 − z·sgn dx/strength)·dx/reach with the strength of each sample. The damping of the bristles acts for the
+/// blink of a reversal only, where delays of the instruments look the same.
+pub fn lugre(x: &[f64], strength: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
+    remember(x, starts, 0.0, |i, z, step| {
+        let end = if step < 0.0 { -strength[i] } else { strength[i] };
+        end + (z - end) * (-step.abs() / (reach * strength[i])).exp()
+    })
 }
 
 /// First-order lag; `share` is the sample step by the time constant. Starts settled.
@@ -45,14 +68,14 @@ pub fn turns(x: &[f64], depth: f64) -> bool {
     fell && rose
 }
 
-fn remember(x: &[f64], starts: &[usize], rest: f64, next: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+fn remember(x: &[f64], starts: &[usize], rest: f64, next: impl Fn(usize, f64, f64) -> f64) -> Vec<f64> {
     let mut state = rest;
     let mut last = x.first().copied().unwrap_or_default();
     let mut starts = starts.iter().peekable();
     x.iter()
         .enumerate()
         .map(|(i, x)| {
-            state = if starts.next_if(|s| **s == i).is_some() { rest } else { next(state, x - last) };
+            state = if starts.next_if(|s| **s == i).is_some() { rest } else { next(i, state, x - last) };
             last = *x;
             state
         })
@@ -69,6 +92,22 @@ mod tests {
         let fine: Vec<f64> =
             (0..=100).map(|i| f64::from(i) / 100.0).chain((0..200).map(|i| 0.99 - f64::from(i) / 100.0)).collect();
         assert!((dahl(&fine, 0.5, &[0])[300] - coarse[2]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn lugre_is_dahl_at_one_strength_and_ends_at_its_own_elsewhere() {
+        let x: Vec<f64> = (0..400).map(|i| (f64::from(i) * 0.05).sin()).collect();
+        assert_eq!(lugre(&x, &[1.0; 400], 0.2, &[0, 150]), dahl(&x, 0.2, &[0, 150]));
+        let far: Vec<f64> = (0..50).map(f64::from).collect();
+        assert!((lugre(&far, &[1.5; 50], 0.2, &[0])[49] - 1.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn maxwell_slip_yields_little_by_little_and_closes_its_loop() {
+        let z = maxwell_slip(&[0.0, 0.5, 1.0, 2.0, -2.0, 2.0], 1.0, &[0]);
+        assert!(z[1] < z[2] && z[1] > 0.5, "softer than its first part, stiffer than its last: {z:?}");
+        let ends = [z[3] - 1.0, z[4] + 1.0, z[5] - 1.0];
+        assert!(ends.iter().all(|e| e.abs() < 1e-12), "{z:?}");
     }
 
     #[test]

@@ -110,6 +110,7 @@ impl Prepared {
             (Signal::Load, _) => "link_torque_nm",
             (Signal::Temperature, _) => "temperature_c",
             (Signal::Current, _) => "brake_current_a",
+            (Signal::Drive, Kind::Brake) => "brake_torque_nm",
             (Signal::Drive, _) => "motor_torque_nm",
             (Signal::Repeat, _) => "repeat",
         }
@@ -137,17 +138,7 @@ impl Prepared {
 
 /// Prepares a run. Deterministic; cost linear in the rows.
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
-    if let Some(cutoff_hz) = options.cutoff_hz
-        && !(cutoff_hz.is_finite() && cutoff_hz > 0.0)
-    {
-        return Err(ModelError::BadOption { option: "cutoff_hz", why: "expected a positive frequency".into() });
-    }
-    if options.decimation == Some(0) {
-        return Err(ModelError::BadOption { option: "decimation", why: "expected 1 or more".into() });
-    }
-    if options.chunk_s.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
-        return Err(ModelError::BadOption { option: "chunk_s", why: "expected a positive time".into() });
-    }
+    options.check()?;
     if run.len() < 16 {
         return Err(ModelError::TooFewSamples { usable: run.len(), needed: 16, what: "samples" });
     }

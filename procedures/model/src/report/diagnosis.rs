@@ -1,6 +1,7 @@
 //! Where a model fails and what is missing.
 
 use super::fit::{Fit, Parameter, ResidualKind};
+use super::maps::PairMap;
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +32,9 @@ pub struct Diagnosis {
     /// Regions in which the model errs, the worst first.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
+    /// The residual over the two axes where it shows most, where the verdict is `unexplained_structure`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub structure: Option<PairMap>,
     /// Missing effects, the most important first. Empty unless the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
     pub experiment: Option<Experiment>,
@@ -136,5 +140,8 @@ pub struct Discovery {
     pub fit: Fit,
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
+    /// The residual over the two axes where it shows most, where the verdict is `unexplained_structure`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub structure: Option<PairMap>,
     pub experiment: Option<Experiment>,
 }

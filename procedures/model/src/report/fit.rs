@@ -64,7 +64,7 @@ pub struct Parameter {
 #[serde(rename_all = "snake_case")]
 pub enum ParameterState {
     Ok,
-    /// The best value lies at the edge of what is physically sensible.
+    /// The best value lies at or beyond the edge of what is physically sensible.
     AtBound,
     /// The data does not decide it: the interval is as wide as the value.
     Unidentified,

@@ -2,6 +2,7 @@
 
 mod diagnosis;
 mod fit;
+mod maps;
 mod residuals;
 
 pub use diagnosis::{
@@ -10,4 +11,5 @@ pub use diagnosis::{
 pub use fit::{
     Evaluation, Fit, Parameter, ParameterState, Preparation, ResidualKind, Scope, SignalRange, Term, TradeOff,
 };
+pub use maps::{AxisMap, MapBin, MapCell, PairMap, ResidualMaps};
 pub use residuals::{Axis, ResidualSet};

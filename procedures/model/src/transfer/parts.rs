@@ -60,7 +60,9 @@ impl<'f> Parts<'f> {
             };
             match columns(fit, term)? {
                 Some(columns) => parts.parts.push(part(id, title, term, columns)?),
-                None => parts.left_out.push((id, format!("its form {} needs a whole recording", term.form))),
+                None => {
+                    parts.left_out.push((id, format!("its form {} is not written out for a controller", term.form)))
+                }
             }
         }
         Ok(parts)

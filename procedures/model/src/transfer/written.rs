@@ -38,6 +38,8 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
     let memory = |rule, signal, formula| Some(vec![Column::Memory { rule, signal, formula }]);
     let rule = if term.form == "stop" { Rule::Stop } else { Rule::Dahl };
     match (kind, term.effect.as_str(), term.form.as_str()) {
+        // States of several elements, or of two signals: more than one rule can follow.
+        (_, _, "maxwell_slip" | "lugre") => None,
         (Kind::Friction, id, form) => match (id, form) {
             ("inertia", _) => formula("acceleration"),
             ("coulomb", _) => formula("direction"),

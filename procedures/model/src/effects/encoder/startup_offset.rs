@@ -6,19 +6,19 @@ use jointbench_instrument::Kind;
 
 pub struct StartupOffset;
 
+/// One offset for each repeat after the first.
+static NAMES: [&str; 12] =
+    ["xi_1", "xi_2", "xi_3", "xi_4", "xi_5", "xi_6", "xi_7", "xi_8", "xi_9", "xi_10", "xi_11", "xi_12"];
+
 static INFO: EffectInfo = EffectInfo {
     id: "startup_offset",
     kind: Kind::Encoder,
     title: "Start-up offset",
     sentence: "The encoder finds another zero at every power-up.",
-    formula: "ξ_r for every repeat r after the first",
+    formula: "ξ_r for every repeat r after the first, up to twelve",
     source: "thesis on joint test benches, section 4.3 (start-up initialisation error)",
     looks: "another constant in every repeat",
-    parameters: &[
-        parameter("xi_1", "rad", f64::NEG_INFINITY, f64::INFINITY),
-        parameter("xi_2", "rad", f64::NEG_INFINITY, f64::INFINITY),
-        parameter("xi_3", "rad", f64::NEG_INFINITY, f64::INFINITY),
-    ],
+    parameters: &[parameter("xi", "rad", f64::NEG_INFINITY, f64::INFINITY)],
     needs: &["repeat"],
 };
 
@@ -28,17 +28,22 @@ impl Effect for StartupOffset {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let most = view.get(Signal::Repeat).iter().fold(0.0f64, |m, r| m.max(*r));
-        match most as usize {
+        match restarts(view).len() {
             0 => Vec::new(),
-            1 => vec![Form::linear(&["xi_1"])],
-            2 => vec![Form::linear(&["xi_1", "xi_2"])],
-            _ => vec![Form::linear(&["xi_1", "xi_2", "xi_3"])],
+            n => vec![Form::linear(&NAMES[..n])],
         }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
-        let most = view.get(Signal::Repeat).iter().fold(0.0f64, |m, r| m.max(*r)).min(3.0);
-        (1..=most as usize).map(|k| view.map(Signal::Repeat, |r| if r as usize == k { 1.0 } else { 0.0 })).collect()
+        let is = |k: f64| view.map(Signal::Repeat, |r| f64::from(u8::from(r == k)));
+        restarts(view).into_iter().map(is).collect()
     }
+}
+
+/// Numbers of the repeats after the first, as many as have a name.
+fn restarts(view: &View) -> Vec<f64> {
+    let mut numbers = view.get(Signal::Repeat).to_vec();
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    numbers.into_iter().skip(1).take(NAMES.len()).collect()
 }

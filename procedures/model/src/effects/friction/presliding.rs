@@ -12,10 +12,15 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Presliding hysteresis",
     sentence: "After a reversal the contacts bend like bristles before they slip: friction builds up over a short way.",
-    formula: "τ_p·(z − sgn ω), dz = (1 − z·sgn ω)·dθ/θ_p (Dahl); or a stop, dz = dθ/θ_p within ±1 (generalised Maxwell slip)",
-    source: "Dahl 1968; Al-Bender, Lampaert, Swevers 2005",
+    formula: "τ_p·(z − sgn ω), dz = (1 − z·sgn ω)·dθ/θ_p (Dahl); or a stop, dz = dθ/θ_p within ±1; or the mean of four stops with reaches up to θ_p (Maxwell slip); or τ_p·(z − g·sgn ω), dz = (1 − z·sgn ω/g)·dθ/θ_p, g = 1 + ρ·exp(−(ω/ω_s)²) (LuGre)",
+    source: "Dahl 1968; Canudas de Wit, Olsson, Åström, Lischinsky 1995; Al-Bender, Lampaert, Swevers 2005",
     looks: "loops at reversals: the torque arrives later than the direction changes",
-    parameters: &[parameter("tau_p", "Nm", 0.0, f64::INFINITY), parameter("theta_p", "rad", 0.0, f64::INFINITY)],
+    parameters: &[
+        parameter("tau_p", "Nm", 0.0, f64::INFINITY),
+        parameter("theta_p", "rad", 0.0, f64::INFINITY),
+        parameter("omega_s", "rad/s", 0.0, f64::INFINITY),
+        parameter("rho", "1", 0.0, f64::INFINITY),
+    ],
     needs: &[],
 };
 
@@ -26,21 +31,39 @@ impl Effect for Presliding {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let Some((low, high)) = crate::effects::reversal_range(view) else { return Vec::new() };
-        let shape = vec![Shape { name: "theta_p", min: low, max: high, search: Search::Smooth }];
+        let reach = Shape { name: "theta_p", min: low, max: high, search: Search::Smooth };
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(low, high, 7).into_iter().map(|d| vec![d]).collect();
-        ["dahl", "stop"]
-            .map(|name| Form { name, linear: vec!["tau_p"], shape: shape.clone(), grid: grid.clone() })
-            .into()
+        let one = |name| Form { name, linear: vec!["tau_p"], shape: vec![reach], grid: grid.clone() };
+        let mut forms = vec![one("dahl"), one("stop"), one("maxwell_slip")];
+        // A trajectory that is judged sample by sample decides the fall with speed through the Stribeck effect.
+        let apart = !view.chunks.is_empty();
+        let range = crate::effects::speed_range(view).filter(|(slow, fast)| apart && *fast > 3.0 * slow);
+        if let Some((slow, fast)) = range {
+            let speed = Shape { name: "omega_s", min: slow, max: fast, search: Search::Smooth };
+            let rise = Shape { name: "rho", min: 0.05, max: 3.0, search: Search::Smooth };
+            let middle = (slow * fast).sqrt();
+            let grid = crate::effects::log_grid(low, high, 4).into_iter().map(|d| vec![d, middle, 0.4]).collect();
+            forms.push(Form { name: "lugre", linear: vec!["tau_p"], shape: vec![reach, speed, rise], grid });
+        }
+        forms
     }
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let position = view.samples.find(Signal::Position).unwrap_or_default();
-        let state = match form {
-            "dahl" => memory::dahl(position, shape[0], &view.starts),
-            _ => memory::stop(position, shape[0], &view.starts),
-        };
         let direction = view.samples.find(Signal::Direction).unwrap_or_default();
-        vec![view.average(state.iter().zip(direction).map(|(z, d)| z - d).collect())]
+        let late = |state: Vec<f64>| state.iter().zip(direction).map(|(z, d)| z - d).collect();
+        vec![view.average(match form {
+            "dahl" => late(memory::dahl(position, shape[0], &view.starts)),
+            "maxwell_slip" => late(memory::maxwell_slip(position, shape[0], &view.starts)),
+            "lugre" => {
+                let velocity = view.samples.find(Signal::Velocity).unwrap_or_default();
+                let strength: Vec<f64> =
+                    velocity.iter().map(|w| 1.0 + shape[2] * (-(w / shape[1]).powi(2)).exp()).collect();
+                let state = memory::lugre(position, &strength, shape[0], &view.starts);
+                state.iter().zip(&strength).zip(direction).map(|((z, g), d)| z - g * d).collect()
+            }
+            _ => late(memory::stop(position, shape[0], &view.starts)),
+        })]
     }
 
     fn stage(&self) -> crate::effect::Stage {

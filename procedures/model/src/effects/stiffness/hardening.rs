@@ -11,11 +11,12 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Stiffness,
     title: "Hardening",
     sentence: "The joint gets stiffer or softer the more it is loaded, as more teeth come to bear.",
-    formula: "κ·τ³, or κ·(√(1 + |τ|/τ_h) − 1)·sgn τ, or κ·tanh(τ/τ_h)",
+    formula: "κ·τ³, or φ_h·(√(1 + |τ|/τ_h) − 1)·sgn τ, or φ_h·tanh(τ/τ_h)",
     source: "thesis on joint test benches, joint B softer at low torque; Kircanski and Goldenberg 1997",
     looks: "a curve over torque, odd",
     parameters: &[
         parameter("kappa", "rad/Nm³", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("phi_h", "rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("tau_h", "Nm", 0.0, f64::INFINITY),
     ],
     needs: &[],
@@ -31,7 +32,7 @@ impl Effect for Hardening {
         let shape = vec![Shape { name: "tau_h", min: 0.01 * peak, max: 2.0 * peak, search: Search::Smooth }];
         let grid: Vec<Vec<f64>> =
             crate::effects::log_grid(0.01 * peak, 2.0 * peak, 6).into_iter().map(|t| vec![t]).collect();
-        let curved = |name| Form { name, linear: vec!["kappa"], shape: shape.clone(), grid: grid.clone() };
+        let curved = |name| Form { name, linear: vec!["phi_h"], shape: shape.clone(), grid: grid.clone() };
         vec![
             Form { name: "cubic", linear: vec!["kappa"], shape: Vec::new(), grid: vec![Vec::new()] },
             curved("root"),

@@ -1,0 +1,40 @@
+//! What an interval means, said plainly.
+
+use super::Slot;
+use crate::effect::Search;
+use crate::report::ParameterState;
+use crate::words::figure;
+
+/// An interval of a shape parameter that is wider than this factor does not decide it.
+const WIDE: f64 = 10.0;
+
+/// State of a parameter, with words where it is not well determined.
+pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {
+    if dead {
+        return (ParameterState::Unidentified, Some("this data says nothing about it".into()));
+    }
+    let say = |value: f64| figure(value, &slot.unit);
+    let Some(shape) = slot.shape else {
+        let (least, most) = slot.possible;
+        if ci95[0] < 0.0 && ci95[1] > 0.0 {
+            return (ParameterState::Unidentified, Some("the interval holds zero".into()));
+        }
+        if slot.value < least || slot.value > most {
+            let words = "is physically impossible: another effect is missing, or a column has the wrong sign";
+            return (ParameterState::AtBound, Some(words.into()));
+        }
+        return (ParameterState::Ok, None);
+    };
+    let (min, max) = (shape.min, shape.max);
+    let edge = |value: f64, bound: f64| (value - bound).abs() <= 1e-3 * bound.abs().max(1e-3 * (max - min));
+    if edge(slot.value, min) || edge(slot.value, max) {
+        let words = format!("lies at the edge of what this data can speak about, {} to {}", say(min), say(max));
+        return (ParameterState::AtBound, Some(words));
+    }
+    let wide = shape.search == Search::Smooth && ci95[1] > WIDE * ci95[0].abs();
+    if wide || (edge(ci95[0], min) && edge(ci95[1], max)) {
+        let words = format!("hardly identified: anything from {} to {} fits", say(ci95[0]), say(ci95[1]));
+        return (ParameterState::Unidentified, Some(words));
+    }
+    (ParameterState::Ok, None)
+}

@@ -1,0 +1,100 @@
+//! The residual over one or two scales: means with bands, and what a function of them would remove.
+
+use super::scale::Scale;
+use crate::linear::dot;
+use crate::prepare::Problem;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Rows sorted into the cells of one scale, or of two.
+#[derive(Debug, Clone)]
+pub struct Map {
+    pub x: Scale,
+    pub y: Option<Scale>,
+    /// Cells with rows, in the order of x and then y.
+    pub cells: Vec<Cell>,
+    /// Share of the squared residual that the means of the cells take off rows that they were not made from.
+    pub removable: f64,
+}
+
+/// Mean of the residual in one cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    pub x: usize,
+    pub y: usize,
+    pub mean: f64,
+    /// Standard error over the pieces that pass through; `None` with fewer than three, which say nothing about a fourth.
+    error: Option<f64>,
+    pieces: usize,
+    pub rows: usize,
+}
+
+impl Map {
+    pub fn new(x: Scale, y: Option<Scale>, problem: &Problem, piece: &[usize], residual: &[f64]) -> Self {
+        let width = y.as_ref().map_or(1, |y| y.bins.len());
+        let cell: Vec<usize> =
+            (0..residual.len()).map(|i| x.bin[i] * width + y.as_ref().map_or(0, |y| y.bin[i])).collect();
+        let count = x.bins.len() * width;
+        let cells = statistics(&cell, count, piece, residual)
+            .into_iter()
+            .enumerate()
+            .filter_map(|(c, (mean, error, pieces, rows))| {
+                (rows > 0).then_some(Cell { x: c / width, y: c % width, mean, error, pieces, rows })
+            })
+            .collect();
+        let removable = held_out_share(&cell, count, problem, residual);
+        Self { x, y, cells, removable }
+    }
+}
+
+impl Cell {
+    /// Half of a band that holds for `many` cells together (Bonferroni), whatever they have in common.
+    pub fn half_width(&self, alpha: f64, many: usize) -> Option<f64> {
+        let t = StudentsT::new(0.0, 1.0, (self.pieces - 1) as f64).ok()?;
+        Some(self.error? * t.inverse_cdf(1.0 - alpha / (2.0 * many.max(1) as f64)))
+    }
+}
+
+/// Mean, standard error over the pieces, pieces and rows of every cell.
+fn statistics(
+    cell: &[usize],
+    count: usize,
+    piece: &[usize],
+    residual: &[f64],
+) -> Vec<(f64, Option<f64>, usize, usize)> {
+    let mut order: Vec<usize> = (0..cell.len()).collect();
+    order.sort_by_key(|i| (cell[*i], piece[*i]));
+    let mut out = vec![(0.0, None, 0, 0); count];
+    for rows in order.chunk_by(|a, b| cell[*a] == cell[*b]) {
+        let n = rows.len() as f64;
+        let mean = rows.iter().map(|i| residual[*i]).sum::<f64>() / n;
+        let passes = rows.chunk_by(|a, b| piece[*a] == piece[*b]);
+        let sums: Vec<f64> = passes.map(|p| p.iter().map(|i| residual[*i] - mean).sum()).collect();
+        let g = sums.len();
+        let spread: f64 = sums.iter().map(|s| s * s).sum();
+        let error = (g >= 3).then(|| (spread * g as f64 / (g as f64 - 1.0)).sqrt() / n);
+        out[cell[rows[0]]] = (mean, error, g, rows.len());
+    }
+    out
+}
+
+/// What the means of the cells, taken from the other folds, take off a fold's squared error.
+fn held_out_share(cell: &[usize], count: usize, problem: &Problem, residual: &[f64]) -> f64 {
+    let energy = dot(residual, residual);
+    let mut all = vec![(0.0, 0.0); count];
+    let mut folds = vec![(0.0, 0.0); count * problem.folds];
+    for (i, c) in cell.iter().enumerate() {
+        for (sum, n) in [&mut all[*c], &mut folds[problem.fold[i] * count + c]] {
+            *sum += residual[i];
+            *n += 1.0;
+        }
+    }
+    let mut saved = 0.0;
+    for (at, (sum, n)) in folds.iter().enumerate() {
+        let (total, rows) = all[at % count];
+        if *n > 0.0 && rows > *n {
+            let predicted = (total - sum) / (rows - n);
+            saved += 2.0 * predicted * sum - n * predicted * predicted;
+        }
+    }
+    if energy > 0.0 { saved / energy } else { 0.0 }
+}

@@ -1,0 +1,95 @@
+//! Residual maps: where the model fails, with bands that hold for all cells of all maps together.
+
+mod map;
+mod public;
+mod regions;
+mod scale;
+
+pub use public::maps;
+pub use regions::{Yardstick, spoken, yardstick};
+
+use crate::Options;
+use crate::pieces::pieces;
+use crate::prepare::Prepared;
+use crate::report::{PairMap, Region};
+use map::{Cell, Map};
+use scale::{Scale, scales};
+
+/// All maps of one residual.
+pub struct Maps {
+    scales: Vec<Scale>,
+    axes: Vec<Map>,
+    /// Position and load by direction: what a direction hides from the other is seen here.
+    by_direction: Vec<Map>,
+    piece: Vec<usize>,
+    residual: Vec<f64>,
+    alpha: f64,
+    cells: usize,
+}
+
+/// Bins of each axis of a map over two.
+const PAIR_BINS: usize = 12;
+/// Axes that are tried against each other for the picture of what no effect explains.
+const PARTNERS: usize = 5;
+
+impl Maps {
+    /// `residual` is what the model leaves at the rows of the main problem.
+    pub fn new(prepared: &Prepared, residual: Vec<f64>, options: &Options) -> Self {
+        let problem = &prepared.main;
+        let (piece, _) = pieces(problem, 1);
+        let scales = scales(prepared);
+        let map = |x: &Scale, y: Option<&Scale>| Map::new(x.clone(), y.cloned(), problem, &piece, &residual);
+        let axes: Vec<Map> = scales.iter().map(|s| map(s, None)).collect();
+        let sides = |name: &str| name.contains("position_rad") || name == "link_torque_nm" || name == "brake_current_a";
+        let by_direction: Vec<Map> = match scales.iter().find(|s| s.name == "direction") {
+            Some(direction) => scales.iter().filter(|s| sides(&s.name)).map(|s| map(s, Some(direction))).collect(),
+            None => Vec::new(),
+        };
+        let cells = axes.iter().chain(&by_direction).map(|m| m.cells.len()).sum();
+        Self { scales, axes, by_direction, piece, residual, alpha: options.alpha, cells }
+    }
+
+    /// Share of the squared error that the best map would take off held-out data, with its axis.
+    pub fn removable(&self) -> Option<(&str, f64)> {
+        let shares = self.axes.iter().chain(&self.by_direction).map(|m| (m.x.name.as_str(), m.removable));
+        shares.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Half of the band of a cell, where it has one, together with the cells of all axes.
+    fn half_width(&self, cell: &Cell) -> Option<f64> {
+        cell.half_width(self.alpha, self.cells)
+    }
+
+    /// Regions in which the residual is not noise, the worst first.
+    pub fn regions(&self, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
+        regions::regions(self, unit, yardstick)
+    }
+
+    /// The residual over the two axes where it shows most: of the pairs among the most telling axes, the one whose
+    /// means take most off held-out rows.
+    pub fn structure(&self, prepared: &Prepared) -> Option<PairMap> {
+        let mut ranked: Vec<&Map> = self.axes.iter().filter(|m| m.x.name != "direction").collect();
+        ranked.sort_by(|a, b| b.removable.total_cmp(&a.removable));
+        ranked.truncate(PARTNERS);
+        let direction = self.scales.iter().find(|s| s.name == "direction");
+        let (mut best, mut cells): (Option<Map>, usize) = (None, self.cells);
+        for (i, a) in ranked.iter().enumerate() {
+            let partners = ranked[i + 1..].iter().map(|m| &m.x);
+            // The sign of the velocity is no second axis beside the velocity.
+            for y in partners.chain(direction.filter(|_| !a.x.name.contains("velocity"))) {
+                let pair = self.pair(&a.x, y, prepared);
+                cells += pair.cells.len();
+                if best.as_ref().is_none_or(|b| pair.removable > b.removable) {
+                    best = Some(pair);
+                }
+            }
+        }
+        best.map(|m| self.public_pair(&m, cells))
+    }
+
+    fn pair(&self, x: &Scale, y: &Scale, prepared: &Prepared) -> Map {
+        // An angle keeps its fine bins beside two directions: what it hides is narrow.
+        let x = if y.bins.len() > 2 { x.coarse(PAIR_BINS) } else { x.clone() };
+        Map::new(x, Some(y.coarse(PAIR_BINS)), &prepared.main, &self.piece, &self.residual)
+    }
+}

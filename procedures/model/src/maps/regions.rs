@@ -1,0 +1,139 @@
+//! The worst regions of the maps, in sentences with figures.
+
+use super::Maps;
+use super::map::{Cell, Map};
+use super::scale::Scale;
+use crate::report::{Fit, NoiseFloor, Region};
+use crate::words::{figure, percent};
+
+/// More regions than these nobody reads.
+const MOST: usize = 8;
+
+/// What an error is measured against in words.
+pub struct Yardstick {
+    value: f64,
+    /// `of the Coulomb friction`, `of the noise`.
+    of: &'static str,
+}
+
+/// Coulomb friction where the model has it, how well the run repeats itself else.
+pub fn yardstick(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<Yardstick> {
+    let coulomb = fit.parameters.iter().find(|p| p.effect == "coulomb" && p.value > 0.0);
+    let coulomb = coulomb.map(|p| Yardstick { value: p.value, of: "of the Coulomb friction" });
+    coulomb.or_else(|| {
+        let value = floor?.rms.filter(|rms| *rms > 0.0)?;
+        Some(Yardstick { value, of: "of the noise" })
+    })
+}
+
+/// Neighbouring cells of one sign that are all beyond their bands.
+struct Stretch<'m> {
+    map: &'m Map,
+    first: usize,
+    last: usize,
+    y: usize,
+    mean: f64,
+    half_width: f64,
+    rows: usize,
+}
+
+pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
+    let mut stretches: Vec<Stretch> = maps.axes.iter().chain(&maps.by_direction).flat_map(|m| join(maps, m)).collect();
+    stretches.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
+    stretches.iter().take(MOST).map(|s| s.region(unit, yardstick)).collect()
+}
+
+/// Joins what lies beside each other: the mean of means lies within the mean of their bands.
+fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
+    let mut out: Vec<Stretch> = Vec::new();
+    let mut cells: Vec<&Cell> = map.cells.iter().collect();
+    cells.sort_by_key(|c| (c.y, c.x));
+    for cell in cells {
+        let Some(half_width) = maps.half_width(cell).filter(|h| cell.mean.abs() > *h) else { continue };
+        let beside = |s: &&mut Stretch| s.y == cell.y && s.last + 1 == cell.x && s.mean * cell.mean > 0.0;
+        match out.last_mut().filter(beside) {
+            Some(s) => {
+                let (n, more) = (s.rows as f64, cell.rows as f64);
+                s.mean = (s.mean * n + cell.mean * more) / (n + more);
+                s.half_width = (s.half_width * n + half_width * more) / (n + more);
+                s.rows += cell.rows;
+                s.last = cell.x;
+            }
+            None => {
+                let (mean, rows) = (cell.mean, cell.rows);
+                out.push(Stretch { map, first: cell.x, last: cell.x, y: cell.y, mean, half_width, rows });
+            }
+        }
+    }
+    out
+}
+
+impl Stretch<'_> {
+    /// Squared error that it stands for.
+    fn weight(&self) -> f64 {
+        self.mean.powi(2) * self.rows as f64
+    }
+
+    fn region(&self, unit: &str, yardstick: Option<&Yardstick>) -> Region {
+        let x = &self.map.x;
+        let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
+        let direction = self.map.y.as_ref().map(|y| if y.bins[self.y].centre > 0.0 { "positive" } else { "negative" });
+        let side = if self.mean > 0.0 { "low" } else { "high" };
+        let measure =
+            yardstick.map_or_else(String::new, |y| format!(", {} {}", percent(self.mean.abs() / y.value), y.of));
+        let motion = direction.map_or_else(String::new, |d| format!(" in {d} motion"));
+        Region {
+            axis: x.name.clone(),
+            from,
+            to,
+            mean_residual: self.mean,
+            ci95: [self.mean - self.half_width, self.mean + self.half_width],
+            samples: self.rows,
+            direction: direction.map(Into::into),
+            sentence: format!(
+                "the model is {} too {side} {}{motion}{measure}",
+                figure(self.mean.abs(), unit),
+                self.place(x)
+            ),
+        }
+    }
+
+    /// `below 9.0 rad/s`, `near 2.4 Nm`, `between a link position of 1.1 rad and 1.3 rad`.
+    fn place(&self, x: &Scale) -> String {
+        if x.name == "direction" {
+            return if x.bins[self.first].centre > 0.0 { "in positive motion" } else { "in negative motion" }.into();
+        }
+        let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
+        let say = |value: f64| figure(value, &x.unit);
+        let what = spoken(&x.name);
+        let end = x.bins.len() - 1;
+        if self.first == self.last && (say(from) == say(to) || (to - from).abs() < 0.03 * (to + from).abs() / 2.0) {
+            return format!("at a {what} of about {}", say(x.bins[self.first].centre));
+        }
+        match (self.first == 0, self.last == end) {
+            (true, true) => format!("at every {what}"),
+            (true, false) => format!("at a {what} below {}", say(to)),
+            (false, true) => format!("at a {what} above {}", say(from)),
+            (false, false) => format!("at a {what} between {} and {}", say(from), say(to)),
+        }
+    }
+}
+
+/// A column's name without its unit, as it is spoken.
+pub fn spoken(column: &str) -> String {
+    let units = ["_rad_s2", "_rad_s3", "_rad_s", "_rad", "_nm", "_s", "_c", "_a"];
+    let suffix = units.into_iter().find(|u| column.ends_with(u)).unwrap_or_default();
+    column.trim_end_matches(suffix).replace('_', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_spoken_without_their_units() {
+        assert_eq!(spoken("motor_velocity_rad_s"), "motor velocity");
+        assert_eq!(spoken("time_since_reversal_s"), "time since reversal");
+        assert_eq!(spoken("repeat"), "repeat");
+    }
+}

@@ -1,0 +1,89 @@
+//! Tables of all four kinds with the required columns only, as regular or as broken as a test asks for.
+
+use jointbench_instrument::{Channel, Kind, Meta, RunTable, TableFault, Trace};
+
+/// What a table is made of.
+#[derive(Debug, Clone)]
+pub struct Shape {
+    pub rows: usize,
+    /// Size of the first input (motor or shaft position, current).
+    pub turn: f64,
+    /// Size of what the model predicts.
+    pub size: f64,
+    /// Share of scatter in both.
+    pub noise: f64,
+    pub mix: u64,
+    /// Samples of one segment; no column where zero.
+    pub segment: usize,
+    pub repeats: usize,
+}
+
+impl Default for Shape {
+    fn default() -> Self {
+        Self { rows: 3000, turn: 5.0, size: 1.0, noise: 0.01, mix: 1, segment: 0, repeats: 1 }
+    }
+}
+
+/// Scatter without any order, within ±0.5.
+pub fn scatter(i: usize, mix: u64) -> f64 {
+    ((i as u64 + 1 + mix.wrapping_mul(1_000_003)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64
+        / (1u64 << 24) as f64
+        - 0.5
+}
+
+pub fn table(kind: Kind, shape: &Shape) -> RunTable {
+    try_table(kind, shape, |_, _, v| v).unwrap()
+}
+
+/// `spoil` changes the value of a column at a row.
+pub fn try_table(kind: Kind, shape: &Shape, spoil: impl Fn(&str, usize, f64) -> f64) -> Result<RunTable, TableFault> {
+    let mut names: Vec<&str> = kind.required_columns().to_vec();
+    if shape.segment > 0 {
+        names.push("segment");
+    }
+    if shape.repeats > 1 {
+        names.push("repeat");
+    }
+    let mut trace = Trace::new(names.iter().map(|n| Channel::new(*n)).collect());
+    for i in 0..shape.rows {
+        let t = 0.004 * i as f64;
+        let wave = |phase: f64| shape.turn * ((2.0 * t + phase).sin() + shape.noise * scatter(i, shape.mix));
+        let row: Vec<f64> = names
+            .iter()
+            .map(|name| {
+                let value = match *name {
+                    "time_s" => t,
+                    "motor_position_rad" if kind == Kind::Stiffness => {
+                        50.0 * (wave(0.3) + 1e-3 * shape.size * (2.0 * t).sin())
+                    }
+                    "motor_position_rad" | "reference_position_rad" => wave(0.0),
+                    "link_position_rad" => wave(0.3),
+                    "test_position_rad" => wave(0.0) + 1e-3 * shape.size * (1.0 + scatter(i, shape.mix + 3)),
+                    "brake_current_a" => (0.5 + 0.1 * wave(0.0)).abs(),
+                    "segment" => (i / shape.segment.max(1)) as f64,
+                    "repeat" => (i * shape.repeats / shape.rows) as f64,
+                    _ => shape.size * ((2.0 * t).cos().signum() + shape.noise * scatter(i, shape.mix + 7)),
+                };
+                spoil(name, i, value)
+            })
+            .collect();
+        trace.push_row(&row);
+    }
+    RunTable::new(meta(kind), trace)
+}
+
+pub fn meta(kind: Kind) -> Meta {
+    let baseline: &[&str] = match kind {
+        Kind::Friction => &["coulomb", "viscous"],
+        Kind::Encoder => &["offset"],
+        Kind::Stiffness => &["offset", "compliance"],
+        Kind::Brake => &["drag", "torque_per_current"],
+    };
+    Meta {
+        kind: Some(kind),
+        torque_constant_nm_per_a: Some(0.08),
+        gear_ratio: Some(50.0),
+        baseline: baseline.iter().map(|b| (*b).to_owned()).collect(),
+        ..Meta::default()
+    }
+}
