@@ -7,6 +7,8 @@
 //!
 //! The mock bench ([`sim`]) simulates instruments, not drivers: the firmware side of each protocol answers on
 //! pseudo-terminals that the drivers open like any serial port. Its truth never crosses the wire.
+//!
+//! The traffic of any link can be written down ([`PortSettings::record`]) and replayed as an instrument ([`sim::Replay`]).
 
 pub mod driver;
 pub mod protocol;
@@ -14,5 +16,5 @@ pub mod sim;
 pub mod transport;
 
 pub use driver::{LorenzSensor, LorenzSettings, OdriveJoint, OdriveSettings, ScpiSettings, ScpiSource};
-pub use sim::{Joint, MockBench, MockSettings};
+pub use sim::{Joint, MockBench, MockSettings, Replay};
 pub use transport::{Address, PortSettings};

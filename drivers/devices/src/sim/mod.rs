@@ -16,12 +16,15 @@ mod plant;
 mod port;
 #[cfg(unix)]
 mod pty;
+mod replay;
 mod rig;
 mod trouble;
+mod wire;
 
 pub use bench::{MockBench, MockError, MockPorts, MockSettings, Transport};
 pub use data_sheet::Joint;
 pub use plant::{HIDDEN_EFFECTS, HiddenEffect, Truth};
+pub use replay::Replay;
 pub use rig::MockInstrument;
 pub use trouble::{PlannedTrouble, Trouble};
 

@@ -4,9 +4,10 @@
 use super::pty::Pty;
 use super::rig::{MockInstrument, Rig};
 use super::trouble::{Cable, Trouble};
+use super::wire::{Wire, plain};
 use crate::transport::Address;
-use std::io::{self, ErrorKind, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::io;
+use std::net::TcpListener;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -106,43 +107,6 @@ pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result
         });
     })?;
     Ok((port, thread))
-}
-
-fn plain(stream: &TcpStream) -> io::Result<()> {
-    stream.set_nonblocking(false)?;
-    stream.set_nodelay(true)
-}
-
-trait Wire {
-    /// `Ok(0)`: nothing came within `wait`.
-    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
-    fn say(&mut self, bytes: &[u8]) -> io::Result<()>;
-}
-
-#[cfg(unix)]
-impl Wire for Pty {
-    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        self.read(buffer, wait)
-    }
-
-    fn say(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write(bytes)
-    }
-}
-
-impl Wire for TcpStream {
-    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        self.set_read_timeout(Some(wait))?;
-        match self.read(buffer) {
-            Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Ok(0),
-            result => result,
-        }
-    }
-
-    fn say(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.write_all(bytes)
-    }
 }
 
 /// Carries bytes until the wire breaks, is pulled, or the bench closes.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::fmt;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// `tcp://host:port`, or the name of a serial port (`/dev/ttyUSB0`, `COM3`, the path of a pseudo-terminal).
@@ -58,11 +59,14 @@ pub struct PortSettings {
     pub address: Address,
     /// Without meaning on TCP and on USB devices.
     pub baud: u32,
+    /// Everything that goes over the wire is written down here ([`super::Traffic`]).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<PathBuf>,
 }
 
 impl PortSettings {
     pub fn new(address: impl Into<Address>, baud: u32) -> Self {
-        Self { address: address.into(), baud }
+        Self { address: address.into(), baud, record: None }
     }
 }
 

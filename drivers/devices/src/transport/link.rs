@@ -2,7 +2,7 @@
 
 use super::codec::shown;
 use super::wire::Wire;
-use super::{Command, PortSettings, Request, Scan};
+use super::{Command, PortSettings, Recorder, Request, Scan};
 use jointbench_instrument::{Fault, FaultKind};
 use std::io;
 use std::time::{Duration, Instant};
@@ -31,6 +31,7 @@ pub struct Link {
     address: String,
     deadline: Duration,
     wire: Option<Wire>,
+    recorder: Option<Recorder>,
     trust: Trust,
     outgoing: Vec<u8>,
     received: Vec<u8>,
@@ -41,12 +42,19 @@ impl Link {
     pub fn open(instrument: &str, settings: &PortSettings, deadline: Duration) -> Result<Self, Fault> {
         let address = settings.address.to_string();
         let wire = Wire::open(settings).map_err(|kind| kind.at(instrument, &address))?;
+        let recorder = settings.record.as_ref().map(|path| {
+            Recorder::create(path, instrument, &address).map_err(|error| {
+                let what = format!("its traffic cannot be recorded in {}: {error}", path.display());
+                FaultKind::NotOpened { what }.at(instrument, &address)
+            })
+        });
         Ok(Self {
             instrument: instrument.to_owned(),
             settings: settings.clone(),
             address,
             deadline,
             wire: Some(wire),
+            recorder: recorder.transpose()?,
             trust: Trust::Stale,
             outgoing: Vec::with_capacity(256),
             received: Vec::with_capacity(256),
@@ -193,6 +201,9 @@ impl Link {
 
     fn write(&mut self, deadline: Instant) -> Result<(), FaultKind> {
         let wire = self.wire.as_mut().ok_or_else(port_is_closed)?;
+        if let Some(recorder) = &mut self.recorder {
+            recorder.sent(&self.outgoing);
+        }
         wire.write(&self.outgoing, deadline).map_err(lost)
     }
 
@@ -211,16 +222,20 @@ impl Link {
         let mut chunk = [0; 512];
         let wire = self.wire.as_mut().ok_or_else(port_is_closed)?;
         let count = wire.read(&mut chunk, deadline).map_err(lost)?;
+        if let Some(recorder) = &mut self.recorder {
+            recorder.received(&chunk[..count]);
+        }
         self.received.extend_from_slice(&chunk[..count]);
         Ok(count)
     }
 
     /// Remembers what a failed exchange means for the next one.
     fn broken(&mut self, kind: FaultKind) -> Fault {
-        self.trust = match kind {
-            FaultKind::Disconnected { .. } | FaultKind::NotOpened { .. } => Trust::Lost,
-            _ => Trust::Stale,
-        };
+        let lost = matches!(kind, FaultKind::Disconnected { .. } | FaultKind::NotOpened { .. });
+        if let (true, Some(recorder)) = (lost && self.trust != Trust::Lost, &mut self.recorder) {
+            recorder.lost();
+        }
+        self.trust = if lost { Trust::Lost } else { Trust::Stale };
         self.fault(kind)
     }
 }

@@ -3,9 +3,11 @@
 mod address;
 mod codec;
 mod link;
+mod traffic;
 mod wire;
 
 pub use address::{Address, PortSettings};
 pub(crate) use codec::shown;
 pub use codec::{Command, Request, Scan};
 pub use link::Link;
+pub use traffic::{Event, Recorder, Traffic, TrafficError};

@@ -2,6 +2,7 @@
 
 mod cable;
 mod instrument;
+mod replay;
 mod stream;
 
 use jointbench_devices::sim::{MockInstrument, Transport};

@@ -1,5 +1,6 @@
 //! Bytes in, bytes out: each firmware against what its maker publishes.
 
 mod dp800;
+mod fuzz;
 mod lorenz;
 mod odrive;

@@ -1,0 +1,56 @@
+//! The instruments' own parsers against garbage: no panic, bounded memory, and the next proper request is answered.
+
+use super::super::{Dp800, Firmware, Lorenz, Odrive};
+use crate::sim::data_sheet::Joint;
+use crate::sim::plant::{Hidden, Plant};
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+/// More than any of them keeps of a request that does not end.
+const KEPT: usize = 2048;
+
+fn pieces() -> impl Strategy<Value = Vec<Vec<u8>>> {
+    let meant = prop::sample::select(b"\x02\x02\x41\x01\xFF\x5A\n\r!*;:?, frvwcpqtue0123456789.-einfa".to_vec());
+    vec(vec(prop_oneof![any::<u8>(), meant], 0..400), 1..12)
+}
+
+/// Feeds garbage in pieces, then `end`, then `request`; returns the reply to that.
+fn ask(firmware: &mut dyn Firmware, garbage: &[Vec<u8>], end: &[u8], request: &[u8]) -> Vec<u8> {
+    let mut plant = Plant::new(Joint::JointA, 1, Hidden::default());
+    let (mut input, mut output) = (Vec::new(), Vec::new());
+    for piece in garbage.iter().map(Vec::as_slice).chain([end]) {
+        input.extend_from_slice(piece);
+        firmware.receive(&mut input, &mut plant, &mut output);
+        assert!(input.len() <= KEPT, "{} bytes kept", input.len());
+        firmware.step(&mut plant);
+        plant.advance();
+    }
+    output.clear();
+    input.extend_from_slice(request);
+    firmware.receive(&mut input, &mut plant, &mut output);
+    output
+}
+
+proptest! {
+    #[test]
+    fn a_drive_is_back_after_one_line_end(garbage in pieces()) {
+        let mut drive = Odrive::new(Joint::JointA);
+        let reply = ask(&mut drive, &garbage, b"\n", b"r axis0.current_state\n");
+        // Garbage may hold a command to reboot.
+        prop_assert!(drive.is_booting() || reply == b"1\r\n" || reply == b"8\r\n", "{}", reply.escape_ascii());
+    }
+
+    #[test]
+    fn a_supply_is_back_after_one_line_end(garbage in pieces()) {
+        let reply = ask(&mut Dp800::new(), &garbage, b"\n", b"*IDN?\n");
+        prop_assert!(reply.starts_with(b"RIGOL"), "{}", reply.escape_ascii());
+    }
+
+    #[test]
+    fn a_sensor_is_back_after_the_start_of_a_telegram(garbage in pieces()) {
+        let hello = [0x02, 0x40, 0x01, 0xFF, 0x00, 0x40, 0x02, 0x02];
+        // A telegram of garbage may swallow the first: the second is heard.
+        let reply = ask(&mut Lorenz::new(), &garbage, &[&[0x02; 3][..], &[0x00; 300], &hello].concat(), &hello);
+        prop_assert_eq!(reply, [0x02, 0x40, 0xFF, 0x01, 0x01, 0x01, 0x42, 0x43]);
+    }
+}

@@ -1,0 +1,139 @@
+//! An instrument that answers as another one did when it was recorded. A bench's bad day becomes a test.
+
+use super::bench::Transport;
+#[cfg(unix)]
+use super::pty::Pty;
+use super::wire::{Wire, plain};
+use crate::transport::{Address, Event, Traffic, shown};
+use std::io::{self, ErrorKind};
+use std::net::TcpListener;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+const GLANCE: Duration = Duration::from_millis(20);
+
+/// Answers until it is dropped, as far as the questions are those of the record.
+///
+/// What was recorded as received is sent once everything before it in the record was heard, without the delays of old: a
+/// question that was not answered then is not answered now, and the driver waits for its own deadline. At a loss of the
+/// port the replay hangs up and ends.
+pub struct Replay {
+    address: Address,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Default)]
+struct Shared {
+    closing: AtomicBool,
+    departure: Mutex<Option<String>>,
+    done: AtomicBool,
+}
+
+impl Replay {
+    pub fn start(traffic: Traffic, transport: Transport) -> io::Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let inside = Arc::clone(&shared);
+        let thread = std::thread::Builder::new().name("replay".into());
+        let (address, thread) = match transport {
+            #[cfg(unix)]
+            Transport::Terminal => {
+                let mut pty = Pty::open()?;
+                let address = Address::Serial(pty.path().to_owned());
+                (address, thread.spawn(move || inside.follow(&traffic, &mut pty))?)
+            }
+            _ => {
+                let listener = TcpListener::bind(("127.0.0.1", 0))?;
+                listener.set_nonblocking(true)?;
+                let address = Address::Tcp(listener.local_addr()?.to_string());
+                (address, thread.spawn(move || inside.accept(&traffic, &listener))?)
+            }
+        };
+        Ok(Self { address, shared, thread: Some(thread) })
+    }
+
+    pub fn address(&self) -> &Address {
+        &self.address
+    }
+
+    /// Where the conversation left the record. `None` while it follows it.
+    pub fn departure(&self) -> Option<String> {
+        self.shared.departure.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The whole record was gone through.
+    pub fn is_done(&self) -> bool {
+        self.shared.done.load(Ordering::Acquire)
+    }
+}
+
+impl Drop for Replay {
+    fn drop(&mut self) {
+        self.shared.closing.store(true, Ordering::Release);
+        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
+            tracing::error!("the thread of a replay has panicked");
+        }
+    }
+}
+
+impl Shared {
+    fn is_closing(&self) -> bool {
+        self.closing.load(Ordering::Acquire)
+    }
+
+    fn accept(&self, traffic: &Traffic, listener: &TcpListener) {
+        while !self.is_closing() {
+            match listener.accept() {
+                Ok((mut stream, _)) if plain(&stream).is_ok() => return self.follow(traffic, &mut stream),
+                _ => std::thread::sleep(GLANCE),
+            }
+        }
+    }
+
+    fn follow(&self, traffic: &Traffic, wire: &mut impl Wire) {
+        let mut heard = Vec::new();
+        for (at_s, event) in &traffic.events {
+            let followed = match event {
+                Event::Received(bytes) => wire.say(bytes),
+                Event::Sent(bytes) => self.expect(*at_s, bytes, &mut heard, wire),
+                Event::Lost => {
+                    self.done.store(true, Ordering::Release);
+                    return;
+                }
+            };
+            if let Err(error) = followed {
+                tracing::debug!(%error, "the replay ends");
+                return;
+            }
+        }
+        self.done.store(true, Ordering::Release);
+        // Silent from here on, and still plugged in.
+        while !self.is_closing() && wire.hear(&mut [0; 256], GLANCE).is_ok() {}
+    }
+
+    fn expect(&self, at_s: f64, bytes: &[u8], heard: &mut Vec<u8>, wire: &mut impl Wire) -> io::Result<()> {
+        let mut chunk = [0; 1024];
+        loop {
+            let same = heard.iter().zip(bytes).take_while(|(a, b)| a == b).count();
+            if same == bytes.len() {
+                heard.drain(..same);
+                return Ok(());
+            }
+            let departed = same < heard.len();
+            if departed {
+                let what = format!("at {at_s} s of the record: expected {}, heard {}", shown(bytes), shown(heard));
+                self.departure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
+            }
+            if self.is_closing() {
+                return Err(ErrorKind::Interrupted.into());
+            }
+            let count = wire.hear(&mut chunk, GLANCE)?;
+            // An instrument that was asked something else does not know what it would have said.
+            if !departed {
+                heard.extend_from_slice(&chunk[..count]);
+            }
+        }
+    }
+}

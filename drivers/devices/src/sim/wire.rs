@@ -1,0 +1,45 @@
+//! The instrument's end of a cable.
+
+#[cfg(unix)]
+use super::pty::Pty;
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+pub trait Wire {
+    /// `Ok(0)`: nothing came within `wait`.
+    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
+    fn say(&mut self, bytes: &[u8]) -> io::Result<()>;
+}
+
+#[cfg(unix)]
+impl Wire for Pty {
+    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        self.read(buffer, wait)
+    }
+
+    fn say(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.write(bytes)
+    }
+}
+
+impl Wire for TcpStream {
+    fn hear(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        self.set_read_timeout(Some(wait))?;
+        match self.read(buffer) {
+            Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Ok(0),
+            result => result,
+        }
+    }
+
+    fn say(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.write_all(bytes)
+    }
+}
+
+/// A connection that was accepted: blocking, and sent at once.
+pub fn plain(stream: &TcpStream) -> io::Result<()> {
+    stream.set_nonblocking(false)?;
+    stream.set_nodelay(true)
+}
