@@ -21,11 +21,15 @@ export function settings(usage) {
 	return { base: base.replace(/\/$/, ''), executablePath };
 }
 
-/** A page at `base`, and the list of what went wrong in it: console errors, exceptions, requests to another host. */
+/** A page at `base`, a way to `another` in a browser of its own, and the list of what went wrong in it: console errors, exceptions, requests to another host. */
 export async function open({ base, executablePath }, context = {}) {
 	const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-dev-shm-usage'] });
-	const page = await (await browser.newContext({ viewport: { width: 1440, height: 900 }, ...context })).newPage();
 	const faults = [];
+	const watched = async (more = {}) => watch(await (await browser.newContext({ viewport: { width: 1440, height: 900 }, ...context, ...more })).newPage(), base, faults);
+	return { browser, page: await watched(), faults, another: watched };
+}
+
+function watch(page, base, faults) {
 	page.on('console', (message) => {
 		if (message.type() === 'error') faults.push(`console: ${message.text()} (${message.location().url})`);
 	});
@@ -36,7 +40,7 @@ export async function open({ base, executablePath }, context = {}) {
 	page.on('websocket', (socket) => {
 		if (new URL(socket.url()).host !== new URL(base).host) faults.push(`socket off the host: ${socket.url()}`);
 	});
-	return { browser, page, faults };
+	return page;
 }
 
 /** Runs the story; says in one line how it ended. */

@@ -62,6 +62,34 @@ export async function tryAndDrop(page) {
 	return said;
 }
 
+/** A second person, in a browser of their own, who only looks. */
+export async function observe(page, base) {
+	await page.goto(base);
+	await page.getByRole('button', { name: 'Operator' }).click();
+	await page.getByText('this browser only observes').waitFor({ timeout: 10_000 });
+	expect(await page.getByRole('button', { name: 'Start' }).isDisabled(), 'an observer can start');
+}
+
+/** The software stop by key alone; gives what the page says of it. */
+export async function stopByKey(page, who) {
+	await page.keyboard.press('Escape');
+	await page.keyboard.press('Escape');
+	const said = page.getByText(/acknowledged (in|late)/i).first();
+	await said.waitFor({ timeout: 10_000 }).catch(() => expect(false, `nobody acknowledged the stop of the ${who}`));
+	await page.getByRole('button', { name: 'The bench stands still' }).click({ timeout: 500 }).catch(() => {});
+}
+
+/** Brings in a table with foreign names and units, in three clicks from the file to the workbench. */
+export async function importForeign(page, base, table) {
+	await page.goto(`${base}/runs`);
+	await page.setInputFiles('input[type=file]', { name: 'foreign.csv', mimeType: 'text/csv', buffer: Buffer.from(table) });
+	const form = page.getByRole('form', { name: /foreign.csv/ });
+	await form.waitFor({ timeout: 10_000 });
+	for (const [name, value] of [['torque constant', '0.08'], ['gear ratio', '50'], ['rotor inertia', '4e-5']]) await form.getByLabel(name).fill(value);
+	await form.getByRole('button', { name: 'Import' }).click();
+	await page.getByRole('link', { name: 'open in the workbench' }).waitFor({ timeout: 20_000 });
+}
+
 /** Drags over the residual below the overlay; says how many samples the page calls chosen. */
 export async function brush(page) {
 	const plot = page.locator('.uplot .u-over').last();

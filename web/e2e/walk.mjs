@@ -1,9 +1,11 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Start the procedure, watch it finish, open the workbench, see where the model fails, add the first suggestion, see the
-// error fall, undo, and find the same through REST. Exits with 1 and a sentence where that does not hold.
+// error fall, undo, and find the same through REST; an observer in a second browser; a foreign table; the software stop by key;
+// no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { expect, open, settings, tell } from './browser.mjs';
-import { brush, readVersion, startRun, toAnotherVersion, tryAndDrop, watchRun } from './steps.mjs';
+import { audit } from './audit.mjs';
+import { brush, importForeign, observe, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const rest = async (path) => {
@@ -13,9 +15,13 @@ const rest = async (path) => {
 };
 
 await tell('walk', async () => {
-	const { browser, page, faults } = await open(where);
+	const { browser, page, faults, another } = await open(where);
+	const watcher = await another();
+	await observe(watcher, where.base);
 	const run = await startRun(page, where.base);
+	await watcher.getByText('RUNNING').first().waitFor({ timeout: 15_000 }).catch(() => expect(false, 'the observer does not see the run'));
 	const toWorkbench = await watchRun(page);
+	await audit(page, 'the run');
 	console.log(`run ${run} is done`);
 
 	await toWorkbench.click();
@@ -37,6 +43,7 @@ await tell('walk', async () => {
 
 	const held = await page.evaluate(() => document.querySelector('rect.held.here').dataset.held);
 	const said = await tryAndDrop(page);
+	await audit(page, 'the workbench');
 	expect(/↓/.test(said), `the preview should promise a smaller error: ${said}`);
 	expect((await readVersion(page)).held === Number(held), 'a try must leave the version at hand alone');
 
@@ -57,6 +64,21 @@ await tell('walk', async () => {
 	const [diagnosis] = await rest(`/diagnoses?model=${parent.id}`);
 	expect(diagnosis?.suggestions[0]?.effect === first.effects[0], 'REST has another first suggestion');
 	expect(diagnosis.where.length > 0, 'REST does not say where the model fails');
+
+	for (const path of ['/', '/log', '/settings']) {
+		await page.goto(where.base + path);
+		await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
+		await audit(page, path);
+	}
+	await stopByKey(watcher, 'observer');
+	await stopByKey(page, 'operator');
+	const rows = Array.from({ length: 200 }, (_, i) => `${i * 4},${i % 90},0.${i % 9}`);
+	await importForeign(page, where.base, ['Time [ms],pos_deg,Iq [A]', ...rows].join('\n'));
+	await page.getByLabel(`Compare run ${run}`).check();
+	await page.getByLabel(`Compare run ${run + 1}`).check();
+	await page.getByRole('heading', { name: 'Compare 2 runs' }).waitFor({ timeout: 10_000 });
+	await page.locator('.uplot').first().waitFor({ timeout: 10_000 });
+	await audit(page, 'the comparison');
 
 	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
 	await browser.close();

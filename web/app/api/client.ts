@@ -30,6 +30,7 @@ type Values = Record<string, unknown>;
 
 /** Every call of the dashboard; each is a documented operation of the REST interface. */
 export const api = {
+	health: (signal?: Signal) => body(client.GET('/api/v1/health', { signal })),
 	benches: (signal?: Signal) => body(client.GET('/api/v1/bench', { signal })),
 	acknowledge: (bench: string, reason: string) =>
 		body(client.POST('/api/v1/bench/{bench}/acknowledge', { params: { path: { bench } }, body: { reason } })),

@@ -1,4 +1,5 @@
 import type uPlot from 'uplot';
+import { touch } from './touch';
 
 export type View = [from: number, to: number];
 /** How a view was asked for: a live plot goes on following after a zoom, but not after the others. */
@@ -33,7 +34,7 @@ export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> 
 					u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
 				},
 			],
-			ready: [(u) => u.over.addEventListener('wheel', (event) => zoom(u, event, asked), { passive: false })],
+			ready: [(u) => u.over.addEventListener('wheel', (event) => zoom(u, event, asked), { passive: false }), (u) => touch(u, asked)],
 		},
 	};
 }
