@@ -1,0 +1,54 @@
+//! Measures the diagnosis, as docs/diagnosis.md reports it:
+//!
+//! `cargo run --release -p jointbench-model --example evaluate -- [--part hidden,practice,null,power,speed]
+//! [--rounds 3] [--count 400] [--family friction] [--only NAME] [--quiet]`, or a FOLDER that holds a run.
+//!
+//! hidden: machines with hidden effects, simulated here (`made`). practice: measurements with a known answer from beside
+//! the repository. null: runs with nothing hidden. power: weak effects. speed: seconds and memory.
+
+#[path = "../../tests/common/mod.rs"]
+mod common;
+mod made;
+mod null;
+mod options;
+mod power;
+mod score;
+mod show;
+mod speed;
+
+use options::Asked;
+use score::Table;
+use std::error::Error;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let asked = Asked::parse(std::env::args().skip(1))?;
+    if let Some(folder) = &asked.folder {
+        return show::show(folder);
+    }
+    if asked.wants("hidden") {
+        let mut table = Table::new("Hidden effects, simulated", asked.quiet);
+        for case in (0..asked.rounds).flat_map(made::round).filter(|c| asked.takes(c.family, &c.name)) {
+            table.judge(&case)?;
+        }
+        table.print();
+    }
+    if asked.wants("practice")
+        && let Some(folder) = common::shared("hidden-effects")
+    {
+        let mut table = Table::new("Hidden effects, measurements with a known answer", asked.quiet);
+        for case in score::practice(&folder)?.into_iter().filter(|c| asked.takes(c.family, &c.name)) {
+            table.judge(&case)?;
+        }
+        table.print();
+    }
+    if asked.wants("null") {
+        null::measure(&asked)?;
+    }
+    if asked.wants("power") {
+        power::measure(&asked)?;
+    }
+    if asked.wants("speed") {
+        speed::measure()?;
+    }
+    Ok(())
+}

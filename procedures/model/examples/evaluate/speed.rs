@@ -1,0 +1,70 @@
+//! Seconds and memory of one diagnosis, after loading.
+
+use crate::made::{Dice, friction_run};
+use jointbench_instrument::{Channel, RunTable, Trace};
+use jointbench_model::{ModelSpec, Options, diagnose};
+use std::error::Error;
+use std::time::Instant;
+
+pub fn measure() -> Result<(), Box<dyn Error>> {
+    println!("\nSeconds of one diagnosis after loading, whole friction library\n");
+    println!(
+        "| run | rows × columns | s (best of three) | memory above the run, as multiple of it |\n| --- | --- | --- | --- |"
+    );
+    for (label, hidden) in [("nothing hidden", &[][..]), ("stribeck and load_linear", &["stribeck", "load_linear"])] {
+        for rows in [50_000, 1_000_000] {
+            let run = of_length(&friction_run(&mut Dice::new(4), hidden), rows);
+            let spec = ModelSpec::baseline(&run)?;
+            let before = resident();
+            let mut best = f64::INFINITY;
+            for _ in 0..3 {
+                let start = Instant::now();
+                diagnose(&run, &spec, &Options::default())?;
+                best = best.min(start.elapsed().as_secs_f64());
+            }
+            let own = (run.len() * run.trace().channels().len() * 8) as f64;
+            let memory = match (before, peak()) {
+                (Some(before), Some(peak)) => format!("{:.1}", (peak - before) / own),
+                _ => "–".into(),
+            };
+            println!("| {label} | {} × {} | {best:.3} | {memory} |", run.len(), run.trace().channels().len());
+        }
+    }
+    println!();
+    Ok(())
+}
+
+/// The run again and again until it has so many rows: time goes on, segments and repeats are counted on.
+fn of_length(run: &RunTable, rows: usize) -> RunTable {
+    let n = run.len();
+    let channels: Vec<Channel> = run.trace().channels().to_vec();
+    let columns = channels.iter().map(|c| {
+        let values = run.column(&c.name).unwrap_or_default();
+        let next = match c.name.as_str() {
+            "time_s" => values[n - 1] + values[1] - values[0],
+            "segment" | "repeat" => values[n - 1] + 1.0,
+            "motor_position_rad" | "link_position_rad" => values[n - 1] - values[0],
+            _ => 0.0,
+        };
+        (0..rows).map(|i| values[i % n] + (i / n) as f64 * next).collect()
+    });
+    let columns = columns.collect();
+    RunTable::new(run.meta().clone(), Trace::from_columns(channels, columns)).expect("the run was a valid table")
+}
+
+/// Bytes of this process, where the system tells.
+fn resident() -> Option<f64> {
+    // A peak of an earlier part is no peak of this one.
+    std::fs::write("/proc/self/clear_refs", "5").ok()?;
+    status("VmRSS:")
+}
+
+fn peak() -> Option<f64> {
+    status("VmHWM:")
+}
+
+fn status(entry: &str) -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find(|l| l.starts_with(entry))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024.0)
+}
