@@ -21,7 +21,7 @@ const LEAST_SHOWN: f64 = 0.02;
 /// Compares a model with a run: where it fails, which effects are missing, how sure that is.
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     let prepared = prepare(run, options)?;
-    let found = Exploration::new(&prepared, spec, options, MOST_EFFECTS)?;
+    let found = Exploration::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
     let fit = report(&found.start)?;
     let suggestions = suggestions(&found, &fit, spec)?;
     let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
@@ -56,7 +56,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
 
 /// Diagnoses, adds the best effect and fits again until nothing more can be named or `max_effects` were added.
 ///
-/// `on_step` sees every step as it is reported.
+/// `on_step` sees every step when it is made.
 pub fn discover(
     run: &RunTable,
     spec: &ModelSpec,
@@ -65,10 +65,13 @@ pub fn discover(
     mut on_step: impl FnMut(&Step),
 ) -> Result<Discovery, ModelError> {
     let prepared = prepare(run, options)?;
-    let found = Exploration::new(&prepared, spec, options, max_effects)?;
-    let mut steps = vec![step(&found.start, None)];
-    steps.extend(found.advances.iter().map(|a| step(&a.after, Some(a))));
-    steps.iter().for_each(&mut on_step);
+    let mut steps = vec![step(&Assembly::new(&prepared, spec)?, None)];
+    on_step(&steps[0]);
+    let found = Exploration::new(&prepared, spec, options, max_effects, &mut |advance| {
+        let step = step(&advance.after, Some(advance));
+        on_step(&step);
+        steps.push(step);
+    })?;
     let fit = report(found.end())?;
     let verdict = found.end_verdict();
     let structure = structure(&found, verdict);

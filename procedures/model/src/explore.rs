@@ -7,8 +7,8 @@ use crate::maps::Maps;
 use crate::memory::memory;
 use crate::prepare::Prepared;
 use crate::report::{Invisible, NoiseFloor, Verdict};
-use crate::select::{Library, Move, Rival, Silence, held_out, search};
-use crate::terms::Terms;
+use crate::select::{Library, Move, Rival, Search, Silence, held_out};
+use crate::terms::{Term, Terms};
 use crate::{ModelError, ModelSpec, Options, ResidualKind, floor};
 
 /// What was added or removed, and the model after it.
@@ -39,23 +39,38 @@ const REPEATABLE_SHARE: f64 = 0.6;
 /// Held-out error beyond this multiple of the noise floor is not noise.
 const FAR_FROM_FLOOR: f64 = 1.5;
 
+/// An effect that takes less than this share of what any function of its own axis would take is not what is missing.
+const WHOLE_EXPLANATION: f64 = 0.7;
+
 impl<'p> Exploration<'p> {
+    /// `on_advance` sees every move when it is made.
     pub fn new(
         prepared: &'p Prepared,
         spec: &'p ModelSpec,
         options: &Options,
         most: usize,
+        on_advance: &mut dyn FnMut(&Advance),
     ) -> Result<Self, ModelError> {
         let start = Assembly::new(prepared, spec)?;
         let all = [Stage::Settled, Stage::Ramp, Stage::Memory];
         let apart = prepared.about.residual == ResidualKind::PlateauMean;
         let stages = if apart { &all[..1] } else { &all[..] };
         let library = Library::new(spec, &prepared.main, stages);
-        let path = search(start.main.clone(), &library, most, options);
+        let mut search = Search::new(start.main.clone(), &library, most, options);
         let mut advances: Vec<Advance> = Vec::new();
         let mut effects = start.effects.clone();
-        for (step, terms) in path.moves {
-            let (added, removed, ties) = match step {
+        let (maps, residual) = loop {
+            let made = match search.next() {
+                Some(made) => made,
+                None => {
+                    let residual = search.now.tangent().rest(&search.now.response());
+                    let maps = Maps::new(prepared, residual.clone(), options);
+                    let half = if is_structure(&maps) { half_explained(&search, prepared, options) } else { None };
+                    let Some(id) = half else { break (maps, residual) };
+                    search.withdraw(id)
+                }
+            };
+            let (added, removed, ties) = match made {
                 Move::Added { rival, ties } => {
                     effects.push(rival.term.id().into());
                     (Some(*rival), None, ties)
@@ -65,25 +80,22 @@ impl<'p> Exploration<'p> {
                     (None, Some(id), Vec::new())
                 }
             };
-            let after = start.with_main(terms, effects.clone());
+            let after = start.with_main(search.now.clone(), effects.clone());
             advances.push(Advance { added, removed, ties, after });
-        }
-        if advances.len() < most
-            && let now = advances.last().map_or(&start, |a| &a.after)
+            advances.last().into_iter().for_each(&mut *on_advance);
+        };
+        let silent = search.silences();
+        let now = advances.last().map_or(&start, |a| &a.after);
+        if now.effects.len() < start.effects.len() + most
             && let Some(rival) = memory(now, options)
         {
             let after = now.with_memory(&rival.term);
             advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
+            advances.last().into_iter().for_each(&mut *on_advance);
         }
         let mut invisible = library.invisible;
         invisible.retain(|i| !start.hidden.iter().any(|h| h.effect == i.effect));
-        let (maps, floor, silent) = {
-            let end = advances.last().map_or(&start.main, |a| &a.after.main);
-            let basis = end.tangent();
-            let residual = basis.rest(&end.response());
-            let floor = floor::noise_floor(prepared, &residual);
-            (Maps::new(prepared, residual, options), floor, path.silent)
-        };
+        let floor = floor::noise_floor(prepared, &residual);
         Ok(Self { start, advances, silent, invisible, maps, floor })
     }
 
@@ -93,8 +105,11 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        let mapped = self.maps.removable().is_some_and(|(_, share)| share > STRUCTURE_SHARE);
-        if mapped || self.repeats_itself() { Verdict::UnexplainedStructure } else { Verdict::Adequate }
+        if is_structure(&self.maps) || self.repeats_itself() {
+            Verdict::UnexplainedStructure
+        } else {
+            Verdict::Adequate
+        }
     }
 
     /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
@@ -123,6 +138,33 @@ impl<'p> Exploration<'p> {
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         ranked
     }
+}
+
+fn is_structure(maps: &Maps) -> bool {
+    maps.removable().is_some_and(|(_, share)| share > STRUCTURE_SHARE)
+}
+
+/// An added effect that is only the nearest relative of what is missing: any function of its own axis would take away
+/// much more than it does. A wave over the angle is not the answer to a bump at one angle.
+fn half_explained<'p>(search: &Search<'_, 'p>, prepared: &Prepared, options: &Options) -> Option<&'p str> {
+    let now = &search.now;
+    let (full, factors) = (now.linear().sse, now.linear().factors);
+    let share = |term: &Term<'p>| {
+        let at = now.terms.iter().position(|t| t.id() == term.id())?;
+        let mut contribution = vec![0.0; now.problem.rows()];
+        for (column, factor) in term.columns.iter().zip(&factors[at]) {
+            contribution.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        }
+        let mut less = now.clone();
+        less.terms.remove(at);
+        less.refine();
+        let residual = less.linear().residual;
+        let own = 1.0 - full / dot(&residual, &residual);
+        let any = Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options))?;
+        Some((term.id(), own / any))
+    };
+    let least = search.added().filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (least.1 < WHOLE_EXPLANATION).then_some(least.0)
 }
 
 /// Share of the squared error without an effect that the effect takes away.

@@ -2,7 +2,8 @@
 //!
 //! There the instruments are not aligned and static friction has its jump, so every candidate explains something: an
 //! effect is named only where it explains most of what the rest of the model leaves. Measured on simulated joints: real
-//! presliding takes 86 to 98 % of the squared error there, nothing else more than 48 %.
+//! presliding over more than a few steps of the encoder takes 83 to 98 % of the squared error there, nothing else more
+//! than 63 %.
 
 use crate::Options;
 use crate::assembly::Assembly;
@@ -12,7 +13,7 @@ use crate::select::{Library, Rival, significance};
 use crate::terms::{Terms, polish};
 
 /// An effect with a memory must take this share of the squared error around reversals.
-const MOST: f64 = 0.6;
+const MOST: f64 = 0.72;
 
 /// The memory effect that this run shows beyond the model, if one does.
 pub fn memory<'p>(now: &Assembly<'p>, options: &Options) -> Option<Rival<'p>> {

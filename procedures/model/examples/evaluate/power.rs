@@ -88,6 +88,10 @@ fn run(effect: &str, size: f64, dice: &mut Dice) -> RunTable {
         let mut steps: Vec<(f64, f64)> = speeds.iter().flat_map(|v| [0.0, 4.0, 12.0].map(|l| (*v, l))).collect();
         dice.shuffle(&mut steps);
         for (speed, load, side) in steps.into_iter().flat_map(|(v, l)| [(v, l, 1.0), (v, l, -1.0)]) {
+            // Every pair of steps starts somewhere else on the turn.
+            if side > 0.0 {
+                angle = dice.phase() * GEAR;
+            }
             let [offset, tilt, grip] = [(); 3].map(|()| 0.1 * NOISE_NM * dice.normal());
             for row in 0..ROWS {
                 time += STEP_S;

@@ -5,4 +5,4 @@ mod library;
 mod search;
 
 pub use library::{Library, gain};
-pub use search::{Move, Rival, Silence, held_out, search, significance};
+pub use search::{Move, Rival, Search, Silence, held_out, significance};

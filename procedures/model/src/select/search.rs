@@ -35,26 +35,11 @@ pub enum Move<'p> {
     Removed(&'p str),
 }
 
-/// What the search did, and what it left.
-pub struct Path<'p> {
-    pub start: Terms<'p>,
-    /// Every move with the model after it.
-    pub moves: Vec<(Move<'p>, Terms<'p>)>,
-    /// Candidates that were not added.
-    pub silent: Vec<Silence<'p>>,
-}
-
 /// A candidate that was looked for and not found.
 pub struct Silence<'p> {
     pub effect: &'p str,
     /// RMS of the smallest one that would have been found with 80 % probability.
     pub detectable_rms: f64,
-}
-
-impl<'p> Path<'p> {
-    pub fn end(&self) -> &Terms<'p> {
-        self.moves.last().map_or(&self.start, |m| &m.1)
-    }
 }
 
 /// Held-out squared error of each fold.
@@ -67,27 +52,89 @@ fn losses(columns: &[&[f64]], residual: &[f64], problem: &Problem) -> Vec<f64> {
     BlockGrams::new(columns, residual, &problem.fold, problem.folds).held_out()
 }
 
-/// Adds the best effect again and again until none passes, and drops what lost its reason.
-pub fn search<'p>(start: Terms<'p>, library: &Library<'p>, most: usize, options: &Options) -> Path<'p> {
-    let mut path = Path { start, moves: Vec::new(), silent: Vec::new() };
-    let kept: Vec<&'p str> = path.start.terms.iter().map(Term::id).collect();
-    let mut added = 0;
-    while added < most {
-        let now = path.end().clone();
-        let Some((rival, ties)) = step(&now, library, options) else { break };
-        let mut next = now;
-        next.terms.push(rival.term.clone());
-        next.refine();
-        reform(&mut next, library);
-        extend(&mut next, library, options);
-        path.moves.push((Move::Added { rival: rival.into(), ties }, next));
-        added += 1;
-        while let Some((id, less)) = drop_one(path.end(), &kept, options) {
-            path.moves.push((Move::Removed(id), less));
-        }
+/// Effects that are exchanged for others at most.
+const EXCHANGES: usize = 2;
+
+/// Adds the best effect again and again until none passes, and drops what lost its reason: one move at a time.
+pub struct Search<'l, 'p> {
+    pub now: Terms<'p>,
+    library: &'l Library<'p>,
+    options: &'l Options,
+    /// Effects of the model that was given.
+    kept: Vec<&'p str>,
+    /// Effects that were withdrawn and are not tried again.
+    withdrawn: Vec<&'p str>,
+    left: usize,
+    exchanges: usize,
+}
+
+impl<'l, 'p> Search<'l, 'p> {
+    /// `most` effects are added at most.
+    pub fn new(start: Terms<'p>, library: &'l Library<'p>, most: usize, options: &'l Options) -> Self {
+        let kept = start.terms.iter().map(Term::id).collect();
+        Self { now: start, library, options, kept, withdrawn: Vec::new(), left: most, exchanges: EXCHANGES }
     }
-    path.silent = silences(path.end(), library, options);
-    path
+
+    /// Takes an effect back that turned out not to be the answer.
+    pub fn withdraw(&mut self, id: &'p str) -> Move<'p> {
+        self.withdrawn.push(id);
+        self.remove(id)
+    }
+
+    fn remove(&mut self, id: &'p str) -> Move<'p> {
+        self.now.terms.retain(|t| t.id() != id);
+        self.now.refine();
+        self.left += 1;
+        Move::Removed(id)
+    }
+
+    /// An added effect in whose place another one makes the model clearly better: one effect that came first because it
+    /// looks a little like two that are missing.
+    fn misplaced(&self) -> Option<&'p str> {
+        let present: f64 = held_out(&self.now).iter().sum();
+        let ids: Vec<&'p str> = self.added().map(Term::id).collect();
+        ids.into_iter().filter(|_| self.now.terms.len() > self.kept.len() + 1).find(|id| {
+            let mut less = self.now.clone();
+            less.terms.retain(|t| t.id() != *id);
+            less.refine();
+            let better = step(&less, self.library, &self.withdrawn, self.options);
+            better.is_some_and(|(rival, _)| {
+                rival.term.id() != *id && rival.held_out < (1.0 - self.options.practical_share) * present
+            })
+        })
+    }
+
+    /// Effects that were added and are still there.
+    pub fn added(&self) -> impl Iterator<Item = &Term<'p>> {
+        self.now.terms.iter().filter(|t| !self.kept.contains(&t.id()))
+    }
+
+    pub fn silences(&self) -> Vec<Silence<'p>> {
+        silences(&self.now, self.library, &self.withdrawn, self.options)
+    }
+}
+
+impl<'p> Iterator for Search<'_, 'p> {
+    type Item = Move<'p>;
+
+    fn next(&mut self) -> Option<Move<'p>> {
+        if let Some((id, less)) = drop_one(&self.now, &self.kept, self.options) {
+            self.now = less;
+            return Some(Move::Removed(id));
+        }
+        let found = if self.left > 0 { step(&self.now, self.library, &self.withdrawn, self.options) } else { None };
+        let Some((rival, ties)) = found else {
+            self.exchanges = self.exchanges.checked_sub(1)?;
+            let id = self.misplaced()?;
+            return Some(self.remove(id));
+        };
+        self.left -= 1;
+        self.now.terms.push(rival.term.clone());
+        self.now.refine();
+        reform(&mut self.now, self.library);
+        extend(&mut self.now, self.library, self.options);
+        Some(Move::Added { rival: rival.into(), ties })
+    }
 }
 
 /// Most harmonics of one effect.
@@ -172,14 +219,15 @@ fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
 }
 
 /// For each effect that is not in the model, its best form and shape: what would have been seen.
-fn silences<'p>(end: &Terms, library: &Library<'p>, options: &Options) -> Vec<Silence<'p>> {
+fn silences<'p>(end: &Terms<'p>, library: &Library<'p>, withdrawn: &[&'p str], options: &Options) -> Vec<Silence<'p>> {
     let problem = end.problem;
     let basis = end.tangent();
     let residual = basis.rest(&end.response());
     let n = problem.rows() as f64;
     let rms = (dot(&residual, &residual) / n).sqrt();
-    let mut out: Vec<Silence<'p>> = Vec::new();
-    for candidate in library.candidates.iter().filter(|c| !end.contains(c.id())) {
+    let mut out: Vec<Silence> = Vec::new();
+    let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
+    for candidate in library.candidates.iter().filter(|c| is_out(c.id())) {
         let found = gain(&candidate.columns, &basis, &residual, 1.0);
         // z₀.₉₇₅ + z₀.₈ standard errors of the amplitude, and never less than the practical share.
         let noise = found
@@ -202,13 +250,18 @@ fn silences<'p>(end: &Terms, library: &Library<'p>, options: &Options) -> Vec<Si
     out
 }
 
-fn step<'p>(now: &Terms<'p>, library: &Library<'p>, options: &Options) -> Option<(Rival<'p>, Vec<&'p str>)> {
+fn step<'p>(
+    now: &Terms<'p>,
+    library: &Library<'p>,
+    withdrawn: &[&'p str],
+    options: &Options,
+) -> Option<(Rival<'p>, Vec<&'p str>)> {
     let problem = now.problem;
     let basis = now.tangent();
     let residual = basis.rest(&now.response());
     let energy = dot(&residual, &residual);
-    let open: Vec<usize> =
-        (0..library.candidates.len()).filter(|i| !now.contains(library.candidates[*i].id())).collect();
+    let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
+    let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
     let gains: Vec<Gain> =
         open.iter().map(|i| gain(&library.candidates[*i].columns, &basis, &residual, energy)).collect();
 

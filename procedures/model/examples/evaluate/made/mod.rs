@@ -99,7 +99,7 @@ pub fn null(number: u64) -> Case {
     let mut dice = Dice::new(900_000 + number);
     let mut run = (family.make)(&mut dice, &[]);
     let mut name = format!("{}-null-{number}", family.name);
-    if number % 3 == 0 {
+    if number.is_multiple_of(3) {
         let spare =
             ["temperature_c", "link_position_rad", "velocity_rad_s", "motor_velocity_rad_s", "segment", "repeat"];
         // The stiffness of a joint cannot be measured without its link.
@@ -113,7 +113,7 @@ pub fn null(number: u64) -> Case {
 }
 
 fn without(run: &RunTable, column: &str) -> RunTable {
-    let kept = run.trace().channels().iter().filter(|c| &c.name != column);
+    let kept = run.trace().channels().iter().filter(|c| c.name != column);
     let columns = kept.clone().map(|c| run.column(&c.name).unwrap_or_default().to_vec()).collect();
     table(run.meta().clone(), kept.map(|c| c.name.clone()).collect(), columns)
 }

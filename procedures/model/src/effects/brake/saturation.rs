@@ -11,12 +11,14 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Brake,
     title: "Saturation",
     sentence: "The curve starts flat, is steep in the middle and bends when the iron is full.",
-    formula: "c_2·i² + c_3·i³, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s)",
+    formula: "c_2·i² + c_3·i³, also up to i⁵, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s)",
     source: "makers' data of hysteresis brakes (S-shape); contract section 2",
     looks: "a curve over current, the same on the way up and down",
     parameters: &[
         parameter("c_2", "Nm/A²", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_3", "Nm/A³", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_4", "Nm/A⁴", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_5", "Nm/A⁵", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("i_0", "A", 0.0, f64::INFINITY),
         parameter("i_s", "A", 0.0, f64::INFINITY),
@@ -39,6 +41,12 @@ impl Effect for Saturation {
         vec![
             Form { name: "polynomial", linear: vec!["c_2", "c_3"], shape: Vec::new(), grid: vec![Vec::new()] },
             Form {
+                name: "quintic",
+                linear: vec!["c_2", "c_3", "c_4", "c_5"],
+                shape: Vec::new(),
+                grid: vec![Vec::new()],
+            },
+            Form {
                 name: "tanh",
                 linear: vec!["c"],
                 shape: vec![bend],
@@ -50,7 +58,8 @@ impl Effect for Saturation {
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         match form {
-            "polynomial" => vec![view.map(Signal::Current, |i| i * i), view.map(Signal::Current, |i| i * i * i)],
+            "polynomial" => [2, 3].map(|n| view.map(Signal::Current, |i| i.powi(n))).into(),
+            "quintic" => [2, 3, 4, 5].map(|n| view.map(Signal::Current, |i| i.powi(n))).into(),
             "tanh" => vec![view.map(Signal::Current, |i| (i / shape[0]).tanh())],
             _ => vec![view.map(Signal::Current, |i| ((i - shape[0]) / shape[1]).tanh() + (shape[0] / shape[1]).tanh())],
         }

@@ -5,7 +5,7 @@ mod plateaus;
 
 use super::chunks::Source;
 use super::{Prepared, filter, median, sample_s, segments};
-use crate::linear::Basis;
+use crate::linear::{Basis, dot};
 use crate::view::{Constants, Signal, Signals};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
@@ -93,12 +93,21 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
 }
 
 /// The motor torque as load, direction, speed and acceleration explain it: the measured one without its own noise, which
-/// would be found again in any power of itself.
+/// would be found again in any power of itself, and without what the cube of itself adds when the iron saturates.
 fn drive(signals: &Signals, torque_nm: &[f64]) -> Vec<f64> {
     let of = |signal| signals.find(signal).map(<[f64]>::to_vec);
     let inputs = [Signal::Direction, Signal::Velocity, Signal::Load, Signal::Acceleration];
     let mut columns: Vec<Vec<f64>> = inputs.into_iter().filter_map(of).collect();
     columns.push(vec![1.0; torque_nm.len()]);
-    let rest = Basis::of(&columns).rest(torque_nm);
-    torque_nm.iter().zip(rest).map(|(y, e)| y - e).collect()
+    let linear = Basis::of(&columns);
+    let explained = |y: &[f64]| -> Vec<f64> { y.iter().zip(linear.rest(y)).map(|(y, e)| y - e).collect() };
+    let mut drive = explained(torque_nm);
+    for _ in 0..2 {
+        let cube: Vec<f64> = drive.iter().map(|t| t * t * t).collect();
+        let beside = linear.rest(&cube);
+        let share = dot(&beside, torque_nm) / dot(&beside, &beside).max(f64::MIN_POSITIVE);
+        let rest: Vec<f64> = torque_nm.iter().zip(&cube).map(|(y, c)| y - share * c).collect();
+        drive = explained(&rest);
+    }
+    drive
 }
