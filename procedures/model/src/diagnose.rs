@@ -25,10 +25,13 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let fit = report(&found.start)?;
     let suggestions = suggestions(&found, &fit, spec)?;
     let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
-    let start = &found.start.main;
-    let basis = start.tangent();
-    let residual = basis.rest(&start.response());
-    let maps = Maps::new(&prepared, residual, options);
+    let regions = if verdict == Verdict::MissingEffect {
+        let start = &found.start.main;
+        let residual = start.tangent().rest(&start.response());
+        regions(&Maps::new(&prepared, residual, options), &fit, &found, verdict)
+    } else {
+        regions(&found.maps, &fit, &found, verdict)
+    };
     let structure = structure(&found, verdict);
     let mut not_visible = found.start.hidden.clone();
     not_visible.extend(found.invisible.iter().cloned());
@@ -40,7 +43,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor: found.floor.clone(),
         verdict,
         summary: summary(&found, &fit, verdict, &suggestions, structure.as_ref()),
-        regions: regions(&maps, &fit, &found, verdict),
+        regions,
         structure,
         experiment: experiment(&found, &prepared),
         silent: found

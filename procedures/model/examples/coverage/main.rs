@@ -10,7 +10,7 @@ mod cases;
 mod noise;
 
 use cases::{CASES, Case};
-use jointbench_model::{ModelSpec, Options, ParameterState, fit};
+use jointbench_model::{ModelSpec, Options, ParameterState, diagnose, fit};
 use std::error::Error;
 
 /// What was seen of one parameter over all sets.
@@ -52,10 +52,32 @@ fn main() -> Result<(), Box<dyn Error>> {
             pool.judged += seen.judged;
         }
     }
+    for case in CASES.iter().filter(|c| c.name.contains(&part)) {
+        floor(case, sets.min(FLOOR_SETS))?;
+    }
     for (name, pool) in [("linear", linear), ("nonlinear", curved)] {
         let share = 100.0 * pool.inside as f64 / pool.judged.max(1) as f64;
         println!("{name} parameters pooled: {share:.1} % of {}", pool.judged);
     }
+    Ok(())
+}
+
+/// A whole diagnosis takes longer than a fit.
+const FLOOR_SETS: u64 = 100;
+
+/// How often the interval of the noise floor holds what the floor is on average over all sets.
+fn floor(case: &Case, sets: u64) -> Result<(), Box<dyn Error>> {
+    let mut floors = Vec::new();
+    for seed in 0..sets {
+        let run = (case.run)(seed)?;
+        let spec = ModelSpec::new(run.kind(), case.effects.iter().copied())?;
+        let found = diagnose(&run, &spec, &Options { flips: 99, ..Options::default() })?.noise_floor;
+        floors.extend(found.rms.zip(found.ci95));
+    }
+    let mean = (floors.iter().map(|(rms, _)| rms * rms).sum::<f64>() / floors.len().max(1) as f64).sqrt();
+    let inside = floors.iter().filter(|(_, ci)| (ci[0]..=ci[1]).contains(&mean)).count();
+    let share = 100.0 * inside as f64 / floors.len().max(1) as f64;
+    println!("{:34} noise floor {share:>27.1}% of {} runs with repeats", case.name, floors.len());
     Ok(())
 }
 

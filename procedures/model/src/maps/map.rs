@@ -54,27 +54,46 @@ impl Cell {
     }
 }
 
-/// Mean, standard error over the pieces, pieces and rows of every cell.
+/// Mean, standard error over the pieces, pieces and rows of every cell. The rows of a piece are consecutive.
 fn statistics(
     cell: &[usize],
     count: usize,
     piece: &[usize],
     residual: &[f64],
 ) -> Vec<(f64, Option<f64>, usize, usize)> {
-    let mut order: Vec<usize> = (0..cell.len()).collect();
-    order.sort_by_key(|i| (cell[*i], piece[*i]));
-    let mut out = vec![(0.0, None, 0, 0); count];
-    for rows in order.chunk_by(|a, b| cell[*a] == cell[*b]) {
-        let n = rows.len() as f64;
-        let mean = rows.iter().map(|i| residual[*i]).sum::<f64>() / n;
-        let passes = rows.chunk_by(|a, b| piece[*a] == piece[*b]);
-        let sums: Vec<f64> = passes.map(|p| p.iter().map(|i| residual[*i] - mean).sum()).collect();
-        let g = sums.len();
-        let spread: f64 = sums.iter().map(|s| s * s).sum();
-        let error = (g >= 3).then(|| (spread * g as f64 / (g as f64 - 1.0)).sqrt() / n);
-        out[cell[rows[0]]] = (mean, error, g, rows.len());
+    let mut all = vec![(0.0, 0usize); count];
+    for (c, e) in cell.iter().zip(residual) {
+        all[*c].0 += e;
+        all[*c].1 += 1;
     }
-    out
+    let mean = |c: usize| all[c].0 / all[c].1.max(1) as f64;
+    let mut spread = vec![(0.0, 0usize); count];
+    let mut sums: Vec<Option<f64>> = vec![None; count];
+    let mut passed: Vec<usize> = Vec::new();
+    let mut at = 0;
+    for rows in piece.chunk_by(|a, b| a == b) {
+        for i in at..at + rows.len() {
+            let c = cell[i];
+            let sum = sums[c].get_or_insert_with(|| {
+                passed.push(c);
+                0.0
+            });
+            *sum += residual[i] - mean(c);
+        }
+        at += rows.len();
+        for c in passed.drain(..) {
+            spread[c].0 += sums[c].take().unwrap_or_default().powi(2);
+            spread[c].1 += 1;
+        }
+    }
+    (0..count)
+        .map(|c| {
+            let ((square, pieces), rows) = (spread[c], all[c].1);
+            let g = pieces as f64;
+            let error = (pieces >= 3).then(|| (square * g / (g - 1.0)).sqrt() / rows as f64);
+            (mean(c), error, pieces, rows)
+        })
+        .collect()
 }
 
 /// What the means of the cells, taken from the other folds, take off a fold's squared error.
@@ -97,4 +116,21 @@ fn held_out_share(cell: &[usize], count: usize, problem: &Problem, residual: &[f
         }
     }
     if energy > 0.0 { saved / energy } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_as_sure_as_its_pieces_are_alike() {
+        let (cell, piece) = ([0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 1, 2]);
+        let found = statistics(&cell, 3, &piece, &[1.0, 1.0, 9.0, 3.0, 3.0, 2.0]);
+        let (mean, error, pieces, rows) = found[0];
+        assert_eq!((mean, pieces, rows), (2.0, 3, 5));
+        // Sums of the pieces about the mean: −2, 2, 0.
+        assert!((error.unwrap() - (8.0f64 * 3.0 / 2.0).sqrt() / 5.0).abs() < 1e-12);
+        assert_eq!(found[1], (9.0, None, 1, 1), "one piece says nothing about the next");
+        assert_eq!(found[2].3, 0);
+    }
 }
