@@ -38,6 +38,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     Ok(Diagnosis {
         kind: prepared.kind,
         model: found.start.effects.clone(),
+        own: spec.own.clone(),
         residual: fit.residual,
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),

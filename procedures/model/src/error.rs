@@ -42,6 +42,8 @@ pub enum ModelError {
     NoExport { kind: Kind, what: &'static str, why: &'static str },
     #[error("this is no exported model: {0}; export one with `jointbench model export`")]
     BadFile(String),
+    #[error("a {first} model and a {second} model have nothing to compare; choose two of one kind")]
+    OtherKind { first: Kind, second: Kind },
     #[error("the option {option} is out of range: {why}")]
     BadOption { option: &'static str, why: String },
     #[error("the stored fit has no form {form} of effect {effect}: it was made by another version; fit the run again")]

@@ -1,6 +1,7 @@
 //! The heart: effects, identification and diagnosis of joints, encoders, stiffness and brakes. Pure numbers, no I/O.
 
 mod assembly;
+mod compare;
 mod diagnose;
 pub mod effect;
 pub mod effects;
@@ -25,6 +26,7 @@ pub mod transfer;
 pub mod view;
 mod words;
 
+pub use compare::compare;
 pub use diagnose::{diagnose, discover};
 pub use effect::{Effect, EffectInfo, ParameterInfo};
 pub use effects::effects;

@@ -37,9 +37,9 @@ impl<'e> Term<'e> {
         })
     }
 
-    /// Number of parameters, linear and shape.
+    /// Number of parameters, linear and shape, that the data decides.
     pub fn size(&self) -> usize {
-        self.columns.len() + self.shape.len()
+        self.columns.len() + self.form.shape.iter().filter(|s| s.min < s.max).count()
     }
 }
 

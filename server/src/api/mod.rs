@@ -7,8 +7,10 @@ mod extract;
 mod health;
 mod live;
 mod models;
+mod own_effects;
 mod problem;
 mod procedures;
+mod revisions;
 mod runs;
 #[cfg(test)]
 mod specification;
@@ -74,9 +76,16 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(runs::samples))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))
-        .routes(routes!(models::effects))
+        .routes(routes!(models::effects, own_effects::define))
+        .routes(routes!(own_effects::check))
+        .routes(routes!(own_effects::delete))
+        .routes(routes!(own_effects::language))
         .routes(routes!(models::list, models::create))
         .routes(routes!(models::get))
+        .routes(routes!(revisions::compare))
+        .routes(routes!(revisions::evaluate))
+        .routes(routes!(revisions::export))
+        .routes(routes!(revisions::import))
         .routes(routes!(models::residuals))
         .routes(routes!(models::fit))
         .routes(routes!(models::diagnoses, models::diagnose))

@@ -16,11 +16,11 @@ pub struct EffectQuery {
     pub kind: Option<String>,
 }
 
-/// The library of effects
+/// The library of effects, with those that users wrote
 #[utoipa::path(get, path = "/effects", tag = "effects", params(EffectQuery),
     responses((status = 200, description = "The effects", body = Vec<Effect>), Refusals))]
 pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -> Answer<Vec<Effect>> {
-    Ok(Json(lab.effects(query.kind.as_deref())?))
+    Ok(Json(lab.effects(query.kind.as_deref()).await?))
 }
 
 /// Fits a set of effects to a run and keeps it as a version

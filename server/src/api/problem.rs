@@ -14,7 +14,7 @@ use utoipa::{IntoResponses, ToSchema};
 /// RFC 9457 problem document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
-    /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `file_refused`, `conflict`, `bench_fault`, `malformed`,
+    /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `bench_fault`, `malformed`,
     /// `forbidden`, `unauthorized`, `too_large`, `internal`.
     #[serde(rename = "type")]
     pub type_: String,
@@ -34,6 +34,27 @@ pub struct Problem {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<String>)]
     pub column: Option<Box<str>>,
+    /// Where a formula is wrong.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Place>)]
+    pub place: Option<Box<Place>>,
+    /// Characters before the mistake, in `place.text`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<u64>,
+}
+
+/// A mistake in a text that a user wrote.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Place {
+    /// `formula`, `parameters` or `id`.
+    pub field: String,
+    pub text: String,
+    /// Characters before the mistake.
+    pub position: u64,
+    /// Characters of the mistake; 0 where something is missing.
+    pub length: u64,
+    /// What is wrong there, without the rest of the sentence.
+    pub message: String,
 }
 
 impl Problem {
@@ -46,6 +67,8 @@ impl Problem {
             instance: None,
             line: None,
             column: None,
+            place: None,
+            position: None,
         }
     }
 
@@ -84,6 +107,17 @@ impl From<LabError> for Problem {
                 line,
                 column: column.map(String::into_boxed_str),
                 ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "file_refused", "The file is refused", detail)
+            },
+            LabError::Formula(fault) => Self {
+                position: Some(fault.position as u64),
+                place: Some(Box::new(Place {
+                    field: fault.field,
+                    text: fault.text,
+                    position: fault.position as u64,
+                    length: fault.length as u64,
+                    message: fault.message,
+                })),
+                ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "formula", "The formula is wrong", detail)
             },
             LabError::Conflict(_) => Self::new(StatusCode::CONFLICT, "conflict", "Not at this moment", detail),
             LabError::Bench(_) => {

@@ -2,7 +2,7 @@
 
 use crate::lab::LabError;
 use jointbench_files::{FileError, OptionFault};
-use jointbench_model::ModelError;
+use jointbench_model::{FormulaFault, ModelError};
 
 #[derive(Debug)]
 pub struct Exit {
@@ -45,12 +45,20 @@ impl From<OptionFault> for Exit {
     }
 }
 
+impl From<FormulaFault> for Exit {
+    fn from(fault: FormulaFault) -> Self {
+        let marked = fault.marked().replace('\n', "\n  ");
+        Exit::bad_input(format!("{fault}\n  {marked}"))
+    }
+}
+
 impl From<ModelError> for Exit {
     /// What the arguments or the facts have wrong is bad input; what the data cannot tell is undecided.
     fn from(error: ModelError) -> Self {
         use ModelError as E;
         let said = error.to_string();
         match error {
+            E::Formula(fault) => Exit::from(*fault),
             E::TooFewSamples { .. } | E::NotVisible { .. } | E::Collinear { .. } | E::Constant { .. } => {
                 Exit::undecided(said)
             }

@@ -6,7 +6,9 @@ mod client;
 mod demo;
 mod exit;
 mod log;
+mod model;
 mod offline;
+mod own;
 mod print;
 mod progress;
 mod run;
@@ -37,6 +39,7 @@ pub fn main() -> ExitCode {
         Command::Diagnose(arguments) => offline::diagnose(&arguments),
         Command::Discover(arguments) => offline::discover(&arguments),
         Command::Fit(arguments) => offline::fit(&arguments),
+        Command::Model(arguments) => model::model(&arguments),
         Command::Import(arguments) => transfer::import(&arguments),
         Command::Export(arguments) => transfer::export(&arguments),
     };

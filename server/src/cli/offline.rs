@@ -34,6 +34,9 @@ pub fn discover(arguments: &Discover) -> Done {
 pub fn fit(arguments: &Fit) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
     let fit = jointbench_model::fit(&run, &spec, &options)?;
+    if let Some(path) = &arguments.out {
+        super::model::save(&fit, path)?;
+    }
     let evaluation = match &arguments.evaluate {
         None => None,
         Some(other) => {
@@ -58,14 +61,15 @@ pub fn fit(arguments: &Fit) -> Done {
 
 fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
     let run = read(&measured.file, measured.meta.as_deref(), &measured.columns)?;
+    let own = measured.own.read(run.kind())?;
     let spec = match &measured.model {
-        Some(list) => ModelSpec::parse(run.kind(), list)?,
-        None => ModelSpec::baseline(&run)?,
+        Some(list) => ModelSpec::with_own(run.kind(), list.split(',').map(str::trim).filter(|id| !id.is_empty()), own)?,
+        None => ModelSpec::with_own(run.kind(), run.meta().baseline.iter(), own)?,
     };
     Ok((run, spec, options(&measured.preparation)?))
 }
 
-fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<RunTable, Exit> {
+pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<RunTable, Exit> {
     let mut options = ReadOptions { meta_path: meta.map(Path::to_owned), ..ReadOptions::default() };
     for pair in &columns.map {
         options.map.push(parse_map(pair)?);
@@ -93,7 +97,7 @@ fn options(preparation: &Preparation) -> Result<Options, Exit> {
     })
 }
 
-fn json_out(value: &impl Serialize) -> Done {
+pub(super) fn json_out(value: &impl Serialize) -> Done {
     let text = serde_json::to_string_pretty(value).map_err(|fault| Exit::failed(fault.to_string()))?;
     println!("{text}");
     Ok(())

@@ -1,7 +1,8 @@
 //! Results as a person reads them.
 
 use jointbench_model::{
-    Diagnosis, Discovery, Evaluation, Fit, NoiseFloor, Parameter, ParameterState, Region, ResidualKind, Suggestion,
+    Comparison, Diagnosis, Discovery, Evaluation, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState, Region,
+    ResidualKind, Suggestion,
 };
 use std::path::Path;
 
@@ -42,6 +43,39 @@ pub fn evaluation(file: &Path, evaluation: &Evaluation) {
         evaluation.unit,
         100.0 * evaluation.relative_error,
         evaluation.rows
+    );
+}
+
+pub fn comparison(file: &Path, comparison: &Comparison) {
+    let list = |ids: &[String]| if ids.is_empty() { "nothing".to_owned() } else { ids.join(", ") };
+    println!("the second has  {}", list(&comparison.added));
+    println!("the first had   {}", list(&comparison.removed));
+    println!();
+    let wide = |of: fn(&ParameterPair) -> &str| comparison.parameters.iter().map(|p| of(p).chars().count()).max();
+    let (effect, name) = (wide(|p| &p.effect).unwrap_or(0), wide(|p| &p.name).unwrap_or(0));
+    let unit = wide(|p| &p.unit).unwrap_or(0);
+    let side = |p: &Option<Parameter>| match p {
+        Some(p) => format!("{} [{} … {}]", figure(p.value), figure(p.ci95[0]), figure(p.ci95[1])),
+        None => "–".to_owned(),
+    };
+    for p in &comparison.parameters {
+        let (first, second) = (side(&p.first), side(&p.second));
+        let differ = match p.differ {
+            Some(true) => "  differ",
+            _ => "",
+        };
+        println!("{:effect$}  {:name$}  {:unit$}  {first:>34}  {second:>34}{differ}", p.effect, p.name, p.unit);
+    }
+    println!();
+    let (first, second) = (&comparison.first, &comparison.second);
+    println!(
+        "on {}: error {} {} and {} {} ({:+.1} %)",
+        file.display(),
+        figure(first.rms),
+        first.unit,
+        figure(second.rms),
+        second.unit,
+        100.0 * (second.rms / first.rms - 1.0)
     );
 }
 

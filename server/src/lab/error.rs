@@ -3,6 +3,7 @@
 //! * [`LabError::NotFound`]: what was named is not there.
 //! * [`LabError::Invalid`]: the request is understood, but its values make no sense here; say what to do instead.
 //! * [`LabError::File`]: a measurement file or description was refused; carries file, line and column where known.
+//! * [`LabError::Formula`]: a user's effect is wrong at a character.
 //! * [`LabError::Conflict`]: right request, wrong moment (bench busy, bench blocked, run already over).
 //! * [`LabError::Bench`]: an instrument does not do what it should.
 //! * [`LabError::Setup`]: the daemon cannot start as it was asked to (port taken, folder unwritable, old database).
@@ -18,6 +19,8 @@ pub enum LabError {
     Invalid(String),
     #[error("{detail}")]
     File { detail: String, line: Option<u64>, column: Option<String> },
+    #[error("{0}")]
+    Formula(Box<jointbench_model::FormulaFault>),
     #[error("{0}")]
     Conflict(String),
     #[error("{0}")]
@@ -41,7 +44,11 @@ impl LabError {
     pub fn exit_code(&self) -> u8 {
         match self {
             LabError::Conflict(_) | LabError::Bench(_) | LabError::Internal(_) => 1,
-            LabError::NotFound(_) | LabError::Invalid(_) | LabError::File { .. } | LabError::Setup(_) => 2,
+            LabError::NotFound(_)
+            | LabError::Invalid(_)
+            | LabError::File { .. }
+            | LabError::Formula(_)
+            | LabError::Setup(_) => 2,
         }
     }
 }
@@ -56,7 +63,7 @@ impl From<crate::store::StoreError> for LabError {
             _ if error.is_not_found() => LabError::NotFound(said),
             _ if error.is_setup() => LabError::Setup(said),
             E::OtherRun { .. } => LabError::Invalid(said),
-            E::RunOver { .. } => LabError::Conflict(said),
+            E::RunOver { .. } | E::EffectUsed { .. } => LabError::Conflict(said),
             _ => LabError::Internal(said),
         }
     }
@@ -84,7 +91,10 @@ impl From<jointbench_files::OptionFault> for LabError {
 
 impl From<jointbench_model::ModelError> for LabError {
     fn from(error: jointbench_model::ModelError) -> Self {
-        LabError::Invalid(error.to_string())
+        match error {
+            jointbench_model::ModelError::Formula(fault) => LabError::Formula(fault),
+            error => LabError::Invalid(error.to_string()),
+        }
     }
 }
 

@@ -5,6 +5,8 @@ mod benches;
 mod convert;
 mod error;
 mod models;
+mod own_effects;
+mod revisions;
 mod runs;
 mod transfer;
 

@@ -7,14 +7,6 @@ use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Options};
 
 impl Lab {
-    pub fn effects(&self, kind: Option<&str>) -> Answer<Vec<Effect>> {
-        let kinds = match kind {
-            None => Kind::ALL.to_vec(),
-            Some(name) => vec![find_kind(name)?],
-        };
-        Ok(kinds.into_iter().flat_map(jointbench_model::effects).map(|effect| effect_view(&effect.info())).collect())
-    }
-
     /// Fits effects to a run and keeps the fit as a version, with its diagnosis.
     pub async fn create_model(&self, run: i64, effects: &[String], parent: Option<i64>) -> Answer<Model> {
         if let Some(parent) = parent
@@ -23,7 +15,7 @@ impl Lab {
             return Err(LabError::Invalid(format!("model version {parent} belongs to another run than {run}")));
         }
         let table = self.table(run).await?;
-        let spec = ModelSpec::new(table.kind(), effects)?;
+        let spec = self.spec(table.kind(), effects).await?;
         let options = Options::default();
         let chosen = reread(&options)?;
         let (fit, diagnosis) = blocking(move || fit_and_diagnose(&table, &spec, &options)).await?;
@@ -72,14 +64,21 @@ impl Lab {
         reread(&set)
     }
 
-    /// The diagnosis of a version. Data and version never change, so neither does the answer: it is made once.
+    /// The diagnosis of a version. Data and version never change: the answer is made once, and again where users' effects
+    /// have come, changed or gone since.
     pub async fn diagnose(&self, model: i64) -> Answer<Diagnosis> {
-        if let Some(kept) = self.diagnoses(model).await?.pop() {
-            return Ok(kept);
-        }
         let record = self.inner.store.model(model).await?;
+        let fit: Fit = reread(&record.fit)?;
+        let mut own = fit.own.clone();
+        own.extend(self.own_effects(fit.kind).await?.into_iter().filter(|o| !fit.own.iter().any(|f| f.id() == o.id())));
+        if let Some(kept) = self.inner.store.diagnoses(model).await?.pop() {
+            let known: jointbench_model::Diagnosis = reread(&kept.diagnosis)?;
+            if known.own == own {
+                return convert::diagnosis(kept, record.run);
+            }
+        }
         let table = self.table(record.run).await?;
-        let spec = ModelSpec::new(table.kind(), &record.effects)?;
+        let spec = ModelSpec::with_own(table.kind(), &record.effects, own)?;
         let diagnosis = blocking(move || jointbench_model::diagnose(&table, &spec, &Options::default())).await?;
         let kept = self.inner.store.save_diagnosis(model, &reread(&diagnosis)?).await?;
         convert::diagnosis(kept, record.run)
@@ -111,21 +110,23 @@ fn fit_and_diagnose(
 }
 
 /// Numbers take their time: not on the threads that answer requests.
-async fn blocking<T: Send + 'static>(work: impl FnOnce() -> Result<T, ModelError> + Send + 'static) -> Answer<T> {
+pub(super) async fn blocking<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, ModelError> + Send + 'static,
+) -> Answer<T> {
     match tokio::task::spawn_blocking(work).await {
         Ok(result) => Ok(result?),
         Err(fault) => Err(LabError::Internal(format!("the computation failed: {fault}"))),
     }
 }
 
-fn find_kind(name: &str) -> Answer<Kind> {
+pub(super) fn find_kind(name: &str) -> Answer<Kind> {
     Kind::ALL
         .into_iter()
         .find(|kind| kind.name() == name)
         .ok_or_else(|| LabError::Invalid(format!("kind {name:?}: write friction, encoder, stiffness or brake")))
 }
 
-fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
+pub(super) fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
     Effect {
         id: info.id.to_owned(),
         kind: info.kind.to_string(),
@@ -144,5 +145,7 @@ fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
             })
             .collect(),
         needs: info.needs.iter().map(|need| (*need).to_owned()).collect(),
+        definition: None,
+        version: None,
     }
 }

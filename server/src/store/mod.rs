@@ -9,6 +9,7 @@ mod commit;
 mod error;
 mod models;
 mod open;
+mod own_effects;
 pub mod pyramid;
 mod records;
 mod runs;
@@ -20,7 +21,8 @@ mod view;
 
 pub use error::StoreError;
 pub use records::{
-    BenchBlock, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, RunFilter, RunRecord, View, ViewColumn,
+    BenchBlock, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, OwnEffectRecord, RunFilter, RunRecord,
+    View, ViewColumn,
 };
 
 use sqlx::SqlitePool;

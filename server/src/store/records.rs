@@ -63,6 +63,17 @@ pub struct EventRecord {
     pub data: Map<String, Value>,
 }
 
+/// One version of an effect that a user wrote.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnEffectRecord {
+    pub kind: String,
+    pub effect: String,
+    /// From 1.
+    pub version: i64,
+    pub definition: Value,
+    pub created_at: String,
+}
+
 /// A fit to be kept as a version.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewModel {

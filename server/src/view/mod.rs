@@ -7,6 +7,7 @@ mod bench;
 mod diagnosis;
 mod live;
 mod model;
+mod own;
 mod procedure;
 mod run;
 
@@ -14,6 +15,7 @@ pub use bench::*;
 pub use diagnosis::*;
 pub use live::*;
 pub use model::*;
+pub use own::*;
 pub use procedure::*;
 pub use run::*;
 

@@ -1,5 +1,6 @@
 //! Effects, model versions, fits and residuals.
 
+use super::own::EffectDefinition;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -16,6 +17,12 @@ pub struct Effect {
     pub parameters: Vec<EffectParameter>,
     /// Columns without which the effect cannot be computed.
     pub needs: Vec<String>,
+    /// What a user wrote; `null` for an effect of the library.
+    #[serde(default)]
+    pub definition: Option<EffectDefinition>,
+    /// Version of a user's definition, from 1.
+    #[serde(default)]
+    pub version: Option<i64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -66,6 +73,9 @@ pub struct Model {
 pub struct Fit {
     pub kind: String,
     pub effects: Vec<String>,
+    /// Users' effects as they were when the model was fitted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<EffectDefinition>,
     /// On the data that was fitted.
     pub rms: f64,
     /// On data that took no part in the fit.
@@ -156,6 +166,9 @@ pub struct Term {
     pub form: String,
     pub shape: Vec<f64>,
     pub linear: Vec<f64>,
+    /// Names of the factors, then of the shape parameters.
+    #[serde(default)]
+    pub names: Vec<String>,
 }
 
 /// What is left of a run once a model version is taken away. All lists have the same length.

@@ -76,6 +76,10 @@ impl TestDaemon {
         self.agent.get(self.url(path)).call().unwrap()
     }
 
+    pub fn delete(&self, path: &str) -> (u16, Value) {
+        read(self.agent.delete(self.url(path)).call().unwrap())
+    }
+
     pub fn post(&self, path: &str, body: &str) -> (u16, Value) {
         self.post_with(path, body.as_bytes(), &[("content-type", "application/json")])
     }

@@ -6,7 +6,7 @@ use serde_json::Value;
 const GOOD: &str = "time_s,motor_position_rad,motor_current_a\n0,0,0.1\n0.004,0.01,0.2\n0.008,0.02,0.1\n";
 const META: &str = r#"{"kind": "friction", "torque_constant_nm_per_a": 0.04}"#;
 
-fn upload(daemon: &TestDaemon, table: &str, more: &[(&str, &str)]) -> (u16, Value) {
+pub fn upload(daemon: &TestDaemon, table: &str, more: &[(&str, &str)]) -> (u16, Value) {
     let mut body = String::new();
     let mut part = |name: &str, content: &str| {
         body += &format!("--edge\r\nContent-Disposition: form-data; name={name}\r\n\r\n{content}\r\n");

@@ -4,5 +4,7 @@ mod daemon;
 mod door;
 mod import;
 mod live;
+mod own_effects;
 mod problems;
+mod revisions;
 mod runs;

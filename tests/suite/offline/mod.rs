@@ -1,6 +1,7 @@
 //! `fit`, `diagnose`, `discover`, `import` and `export` on files, without a daemon.
 
 mod emps;
+mod own;
 mod practice;
 mod refused;
 mod round_trip;

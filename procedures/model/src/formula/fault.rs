@@ -20,10 +20,13 @@ pub struct FormulaFault {
 }
 
 impl FormulaFault {
-    /// The text with a line below it that points at the mistake.
+    /// The line of the mistake with another below it that points at its characters.
     pub fn marked(&self) -> String {
-        let blank: String = self.text.chars().take(self.position).map(|c| if c == '\t' { c } else { ' ' }).collect();
-        format!("{}\n{blank}{}", self.text, "^".repeat(self.length.max(1)))
+        let before: String = self.text.chars().take(self.position).collect();
+        let start = before.rfind('\n').map_or(0, |end| end + 1);
+        let line = self.text[start..].lines().next().unwrap_or_default();
+        let blank: String = before[start..].chars().map(|c| if c == '\t' { c } else { ' ' }).collect();
+        format!("{line}\n{blank}{}", "^".repeat(self.length.max(1)))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::fit::{Fit, Parameter, ResidualKind};
 use super::maps::PairMap;
+use crate::OwnEffect;
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +22,9 @@ pub enum Verdict {
 pub struct Diagnosis {
     pub kind: Kind,
     pub model: Vec<String>,
+    /// Users' effects that the diagnosis knew.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<OwnEffect>,
     pub fit: Fit,
     pub residual: ResidualKind,
     /// Repeatability of the run, of the same kind as the RMS figures. `None` without repeats.

@@ -2,7 +2,7 @@
 
 use crate::OwnEffect;
 use jointbench_instrument::{Kind, Motion};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// What RMS figures and residuals are made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -34,6 +34,7 @@ pub struct Fit {
     /// Pairs of parameters that trade off against each other.
     pub trade_offs: Vec<TradeOff>,
     /// Condition number of the scaled columns.
+    #[serde(deserialize_with = "open_end")]
     pub condition: f64,
     /// What a user should know, in plain sentences.
     pub notes: Vec<String>,
@@ -53,6 +54,7 @@ pub struct Parameter {
     pub value: f64,
     pub unit: String,
     /// 95 % interval over segments or repeats (delete-group jackknife, t with G − 1 degrees of freedom).
+    #[serde(deserialize_with = "open_interval")]
     pub ci95: [f64; 2],
     pub state: ParameterState,
     /// The state in words, where it is not `ok`.
@@ -68,6 +70,16 @@ pub enum ParameterState {
     AtBound,
     /// The data does not decide it: the interval is as wide as the value.
     Unidentified,
+}
+
+/// JSON has no infinity: `null` stands for a side without a bound.
+fn open_interval<'de, D: Deserializer<'de>>(source: D) -> Result<[f64; 2], D::Error> {
+    let [low, high] = <[Option<f64>; 2]>::deserialize(source)?;
+    Ok([low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)])
+}
+
+fn open_end<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(source)?.unwrap_or(f64::INFINITY))
 }
 
 /// Two parameters of which the data decides only a combination.

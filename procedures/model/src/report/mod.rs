@@ -1,10 +1,12 @@
 //! What comes out: the objects of the contract, ready to be written as JSON.
 
+mod comparison;
 mod diagnosis;
 mod fit;
 mod maps;
 mod residuals;
 
+pub use comparison::{Comparison, ParameterPair};
 pub use diagnosis::{
     Diagnosis, Discovery, Experiment, Invisible, NoiseFloor, Region, Silent, Step, Suggestion, Verdict,
 };

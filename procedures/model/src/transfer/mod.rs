@@ -99,3 +99,6 @@ fn about(fit: &Fit, left_out: &[(&str, String)]) -> Vec<String> {
     lines.extend(left_out.iter().map(|(effect, why)| format!("NOT CARRIED OVER: {effect} ({why})")));
     lines
 }
+
+#[cfg(test)]
+mod tests;

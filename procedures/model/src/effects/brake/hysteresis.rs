@@ -31,6 +31,7 @@ static INFO: EffectInfo = EffectInfo {
         parameter("h_8", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("h", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("r", "A", 0.0, f64::INFINITY),
+        parameter("i_max", "A", 0.0, f64::INFINITY),
     ],
     needs: &[],
 };
@@ -50,10 +51,12 @@ impl Effect for Hysteresis {
         }
         let one = |name| Form { name, linear: vec!["h"], shape: shape.clone(), grid: grid.clone() };
 
+        // Where the bands lie belongs to the fit: another run has another largest current.
+        let reach = Shape { name: "i_max", min: peak, max: peak, search: Search::Whole };
         vec![
             one("stop"),
             one("dahl"),
-            Form { name: "bands", linear: BANDS.to_vec(), shape: Vec::new(), grid: vec![Vec::new()] },
+            Form { name: "bands", linear: BANDS.to_vec(), shape: vec![reach], grid: vec![vec![peak]] },
         ]
     }
 
@@ -62,14 +65,13 @@ impl Effect for Hysteresis {
         match form {
             "stop" => vec![view.average(memory::stop(current, shape[0], &view.starts))],
             "dahl" => vec![view.average(memory::dahl(current, shape[0], &view.starts))],
-            _ => bands(current, view),
+            _ => bands(current, shape[0], view),
         }
     }
 }
 
 /// Stops weighted by hats over their reach: each band rises to its knot and falls to the next.
-fn bands(current: &[f64], view: &View) -> Columns {
-    let peak = view.peak(Signal::Current);
+fn bands(current: &[f64], peak: f64, view: &View) -> Columns {
     let mut columns = vec![vec![0.0; view.len()]; BANDS.len()];
     for k in 1..=STOPS {
         let place = (k * BANDS.len()) as f64 / STOPS as f64;

@@ -1,0 +1,32 @@
+//! Two models side by side.
+
+use super::fit::{Evaluation, Parameter};
+use jointbench_instrument::Kind;
+use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    pub kind: Kind,
+    /// Effects of the second that the first has not.
+    pub added: Vec<String>,
+    pub removed: Vec<String>,
+    pub parameters: Vec<ParameterPair>,
+    /// Both on the same run.
+    pub first: Evaluation,
+    pub second: Evaluation,
+    /// Each on what was held out of its own run.
+    pub first_validation_rms: f64,
+    pub second_validation_rms: f64,
+}
+
+/// A parameter in two models.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParameterPair {
+    pub effect: String,
+    pub name: String,
+    pub unit: String,
+    pub first: Option<Parameter>,
+    pub second: Option<Parameter>,
+    /// The values are further apart than their intervals allow. `None` where one is missing or has no interval.
+    pub differ: Option<bool>,
+}

@@ -1,0 +1,39 @@
+//! Effects that users write.
+
+use super::extract::{Answer, Created, Json, Path, created};
+use super::problem::{Problem, Refusals};
+use crate::lab::Lab;
+use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage};
+use axum::extract::State;
+use axum::http::StatusCode;
+
+/// Defines an effect by its formula, or its next version
+#[utoipa::path(post, path = "/effects", operation_id = "define_effect", tag = "effects", request_body = EffectDefinition,
+    responses((status = 201, description = "The effect, ready for every model of its kind", body = Effect), Refusals))]
+pub async fn define(State(lab): State<Lab>, Json(definition): Json<EffectDefinition>) -> Created<Effect> {
+    created(lab.define_effect(&definition).await?)
+}
+
+/// Says what a formula means, or where it is wrong, and keeps nothing
+#[utoipa::path(post, path = "/effects/check", operation_id = "check_effect", tag = "effects", request_body = EffectTrial,
+    responses((status = 200, description = "What the formula means", body = EffectCheck), Refusals))]
+pub async fn check(State(lab): State<Lab>, Json(trial): Json<EffectTrial>) -> Answer<EffectCheck> {
+    Ok(Json(lab.check_effect(&trial).await?))
+}
+
+/// Forgets a user's effect; refused while a model uses it
+#[utoipa::path(delete, path = "/effects/{kind}/{id}", operation_id = "delete_effect", tag = "effects",
+    params(("kind" = String, Path, description = "Kind of runs"), ("id" = String, Path, description = "The effect")),
+    responses((status = 204, description = "It is gone"), Refusals))]
+pub async fn delete(State(lab): State<Lab>, Path((kind, id)): Path<(String, String)>) -> Result<StatusCode, Problem> {
+    lab.delete_effect(&kind, &id).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// What a formula of a kind may name
+#[utoipa::path(get, path = "/formulas/{kind}", operation_id = "formula_language", tag = "effects",
+    params(("kind" = String, Path, description = "Kind of runs")),
+    responses((status = 200, description = "Signals, functions and operators", body = FormulaLanguage), Refusals))]
+pub async fn language(State(lab): State<Lab>, Path(kind): Path<String>) -> Answer<FormulaLanguage> {
+    Ok(Json(lab.formula_language(&kind)?))
+}

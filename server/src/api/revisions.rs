@@ -1,0 +1,103 @@
+//! Model versions beside each other, on other runs, and on their way out and in.
+
+use super::extract::{Answer, Created, Json, Path, Query, created};
+use super::problem::{Problem, Refusals};
+use crate::lab::Lab;
+use crate::view::{Comparison, Evaluation, Model, ModelImport, NewEvaluation};
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use jointbench_model::transfer::Format;
+use serde::Deserialize;
+use utoipa::{IntoParams, ToSchema};
+
+#[derive(Debug, Clone, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct CompareQuery {
+    /// The run that both are evaluated on; that of the first where left out.
+    pub run: Option<i64>,
+}
+
+/// Two model versions side by side: effects, parameters, and the error of both on one run
+#[utoipa::path(get, path = "/models/{id}/compare/{other}", operation_id = "compare_models", tag = "models",
+    params(("id" = i64, Path, description = "First version"), ("other" = i64, Path, description = "Second version"), CompareQuery),
+    responses((status = 200, description = "The comparison", body = Comparison), Refusals))]
+pub async fn compare(
+    State(lab): State<Lab>,
+    Path((id, other)): Path<(i64, i64)>,
+    Query(query): Query<CompareQuery>,
+) -> Answer<Comparison> {
+    Ok(Json(lab.compare(id, other, query.run).await?))
+}
+
+/// The error of a model version on any run of its kind
+#[utoipa::path(post, path = "/models/{id}/evaluate", operation_id = "evaluate_model", tag = "models",
+    params(("id" = i64, Path, description = "Model version")), request_body = NewEvaluation,
+    responses((status = 200, description = "The error there", body = Evaluation), Refusals))]
+pub async fn evaluate(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Json(new): Json<NewEvaluation>,
+) -> Answer<Evaluation> {
+    Ok(Json(lab.evaluate(id, new.run).await?))
+}
+
+/// `json` comes in again; `c` is a C99 header, `lut` a CSV table, `mujoco` and `urdf` the attributes of a joint.
+#[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ExportFormat {
+    Json,
+    C,
+    Lut,
+    Mujoco,
+    Urdf,
+}
+
+impl From<ExportFormat> for Format {
+    fn from(format: ExportFormat) -> Self {
+        match format {
+            ExportFormat::Json => Format::Json,
+            ExportFormat::C => Format::C,
+            ExportFormat::Lut => Format::Table,
+            ExportFormat::Mujoco => Format::Mujoco,
+            ExportFormat::Urdf => Format::Urdf,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct ModelExportQuery {
+    #[param(inline)]
+    pub format: ExportFormat,
+}
+
+/// A model version as a file
+#[utoipa::path(get, path = "/models/{id}/export", operation_id = "export_model", tag = "models",
+    params(("id" = i64, Path, description = "Model version"), ModelExportQuery),
+    responses((status = 200, description = "The file", body = String, content_type = "text/plain"), Refusals))]
+pub async fn export(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Query(query): Query<ModelExportQuery>,
+) -> Result<Response, Problem> {
+    let format = Format::from(query.format);
+    let text = lab.export_model(id, format).await?;
+    let media_type = match query.format {
+        ExportFormat::Json => "application/json",
+        ExportFormat::C => "text/x-c; charset=utf-8",
+        ExportFormat::Lut => "text/csv; charset=utf-8",
+        ExportFormat::Mujoco | ExportFormat::Urdf => "application/xml",
+    };
+    let name = format!("attachment; filename=\"model-{id}.{}\"", format.extension());
+    Ok(([(header::CONTENT_TYPE, media_type.to_owned()), (header::CONTENT_DISPOSITION, name)], text).into_response())
+}
+
+/// Keeps an exported model as a version of a run
+#[utoipa::path(post, path = "/models/import", operation_id = "import_model", tag = "models", request_body = ModelImport,
+    responses((status = 201, description = "The version", body = Model), Refusals))]
+pub async fn import(State(lab): State<Lab>, Json(import): Json<ModelImport>) -> Created<Model> {
+    created(lab.import_model(import).await?)
+}

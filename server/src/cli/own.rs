@@ -1,0 +1,60 @@
+//! `--own` and `--effect-file`: effects that users write.
+
+use super::exit::Exit;
+use clap::Args;
+use jointbench_instrument::Kind;
+use jointbench_model::{Definition, OwnEffect};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+#[command(
+    next_help_heading = "Effects of your own (used like those of the library; name them in --model, or let diagnose suggest them)"
+)]
+pub struct OwnEffects {
+    /// An effect in one line: "ID: tau = FORMULA; PARAMETER [UNIT] MIN..MAX; …". Unit and range may be left out, and
+    /// `start LOW..HIGH` and `whole` may follow; may be given again. Example: "rub: tau = a * tanh(velocity / w0) *
+    /// abs(load); a [1] 0..1; w0 [rad/s] 0.1..10"
+    #[arg(long, value_name = "EFFECT")]
+    pub own: Vec<String>,
+    /// TOML file with effects: [[effect]] with id, formula, parameters = [{ name, unit, min, max, start, whole }],
+    /// and if wanted kind, title and sentence; may be given again
+    #[arg(long, value_name = "EFFECTS.TOML")]
+    pub effect_file: Vec<PathBuf>,
+}
+
+impl OwnEffects {
+    /// All of them; what names no kind is of the run's.
+    pub fn read(&self, kind: Kind) -> Result<Vec<OwnEffect>, Exit> {
+        let mut all = Vec::new();
+        for file in &self.effect_file {
+            all.extend(read_file(file, kind)?);
+        }
+        for text in &self.own {
+            all.push(OwnEffect::inline(kind, text)?);
+        }
+        Ok(all)
+    }
+}
+
+fn read_file(file: &Path, kind: Kind) -> Result<Vec<OwnEffect>, Exit> {
+    let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", file.display()));
+    let text = std::fs::read_to_string(file).map_err(|fault| refuse(&fault))?;
+    let mut table: toml::Table = toml::from_str(&text).map_err(|fault| refuse(&fault))?;
+    let effects = match table.remove("effect") {
+        Some(toml::Value::Array(effects)) if table.is_empty() => effects,
+        _ => return Err(refuse(&"expected [[effect]] tables and nothing else")),
+    };
+    let mut all = Vec::new();
+    for mut effect in effects {
+        if let Some(effect) = effect.as_table_mut() {
+            effect.entry("kind").or_insert_with(|| kind.name().into());
+        }
+        let definition: Definition = effect.try_into().map_err(|fault: toml::de::Error| refuse(&fault))?;
+        let effect = OwnEffect::try_from(definition).map_err(|fault| {
+            let exit = Exit::from(fault);
+            Exit { said: format!("{}: {}", file.display(), exit.said), ..exit }
+        })?;
+        all.push(effect);
+    }
+    Ok(all)
+}

@@ -1,0 +1,107 @@
+//! Effects that users write: checked, kept, and offered to every model of their kind.
+
+use super::models::{blocking, effect_view, find_kind};
+use super::{Answer, Lab, LabError, reread};
+use crate::store::OwnEffectRecord;
+use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage, FormulaSignal};
+use jointbench_instrument::Kind;
+use jointbench_model::formula::{self, Function};
+use jointbench_model::{Definition, Effect as _, ModelSpec, Options, OwnEffect};
+
+impl Lab {
+    pub async fn effects(&self, kind: Option<&str>) -> Answer<Vec<Effect>> {
+        let kinds = match kind {
+            None => Kind::ALL.to_vec(),
+            Some(name) => vec![find_kind(name)?],
+        };
+        let records = self.inner.store.own_effects().await?;
+        let mut all: Vec<Effect> = Vec::new();
+        for kind in kinds {
+            all.extend(jointbench_model::effects(kind).iter().map(|effect| effect_view(&effect.info())));
+            for record in records.iter().filter(|record| record.kind == kind.name()) {
+                all.push(view(record)?);
+            }
+        }
+        Ok(all)
+    }
+
+    /// A model of these effects that may hold, and be suggested, every effect that users wrote.
+    pub(super) async fn spec(&self, kind: Kind, effects: &[String]) -> Answer<ModelSpec> {
+        Ok(ModelSpec::with_own(kind, effects, self.own_effects(kind).await?)?)
+    }
+
+    pub(super) async fn own_effects(&self, kind: Kind) -> Answer<Vec<OwnEffect>> {
+        let records = self.inner.store.own_effects().await?;
+        records.iter().filter(|record| record.kind == kind.name()).map(read).collect()
+    }
+
+    /// What a formula means, and what it comes to on a run.
+    pub async fn check_effect(&self, trial: &EffectTrial) -> Answer<EffectCheck> {
+        let own = parse(&trial.effect)?;
+        let name = |p: &usize| own.definition().parameters[*p].name.clone();
+        let mut check = EffectCheck {
+            effect: Effect { definition: Some(reread(own.definition())?), ..effect_view(&own.info()) },
+            linear: own.formula().columns.iter().map(|(p, _)| name(p)).collect(),
+            shape: own.formula().shape.iter().map(name).collect(),
+            signals: own.formula().signals.iter().map(|s| s.name.to_owned()).collect(),
+            parameters: Vec::new(),
+        };
+        if let Some(run) = trial.run {
+            let table = self.table(run).await?;
+            let effects = table.meta().baseline.iter().cloned().chain([own.id().to_owned()]);
+            let spec = ModelSpec::with_own(table.kind(), effects, vec![own.clone()])?;
+            let fit = blocking(move || jointbench_model::fit(&table, &spec, &Options::default())).await?;
+            let found: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == own.id()).collect();
+            check.parameters = reread(&found)?;
+        }
+        Ok(check)
+    }
+
+    /// Keeps an effect; one of the same id becomes its next version.
+    pub async fn define_effect(&self, definition: &EffectDefinition) -> Answer<Effect> {
+        let own = parse(definition)?;
+        let kept = reread(own.definition())?;
+        let record = self.inner.store.save_own_effect(own.kind().name(), own.id(), &kept).await?;
+        tracing::info!(effect = own.id(), version = record.version, "effect defined");
+        view(&record)
+    }
+
+    pub async fn delete_effect(&self, kind: &str, id: &str) -> Answer<()> {
+        Ok(self.inner.store.delete_own_effect(find_kind(kind)?.name(), id).await?)
+    }
+
+    pub fn formula_language(&self, kind: &str) -> Answer<FormulaLanguage> {
+        let kind = find_kind(kind)?;
+        let signal = |s: &formula::NamedSignal| FormulaSignal {
+            name: s.name.to_owned(),
+            unit: s.unit.to_owned(),
+            meaning: s.meaning.to_owned(),
+        };
+        Ok(FormulaLanguage {
+            kind: kind.to_string(),
+            left_hand_side: formula::left_hand_side(kind).to_owned(),
+            signals: formula::signals(kind).iter().map(signal).collect(),
+            functions: Function::ALL.iter().map(|f| f.name().to_owned()).collect(),
+            operators: ["+", "-", "*", "/", "^"].map(str::to_owned).into(),
+        })
+    }
+}
+
+fn parse(definition: &EffectDefinition) -> Answer<OwnEffect> {
+    find_kind(&definition.kind)?;
+    let definition: Definition = reread(definition)?;
+    OwnEffect::try_from(definition).map_err(|fault| LabError::Formula(fault.into()))
+}
+
+fn read(record: &OwnEffectRecord) -> Answer<OwnEffect> {
+    let unread = |fault| LabError::Internal(format!("effect {} cannot be read any more: {fault}", record.effect));
+    serde_json::from_value(record.definition.clone()).map_err(unread)
+}
+
+fn view(record: &OwnEffectRecord) -> Answer<Effect> {
+    Ok(Effect {
+        definition: Some(reread(&record.definition)?),
+        version: Some(record.version),
+        ..effect_view(&read(record)?.info())
+    })
+}

@@ -1,0 +1,60 @@
+//! Model versions beside each other, on other runs, and on their way out and in.
+
+use super::models::blocking;
+use super::{Answer, Lab, LabError, convert, reread};
+use crate::store::NewModel;
+use crate::view::{Comparison, Evaluation, LiveMessage, Model, ModelImport};
+use jointbench_model::transfer::{Format, ModelFile, export};
+use jointbench_model::{Fit, Options};
+
+impl Lab {
+    /// `run`: where both are evaluated; the run of the first where left out.
+    pub async fn compare(&self, first: i64, second: i64, run: Option<i64>) -> Answer<Comparison> {
+        let run = match run {
+            Some(run) => run,
+            None => self.inner.store.model(first).await?.run,
+        };
+        let (first, second) = (self.fit(first).await?, self.fit(second).await?);
+        let table = self.table(run).await?;
+        reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)
+    }
+
+    pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {
+        let fit = self.fit(model).await?;
+        let table = self.table(run).await?;
+        reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)
+    }
+
+    pub async fn export_model(&self, model: i64, format: Format) -> Answer<String> {
+        Ok(export(&self.fit(model).await?, format)?)
+    }
+
+    /// Keeps an exported model as a version of a run. Its numbers stay as they are; its errors are those on the run.
+    pub async fn import_model(&self, import: ModelImport) -> Answer<Model> {
+        let file: ModelFile = serde_json::from_value(import.model.into())
+            .map_err(|fault| LabError::Invalid(format!("this is no exported model: {fault}")))?;
+        let fit = file.check()?;
+        let table = self.table(import.run).await?;
+        let (kept, held) = (fit.clone(), blocking(move || jointbench_model::evaluate(&fit, &table)).await?);
+        let new = NewModel {
+            run: import.run,
+            parent: None,
+            kind: kept.kind.to_string(),
+            effects: kept.effects.clone(),
+            residual: reread(&held.residual)?,
+            rms: held.rms,
+            validation_rms: held.rms,
+            noise_floor_rms: None,
+            options: reread(&Options::default())?,
+            fit: reread(&kept)?,
+        };
+        let record = self.inner.store.save_model(&new).await?;
+        tracing::info!(run.id = import.run, model.id = record.id, "model imported");
+        self.hub().tell(LiveMessage::Model { run: import.run, model: record.id });
+        convert::model(record)
+    }
+
+    async fn fit(&self, model: i64) -> Answer<Fit> {
+        reread(&self.inner.store.model(model).await?.fit)
+    }
+}

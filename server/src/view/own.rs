@@ -1,0 +1,147 @@
+//! Users' effects, and models beside each other and on their way out and in.
+
+use super::model::{Effect, FittedParameter, ResidualKind};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use utoipa::ToSchema;
+
+/// An effect that a user writes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EffectDefinition {
+    /// Lower case letters, digits and underscores; not an id of the library.
+    pub id: String,
+    pub kind: String,
+    /// `tau = …` for friction and brake, `error = …` for encoder, `torsion = …` for stiffness.
+    pub formula: String,
+    pub parameters: Vec<DefinedParameter>,
+    #[serde(default)]
+    pub title: String,
+    /// One sentence that a technician understands.
+    #[serde(default)]
+    pub sentence: String,
+}
+
+/// A parameter that enters linearly is solved for; the others are searched for in their range.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DefinedParameter {
+    pub name: String,
+    /// `1` where left out.
+    #[serde(default = "one")]
+    pub unit: String,
+    #[serde(default)]
+    pub min: Option<f64>,
+    #[serde(default)]
+    pub max: Option<f64>,
+    /// Where the search begins, inside the bounds.
+    #[serde(default)]
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
+    pub start: Option<[f64; 2]>,
+    /// A whole number: every one of the range is tried.
+    #[serde(default)]
+    pub whole: bool,
+}
+
+fn one() -> String {
+    "1".to_owned()
+}
+
+/// A definition to be checked, and the run to try it on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EffectTrial {
+    pub effect: EffectDefinition,
+    /// The formula must be finite on this run; the effect is fitted beside the run's baseline.
+    #[serde(default)]
+    pub run: Option<i64>,
+}
+
+/// What a formula means.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct EffectCheck {
+    pub effect: Effect,
+    /// Parameters that enter linearly.
+    pub linear: Vec<String>,
+    /// Parameters that are searched for.
+    pub shape: Vec<String>,
+    /// Signals that the formula names.
+    pub signals: Vec<String>,
+    /// The effect's parameters on the run; empty where none was named.
+    pub parameters: Vec<FittedParameter>,
+}
+
+/// A signal that a formula may name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FormulaSignal {
+    pub name: String,
+    pub unit: String,
+    pub meaning: String,
+}
+
+/// What formulas of a kind are made of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FormulaLanguage {
+    pub kind: String,
+    /// What stands before the equals sign.
+    pub left_hand_side: String,
+    pub signals: Vec<FormulaSignal>,
+    pub functions: Vec<String>,
+    pub operators: Vec<String>,
+}
+
+/// On which run to evaluate a model version.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewEvaluation {
+    pub run: i64,
+}
+
+/// A model on a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Evaluation {
+    pub rms: f64,
+    pub unit: String,
+    pub residual: ResidualKind,
+    /// ‖residual‖ / ‖measured‖.
+    pub relative_error: f64,
+    pub rows: u64,
+}
+
+/// Two model versions side by side.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Comparison {
+    pub kind: String,
+    /// Effects of the second that the first has not.
+    pub added: Vec<String>,
+    pub removed: Vec<String>,
+    pub parameters: Vec<ParameterPair>,
+    /// Both on the same run.
+    pub first: Evaluation,
+    pub second: Evaluation,
+    /// Each on what was held out of its own run.
+    pub first_validation_rms: f64,
+    pub second_validation_rms: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ParameterPair {
+    pub effect: String,
+    pub name: String,
+    pub unit: String,
+    pub first: Option<FittedParameter>,
+    pub second: Option<FittedParameter>,
+    /// The values are further apart than their intervals allow; `null` where one is missing or has no interval.
+    pub differ: Option<bool>,
+}
+
+/// An exported model that comes in as a version of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelImport {
+    /// The run that the model is held against; its errors become those of the version.
+    pub run: i64,
+    /// What `GET /models/{id}/export?format=json` gave.
+    #[schema(value_type = Object)]
+    pub model: Map<String, Value>,
+}

@@ -1,0 +1,72 @@
+//! Model versions beside each other, on other runs, out and in.
+
+use crate::daemon::TestDaemon;
+use crate::own_effects::{RUB, rub, rubbing_run};
+use serde_json::{Value, json};
+
+struct Two {
+    daemon: TestDaemon,
+    run: i64,
+    bare: Value,
+    better: Value,
+}
+
+fn two_versions() -> Two {
+    let daemon = TestDaemon::start();
+    let run = rubbing_run(&daemon);
+    assert_eq!(daemon.post("/api/v1/effects", &rub(RUB).to_string()).0, 201);
+    let fit = |effects: Value| {
+        let (status, model) = daemon.post("/api/v1/models", &json!({"run": run, "effects": effects}).to_string());
+        assert_eq!(status, 201, "{model}");
+        model
+    };
+    let bare = fit(json!(["load_transmission", "coulomb", "viscous"]));
+    let better = fit(json!(["load_transmission", "coulomb", "viscous", "rub"]));
+    Two { daemon, run, bare, better }
+}
+
+fn text(daemon: &TestDaemon, path: &str) -> String {
+    daemon.get_raw(path).into_body().read_to_string().unwrap()
+}
+
+#[test]
+fn two_versions_stand_side_by_side() {
+    let Two { daemon, run, bare, better } = two_versions();
+    let (status, found) = daemon.get(&format!("/api/v1/models/{}/compare/{}", bare["id"], better["id"]));
+    assert_eq!(status, 200, "{found}");
+    assert_eq!((&found["added"], &found["removed"]), (&json!(["rub"]), &json!([])));
+    assert!(found["second"]["rms"].as_f64() < found["first"]["rms"].as_f64(), "{found}");
+    let pair = |name: &str| found["parameters"].as_array().unwrap().iter().find(|p| p["name"] == name).unwrap().clone();
+    assert!(pair("a")["first"].is_null() && pair("a")["differ"].is_null() && pair("a")["second"]["value"].is_f64());
+    assert!(pair("tau_c")["differ"].is_boolean(), "{found}");
+    let (status, held) =
+        daemon.post(&format!("/api/v1/models/{}/evaluate", better["id"]), &json!({"run": run}).to_string());
+    assert_eq!((status, &held["rms"]), (200, &found["second"]["rms"]), "{held}");
+    assert_eq!(daemon.get(&format!("/api/v1/models/{}/compare/99", bare["id"])).0, 404);
+    assert_eq!(daemon.post("/api/v1/models/1/evaluate", r#"{"run": 99}"#).0, 404);
+}
+
+#[test]
+fn what_is_exported_comes_in_again_unchanged() {
+    let Two { daemon, run, better, .. } = two_versions();
+    let path = format!("/api/v1/models/{}/export?format=", better["id"]);
+    let out = text(&daemon, &format!("{path}json"));
+    let body = format!(r#"{{"run": {run}, "model": {out}}}"#);
+    let (status, again) = daemon.post("/api/v1/models/import", &body);
+    assert_eq!((status, &again["fit"]["terms"]), (201, &better["fit"]["terms"]), "{again}");
+    let residuals = |model: &Value| daemon.get(&format!("/api/v1/models/{}/residuals", model["id"])).1;
+    assert_eq!(residuals(&again)["predicted"], residuals(&better)["predicted"]);
+    for (format, words) in [
+        ("c", "static inline double joint_friction_nm("),
+        ("lut", "velocity_rad_s,load_nm,motor_torque_nm"),
+        ("mujoco", "<joint frictionloss="),
+        ("urdf", "<dynamics damping="),
+    ] {
+        assert!(text(&daemon, &format!("{path}{format}")).contains(words), "{format}");
+    }
+    assert_eq!(daemon.get(&format!("{path}matlab")).0, 400);
+    let bad = format!(r#"{{"run": {run}, "model": {}}}"#, out.replace("tanh(velocity", "thanh(velocity"));
+    let (status, problem) = daemon.post("/api/v1/models/import", &bad);
+    assert_eq!(status, 422, "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("did you mean tanh"), "{problem}");
+}
