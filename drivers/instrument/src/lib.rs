@@ -6,6 +6,7 @@
 pub mod bench;
 pub mod clock;
 pub mod fault;
+mod join;
 pub mod limits;
 pub mod meta;
 pub mod roles;
@@ -16,6 +17,7 @@ pub mod units;
 pub use bench::Bench;
 pub use clock::{Clock, SystemClock};
 pub use fault::{Fault, FaultKind};
+pub use join::JoinFault;
 pub use limits::{Breach, Limits};
 pub use meta::{Kind, Meta, Motion};
 pub use table::{RunTable, TableFault};

@@ -101,6 +101,7 @@ fn step(model: &Assembly, advance: Option<&Advance>) -> Step {
     Step {
         added: advance.and_then(|a| a.added.as_ref()).map(|r| r.term.id().into()),
         removed: advance.and_then(|a| a.removed).map(Into::into),
+        confounded_with: advance.map_or_else(Vec::new, |a| a.ties.iter().map(|t| (*t).into()).collect()),
         model: model.effects.clone(),
         rms: (dot(&residual, &residual) / n).sqrt(),
         validation_rms: (held_out(&model.main).iter().sum::<f64>() / n).sqrt(),
@@ -218,6 +219,8 @@ fn experiment(found: &Exploration, prepared: &Prepared) -> Option<Experiment> {
             parameters,
             why: "without repeats of the same profile nobody knows how small the error can become".into(),
             expected_z: None,
+            expected_duration_s: None,
+            separates: Vec::new(),
         });
     }
     None

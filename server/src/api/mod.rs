@@ -1,5 +1,6 @@
 //! HTTP: the router is the table of contents. Handlers only translate; the work is done in [`crate::lab`].
 
+mod autopilots;
 mod bench;
 mod dashboard;
 mod door;
@@ -49,6 +50,7 @@ const UPLOAD_LIMIT_BYTES: usize = 1 << 30;
         (name = "effects", description = "The library of physical causes"),
         (name = "models", description = "Fitted versions, a tree for each run"),
         (name = "diagnoses", description = "Where a model fails and what it lacks"),
+        (name = "autopilots", description = "The run that would tell more, and chains of runs that find out by themselves"),
         (name = "live", description = "State, progress, events and samples as they come"),
         (name = "daemon", description = "The daemon itself"),
     )
@@ -90,6 +92,10 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(models::fit))
         .routes(routes!(models::diagnoses, models::diagnose))
         .routes(routes!(models::diagnosis))
+        .routes(routes!(autopilots::experiment))
+        .routes(routes!(autopilots::list, autopilots::start))
+        .routes(routes!(autopilots::get))
+        .routes(routes!(autopilots::stop))
         .routes(routes!(live::stream))
         .routes(routes!(health::health))
         .routes(routes!(health::specification))

@@ -27,7 +27,7 @@ pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -
 #[utoipa::path(post, path = "/models", tag = "models", request_body = NewModel,
     responses((status = 201, description = "The version", body = Model), Refusals))]
 pub async fn create(State(lab): State<Lab>, Json(new): Json<NewModel>) -> Created<Model> {
-    created(lab.create_model(new.run, &new.effects, new.parent).await?)
+    created(lab.create_model(&new.runs(), &new.effects, new.parent).await?)
 }
 
 #[derive(Debug, Clone, Deserialize, IntoParams)]

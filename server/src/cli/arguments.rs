@@ -35,6 +35,9 @@ pub enum Command {
     Check(Check),
     /// Start a procedure on a running daemon
     Run(Run),
+    /// Measure, diagnose and measure again on a running daemon, until nothing is missing
+    #[command(after_help = AUTOPILOT)]
+    Autopilot(Autopilot),
     /// Say where a model fails on a measured run and which effect is missing
     Diagnose(Diagnose),
     /// Diagnose, add the best effect and fit again, until nothing is missing
@@ -130,12 +133,62 @@ pub struct Run {
     pub reach: Reach,
 }
 
-/// A measured run, and how to read and prepare it.
+const AUTOPILOT: &str = "\
+It makes a run, fits the baseline and diagnoses it. What is missing and certain is added. Where two effects explain the
+data equally well, or an effect could not have shown, it makes the run that is expected to decide, and begins again with
+all runs together. Every step is kept with its before and after, and every run passes the bench's limits and guard.
+
+  jointbench autopilot --runs 3 --wait                  at most three runs, told as they happen
+  jointbench autopilot --bench-time-s 600 --set load_levels=2 --wait
+  jointbench autopilot --after 4 --wait                 only the run that diagnosis 4 asks for
+
+Exit codes: 0 nothing is missing any more, 1 a run failed or somebody ended it, 2 bad arguments, 3 the budget is spent and
+something is still open, or structure remains that no effect explains.";
+
+#[derive(Debug, Args)]
+pub struct Autopilot {
+    /// At most so many runs, the first included
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pub runs: u32,
+    /// At most so much time of the bench [s]
+    #[arg(long, value_name = "S")]
+    pub bench_time_s: Option<f64>,
+    /// Procedure of the first run
+    #[arg(long, value_name = "ID", default_value = "friction")]
+    pub procedure: String,
+    /// A parameter of the first run, in SI units; may be given again
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Effects of the model to start from, with commas between [default: `baseline` of the procedure]
+    #[arg(long, value_name = "EFFECTS")]
+    pub model: Option<String>,
+    /// Add at most so many effects
+    #[arg(long, value_name = "N", default_value_t = 6)]
+    pub max_effects: u32,
+    /// Make only the run that this diagnosis asks for, and diagnose its model again with it
+    #[arg(long, value_name = "DIAGNOSIS", conflicts_with_all = ["runs", "bench_time_s", "procedure", "set", "model", "max_effects"])]
+    pub after: Option<i64>,
+    /// Bench to run on; not needed where the daemon has only one
+    #[arg(long, value_name = "NAME")]
+    pub bench: Option<String>,
+    /// Follow it to its end; Ctrl-C stops waiting, not the autopilot
+    #[arg(long)]
+    pub wait: bool,
+    /// Print the autopilot with all its steps as JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub reach: Reach,
+}
+
+/// A measured run, or several of one joint, and how to read and prepare it.
 #[derive(Debug, Args)]
 pub struct Measured {
-    /// Run table: .csv, .csv.gz, .parquet or .arrow
-    pub file: PathBuf,
-    /// Facts about the set-up [default: RUN.meta.json or meta.json beside the file, or what is embedded]
+    /// Run table: .csv, .csv.gz, .parquet or .arrow; further runs of the same kind and joint are looked at together
+    /// with the first, in the order in which they were made
+    #[arg(required = true, value_name = "RUN")]
+    pub files: Vec<PathBuf>,
+    /// Facts about the set-up, for all files [default: RUN.meta.json or meta.json beside each file, or what is embedded]
     #[arg(long, value_name = "META.JSON")]
     pub meta: Option<PathBuf>,
     /// Effects of the model, with commas between [default: `baseline` of the facts]

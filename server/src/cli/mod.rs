@@ -1,6 +1,7 @@
 //! The command line. Offline commands work on files; the others on a data folder or a running daemon.
 
 mod arguments;
+mod autopilot;
 mod check;
 mod client;
 mod demo;
@@ -36,6 +37,7 @@ pub fn main() -> ExitCode {
         Command::Serve(arguments) => serve::serve(arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
         Command::Diagnose(arguments) => offline::diagnose(&arguments),
         Command::Discover(arguments) => offline::discover(&arguments),
         Command::Fit(arguments) => offline::fit(&arguments),

@@ -3,17 +3,17 @@
 use super::arguments::{Columns, Diagnose, Discover, Fit, Measured, Preparation};
 use super::exit::{Done, Exit};
 use super::print;
-use crate::lab::reread;
+use crate::lab::{Offer, next_run, reread};
 use jointbench_files::{ReadOptions, parse_map, parse_scale};
 use jointbench_instrument::RunTable;
-use jointbench_model::{ModelSpec, Options};
+use jointbench_model::{ModelSpec, Open, Options};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;
 
 pub fn diagnose(arguments: &Diagnose) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
-    let diagnosis = jointbench_model::diagnose(&run, &spec, &options)?;
+    let diagnosis = crate::lab::diagnose(&run, &spec, &options, &Offer::shown_by(&run))?;
     if arguments.run.json {
         return json_out(&diagnosis);
     }
@@ -23,7 +23,8 @@ pub fn diagnose(arguments: &Diagnose) -> Done {
 
 pub fn discover(arguments: &Discover) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
-    let discovery = jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {})?;
+    let mut discovery = jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {})?;
+    discovery.experiment = next_run(&run, &Open::from(&discovery), &Offer::shown_by(&run), &options);
     if arguments.run.json {
         return json_out(&discovery);
     }
@@ -60,7 +61,12 @@ pub fn fit(arguments: &Fit) -> Done {
 }
 
 fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
-    let run = read(&measured.file, measured.meta.as_deref(), &measured.columns)?;
+    let mut runs = Vec::new();
+    for file in &measured.files {
+        runs.push(read(file, measured.meta.as_deref(), &measured.columns)?);
+    }
+    let first = runs.remove(0);
+    let run = first.join(runs).map_err(|fault| Exit::bad_input(fault.to_string()))?;
     let own = measured.own.read(run.kind())?;
     let spec = match &measured.model {
         Some(list) => ModelSpec::with_own(run.kind(), list.split(',').map(str::trim).filter(|id| !id.is_empty()), own)?,

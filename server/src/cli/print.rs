@@ -1,8 +1,8 @@
 //! Results as a person reads them.
 
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState, Region,
-    ResidualKind, Suggestion,
+    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Parameter, ParameterPair,
+    ParameterState, Region, ResidualKind, Suggestion,
 };
 use std::path::Path;
 
@@ -86,10 +86,7 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
     suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
-    if let Some(experiment) = &diagnosis.experiment {
-        println!();
-        println!("a run that would tell: {} ({})", experiment.procedure, experiment.why);
-    }
+    next_run(diagnosis.experiment.as_ref());
     for hidden in &diagnosis.not_visible {
         println!("cannot be seen here: {} ({})", hidden.effect, hidden.why);
     }
@@ -113,6 +110,19 @@ pub fn discovery(discovery: &Discovery) {
     println!();
     println!("{}", discovery.summary);
     regions(&discovery.regions, &discovery.fit.unit);
+    next_run(discovery.experiment.as_ref());
+}
+
+/// As a command, so that it can be typed.
+fn next_run(experiment: Option<&Experiment>) {
+    let Some(experiment) = experiment else { return };
+    let set = experiment.parameters.iter().map(|(name, value)| format!(" --set {name}={value}"));
+    println!();
+    println!("what to measure next: {}", experiment.why);
+    if let Some(duration_s) = experiment.expected_duration_s {
+        println!("  {duration_s:.0} s of the bench at most:");
+    }
+    println!("  jointbench run {}{}", experiment.procedure, set.collect::<String>());
 }
 
 pub fn parameters(parameters: &[Parameter]) {

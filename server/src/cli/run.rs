@@ -8,7 +8,7 @@ use crate::view::{Bench, NewRun, Run, RunState};
 use serde_json::{Map, Value};
 use std::time::Duration;
 
-const LOOK_EVERY: Duration = Duration::from_millis(250);
+pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach);
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Done {
     }
 }
 
-fn choose_bench(client: &Client, named: Option<&str>) -> Result<String, Exit> {
+pub(super) fn choose_bench(client: &Client, named: Option<&str>) -> Result<String, Exit> {
     if let Some(name) = named {
         return Ok(name.to_owned());
     }
@@ -55,7 +55,7 @@ fn choose_bench(client: &Client, named: Option<&str>) -> Result<String, Exit> {
     }
 }
 
-fn parameters(set: &[String]) -> Result<Map<String, Value>, Exit> {
+pub(super) fn parameters(set: &[String]) -> Result<Map<String, Value>, Exit> {
     let mut parameters = Map::new();
     for pair in set {
         let (name, value) = pair

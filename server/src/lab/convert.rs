@@ -136,6 +136,7 @@ pub(super) fn model(record: ModelRecord) -> Result<view::Model, LabError> {
     Ok(view::Model {
         id: record.id,
         run: record.run,
+        more_runs: record.more_runs,
         kind: record.kind,
         parent: record.parent,
         added: record.added,

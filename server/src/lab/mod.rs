@@ -1,23 +1,30 @@
 //! The one service layer: whatever the REST API, the demo or the command line does with a bench or a run goes through
 //! a [`Lab`].
 
+mod autopilot;
 mod benches;
 mod convert;
 mod error;
+mod experiment;
 mod models;
 mod own_effects;
+mod pilot;
 mod revisions;
 mod runs;
 mod transfer;
 
 pub use convert::{bench_view, reread, run_event, safe_view, state_view};
 pub use error::LabError;
+pub use experiment::{Offer, next_run};
+pub use models::diagnose;
 pub use transfer::{FileFormat, ImportRequest};
 
 use crate::bench::BenchHandle;
 use crate::config::BenchDescription;
 use crate::live::Hub;
 use crate::store::Store;
+use crate::view::AutopilotState;
+use autopilot::Flights;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -34,6 +41,7 @@ struct Inner {
     store: Store,
     hub: Hub,
     benches: Vec<BenchHandle>,
+    flights: Flights,
 }
 
 impl Lab {
@@ -41,6 +49,7 @@ impl Lab {
     /// Nothing that was interrupted starts again.
     pub async fn open(data: &Path, descriptions: Vec<BenchDescription>) -> Answer<Lab> {
         let store = Store::open(data).await?;
+        interrupt_autopilots(&store).await?;
         let mut interrupted: BTreeMap<String, Vec<i64>> = BTreeMap::new();
         for run in store.interrupt_open_runs().await? {
             interrupted.entry(run.bench).or_default().push(run.id);
@@ -62,14 +71,14 @@ impl Lab {
                 store.end_run(run, jointbench_procedure::Safe::UnsafeUnknown, Some(reason)).await?;
             }
         }
-        let lab = Lab { inner: Arc::new(Inner { store, hub, benches }) };
+        let lab = Lab { inner: Arc::new(Inner { store, hub, benches, flights: Flights::default() }) };
         lab.wait_until_secured().await;
         Ok(lab)
     }
 
     /// The store alone, to bring runs in and out while no daemon has it. No bench, and nothing is ended.
     pub fn of_store(store: Store) -> Lab {
-        Lab { inner: Arc::new(Inner { store, hub: Hub::new(), benches: Vec::new() }) }
+        Lab { inner: Arc::new(Inner { store, hub: Hub::new(), benches: Vec::new(), flights: Flights::default() }) }
     }
 
     pub fn hub(&self) -> &Hub {
@@ -78,11 +87,21 @@ impl Lab {
 
     /// Ends all runs, secures all benches and closes the store.
     pub async fn shut_down(&self) {
+        self.inner.flights.abort();
         let benches = self.inner.benches.clone();
         let ended = tokio::task::spawn_blocking(move || benches.iter().for_each(BenchHandle::shut_down)).await;
         if let Err(fault) = ended {
             tracing::error!(%fault, "shutting down failed");
         }
+        if let Err(fault) = interrupt_autopilots(&self.inner.store).await {
+            tracing::error!(%fault, "that autopilots were interrupted could not be kept");
+        }
         self.inner.store.close().await;
     }
+}
+
+async fn interrupt_autopilots(store: &Store) -> Answer<()> {
+    let state: String = reread(&AutopilotState::Interrupted)?;
+    store.interrupt_open_autopilots(&state, autopilot::INTERRUPTED).await?;
+    Ok(())
 }

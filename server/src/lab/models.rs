@@ -1,28 +1,34 @@
 //! Effects, model versions and diagnoses.
 
-use super::{Answer, Lab, LabError, convert, reread};
+use super::{Answer, Lab, LabError, Offer, convert, next_run, reread};
 use crate::store::NewModel;
 use crate::view::{self, Diagnosis, Effect, LiveMessage, Model, ResidualSet, finite};
 use jointbench_instrument::{Kind, RunTable};
-use jointbench_model::{Fit, ModelError, ModelSpec, Options};
+use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options};
 
 impl Lab {
-    /// Fits effects to a run and keeps the fit as a version, with its diagnosis.
-    pub async fn create_model(&self, run: i64, effects: &[String], parent: Option<i64>) -> Answer<Model> {
+    /// Fits effects to runs of one joint, looked at together, and keeps the fit as a version of the first, with its
+    /// diagnosis.
+    pub async fn create_model(&self, runs: &[i64], effects: &[String], parent: Option<i64>) -> Answer<Model> {
+        let Some((&run, more_runs)) = runs.split_first() else {
+            return Err(LabError::Invalid("name the run that the model is fitted to".into()));
+        };
         if let Some(parent) = parent
             && self.inner.store.model(parent).await?.run != run
         {
             return Err(LabError::Invalid(format!("model version {parent} belongs to another run than {run}")));
         }
-        let table = self.table(run).await?;
+        let table = self.tables(runs).await?;
         let spec = self.spec(table.kind(), effects).await?;
         let options = Options::default();
         let chosen = reread(&options)?;
-        let (fit, diagnosis) = blocking(move || fit_and_diagnose(&table, &spec, &options)).await?;
+        let offer = self.offer(&table, runs, None).await?;
+        let (fit, diagnosis) = blocking(move || fit_and_diagnose(&table, &spec, &options, &offer)).await?;
         let noise_floor_rms = diagnosis.as_ref().and_then(|diagnosis| diagnosis.noise_floor_rms).and_then(finite);
         let checked: view::Fit = reread(&fit)?;
         let new = NewModel {
             run,
+            more_runs: more_runs.to_vec(),
             parent,
             kind: fit.kind.to_string(),
             effects: fit.effects.clone(),
@@ -59,7 +65,7 @@ impl Lab {
     pub async fn residuals(&self, id: i64) -> Answer<ResidualSet> {
         let model = self.inner.store.model(id).await?;
         let fit: Fit = reread(&model.fit)?;
-        let table = self.table(model.run).await?;
+        let table = self.tables(&model.runs()).await?;
         let set = blocking(move || jointbench_model::residuals(&table, &fit, &Options::default())).await?;
         reread(&set)
     }
@@ -77,9 +83,10 @@ impl Lab {
                 return convert::diagnosis(kept, record.run);
             }
         }
-        let table = self.table(record.run).await?;
+        let table = self.tables(&record.runs()).await?;
         let spec = ModelSpec::with_own(table.kind(), &record.effects, own)?;
-        let diagnosis = blocking(move || jointbench_model::diagnose(&table, &spec, &Options::default())).await?;
+        let offer = self.offer(&table, &record.runs(), None).await?;
+        let diagnosis = blocking(move || diagnose(&table, &spec, &Options::default(), &offer)).await?;
         let kept = self.inner.store.save_diagnosis(model, &reread(&diagnosis)?).await?;
         convert::diagnosis(kept, record.run)
     }
@@ -97,13 +104,26 @@ impl Lab {
     }
 }
 
+/// The diagnosis with the run to make next.
+pub fn diagnose(
+    table: &RunTable,
+    spec: &ModelSpec,
+    options: &Options,
+    offer: &Offer,
+) -> Result<jointbench_model::Diagnosis, ModelError> {
+    let mut diagnosis = jointbench_model::diagnose(table, spec, options)?;
+    diagnosis.experiment = next_run(table, &Open::from(&diagnosis), offer, options);
+    Ok(diagnosis)
+}
+
 /// A run that can be fitted but not diagnosed still has a model.
 fn fit_and_diagnose(
     table: &RunTable,
     spec: &ModelSpec,
     options: &Options,
+    offer: &Offer,
 ) -> Result<(Fit, Option<jointbench_model::Diagnosis>), ModelError> {
-    match jointbench_model::diagnose(table, spec, options) {
+    match diagnose(table, spec, options, offer) {
         Ok(diagnosis) => Ok((diagnosis.fit.clone(), Some(diagnosis))),
         Err(_) => Ok((jointbench_model::fit(table, spec, options)?, None)),
     }

@@ -38,6 +38,7 @@ impl Lab {
         let (kept, held) = (fit.clone(), blocking(move || jointbench_model::evaluate(&fit, &table)).await?);
         let new = NewModel {
             run: import.run,
+            more_runs: Vec::new(),
             parent: None,
             kind: kept.kind.to_string(),
             effects: kept.effects.clone(),

@@ -105,6 +105,22 @@ impl Lab {
         Ok(RunTable::new(meta, trace)?)
     }
 
+    /// Runs of one joint together, as the models take them.
+    pub(super) async fn tables(&self, runs: &[i64]) -> Answer<RunTable> {
+        let mut tables = Vec::new();
+        for (i, run) in runs.iter().enumerate() {
+            if runs[..i].contains(run) {
+                return Err(LabError::Invalid(format!("run {run} is named twice: name each run once")));
+            }
+            tables.push(self.table(*run).await?);
+        }
+        if tables.is_empty() {
+            return Err(LabError::Invalid("name at least one run".into()));
+        }
+        let first = tables.remove(0);
+        first.join(tables).map_err(|fault| LabError::Invalid(fault.to_string()))
+    }
+
     pub(super) async fn facts(&self, id: i64) -> Answer<(Meta, RunRecord)> {
         let record = self.inner.store.run(id).await?;
         let meta = serde_json::from_value(Value::Object(record.meta.clone()))

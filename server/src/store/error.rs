@@ -27,6 +27,8 @@ pub enum StoreError {
     NoEffect(String),
     #[error("effect {effect} is used by model version {model}: it stays, but a new version of it can be defined")]
     EffectUsed { effect: String, model: i64 },
+    #[error("there is no autopilot {0}")]
+    NoAutopilot(i64),
     #[error("run {run} has no channel {name}: it has {}", .there.join(", "))]
     NoChannel { run: RunId, name: String, there: Vec<String> },
     #[error("run {run} is {state}: nothing can be added to it")]
@@ -51,7 +53,10 @@ impl StoreError {
     /// What was named is not there.
     pub fn is_not_found(&self) -> bool {
         use StoreError as E;
-        matches!(self, E::NoRun(_) | E::NoModel(_) | E::NoDiagnosis(_) | E::NoEffect(_) | E::NoChannel { .. })
+        matches!(
+            self,
+            E::NoRun(_) | E::NoModel(_) | E::NoDiagnosis(_) | E::NoEffect(_) | E::NoAutopilot(_) | E::NoChannel { .. }
+        )
     }
 }
 

@@ -4,6 +4,7 @@
 //! Samples lie in coded columns ([`codec`]) of [`BLOCK_ROWS`] rows with a min/max [`pyramid`]; until a block is full, the
 //! rows of each commit lie in the `tail` as they came. What was measured never changes: the schema's triggers refuse it.
 
+mod autopilots;
 pub mod codec;
 mod commit;
 mod error;
@@ -21,8 +22,8 @@ mod view;
 
 pub use error::StoreError;
 pub use records::{
-    BenchBlock, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, OwnEffectRecord, RunFilter, RunRecord,
-    View, ViewColumn,
+    AutopilotRecord, BenchBlock, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, OwnEffectRecord,
+    RunFilter, RunRecord, View, ViewColumn,
 };
 
 use sqlx::SqlitePool;

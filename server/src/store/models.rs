@@ -9,6 +9,7 @@ use serde_json::Value;
 struct ModelRow {
     id: i64,
     run: RunId,
+    more_runs: String,
     parent: Option<i64>,
     kind: String,
     effects: String,
@@ -28,6 +29,7 @@ impl ModelRow {
         Ok(ModelRecord {
             id: self.id,
             run: self.run,
+            more_runs: serde_json::from_str(&self.more_runs)?,
             parent: self.parent,
             kind: self.kind,
             effects: serde_json::from_str(&self.effects)?,
@@ -47,7 +49,9 @@ impl ModelRow {
 impl Store {
     /// Keeps a fit as a version. What was added and removed is told from the parent's effects.
     pub async fn save_model(&self, new: &NewModel) -> Result<ModelRecord, StoreError> {
-        exists(&mut *self.readers.acquire().await?, new.run).await?;
+        for run in std::iter::once(new.run).chain(new.more_runs.iter().copied()) {
+            exists(&mut *self.readers.acquire().await?, run).await?;
+        }
         let parent = match new.parent {
             Some(parent) => self.model(parent).await?,
             None => return self.insert_model(new, &[]).await,
@@ -63,10 +67,11 @@ impl Store {
             these.iter().filter(|effect| !those.contains(effect)).cloned().collect::<Vec<String>>()
         };
         let row: ModelRow = sqlx::query_as(
-            "INSERT INTO models (run, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
-             noise_floor_rms, options, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
+            "INSERT INTO models (run, more_runs, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
+             noise_floor_rms, options, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
         )
         .bind(new.run)
+        .bind(serde_json::to_string(&new.more_runs)?)
         .bind(new.parent)
         .bind(&new.kind)
         .bind(serde_json::to_string(&new.effects)?)

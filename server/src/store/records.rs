@@ -78,6 +78,8 @@ pub struct OwnEffectRecord {
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewModel {
     pub run: RunId,
+    /// Further runs of the same joint that the fit looks at, in order.
+    pub more_runs: Vec<RunId>,
     pub parent: Option<i64>,
     pub kind: String,
     pub effects: Vec<String>,
@@ -94,6 +96,7 @@ pub struct NewModel {
 pub struct ModelRecord {
     pub id: i64,
     pub run: RunId,
+    pub more_runs: Vec<RunId>,
     pub parent: Option<i64>,
     pub kind: String,
     pub effects: Vec<String>,
@@ -115,6 +118,19 @@ pub struct DiagnosisRecord {
     pub model: i64,
     pub diagnosis: Value,
     pub created_at: String,
+}
+
+/// A chain of runs and models that was asked for at once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AutopilotRecord {
+    pub id: i64,
+    pub bench: String,
+    pub request: Map<String, Value>,
+    pub state: String,
+    pub reason: Option<String>,
+    pub steps: Vec<Value>,
+    pub created_at: String,
+    pub finished_at: Option<String>,
 }
 
 /// Why a bench must not move.
@@ -143,4 +159,11 @@ pub struct ViewColumn {
     pub channel: Channel,
     pub min: Vec<f64>,
     pub max: Vec<f64>,
+}
+
+impl ModelRecord {
+    /// Every run that the fit looked at, its own first.
+    pub fn runs(&self) -> Vec<RunId> {
+        std::iter::once(self.run).chain(self.more_runs.iter().copied()).collect()
+    }
 }

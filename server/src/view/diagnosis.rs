@@ -117,6 +117,12 @@ pub struct Experiment {
     /// Expected separation of the rivals in standard deviations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_z: Option<f64>,
+    /// Longest duration on the bench.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_duration_s: Option<f64>,
+    /// Effects that it tells apart, or shows for the first time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub separates: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -1,6 +1,6 @@
 //! Text frames of the live stream. The binary frames are in [`crate::live::frame`].
 
-use super::{Bench, ChannelInfo, Progress, RunEvent, RunState, Safe};
+use super::{AutopilotState, AutopilotStep, Bench, ChannelInfo, Progress, RunEvent, RunState, Safe};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -41,5 +41,13 @@ pub enum LiveMessage {
     Model {
         run: i64,
         model: i64,
+    },
+    /// An autopilot has made a step or has ended.
+    Autopilot {
+        autopilot: i64,
+        bench: String,
+        state: AutopilotState,
+        reason: Option<String>,
+        step: Option<Box<AutopilotStep>>,
     },
 }

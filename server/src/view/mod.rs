@@ -3,6 +3,7 @@
 //! SI units with the unit as suffix of the name. No number here is ever NaN or infinite: [`finite`] turns what is not
 //! known into `null`, and types that come from the model crate are re-read, which refuses a `null` for a number.
 
+mod autopilot;
 mod bench;
 mod diagnosis;
 mod live;
@@ -11,6 +12,7 @@ mod own;
 mod procedure;
 mod run;
 
+pub use autopilot::*;
 pub use bench::*;
 pub use diagnosis::*;
 pub use live::*;

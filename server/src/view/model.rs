@@ -38,10 +38,20 @@ pub struct EffectParameter {
 #[serde(deny_unknown_fields)]
 pub struct NewModel {
     pub run: i64,
+    /// Further runs of the same kind and joint to look at together with the first, in the order in which they were made.
+    #[serde(default)]
+    pub more_runs: Vec<i64>,
     pub effects: Vec<String>,
     /// The version that this one grew from.
     #[serde(default)]
     pub parent: Option<i64>,
+}
+
+impl NewModel {
+    /// Every run to look at, in order.
+    pub fn runs(&self) -> Vec<i64> {
+        std::iter::once(self.run).chain(self.more_runs.iter().copied()).collect()
+    }
 }
 
 /// One version of a model: a node of a tree that only grows. Going back means going to the parent.
@@ -49,6 +59,8 @@ pub struct NewModel {
 pub struct Model {
     pub id: i64,
     pub run: i64,
+    /// Further runs that the fit looked at together with the first.
+    pub more_runs: Vec<i64>,
     pub kind: String,
     pub parent: Option<i64>,
     /// Effects that the parent did not have; all of them where there is no parent.

@@ -1,5 +1,6 @@
 //! The daemon on a real loopback port, as its callers meet it.
 
+mod autopilots;
 mod daemon;
 mod door;
 mod import;

@@ -13,6 +13,8 @@ pub struct Source {
     pub step_s: f64,
     /// First samples of recordings.
     pub starts: Vec<usize>,
+    /// First samples of the runs that were joined.
+    pub runs: Vec<usize>,
     pub cutoff_hz: f64,
     pub segment: Option<Vec<i64>>,
     pub repeat: Option<Vec<i64>>,
@@ -40,10 +42,18 @@ impl Source {
 
     /// Segments, as numbered or as found: stretches of one direction.
     pub fn legs(&self) -> Vec<Range<usize>> {
-        match &self.segment {
+        let legs = match &self.segment {
             Some(segment) => segments::stretches(&segment.iter().map(|s| *s as f64).collect::<Vec<_>>()),
             None => segments::stretches(self.signals.find(Signal::Direction).unwrap_or_default()),
-        }
+        };
+        legs.into_iter().flat_map(|leg| self.within_runs(leg)).collect()
+    }
+
+    /// No leg goes on in the next run.
+    fn within_runs(&self, leg: Range<usize>) -> Vec<Range<usize>> {
+        let inside = self.runs.iter().copied().filter(|s| leg.start < *s && *s < leg.end);
+        let edges: Vec<usize> = std::iter::once(leg.start).chain(inside).chain([leg.end]).collect();
+        edges.windows(2).map(|w| w[0]..w[1]).collect()
     }
 }
 

@@ -16,6 +16,12 @@ pub fn stretches(column: &[f64]) -> Vec<Range<usize>> {
     out
 }
 
+/// First samples of the runs that a table was joined of.
+pub fn runs(run: &RunTable) -> Vec<usize> {
+    let column = run.column("run").unwrap_or_default();
+    std::iter::once(0).chain((1..column.len()).filter(|i| column[*i] != column[i - 1])).collect()
+}
+
 /// First samples of recordings: a gap in time of more than ten samples, or a segment that starts where nothing led to.
 pub fn recordings(time_s: &[f64], position: &[f64], step_s: f64) -> Vec<usize> {
     let reach = 50.0 * super::median(position.windows(2).map(|w| (w[1] - w[0]).abs())).max(1e-4);

@@ -25,7 +25,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let velocity = measured.map_or_else(
         || {
             let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
-            filter::derivative(&time_s, &smooth.both_ways(link, 12))
+            let slope =
+                |range: std::ops::Range<usize>, q: &[f64]| filter::derivative(&time_s[range], &smooth.both_ways(q, 12));
+            filter::by_recording(link, &segments::runs(run), slope)
         },
         <[f64]>::to_vec,
     );
@@ -45,7 +47,8 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         signals,
         target,
         step_s,
-        starts: vec![0],
+        starts: segments::runs(run),
+        runs: segments::runs(run),
         cutoff_hz,
         segment: segments::integers(run, "segment"),
         repeat: segments::integers(run, "repeat"),

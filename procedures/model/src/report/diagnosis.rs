@@ -101,6 +101,12 @@ pub struct Experiment {
     /// Expected separation of the rivals in standard deviations, before it is run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_z: Option<f64>,
+    /// Longest duration.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_duration_s: Option<f64>,
+    /// Effects that it tells apart, or shows for the first time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub separates: Vec<String>,
 }
 
 /// An effect that was looked for and not found.
@@ -125,6 +131,9 @@ pub struct Step {
     /// An effect that lost its reason when others came in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removed: Option<String>,
+    /// Effects that explain this data as well as the one that was added.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub confounded_with: Vec<String>,
     pub model: Vec<String>,
     pub rms: f64,
     pub validation_rms: f64,

@@ -27,6 +27,11 @@ pub const TORQUE_CONSTANT: f64 = 0.08;
 impl Staircase {
     /// Two repeats of ten speeds in both directions at three loads, 0.6 s each at 250 Hz.
     pub fn run(&self, friction: impl Fn(Moment) -> f64) -> RunTable {
+        self.run_at(&[0.0, 4.0, 12.0], friction)
+    }
+
+    /// The same at other loads.
+    pub fn run_at(&self, loads: &[f64], friction: impl Fn(Moment) -> f64) -> RunTable {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let noise = Normal::new(0.0, self.noise_nm).unwrap();
         let scatter = Normal::new(0.0, self.scatter_nm).unwrap();
@@ -43,7 +48,7 @@ impl Staircase {
         let mut trace = Trace::new(names.iter().map(|n| Channel::new(*n)).collect());
         let (mut time, mut position, mut segment) = (0.0, 0.0, 0.0);
         for repeat in 0..2 {
-            for load in [0.0, 4.0, 12.0] {
+            for &load in loads {
                 for step in 0..10 {
                     for sign in [1.0, -1.0] {
                         let velocity = sign * 2.5 * 1.52f64.powi(step);

@@ -14,7 +14,6 @@ use super::legs::{Legs, friction_meta, turn_s};
 use super::warm_up;
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault, Steady};
-use crate::profile::Profile;
 use jointbench_instrument::Kind;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -43,11 +42,6 @@ const SLOW_SHARES: [f64; 4] = [0.15, 0.3, 0.5, 0.75];
 const FAST_FROM: f64 = 1.3;
 /// The torque of the brake grows slowly at first (bench-physics, section 2): even torques need uneven currents.
 const LOAD_EXPONENT: f64 = 0.7;
-/// A rising brake current: the ramp, and the time that supply and coil lag behind (118 ms and 80 ms, same place).
-const RAISE_S: f64 = 0.8;
-const LAG_S: f64 = 0.6;
-/// A falling one is spread over at least this time and a whole link turn (bench-physics, section 3).
-const UNLOAD_S: f64 = 2.0;
 
 impl Procedure for Friction {
     fn id(&self) -> &'static str {
@@ -83,14 +77,14 @@ impl Procedure for Friction {
             let mut before_a = 0.0;
             for (level, brake_a) in loads_a.iter().copied().enumerate() {
                 if brake_a > before_a {
-                    raise(&mut legs, &speeds, before_a, brake_a);
+                    legs.raise(speeds.middle_rad_s(), before_a, brake_a);
                 }
                 let outwards = if (repeat as usize + level).is_multiple_of(2) { 1.0 } else { -1.0 };
                 tour(&mut legs, &speeds, brake_a, outwards, &mut rng);
                 before_a = brake_a;
             }
             if before_a > 0.0 {
-                unload(&mut legs, &speeds, before_a, bench);
+                legs.unload(speeds.top_rad_s, before_a, bench);
             }
         }
         let mut meta = friction_meta(bench, rate_hz);
@@ -208,28 +202,6 @@ fn slow(legs: &mut Legs, speeds: &Speeds, number: usize, brake_a: f64, direction
         legs.leg(direction * speed_rad_s, dwell_s, brake_a);
         legs.leg(-direction * speed_rad_s, dwell_s, brake_a);
     }
-}
-
-/// More brake current while the shaft turns, out and back.
-fn raise(legs: &mut Legs, speeds: &Speeds, from_a: f64, to_a: f64) {
-    let speed_rad_s = speeds.middle_rad_s();
-    let dwell_s = RAISE_S + LAG_S;
-    let velocity = |sign: f64| Profile::plateau(sign * speed_rad_s, legs.acceleration_rad_s2, dwell_s);
-    let (out, back) = (velocity(1.0), velocity(-1.0));
-    let turning_s = speed_rad_s / legs.acceleration_rad_s2;
-    let brake = Profile::from(from_a).hold(turning_s).to(to_a, RAISE_S);
-    legs.push(format!("brake to {to_a:.2} A"), out, brake);
-    legs.push(format!("{:+.1} rad/s at {to_a:.2} A", -speed_rad_s), back, Profile::constant(to_a));
-}
-
-/// The brake current goes to zero over at least one link turn, as fast as the joint turns, and back without load.
-fn unload(legs: &mut Legs, speeds: &Speeds, from_a: f64, bench: &BenchFacts) {
-    let ramp_s = turn_s(1.0, speeds.top_rad_s, bench, UNLOAD_S);
-    let turning_s = speeds.top_rad_s / legs.acceleration_rad_s2;
-    let velocity = Profile::plateau(speeds.top_rad_s, legs.acceleration_rad_s2, ramp_s + LAG_S);
-    let brake = Profile::from(from_a).hold(turning_s).to(0.0, ramp_s);
-    legs.push("demagnetise the brake while turning".into(), velocity, brake);
-    legs.leg(-speeds.top_rad_s, ramp_s + LAG_S, 0.0);
 }
 
 #[cfg(test)]

@@ -8,6 +8,13 @@ use std::f64::consts::TAU;
 /// A leg that should cover a part of a link turn is cut off here: a very slow gear has to do with less.
 const LONGEST_LEG_S: f64 = 15.0;
 
+/// A rising brake current: the ramp, and the time that supply and coil lag behind (118 ms and 80 ms; bench-physics,
+/// section 2).
+const RAISE_S: f64 = 0.8;
+const LAG_S: f64 = 0.6;
+/// A falling one is spread over at least this time and a whole link turn (bench-physics, section 3).
+const UNLOAD_S: f64 = 2.0;
+
 /// Collects steps and numbers their segments.
 pub(super) struct Legs {
     pub acceleration_rad_s2: f64,
@@ -29,6 +36,26 @@ impl Legs {
             format!("{speed_rad_s:+.1} rad/s")
         };
         self.push(label, Profile::plateau(speed_rad_s, self.acceleration_rad_s2, dwell_s), Profile::constant(brake_a));
+    }
+
+    /// More brake current while the shaft turns, out and back.
+    pub fn raise(&mut self, speed_rad_s: f64, from_a: f64, to_a: f64) {
+        let velocity = |sign: f64| Profile::plateau(sign * speed_rad_s, self.acceleration_rad_s2, RAISE_S + LAG_S);
+        let (out, back) = (velocity(1.0), velocity(-1.0));
+        let turning_s = speed_rad_s / self.acceleration_rad_s2;
+        let brake = Profile::from(from_a).hold(turning_s).to(to_a, RAISE_S);
+        self.push(format!("brake to {to_a:.2} A"), out, brake);
+        self.push(format!("{:+.1} rad/s at {to_a:.2} A", -speed_rad_s), back, Profile::constant(to_a));
+    }
+
+    /// The brake current goes to zero over at least one link turn, as fast as the joint turns, and back without load.
+    pub fn unload(&mut self, speed_rad_s: f64, from_a: f64, bench: &BenchFacts) {
+        let ramp_s = turn_s(1.0, speed_rad_s, bench, UNLOAD_S);
+        let turning_s = speed_rad_s / self.acceleration_rad_s2;
+        let velocity = Profile::plateau(speed_rad_s, self.acceleration_rad_s2, ramp_s + LAG_S);
+        let brake = Profile::from(from_a).hold(turning_s).to(0.0, ramp_s);
+        self.push("demagnetise the brake while turning".into(), velocity, brake);
+        self.leg(-speed_rad_s, ramp_s + LAG_S, 0.0);
     }
 
     pub fn push(&mut self, label: String, velocity: Profile, brake: Profile) {

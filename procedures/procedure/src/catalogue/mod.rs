@@ -2,6 +2,7 @@
 
 mod friction;
 mod legs;
+mod strokes;
 mod warm_up;
 
 use crate::parameter::{Parameter, Values};
@@ -30,7 +31,7 @@ pub trait Procedure: Sync {
 
 /// Every procedure, in the order in which a list shows them.
 pub fn catalogue() -> &'static [&'static dyn Procedure] {
-    &[&friction::Friction, &warm_up::WarmUp]
+    &[&friction::Friction, &strokes::Strokes, &warm_up::WarmUp]
 }
 
 pub fn procedure(id: &str) -> Option<&'static dyn Procedure> {

@@ -143,6 +143,7 @@ fn runs_are_found_by_their_words() {
 fn model(run: RunId, parent: Option<i64>, effects: &[&str]) -> NewModel {
     NewModel {
         run,
+        more_runs: Vec::new(),
         parent,
         kind: "friction".into(),
         effects: effects.iter().map(|effect| (*effect).to_owned()).collect(),

@@ -60,19 +60,18 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         })
     };
     let velocity = keep(samples.signals.find(Signal::Velocity).unwrap_or_default());
-    let found = if starts.len() == 1 { segments::period(&velocity) } else { None };
-    let (repeat, phase, repeats_from) = match (column(&samples.repeat), found) {
-        (Some(repeat), _) if repeat.windows(2).any(|w| w[0] != w[1]) => {
+    let run_of: Vec<usize> =
+        keep(&run_number(run.len(), &samples.runs)).into_iter().map(|number| number as usize).collect();
+    let within_a_run = |r: &Vec<i64>| (1..r.len()).any(|i| r[i] != r[i - 1] && run_of[i] == run_of[i - 1]);
+    let (repeat, phase, repeats_from) = match column(&samples.repeat).filter(within_a_run) {
+        Some(repeat) => {
             let phase = phases(&repeat);
             (repeat, phase, "column")
         }
-        (_, Some(period)) => {
-            let repeat = (0..target.len()).map(|i| (i / period) as i64).collect();
-            (repeat, (0..target.len()).map(|i| i % period).collect(), "found")
-        }
-        _ => (vec![0; target.len()], (0..target.len()).collect(), "none"),
+        None => periods(&velocity, &run_of, starts.len() == samples.runs.len()),
     };
-    let twins = layout::twins(&vec![0; target.len()], &phase, &repeat, 0);
+    // Trajectories of different runs are not repeats of each other.
+    let twins = layout::twins(&run_of, &phase, &repeat, 0);
     let segment = column(&samples.segment).unwrap_or_else(|| group.iter().map(|g| *g as i64).collect());
     let about = Preparation {
         residual: ResidualKind::Raw,
@@ -101,6 +100,29 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         memory: None,
         about,
     })
+}
+
+/// The number of the run of every sample.
+fn run_number(samples: usize, runs: &[usize]) -> Vec<f64> {
+    (0..samples).map(|i| (runs.partition_point(|s| *s <= i) - 1) as f64).collect()
+}
+
+/// Repeat and phase of every row by the period of each run's motion, where `whole` runs were recorded without a gap.
+fn periods(velocity: &[f64], run_of: &[usize], whole: bool) -> (Vec<i64>, Vec<usize>, &'static str) {
+    let (mut repeat, mut phase) = (Vec::new(), Vec::new());
+    let mut from = "none";
+    let runs = segments::stretches(&run_of.iter().map(|r| *r as f64).collect::<Vec<_>>());
+    for rows in runs {
+        let first = repeat.last().map_or(0, |last| last + 1);
+        let found = if whole { segments::period(&velocity[rows.clone()]) } else { None };
+        if found.is_some() {
+            from = "found";
+        }
+        let period = found.unwrap_or(rows.len());
+        repeat.extend((0..rows.len()).map(|i| first + (i / period) as i64));
+        phase.extend((0..rows.len()).map(|i| i % period));
+    }
+    (repeat, phase, from)
 }
 
 /// Rows in which the axis rests, where it rests for more than a tenth of the run: friction at rest is whatever the load

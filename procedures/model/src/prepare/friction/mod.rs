@@ -83,6 +83,7 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
         target: torque_nm,
         step_s,
         starts,
+        runs: segments::runs(run),
         cutoff_hz,
         segment: segments::integers(run, "segment"),
         repeat: segments::integers(run, "repeat"),

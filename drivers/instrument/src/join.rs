@@ -1,0 +1,218 @@
+//! Several recordings of one joint as one run table.
+//!
+//! Each keeps its own segments and repeats: the numbers of a later recording begin behind those of the one before. Time
+//! runs on after a pause, so that what changes from run to run shows over time. The column `run` numbers the recordings
+//! from 0.
+
+use crate::{Channel, Kind, Meta, RunTable, TableFault, Trace};
+
+/// The pause between two recordings. How long it really was is in no run table; long enough for a gap that nobody takes
+/// for a late sample, short beside what changes from day to day.
+const PAUSE_S: f64 = 60.0;
+
+/// Sample rates further apart than this share are two rates.
+const SAME_RATE: f64 = 0.05;
+
+/// Why recordings cannot be looked at together. `number` counts them from 1.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum JoinFault {
+    #[error(
+        "of the runs named, number {number} is a {kind} run and the first a {first} run: put runs of one kind together"
+    )]
+    OtherKind { number: usize, kind: Kind, first: Kind },
+    #[error(
+        "of the runs named, number {number} is of another joint: its {fact} is {value}, that of the first {first}; put runs of one joint together"
+    )]
+    OtherJoint { number: usize, fact: &'static str, value: String, first: String },
+    #[error(
+        "of the runs named, number {number} has {rate_hz:.0} samples a second and the first {first_hz:.0}: record or resample them at one rate"
+    )]
+    OtherRate { number: usize, rate_hz: f64, first_hz: f64 },
+    #[error(transparent)]
+    Table(#[from] TableFault),
+}
+
+/// What makes two set-ups two joints.
+fn facts(meta: &Meta) -> [(&'static str, Option<f64>); 8] {
+    [
+        ("gear_ratio", meta.gear_ratio),
+        ("torque_constant_nm_per_a", meta.torque_constant_nm_per_a),
+        ("rotor_inertia_kg_m2", meta.rotor_inertia_kg_m2),
+        ("bearing_stiffness_nm_per_rad", meta.bearing_stiffness_nm_per_rad),
+        ("reference_bits", meta.reference_bits.map(f64::from)),
+        ("test_bits", meta.test_bits.map(f64::from)),
+        ("pole_pairs", meta.pole_pairs.map(f64::from)),
+        ("poles", meta.poles.map(f64::from)),
+    ]
+}
+
+impl RunTable {
+    /// This run and more of the same kind and joint, in the order in which they were made, as one table.
+    ///
+    /// Columns that not all of them have are left out, except `segment` (found again where one lacks it) and `repeat`
+    /// (a recording without one counts as one repeat). The facts are those of the first.
+    pub fn join(self, more: Vec<RunTable>) -> Result<RunTable, JoinFault> {
+        if more.is_empty() {
+            return Ok(self);
+        }
+        for (run, number) in more.iter().zip(2..) {
+            check(&self, run, number)?;
+        }
+        let meta = self.meta().clone();
+        let runs: Vec<RunTable> = std::iter::once(self).chain(more).collect();
+        let shared = |channel: &&Channel| {
+            !["run", "repeat"].contains(&channel.name.as_str())
+                && runs.iter().all(|run| run.column(&channel.name).is_some())
+        };
+        let mut channels: Vec<Channel> = runs[0].trace().channels().iter().filter(shared).cloned().collect();
+        let mut columns: Vec<Vec<f64>> = channels.iter().map(|c| joined(&runs, &c.name)).collect();
+        let number = |name: &str, of: &dyn Fn(&RunTable) -> Vec<f64>| {
+            (Channel::counted(name, 1.0), numbered(runs.iter().map(of)))
+        };
+        let zeros = |run: &RunTable| vec![0.0; run.len()];
+        let repeat = number("repeat", &|run| run.column("repeat").map_or_else(|| zeros(run), <[f64]>::to_vec));
+        for (channel, column) in [repeat, number("run", &zeros)] {
+            channels.push(channel);
+            columns.push(column);
+        }
+        Ok(RunTable::new(meta, Trace::from_columns(channels, columns))?)
+    }
+
+    /// Samples a second, by the middle step of the time; infinite for a single sample.
+    pub fn rate_hz(&self) -> f64 {
+        let time_s = self.column("time_s").unwrap_or_default();
+        let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
+        if steps.is_empty() {
+            return f64::INFINITY;
+        }
+        let middle = steps.len() / 2;
+        1.0 / *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+}
+
+fn check(first: &RunTable, run: &RunTable, number: usize) -> Result<(), JoinFault> {
+    if run.kind() != first.kind() {
+        return Err(JoinFault::OtherKind { number, kind: run.kind(), first: first.kind() });
+    }
+    let motion = |run: &RunTable| format!("{:?}", run.meta().motion).to_lowercase();
+    if run.meta().motion != first.meta().motion {
+        return Err(JoinFault::OtherJoint { number, fact: "motion", value: motion(run), first: motion(first) });
+    }
+    for ((fact, a), (_, b)) in facts(first.meta()).into_iter().zip(facts(run.meta())) {
+        if let (Some(a), Some(b)) = (a, b)
+            && (a - b).abs() > 1e-6 * a.abs().max(b.abs())
+        {
+            return Err(JoinFault::OtherJoint { number, fact, value: b.to_string(), first: a.to_string() });
+        }
+    }
+    let (first_hz, rate_hz) = (first.rate_hz(), run.rate_hz());
+    if (rate_hz / first_hz - 1.0).abs() > SAME_RATE {
+        return Err(JoinFault::OtherRate { number, rate_hz, first_hz });
+    }
+    Ok(())
+}
+
+fn joined(runs: &[RunTable], name: &str) -> Vec<f64> {
+    let columns = runs.iter().map(|run| run.column(name).unwrap_or_default().to_vec());
+    match name {
+        "time_s" => shifted(columns, PAUSE_S),
+        "segment" => numbered(columns),
+        _ => columns.flatten().collect(),
+    }
+}
+
+/// Whole numbers, each recording's behind those of the one before.
+fn numbered(columns: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
+    let mut next = 0.0;
+    let mut out = Vec::new();
+    for column in columns {
+        let lowest = column.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let shift = if out.is_empty() { 0.0 } else { next - lowest };
+        out.extend(column.into_iter().map(|v| v + shift));
+        next = highest + shift + 1.0;
+    }
+    out
+}
+
+/// Each recording begins a pause after the end of the one before.
+fn shifted(columns: impl Iterator<Item = Vec<f64>>, pause_s: f64) -> Vec<f64> {
+    let mut out: Vec<f64> = Vec::new();
+    for column in columns {
+        let shift = match (out.last(), column.first()) {
+            (Some(end), Some(start)) => end + pause_s - start,
+            _ => 0.0,
+        };
+        out.extend(column.into_iter().map(|v| v + shift));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(names: &[&str], rows: &[&[f64]], change: impl FnOnce(&mut Meta)) -> RunTable {
+        let mut trace = Trace::new(names.iter().map(|n| Channel::new(*n)).collect());
+        rows.iter().for_each(|row| trace.push_row(row));
+        let mut meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(50.0), ..Meta::default() };
+        change(&mut meta);
+        RunTable::new(meta, trace).unwrap()
+    }
+
+    const NAMES: [&str; 5] = ["time_s", "motor_position_rad", "motor_current_a", "segment", "repeat"];
+
+    fn two(change: impl FnOnce(&mut Meta)) -> (RunTable, RunTable) {
+        let first = run(&NAMES, &[&[0.0, 0.0, 0.1, 3.0, 0.0], &[0.1, 0.0, 0.1, 4.0, 1.0]], |_| {});
+        (first, run(&NAMES, &[&[5.0, 1.0, 0.2, 0.0, 0.0], &[5.1, 1.0, 0.2, 1.0, 0.0]], change))
+    }
+
+    #[test]
+    fn segments_repeats_and_times_follow_each_other() {
+        let (first, second) = two(|_| {});
+        let both = first.join(vec![second]).unwrap();
+        for (name, expected) in [
+            ("segment", [3.0, 4.0, 5.0, 6.0]),
+            ("repeat", [0.0, 1.0, 2.0, 2.0]),
+            ("run", [0.0, 0.0, 1.0, 1.0]),
+            ("motor_current_a", [0.1, 0.1, 0.2, 0.2]),
+        ] {
+            assert_eq!(both.column(name).unwrap(), expected, "{name}");
+        }
+        let time_s = both.column("time_s").unwrap();
+        assert_eq!(time_s[..3], [0.0, 0.1, 0.1 + PAUSE_S]);
+    }
+
+    #[test]
+    fn a_column_that_one_lacks_goes_but_a_run_is_a_repeat_in_itself() {
+        let (first, _) = two(|_| {});
+        let bare = run(&NAMES[..3], &[&[0.0, 1.0, 0.2], &[0.1, 1.0, 0.2]], |_| {});
+        let both = first.join(vec![bare.clone(), bare]).unwrap();
+        assert_eq!(both.column("segment"), None);
+        assert_eq!(both.column("repeat").unwrap(), [0.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
+        assert_eq!(both.column("run").unwrap(), [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn what_does_not_belong_together_is_refused_in_words() {
+        for (change, said) in [
+            ((|m| m.gear_ratio = Some(100.0)) as fn(&mut Meta), "its gear_ratio is 100, that of the first 50"),
+            (|m| m.motion = crate::Motion::Linear, "its motion is linear"),
+        ] {
+            let (first, second) = two(change);
+            let fault = first.join(vec![second]).unwrap_err().to_string();
+            assert!(fault.contains(said), "{fault}");
+        }
+        let (first, _) = two(|_| {});
+        let fast = run(&NAMES[..3], &[&[0.0, 0.0, 0.1], &[0.01, 0.0, 0.1]], |_| {});
+        assert!(matches!(first.clone().join(vec![fast]), Err(JoinFault::OtherRate { number: 2, .. })));
+        let mut trace = Trace::new(["time_s", "brake_current_a", "brake_torque_nm"].map(Channel::new).into());
+        trace.push_row(&[0.0, 0.0, 0.0]);
+        let brake = RunTable::new(Meta { kind: Some(Kind::Brake), ..Meta::default() }, trace).unwrap();
+        let fault = first.join(vec![brake]).unwrap_err().to_string();
+        assert_eq!(
+            fault,
+            "of the runs named, number 2 is a brake run and the first a friction run: put runs of one kind together"
+        );
+    }
+}

@@ -1,0 +1,179 @@
+//! What to measure next: of the runs that a bench offers, the one that decides what the data leaves open.
+//!
+//! This crate knows no bench and no procedure. Whoever does offers a menu: each [`Choice`] is a run that could be made,
+//! as the settled stretches that it would consist of. What comes back is the shortest one that is expected to decide.
+
+mod design;
+mod imagine;
+mod unseen;
+
+use crate::assembly::Assembly;
+use crate::prepare::prepare;
+use crate::report::{Diagnosis, Discovery, Experiment};
+use crate::words::list;
+use crate::{ModelError, ModelSpec, Options, OwnEffect};
+use design::{Noise, Side};
+use imagine::imagine;
+use jointbench_instrument::{Kind, RunTable};
+use serde_json::{Map, Value};
+
+/// Rivals count as separated where their predictions are this many standard deviations apart.
+const SEPARATED_Z: f64 = 4.0;
+
+/// A run that could be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    pub procedure: String,
+    pub parameters: Map<String, Value>,
+    pub duration_s: f64,
+    pub stretches: Vec<Stretch>,
+}
+
+/// Constant speed under constant load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Since the run began.
+    pub start_s: f64,
+    pub duration_s: f64,
+    /// Motor side.
+    pub velocity_rad_s: f64,
+    /// Motor position at the beginning, from where the run starts.
+    pub from_rad: f64,
+    /// Link torque that the joint delivers.
+    pub load_nm: f64,
+}
+
+/// What a diagnosis leaves open.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Open {
+    /// The model with everything that was named.
+    pub model: Vec<String>,
+    /// A named effect, and those that explain the data as well.
+    pub ties: Vec<(String, Vec<String>)>,
+    pub has_noise_floor: bool,
+    /// Effects that the user wrote, which the model or its rivals may be.
+    pub own: Vec<OwnEffect>,
+}
+
+impl From<&Diagnosis> for Open {
+    fn from(diagnosis: &Diagnosis) -> Self {
+        let named = diagnosis.suggestions.iter().map(|s| s.effect.clone());
+        let tied = diagnosis.suggestions.iter().filter(|s| !s.confounded_with.is_empty());
+        Self {
+            model: diagnosis.model.iter().cloned().chain(named).collect(),
+            ties: tied.map(|s| (s.effect.clone(), s.confounded_with.clone())).collect(),
+            has_noise_floor: diagnosis.noise_floor_rms.is_some(),
+            own: Vec::new(),
+        }
+    }
+}
+
+impl From<&Discovery> for Open {
+    fn from(discovery: &Discovery) -> Self {
+        let tied = discovery.steps.iter().filter(|s| !s.confounded_with.is_empty());
+        let tied = tied.filter_map(|s| Some((s.added.clone()?, s.confounded_with.clone())));
+        Self {
+            model: discovery.model.clone(),
+            ties: tied.filter(|(effect, _)| discovery.model.contains(effect)).collect(),
+            has_noise_floor: discovery.noise_floor_rms.is_some(),
+            own: Vec::new(),
+        }
+    }
+}
+
+/// The run to make next, `None` where nothing is open that the menu could decide.
+///
+/// Rivals that tie come first, then a run without repeats, then effects that this run could not have shown.
+pub fn next_run(
+    run: &RunTable,
+    open: &Open,
+    menu: &[Choice],
+    options: &Options,
+) -> Result<Option<Experiment>, ModelError> {
+    if run.kind() != Kind::Friction {
+        return Ok((!open.has_noise_floor).then(|| repeats(run.kind().name(), [("repeats".to_owned(), 3.into())])));
+    }
+    let prepared = prepare(run, options)?;
+    let spec = |effects: &[String]| ModelSpec::with_own(run.kind(), effects, open.own.clone());
+    let with_all = spec(&open.model)?;
+    let model = Assembly::new(&prepared, &with_all)?;
+    let noise = Noise::of(&model.main);
+    let imagined: Vec<_> = menu.iter().map(|choice| imagine(choice, &prepared, &model)).collect();
+
+    for (effect, rivals) in &open.ties {
+        let side = Side::new(&model.main, &noise);
+        let mut specs = Vec::new();
+        for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
+            let effects: Vec<String> = open.model.iter().map(|e| if e == effect { rival } else { e }.clone()).collect();
+            specs.push(spec(&effects)?);
+        }
+        let others: Vec<Assembly> = specs.iter().map(|s| Assembly::new(&prepared, s)).collect::<Result<_, _>>()?;
+        let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
+        let best = menu.iter().zip(&imagined).map(|(choice, problem)| {
+            let apart: Vec<f64> = others.iter().map(|other| side.separation(other, problem, &noise)).collect();
+            Bid { choice, z: apart.iter().copied().fold(f64::INFINITY, f64::min) }
+        });
+        if let Some(bid) = decide(best) {
+            return Ok(Some(tie(bid, effect, rivals)));
+        }
+    }
+    if !open.has_noise_floor
+        && let Some(choice) = menu.first()
+    {
+        return Ok(Some(Experiment {
+            expected_duration_s: Some(choice.duration_s),
+            ..repeats(&choice.procedure, choice.parameters.clone())
+        }));
+    }
+    Ok(unseen::unseen(&model, &noise, menu, &imagined))
+}
+
+/// A choice with what is expected of it.
+#[derive(Clone, Copy)]
+struct Bid<'m> {
+    choice: &'m Choice,
+    z: f64,
+}
+
+/// Below this a run is a waste of time, however often it is repeated.
+const USELESS_Z: f64 = 1.0;
+
+/// The shortest run that decides; where none does, the one that says most.
+fn decide<'m>(bids: impl Iterator<Item = Bid<'m>>) -> Option<Bid<'m>> {
+    let bids: Vec<Bid> = bids.filter(|bid| bid.z.is_finite() && bid.z >= USELESS_Z).collect();
+    let enough = bids.iter().filter(|bid| bid.z >= SEPARATED_Z);
+    let shortest = enough.min_by(|a, b| a.choice.duration_s.total_cmp(&b.choice.duration_s));
+    shortest.or_else(|| bids.iter().max_by(|a, b| a.z.total_cmp(&b.z))).copied()
+}
+
+fn tie(bid: Bid, effect: &str, rivals: &[String]) -> Experiment {
+    let times = (SEPARATED_Z / bid.z).powi(2).ceil();
+    let enough = if bid.z >= SEPARATED_Z {
+        String::new()
+    } else {
+        format!("; about {times:.0} such runs are needed for {SEPARATED_Z:.0}")
+    };
+    Experiment {
+        procedure: bid.choice.procedure.clone(),
+        parameters: bid.choice.parameters.clone(),
+        why: format!(
+            "it tells {effect} from {}: their predictions are expected to lie {:.1} standard deviations apart{enough}",
+            list(rivals),
+            bid.z,
+        ),
+        expected_z: Some(bid.z),
+        expected_duration_s: Some(bid.choice.duration_s),
+        separates: std::iter::once(effect.to_owned()).chain(rivals.iter().cloned()).collect(),
+    }
+}
+
+fn repeats(procedure: &str, parameters: impl IntoIterator<Item = (String, Value)>) -> Experiment {
+    Experiment {
+        procedure: procedure.into(),
+        parameters: parameters.into_iter().collect(),
+        why: "without repeats of the same profile nobody knows how small the error can become".into(),
+        expected_z: None,
+        expected_duration_s: None,
+        separates: Vec::new(),
+    }
+}

@@ -1,0 +1,122 @@
+//! What to measure next, and what the next run then decides.
+
+mod common;
+
+use common::bench::{Moment, Staircase};
+use jointbench_instrument::RunTable;
+use jointbench_model::{
+    Choice, Diagnosis, ModelSpec, Open, Options, Stretch, Verdict, diagnose, discover, fit, next_run,
+};
+
+fn bench(seed: u64) -> Staircase {
+    Staircase { noise_nm: 2e-3, scatter_nm: 2e-4, seed }
+}
+
+fn plain(m: Moment) -> f64 {
+    0.03 * m.velocity.signum() + 2e-4 * m.velocity
+}
+
+fn with_square_of_load(m: Moment) -> f64 {
+    plain(m) + 2.0e-4 * m.load * m.load * m.velocity.signum()
+}
+
+fn diagnosed(run: &RunTable) -> Diagnosis {
+    diagnose(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap()
+}
+
+/// Out and back at each of some speeds under one load, the whole twice.
+fn strokes(name: &str, speeds: &[f64], load_nm: f64, duration_s: f64) -> Choice {
+    let mut stretches = Vec::new();
+    for speed in speeds.iter().chain(speeds) {
+        for velocity_rad_s in [*speed, -speed] {
+            let from_rad = if velocity_rad_s > 0.0 { 0.0 } else { speed * duration_s };
+            let start_s = stretches.len() as f64 * duration_s;
+            let load_nm = load_nm * velocity_rad_s.signum();
+            stretches.push(Stretch { start_s, duration_s, velocity_rad_s, from_rad, load_nm });
+        }
+    }
+    let duration_s = stretches.len() as f64 * duration_s;
+    Choice { procedure: name.into(), parameters: serde_json::Map::new(), duration_s, stretches }
+}
+
+const SPEEDS: [f64; 4] = [8.0, 20.0, 50.0, 100.0];
+
+#[test]
+fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
+    let first = bench(1).run_at(&[0.0, 8.0], with_square_of_load);
+    let before = diagnosed(&first);
+    let open = Open::from(&before);
+    assert_eq!(open.ties.len(), 1, "{}", before.summary);
+    let names: Vec<&str> = open.ties[0].1.iter().map(String::as_str).chain([open.ties[0].0.as_str()]).collect();
+    assert!(names.contains(&"load_linear") && names.contains(&"load_quadratic"), "{names:?}");
+
+    let ask = |menu: &[Choice]| next_run(&first, &open, menu, &Options::default()).unwrap();
+    let same = strokes("same", &SPEEDS, 8.0, 1.0);
+    let other = strokes("other", &SPEEDS, 12.0, 1.5);
+    assert_eq!(ask(std::slice::from_ref(&same)).map(|e| e.expected_z), None, "nothing new is measured there");
+    let next = ask(&[same, other]).unwrap();
+    assert_eq!(next.procedure, "other", "{}", next.why);
+    assert!(next.expected_z.unwrap() > 4.0 && next.separates.iter().any(|e| e == "load_quadratic"), "{}", next.why);
+
+    let both = first.join(vec![bench(2).run_at(&[12.0], with_square_of_load)]).unwrap();
+    let after = diagnosed(&both);
+    assert_eq!(after.suggestions[0].effect, "load_quadratic", "{}", after.summary);
+    assert_eq!(after.suggestions[0].confounded_with, [] as [&str; 0], "{}", after.suggestions[0].why);
+}
+
+#[test]
+fn what_a_run_could_not_show_is_offered_and_what_it_could_is_not() {
+    let heavy = strokes("heavy", &SPEEDS, 12.0, 1.5);
+    let light = strokes("light", &SPEEDS, 0.0, 1.0);
+    let menu = [light, heavy];
+    let ask = |loads: &[f64]| {
+        let run = bench(3).run_at(loads, plain);
+        let found = diagnosed(&run);
+        assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+        next_run(&run, &Open::from(&found), &menu, &Options::default()).unwrap()
+    };
+    let next = ask(&[0.0]).unwrap();
+    assert_eq!(next.procedure, "heavy", "{}", next.why);
+    assert!(next.separates.iter().any(|e| e == "load_linear"), "{:?}", next.separates);
+    let nothing = ask(&[0.0, 4.0, 12.0]);
+    assert!(nothing.is_none(), "{nothing:?}");
+}
+
+#[test]
+fn runs_together_fit_as_one_and_repeat_each_other() {
+    let (first, second) = (bench(4).run(plain), bench(5).run(plain));
+    let spec = ModelSpec::baseline(&first).unwrap();
+    let alone = fit(&first, &spec, &Options::default()).unwrap();
+    let both = first.clone().join(vec![second]).unwrap();
+    let joined = fit(&both, &spec, &Options::default()).unwrap();
+    assert_eq!(joined.preparation.rows, 2 * alone.preparation.rows);
+    assert_eq!(joined.preparation.blocks, 2 * alone.preparation.blocks, "no block reaches into the next run");
+    let of = |fit: &jointbench_model::Fit| fit.parameters.iter().find(|p| p.effect == "viscous").unwrap().clone();
+    let width = |p: jointbench_model::Parameter| p.ci95[1] - p.ci95[0];
+    assert!(width(of(&joined)) < 0.85 * width(of(&alone)), "twice the data, narrower intervals");
+    let found = discover(&both, &spec, &Options::default(), 6, |_| {}).unwrap();
+    assert_eq!((found.verdict, found.steps.len()), (Verdict::Adequate, 1), "{}", found.summary);
+    assert!(found.noise_floor_rms.is_some());
+}
+
+/// The Electro-Mechanical Positioning System: |v| against v² (a form of the quadratic effect) ties on its recording. A
+/// prototype found for one stroke out and back z ≈ 24 at 0.25 m/s, which is faster than everything recorded, 6 at 0.01 m/s
+/// and 3 at 0.08 m/s.
+#[test]
+fn a_new_speed_decides_between_two_shapes_of_asymmetry() {
+    let Some(folder) = common::shared("data/emps-train") else { return };
+    let run = common::read(&folder);
+    let model = ["inertia", "coulomb", "viscous", "direction_offset", "viscous_asymmetry"].map(String::from).into();
+    let ties = vec![("viscous_asymmetry".to_owned(), vec!["viscous_quadratic".to_owned()])];
+    let open = Open { model, ties, has_noise_floor: true, own: Vec::new() };
+    let z = |speed: f64| {
+        let once = strokes("stroke", &[speed], 0.0, (0.2 / speed).min(2.0));
+        let choice = Choice { stretches: once.stretches[..2].to_vec(), ..once };
+        let next = next_run(&run, &open, &[choice], &Options::default()).unwrap();
+        next.and_then(|next| next.expected_z).unwrap_or(0.0)
+    };
+    let found = [0.25, 0.01, 0.08].map(z);
+    println!("z at 0.25, 0.01 and 0.08 m/s: {found:.1?}");
+    assert!((12.0..60.0).contains(&found[0]) && (3.0..12.0).contains(&found[1]), "{found:?}");
+    assert!((1.0..6.0).contains(&found[2]), "{found:?}");
+}

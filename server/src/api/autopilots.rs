@@ -1,0 +1,50 @@
+//! What to measure next, and chains of measuring and diagnosing that run by themselves.
+
+use super::extract::{Answer, Created, Json, Path, created};
+use super::problem::Refusals;
+use crate::lab::Lab;
+use crate::view::{Autopilot, NewAutopilot, NewExperiment};
+use axum::extract::State;
+
+/// Measures, diagnoses, adds what is missing or makes the run that would tell, again, until nothing is missing or the
+/// budget is spent
+#[utoipa::path(post, path = "/autopilots", operation_id = "start_autopilot", tag = "autopilots", request_body = NewAutopilot,
+    responses((status = 201, description = "The autopilot, on its way", body = Autopilot), Refusals))]
+pub async fn start(State(lab): State<Lab>, Json(new): Json<NewAutopilot>) -> Created<Autopilot> {
+    created(lab.start_autopilot(&new).await?)
+}
+
+/// Makes the run that a diagnosis asks for and diagnoses the same model again, with all its runs together
+#[utoipa::path(post, path = "/diagnoses/{id}/experiment", operation_id = "start_experiment", tag = "autopilots",
+    params(("id" = i64, Path, description = "Diagnosis")), request_body = NewExperiment,
+    responses((status = 201, description = "An autopilot that makes this one run", body = Autopilot), Refusals))]
+pub async fn experiment(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Json(new): Json<NewExperiment>,
+) -> Created<Autopilot> {
+    created(lab.start_experiment(id, &new).await?)
+}
+
+/// All autopilots, newest first
+#[utoipa::path(get, path = "/autopilots", operation_id = "list_autopilots", tag = "autopilots",
+    responses((status = 200, description = "The autopilots", body = Vec<Autopilot>), Refusals))]
+pub async fn list(State(lab): State<Lab>) -> Answer<Vec<Autopilot>> {
+    Ok(Json(lab.autopilots().await?))
+}
+
+/// One autopilot with every step so far
+#[utoipa::path(get, path = "/autopilots/{id}", operation_id = "get_autopilot", tag = "autopilots",
+    params(("id" = i64, Path, description = "Autopilot")),
+    responses((status = 200, description = "The autopilot", body = Autopilot), Refusals))]
+pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Autopilot> {
+    Ok(Json(lab.autopilot(id).await?))
+}
+
+/// Ends an autopilot after the step at hand; a run that is on ends early and is kept
+#[utoipa::path(post, path = "/autopilots/{id}/stop", operation_id = "stop_autopilot", tag = "autopilots",
+    params(("id" = i64, Path, description = "Autopilot")),
+    responses((status = 200, description = "Taken; the autopilot as it is now", body = Autopilot), Refusals))]
+pub async fn stop(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Autopilot> {
+    Ok(Json(lab.stop_autopilot(id).await?))
+}

@@ -1,0 +1,104 @@
+//! `jointbench autopilot`: runs, diagnoses and runs again on a running daemon, until nothing is missing.
+
+use super::arguments::Autopilot as Arguments;
+use super::client::Client;
+use super::exit::{Done, Exit};
+use super::print::figure;
+use super::progress::RunProgress;
+use super::run::{LOOK_EVERY, choose_bench, is_over, parameters};
+use crate::view::{Autopilot, AutopilotState, AutopilotStep, Model, NewAutopilot, NewExperiment, Run, Verdict};
+
+pub fn autopilot(arguments: &Arguments) -> Done {
+    let client = Client::new(&arguments.reach);
+    let bench = choose_bench(&client, arguments.bench.as_deref())?;
+    let mut autopilot: Autopilot = match arguments.after {
+        Some(diagnosis) => client.post(&format!("/diagnoses/{diagnosis}/experiment"), &NewExperiment { bench })?,
+        None => {
+            let new = NewAutopilot {
+                bench,
+                runs: arguments.runs,
+                bench_time_s: arguments.bench_time_s,
+                procedure: arguments.procedure.clone(),
+                parameters: parameters(&arguments.set)?,
+                effects: arguments.model.as_ref().map(|list| list.split(',').map(|id| id.trim().to_owned()).collect()),
+                max_effects: arguments.max_effects,
+            };
+            client.post("/autopilots", &new)?
+        }
+    };
+    if !arguments.json {
+        println!("autopilot {} on {}", autopilot.id, autopilot.bench);
+    }
+    if arguments.wait {
+        autopilot = wait(&client, autopilot.id, !arguments.json)?;
+    }
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&autopilot).map_err(|fault| Exit::failed(fault.to_string()))?;
+        println!("{text}");
+    } else if autopilot.state.is_over() {
+        conclude(&client, &autopilot)?;
+    }
+    ending(&autopilot)
+}
+
+/// Follows it to its end, telling each step as it is made.
+fn wait(client: &Client, id: i64, tells: bool) -> Result<Autopilot, Exit> {
+    let mut told = 0;
+    let mut shown: Option<RunProgress> = None;
+    loop {
+        let autopilot: Autopilot = client.get(&format!("/autopilots/{id}"))?;
+        for step in autopilot.steps.iter().skip(told) {
+            if let Some(shown) = shown.take() {
+                shown.end();
+            }
+            if tells {
+                println!("{}", line(step));
+            }
+        }
+        told = autopilot.steps.len();
+        if autopilot.state.is_over() {
+            return Ok(autopilot);
+        }
+        if let Some(run) = autopilot.runs.last() {
+            let run: Run = client.get(&format!("/runs/{run}"))?;
+            if let Some(progress) = run.progress.filter(|_| !is_over(run.summary.state)) {
+                shown.get_or_insert_with(RunProgress::begin).show(&progress);
+            }
+        }
+        std::thread::sleep(LOOK_EVERY);
+    }
+}
+
+fn line(step: &AutopilotStep) -> String {
+    let fall = match (step.before_rms, step.after_rms) {
+        (Some(before), Some(after)) => format!(" [{} → {}]", figure(before), figure(after)),
+        (None, Some(after)) => format!(" [{}]", figure(after)),
+        _ => String::new(),
+    };
+    let model = step.model.map_or_else(String::new, |model| format!("model {model}: "));
+    format!("{:>3}  {model}{}{fall}", step.sequence, step.text)
+}
+
+fn conclude(client: &Client, autopilot: &Autopilot) -> Done {
+    println!();
+    if let Some(id) = autopilot.model {
+        let model: Model = client.get(&format!("/models/{id}"))?;
+        println!("model {id}: {}", model.effects.join(" + "));
+    }
+    println!("{} run(s), {:.0} s of the bench", autopilot.runs.len(), autopilot.bench_time_s);
+    if let Some(reason) = &autopilot.reason {
+        println!("{reason}");
+    }
+    Ok(())
+}
+
+fn ending(autopilot: &Autopilot) -> Done {
+    let said = || autopilot.reason.clone().unwrap_or_default();
+    match autopilot.state {
+        AutopilotState::Running => Ok(()),
+        AutopilotState::Finished if autopilot.verdict != Some(Verdict::UnexplainedStructure) => Ok(()),
+        AutopilotState::Finished => Err(Exit::undecided("structure remains that no effect of the library explains")),
+        AutopilotState::BudgetSpent => Err(Exit::undecided("the budget is spent and something is still open")),
+        AutopilotState::Stopped | AutopilotState::Failed | AutopilotState::Interrupted => Err(Exit::failed(said())),
+    }
+}

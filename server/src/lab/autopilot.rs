@@ -1,0 +1,154 @@
+//! Autopilots: asked for, looked at, stopped. What one does is in [`pilot`](super::pilot).
+
+use super::pilot::{Goal, Pilot};
+use super::{Answer, Lab, LabError, reread};
+use crate::store::AutopilotRecord;
+use crate::view::{Autopilot, AutopilotState, AutopilotStep, NewAutopilot, NewExperiment};
+use serde_json::{Map, Value};
+use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tokio::sync::watch;
+use tokio::task::JoinHandle;
+
+/// One that is on.
+pub(super) struct Flight {
+    bench: String,
+    stop: watch::Sender<bool>,
+    task: JoinHandle<()>,
+}
+
+/// Those that are on, by their number.
+#[derive(Default)]
+pub(super) struct Flights(Mutex<HashMap<i64, Flight>>);
+
+impl Flights {
+    fn lock(&self) -> MutexGuard<'_, HashMap<i64, Flight>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Ends all, where they stand.
+    pub fn abort(&self) {
+        self.lock().drain().for_each(|(_, flight)| flight.task.abort());
+    }
+}
+
+pub(super) const INTERRUPTED: &str = "the daemon ended before the autopilot did; its runs and models are kept";
+
+impl Lab {
+    pub async fn start_autopilot(&self, new: &NewAutopilot) -> Answer<Autopilot> {
+        let handle = self.handle(&new.bench)?;
+        if new.runs == 0 {
+            return Err(LabError::Invalid("runs = 0: give 1 or more".into()));
+        }
+        if new.bench_time_s.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
+            return Err(LabError::Invalid("bench_time_s: expected a time above 0 s".into()));
+        }
+        // A first run that cannot be made is refused now, not later.
+        let (_, plan) = self.plan(&new.bench, &new.procedure, &new.parameters)?;
+        let planned_s = plan.duration_s();
+        if let Some(failed) = plan.preview(&handle.facts()).checks.into_iter().find(|check| !check.ok) {
+            return Err(LabError::Invalid(format!("the first run is refused: {}", failed.detail)));
+        }
+        if new.bench_time_s.is_some_and(|budget_s| planned_s > budget_s) {
+            return Err(LabError::Invalid(format!(
+                "the first run alone may take {planned_s:.0} s: raise bench_time_s, or choose a shorter one"
+            )));
+        }
+        if let Some(effects) = &new.effects {
+            self.spec(plan.kind, effects).await?;
+        }
+        self.take_off(&new.bench, reread(new)?, Goal::Explain(new.clone())).await
+    }
+
+    /// Makes the run that a diagnosis asks for and diagnoses the same model again with it.
+    pub async fn start_experiment(&self, diagnosis: i64, new: &NewExperiment) -> Answer<Autopilot> {
+        let (model, experiment) = self.asked_for(diagnosis, &new.bench).await?;
+        let experiment = experiment.ok_or_else(|| {
+            LabError::Invalid(format!(
+                "diagnosis {diagnosis} leaves nothing open that a run on {} would decide",
+                new.bench
+            ))
+        })?;
+        let mut request: Map<String, Value> = reread(new)?;
+        request.insert("diagnosis".into(), diagnosis.into());
+        let goal = Goal::Decide { runs: model.runs(), model: model.id, effects: model.effects, experiment };
+        self.take_off(&new.bench, request, goal).await
+    }
+
+    async fn take_off(&self, bench: &str, request: Map<String, Value>, goal: Goal) -> Answer<Autopilot> {
+        self.check_is_free(bench)?;
+        if let Some(block) = self.inner.store.bench_block(bench).await? {
+            return Err(LabError::Conflict(format!("bench {bench} is blocked: {}", block.reason)));
+        }
+        let state: String = reread(&AutopilotState::Running)?;
+        let id = self.inner.store.create_autopilot(bench, &request, &state).await?;
+        tracing::info!(autopilot.id = id, bench, "autopilot started");
+        self.send_off(id, bench, goal);
+        self.autopilot(id).await
+    }
+
+    fn send_off(&self, id: i64, bench: &str, goal: Goal) {
+        let (stop, stopped) = watch::channel(false);
+        let (lab, bench) = (self.clone(), bench.to_owned());
+        let pilot = Pilot::new(lab.clone(), id, bench.clone(), stopped);
+        // The lock is held until the flight is entered, so that its end cannot come first.
+        let mut flights = self.inner.flights.lock();
+        let task = tokio::spawn(async move {
+            pilot.fly(goal).await;
+            lab.inner.flights.lock().remove(&id);
+        });
+        flights.insert(id, Flight { bench, stop, task });
+    }
+
+    fn check_is_free(&self, bench: &str) -> Answer<()> {
+        let on = self.inner.flights.lock().iter().find(|(_, f)| f.bench == bench).map(|(id, _)| *id);
+        match on {
+            Some(id) => {
+                Err(LabError::Conflict(format!("autopilot {id} has bench {bench}: stop it, or wait for its end")))
+            }
+            None if self.handle(bench)?.is_busy() => {
+                Err(LabError::Conflict(format!("bench {bench} has a run on: stop it, or wait for its end")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    pub async fn autopilots(&self) -> Answer<Vec<Autopilot>> {
+        self.inner.store.autopilots().await?.into_iter().map(autopilot).collect()
+    }
+
+    pub async fn autopilot(&self, id: i64) -> Answer<Autopilot> {
+        autopilot(self.inner.store.autopilot(id).await?)
+    }
+
+    /// Ends it after the step at hand; a run that is on ends as by `POST /runs/{id}/stop`.
+    pub async fn stop_autopilot(&self, id: i64) -> Answer<Autopilot> {
+        let told = self.inner.flights.lock().get(&id).is_some_and(|flight| flight.stop.send(true).is_ok());
+        let now = self.autopilot(id).await?;
+        if !told {
+            return Err(LabError::Conflict(format!("autopilot {id} is over: there is nothing to stop")));
+        }
+        Ok(now)
+    }
+}
+
+fn autopilot(record: AutopilotRecord) -> Answer<Autopilot> {
+    let steps: Vec<AutopilotStep> = reread(&record.steps)?;
+    let newest = |of: fn(&AutopilotStep) -> Option<i64>| steps.iter().rev().find_map(of);
+    let mut runs: Vec<i64> = steps.iter().filter_map(|step| step.run).collect();
+    runs.dedup();
+    Ok(Autopilot {
+        id: record.id,
+        bench: record.bench,
+        state: reread(&record.state)?,
+        reason: record.reason,
+        request: record.request,
+        runs,
+        bench_time_s: steps.iter().filter_map(|step| step.bench_time_s).sum(),
+        model: newest(|step| step.model),
+        verdict: steps.iter().rev().find_map(|step| step.verdict),
+        steps,
+        created_at: record.created_at,
+        finished_at: record.finished_at,
+    })
+}

@@ -1,0 +1,270 @@
+//! What an autopilot does: measure, diagnose, add what is missing or make the run that would tell, again.
+//!
+//! Every run goes through [`Lab::start_run`], so through plan, limits and guard like any other. After a further run the
+//! model starts anew from the effects that were given: what was added on less data has to earn its place again.
+
+use super::{Answer, Lab, LabError, reread};
+use crate::view::{
+    AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, Run,
+    RunState, Suggestion,
+};
+use jointbench_instrument::Meta;
+use jointbench_procedure::Control;
+use serde_json::{Map, Value};
+use tokio::sync::watch;
+
+pub(super) enum Goal {
+    /// Until nothing is missing.
+    Explain(NewAutopilot),
+    /// One run that decides what a model leaves open.
+    Decide { runs: Vec<i64>, model: i64, effects: Vec<String>, experiment: Experiment },
+}
+
+pub(super) struct Pilot {
+    lab: Lab,
+    id: i64,
+    bench: String,
+    stop: watch::Receiver<bool>,
+    /// Runs that the models look at.
+    runs: Vec<i64>,
+    made: u32,
+    bench_time_s: f64,
+}
+
+/// How it ends where nothing fails.
+struct End {
+    state: AutopilotState,
+    reason: String,
+}
+
+impl End {
+    fn new(state: AutopilotState, reason: impl Into<String>) -> Self {
+        Self { state, reason: reason.into() }
+    }
+}
+
+/// Work that is through, or cut short by a person.
+enum Through<T> {
+    Done(T),
+    Cut(End),
+}
+
+/// Hands the result on, or ends.
+macro_rules! through {
+    ($work:expr) => {
+        match $work {
+            Through::Done(value) => value,
+            Through::Cut(end) => return Ok(end),
+        }
+    };
+}
+
+impl Pilot {
+    pub fn new(lab: Lab, id: i64, bench: String, stop: watch::Receiver<bool>) -> Self {
+        Self { lab, id, bench, stop, runs: Vec::new(), made: 0, bench_time_s: 0.0 }
+    }
+
+    pub async fn fly(mut self, goal: Goal) {
+        let end = match goal {
+            Goal::Explain(request) => self.explain(&request).await,
+            Goal::Decide { runs, model, effects, experiment } => {
+                self.runs = runs;
+                self.decide(model, &effects, experiment).await
+            }
+        };
+        let End { state, reason } = end.unwrap_or_else(|fault| End::new(AutopilotState::Failed, fault.to_string()));
+        tracing::info!(autopilot.id = self.id, ?state, reason, "autopilot ended");
+        let word: Answer<String> = reread(&state);
+        let kept = match word {
+            Ok(word) => self.lab.inner.store.end_autopilot(self.id, &word, &reason).await.map_err(LabError::from),
+            Err(fault) => Err(fault),
+        };
+        if let Err(fault) = kept {
+            tracing::error!(autopilot.id = self.id, %fault, "how the autopilot ended could not be kept");
+        }
+        self.tell(state, Some(reason), None);
+    }
+
+    async fn decide(&mut self, model: i64, effects: &[String], experiment: Experiment) -> Answer<End> {
+        through!(self.measure(&experiment).await?);
+        let (_, found) = self.fit(effects, Some(model)).await?;
+        Ok(End::new(AutopilotState::Finished, found.summary))
+    }
+
+    async fn explain(&mut self, request: &NewAutopilot) -> Answer<End> {
+        let mut next = Experiment {
+            procedure: request.procedure.clone(),
+            parameters: request.parameters.clone(),
+            why: "the first run".into(),
+            expected_z: None,
+            expected_duration_s: None,
+            separates: Vec::new(),
+        };
+        let mut root = None;
+        loop {
+            let run = through!(self.measure(&next).await?);
+            let effects = match &request.effects {
+                Some(effects) => effects.clone(),
+                None => baseline(&run)?,
+            };
+            let (model, found) = self.fit(&effects, root).await?;
+            root = Some(model.id);
+            let found = through!(self.add_what_is_missing(request, model, found).await?);
+            match found.experiment {
+                Some(experiment) if self.can_afford(request, &experiment) => next = experiment,
+                Some(experiment) => {
+                    let reason = format!(
+                        "{} Not measured any more: {} ({})",
+                        found.summary, experiment.procedure, experiment.why
+                    );
+                    return Ok(End::new(AutopilotState::BudgetSpent, reason));
+                }
+                None => return Ok(End::new(AutopilotState::Finished, found.summary)),
+            }
+        }
+    }
+
+    /// Adds the best effect again and again, until none is missing or a run can decide between the best and its rivals.
+    async fn add_what_is_missing(
+        &mut self,
+        request: &NewAutopilot,
+        mut model: Model,
+        mut found: Finding,
+    ) -> Answer<Through<Finding>> {
+        for _ in 0..request.max_effects {
+            let Some(best) = found.suggestions.first() else { break };
+            let decidable = found
+                .experiment
+                .as_ref()
+                .is_some_and(|e| e.separates.contains(&best.effect) && self.can_afford(request, e));
+            if !best.confounded_with.is_empty() && decidable {
+                break;
+            }
+            if let Some(end) = self.is_stopped() {
+                return Ok(Through::Cut(end));
+            }
+            (model, found) = self.add(&model, &best.clone()).await?;
+        }
+        Ok(Through::Done(found))
+    }
+
+    fn can_afford(&self, request: &NewAutopilot, experiment: &Experiment) -> bool {
+        let left_s = request.bench_time_s.map_or(f64::INFINITY, |budget_s| budget_s - self.bench_time_s);
+        self.made < request.runs && experiment.expected_duration_s.unwrap_or(0.0) <= left_s
+    }
+
+    /// Makes a run and waits for its end.
+    async fn measure(&mut self, experiment: &Experiment) -> Answer<Through<Run>> {
+        if let Some(end) = self.is_stopped() {
+            return Ok(Through::Cut(end));
+        }
+        let handle = self.lab.handle(&self.bench)?.clone();
+        let run = self.lab.start_run(&self.bench, &experiment.procedure, &experiment.parameters).await?;
+        let id = run.summary.id;
+        self.made += 1;
+        let step = AutopilotStep::new(
+            AutopilotAction::Measure,
+            format!("run {id}: {}, {}", experiment.procedure, experiment.why),
+        );
+        self.keep(AutopilotStep { run: Some(id), experiment: Some(experiment.clone()), ..step }).await?;
+
+        let mut watch = handle.watch();
+        let over = |_: &_| !handle.is_busy();
+        let cut = tokio::select! {
+            _ = watch.wait_for(over) => false,
+            _ = self.stop.wait_for(|stop| *stop) => true,
+        };
+        if cut {
+            // It may have come to its end by itself in between.
+            let _ = self.lab.control(id, Control::Stop).await;
+            // An error says that the thread has ended, and the run with it.
+            let _ = watch.wait_for(over).await;
+        }
+        let run = self.lab.run(id).await?;
+        let summary = &run.summary;
+        let duration_s = summary.duration_s.unwrap_or(0.0);
+        self.bench_time_s += duration_s;
+        let state: String = reread(&summary.state)?;
+        let text = format!("run {id} {state}: {} rows in {duration_s:.0} s of the bench", summary.rows);
+        let step = AutopilotStep::new(AutopilotAction::Measured, text.clone());
+        self.keep(AutopilotStep { run: Some(id), bench_time_s: Some(duration_s), ..step }).await?;
+        if let Some(end) = self.is_stopped() {
+            return Ok(Through::Cut(end));
+        }
+        match summary.state {
+            RunState::Completed => {
+                self.runs.push(id);
+                Ok(Through::Done(run))
+            }
+            RunState::Stopped | RunState::Aborted => {
+                Ok(Through::Cut(End::new(AutopilotState::Stopped, format!("run {id} was {state} by a person"))))
+            }
+            _ => Err(LabError::Bench(match &summary.reason {
+                Some(reason) => format!("{text}: {reason}"),
+                None => text,
+            })),
+        }
+    }
+
+    /// Fits effects to all runs so far.
+    async fn fit(&mut self, effects: &[String], parent: Option<i64>) -> Answer<(Model, Finding)> {
+        let before_rms = match parent {
+            Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
+            None => None,
+        };
+        let model = self.lab.create_model(&self.runs, effects, parent).await?;
+        let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
+        let found = self.diagnosed(&model, step).await?;
+        Ok((model, found))
+    }
+
+    async fn add(&mut self, before: &Model, best: &Suggestion) -> Answer<(Model, Finding)> {
+        let effects: Vec<String> = before.effects.iter().cloned().chain([best.effect.clone()]).collect();
+        let model = self.lab.create_model(&self.runs, &effects, Some(before.id)).await?;
+        let tied = match best.confounded_with.as_slice() {
+            [] => String::new(),
+            rivals => format!(" (these runs cannot tell it from {})", rivals.join(", ")),
+        };
+        let step = AutopilotStep::new(AutopilotAction::Add, format!("added {}{tied}. ", best.effect));
+        let step = AutopilotStep { effect: Some(best.effect.clone()), before_rms: Some(before.validation_rms), ..step };
+        let found = self.diagnosed(&model, step).await?;
+        Ok((model, found))
+    }
+
+    /// Keeps a step about a model with what its diagnosis says.
+    async fn diagnosed(&mut self, model: &Model, step: AutopilotStep) -> Answer<Finding> {
+        let kept = self.lab.diagnose(model.id).await?;
+        let step = AutopilotStep {
+            text: step.text.clone() + &kept.finding.summary,
+            model: Some(model.id),
+            diagnosis: Some(kept.id),
+            verdict: Some(kept.finding.verdict),
+            experiment: kept.finding.experiment.clone(),
+            after_rms: Some(model.validation_rms),
+            ..step
+        };
+        self.keep(step).await?;
+        Ok(kept.finding)
+    }
+
+    fn is_stopped(&self) -> Option<End> {
+        self.stop.borrow().then(|| End::new(AutopilotState::Stopped, "a person has ended it"))
+    }
+
+    async fn keep(&self, step: AutopilotStep) -> Answer<()> {
+        let kept = self.lab.inner.store.append_autopilot_step(self.id, reread(&step)?).await?;
+        self.tell(AutopilotState::Running, None, Some(reread(&kept)?));
+        Ok(())
+    }
+
+    fn tell(&self, state: AutopilotState, reason: Option<String>, step: Option<Box<AutopilotStep>>) {
+        let bench = self.bench.clone();
+        self.lab.hub().tell(LiveMessage::Autopilot { autopilot: self.id, bench, state, reason, step });
+    }
+}
+
+/// The model to start from, by the facts of the run.
+fn baseline(run: &Run) -> Answer<Vec<String>> {
+    let meta: Meta = reread::<Map<String, Value>, _>(&run.meta)?;
+    Ok(meta.baseline)
+}

@@ -1,0 +1,113 @@
+//! Autopilots and their steps, which are only appended to.
+
+use super::runs::now;
+use super::{AutopilotRecord, Store, StoreError};
+use serde_json::{Map, Value};
+
+#[derive(sqlx::FromRow)]
+struct AutopilotRow {
+    id: i64,
+    bench: String,
+    request: String,
+    state: String,
+    reason: Option<String>,
+    created_at: String,
+    finished_at: Option<String>,
+}
+
+impl Store {
+    /// `state` is what it begins with.
+    pub async fn create_autopilot(
+        &self,
+        bench: &str,
+        request: &Map<String, Value>,
+        state: &str,
+    ) -> Result<i64, StoreError> {
+        let inserted = sqlx::query("INSERT INTO autopilots (bench, request, state, created_at) VALUES (?, ?, ?, ?)")
+            .bind(bench)
+            .bind(serde_json::to_string(request)?)
+            .bind(state)
+            .bind(now())
+            .execute(&self.writer)
+            .await?;
+        Ok(inserted.last_insert_rowid())
+    }
+
+    /// Appends a step, numbers it and tells when. `step` is an object.
+    pub async fn append_autopilot_step(&self, autopilot: i64, mut step: Value) -> Result<Value, StoreError> {
+        let mut writer = self.writer.begin().await?;
+        let last: i64 =
+            sqlx::query_scalar("SELECT COALESCE(MAX(sequence), 0) FROM autopilot_steps WHERE autopilot = ?")
+                .bind(autopilot)
+                .fetch_one(&mut *writer)
+                .await?;
+        step["sequence"] = (last + 1).into();
+        step["at"] = now().into();
+        sqlx::query("INSERT INTO autopilot_steps (autopilot, sequence, step) VALUES (?, ?, ?)")
+            .bind(autopilot)
+            .bind(last + 1)
+            .bind(serde_json::to_string(&step)?)
+            .execute(&mut *writer)
+            .await?;
+        writer.commit().await?;
+        Ok(step)
+    }
+
+    pub async fn end_autopilot(&self, autopilot: i64, state: &str, reason: &str) -> Result<(), StoreError> {
+        sqlx::query("UPDATE autopilots SET state = ?, reason = ?, finished_at = ? WHERE id = ?")
+            .bind(state)
+            .bind(reason)
+            .bind(now())
+            .bind(autopilot)
+            .execute(&self.writer)
+            .await?;
+        Ok(())
+    }
+
+    /// Ends what a daemon left open when it ended.
+    pub async fn interrupt_open_autopilots(&self, state: &str, reason: &str) -> Result<u64, StoreError> {
+        let ended =
+            sqlx::query("UPDATE autopilots SET state = ?, reason = ?, finished_at = ? WHERE finished_at IS NULL")
+                .bind(state)
+                .bind(reason)
+                .bind(now())
+                .execute(&self.writer)
+                .await?;
+        Ok(ended.rows_affected())
+    }
+
+    pub async fn autopilot(&self, id: i64) -> Result<AutopilotRecord, StoreError> {
+        let row: Option<AutopilotRow> =
+            sqlx::query_as("SELECT * FROM autopilots WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
+        self.with_steps(row.ok_or(StoreError::NoAutopilot(id))?).await
+    }
+
+    /// All autopilots, newest first.
+    pub async fn autopilots(&self) -> Result<Vec<AutopilotRecord>, StoreError> {
+        let rows: Vec<AutopilotRow> =
+            sqlx::query_as("SELECT * FROM autopilots ORDER BY id DESC").fetch_all(&self.readers).await?;
+        let mut records = Vec::new();
+        for row in rows {
+            records.push(self.with_steps(row).await?);
+        }
+        Ok(records)
+    }
+
+    async fn with_steps(&self, row: AutopilotRow) -> Result<AutopilotRecord, StoreError> {
+        let steps: Vec<String> =
+            sqlx::query_scalar("SELECT step FROM autopilot_steps WHERE autopilot = ? ORDER BY sequence")
+                .bind(row.id)
+                .fetch_all(&self.readers)
+                .await?;
+        Ok(AutopilotRecord {
+            id: row.id,
+            bench: row.bench,
+            request: serde_json::from_str(&row.request)?,
+            state: row.state,
+            reason: row.reason,
+            steps: steps.iter().map(|step| serde_json::from_str(step)).collect::<Result<_, _>>()?,
+            created_at: row.created_at,
+            finished_at: row.finished_at,
+        })
+    }
+}

@@ -1,0 +1,165 @@
+//! What to measure next, made with one call, and the autopilot.
+
+use crate::daemon::{BENCH, TestDaemon, settings};
+use jointbench::config::BenchDescription;
+use jointbench::daemon::Daemon;
+use jointbench::store::Store;
+use jointbench_devices::{Joint, MockSettings};
+use serde_json::{Value, json};
+use std::collections::HashSet;
+use tokio::runtime::Runtime;
+use tungstenite::Message;
+
+/// Two load levels, none and one: a line through them is a parabola too.
+fn two_loads() -> Value {
+    json!({"load_levels": 2, "repeats": 2, "fast_speeds": 4, "dwell_s": 0.6, "warm_up_s": 1.0, "top_speed_rad_s": 120.0})
+}
+
+fn hiding(effects: &'static [&'static str], pace: Option<f64>) -> TestDaemon {
+    TestDaemon::start_with(pace, |settings| {
+        let mock = MockSettings { pace, ..MockSettings::new(Joint::JointA, 7) }.hiding(effects);
+        settings.benches = vec![BenchDescription::mock(BENCH, mock)];
+    })
+}
+
+fn start(daemon: &TestDaemon, body: &Value) -> i64 {
+    let (status, autopilot) = daemon.post("/api/v1/autopilots", &body.to_string());
+    assert_eq!(status, 201, "{autopilot}");
+    autopilot["id"].as_i64().unwrap()
+}
+
+fn wait(daemon: &TestDaemon, id: i64) -> Value {
+    daemon.wait_for(&format!("/api/v1/autopilots/{id}"), |a| a["state"] != "running")
+}
+
+fn added(daemon: &TestDaemon, autopilot: &Value) -> Vec<String> {
+    let (_, model) = daemon.get(&format!("/api/v1/models/{}", autopilot["model"]));
+    let baseline = ["inertia", "load_transmission", "coulomb", "viscous"];
+    let effects = model["effects"].as_array().unwrap().iter().filter_map(Value::as_str);
+    effects.filter(|effect| !baseline.contains(effect)).map(str::to_owned).collect()
+}
+
+#[test]
+fn an_effect_that_one_run_cannot_tell_from_its_rival_is_found_by_the_next() {
+    let daemon = hiding(&["load_quadratic"], None);
+    let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
+    let id = start(&daemon, &json!({"bench": BENCH, "runs": 3, "parameters": two_loads()}));
+    let ended = wait(&daemon, id);
+    let steps = ended["steps"].as_array().unwrap();
+    let story: Vec<&str> = steps.iter().filter_map(|step| step["text"].as_str()).collect();
+    assert_eq!((&ended["state"], &ended["verdict"]), (&"finished".into(), &"adequate".into()), "{story:#?}");
+    assert_eq!(added(&daemon, &ended), ["load_quadratic"], "{story:#?}");
+    assert!(ended["runs"].as_array().unwrap().len() > 1, "one run could not have told: {story:#?}");
+
+    let second = steps.iter().filter(|step| step["action"] == "measure").nth(1).unwrap();
+    let separates = second["experiment"]["separates"].as_array().unwrap();
+    assert!(separates.contains(&"load_linear".into()) && separates.contains(&"load_quadratic".into()), "{second}");
+    assert!(second["experiment"]["expected_z"].as_f64().unwrap() >= 4.0, "{second}");
+    let add = steps.iter().find(|step| step["action"] == "add" && step["effect"] == "load_quadratic").unwrap();
+    assert!(add["after_rms"].as_f64().unwrap() < add["before_rms"].as_f64().unwrap(), "{add}");
+
+    let (_, model) = daemon.get(&format!("/api/v1/models/{}", ended["model"]));
+    assert_eq!((&model["run"], &model["more_runs"][0]), (&ended["runs"][0], &ended["runs"][1]), "{model}");
+    let (status, set) = daemon.get(&format!("/api/v1/models/{}/residuals", ended["model"]));
+    assert_eq!(status, 200, "{set}");
+
+    let mut told = HashSet::new();
+    while told.len() < steps.len() {
+        let Message::Text(text) = socket.read().unwrap() else { continue };
+        let message: Value = serde_json::from_str(&text).unwrap();
+        if message["type"] == "autopilot" && !message["step"].is_null() {
+            told.insert(message["step"]["sequence"].as_u64().unwrap());
+        }
+    }
+}
+
+#[test]
+fn the_run_that_a_diagnosis_asks_for_is_one_call() {
+    let daemon = hiding(&["load_linear"], None);
+    let body = json!({"bench": BENCH, "procedure": "friction", "parameters": two_loads()});
+    let (_, run) = daemon.post("/api/v1/runs", &body.to_string());
+    daemon.wait_for_end(run["id"].as_i64().unwrap());
+    let body = json!({"run": run["id"], "effects": ["inertia", "load_transmission", "coulomb", "viscous"]});
+    let (_, model) = daemon.post("/api/v1/models", &body.to_string());
+    let (_, before) = daemon.post("/api/v1/diagnoses", &json!({"model": model["id"]}).to_string());
+    assert_eq!(before["experiment"]["procedure"], "strokes", "{}", before["experiment"]);
+
+    let path = format!("/api/v1/diagnoses/{}/experiment", before["id"]);
+    let (status, autopilot) = daemon.post(&path, &json!({"bench": BENCH}).to_string());
+    assert_eq!(status, 201, "{autopilot}");
+    let ended = wait(&daemon, autopilot["id"].as_i64().unwrap());
+    assert_eq!((&ended["state"], &ended["request"]["diagnosis"]), (&"finished".into(), &before["id"]), "{ended}");
+    let (_, again) = daemon.get(&format!("/api/v1/models/{}", ended["model"]));
+    assert_eq!((&again["parent"], &again["run"]), (&model["id"], &run["id"]), "{again}");
+    assert_eq!((&again["more_runs"], &again["effects"]), (&ended["runs"], &model["effects"]), "{again}");
+    let (_, after) = daemon.post("/api/v1/diagnoses", &json!({"model": again["id"]}).to_string());
+    assert_eq!(after["suggestions"][0]["effect"], "load_linear", "{}", after["summary"]);
+    assert_eq!(after["suggestions"][0]["confounded_with"], json!([]), "{}", after["summary"]);
+}
+
+#[test]
+fn an_autopilot_is_stopped_by_a_person_and_interrupted_with_its_daemon() {
+    let mut daemon = hiding(&[], Some(4.0));
+    let body = json!({"bench": BENCH, "parameters": two_loads()});
+    let id = start(&daemon, &body);
+    let path = format!("/api/v1/autopilots/{id}");
+    assert_eq!(daemon.post("/api/v1/autopilots", &body.to_string()).0, 409, "one for each bench");
+    let flying = daemon.wait_for(&path, |a| a["runs"].as_array().is_some_and(|runs| !runs.is_empty()));
+    let run = flying["runs"][0].as_i64().unwrap();
+    daemon.wait_for(&format!("/api/v1/runs/{run}"), |run| run["state"] == "running");
+    assert_eq!(daemon.post(&format!("{path}/stop"), "").0, 200);
+    let ended = wait(&daemon, id);
+    assert_eq!(ended["state"], "stopped", "{ended}");
+    assert_eq!(daemon.wait_for_end(run)["state"], "stopped");
+    assert_eq!(daemon.post(&format!("{path}/stop"), "").0, 409);
+
+    let id = start(&daemon, &body);
+    let path = format!("/api/v1/autopilots/{id}");
+    daemon.wait_for(&path, |a| a["runs"].as_array().is_some_and(|runs| !runs.is_empty()));
+    daemon.stop();
+    let state = Runtime::new().unwrap().block_on(async {
+        let store = Store::open(daemon.data.path()).await.unwrap();
+        store.autopilot(id).await.unwrap().state
+    });
+    assert_eq!(state, "interrupted");
+}
+
+#[test]
+fn what_a_killed_daemon_left_open_is_interrupted_and_not_taken_up() {
+    let data = tempfile::TempDir::new().unwrap();
+    let runtime = Runtime::new().unwrap();
+    let autopilot = runtime.block_on(async {
+        let store = Store::open(data.path()).await.unwrap();
+        let id = store.create_autopilot(BENCH, &serde_json::Map::new(), "running").await.unwrap();
+        store.close().await;
+        let daemon = Daemon::start(settings(data.path(), None)).await.unwrap();
+        let autopilot = daemon.lab.autopilot(id).await.unwrap();
+        daemon.stop().await;
+        autopilot
+    });
+    let told = serde_json::to_value(&autopilot).unwrap();
+    assert_eq!((&told["state"], &told["runs"]), (&"interrupted".into(), &json!([])), "{told}");
+    assert!(told["reason"].as_str().unwrap().contains("the daemon ended"), "{told}");
+}
+
+#[test]
+fn what_cannot_be_asked_of_an_autopilot_is_refused_before_anything_moves() {
+    let daemon = TestDaemon::start();
+    std::fs::write("/tmp/plan-served.json", daemon.get_raw("/api/v1/openapi.json").into_body().read_to_vec().unwrap())
+        .unwrap();
+    for (body, status, said) in [
+        (json!({"bench": "attic"}), 404, "no bench attic"),
+        (json!({"bench": BENCH, "runs": 0}), 422, "runs = 0"),
+        (json!({"bench": BENCH, "bench_time_s": 5.0}), 422, "the first run alone"),
+        (json!({"bench": BENCH, "parameters": {"top_speed_rad_s": 900}}), 422, "motor velocity"),
+        (json!({"bench": BENCH, "effects": ["belt"]}), 422, "effect belt"),
+    ] {
+        let (found, problem) = daemon.post("/api/v1/autopilots", &body.to_string());
+        assert_eq!(found, status, "{problem}");
+        assert!(problem["detail"].as_str().unwrap().contains(said), "{problem}");
+    }
+    assert_eq!(daemon.post("/api/v1/diagnoses/9/experiment", r#"{"bench": "joint-a-mock"}"#).0, 404);
+    assert_eq!(daemon.get("/api/v1/autopilots/9").0, 404);
+    assert_eq!(daemon.get("/api/v1/autopilots").1, json!([]));
+    assert_eq!(daemon.get("/api/v1/runs").1["total"], 0);
+}
