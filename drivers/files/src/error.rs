@@ -39,7 +39,7 @@ impl fmt::Display for Place {
 
 #[derive(Debug, thiserror::Error)]
 pub enum FileFault {
-    #[error("{0}")]
+    #[error("{}", io_words(.0))]
     Io(io::Error),
     #[error("expected a file that ends in .csv, .csv.gz, .parquet or .arrow")]
     UnknownForm,
@@ -73,6 +73,15 @@ pub enum FileFault {
     Unscaled { wanted: String, there: Vec<String> },
     #[error("{0}")]
     Table(TableFault),
+}
+
+fn io_words(fault: &io::Error) -> String {
+    match fault.kind() {
+        io::ErrorKind::NotFound => "there is no such file: check the name and the folder".to_owned(),
+        io::ErrorKind::IsADirectory => "this is a folder: name a file in it".to_owned(),
+        io::ErrorKind::PermissionDenied => "it may not be opened: check its permissions".to_owned(),
+        _ => fault.to_string(),
+    }
 }
 
 fn shown(found: &str) -> String {

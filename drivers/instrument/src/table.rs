@@ -14,13 +14,28 @@ pub struct RunTable {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableFault {
     #[error(
-        "the kind of the run is not known: expected \"kind\": friction, encoder, stiffness or brake in the meta file"
+        "the kind of the run is not known: expected \"kind\": friction, encoder, stiffness or brake in the facts (meta.json \
+         beside the table, or --meta FILE)"
     )]
     UnknownKind,
-    #[error("column {column} is missing: a {kind} table needs {}", .kind.required_columns().join(", "))]
-    MissingColumn { kind: Kind, column: &'static str },
-    #[error("column {found}: the unit is not the expected one, expected {expected}")]
+    #[error(
+        "column {column} is missing: a {kind} table needs {}, and the file has {}; take it from another column with \
+         --map {column}=NAME",
+        .kind.required_columns().join(", "), .found.join(", ")
+    )]
+    MissingColumn { kind: Kind, column: &'static str, found: Vec<String> },
+    #[error(
+        "column {found}: the unit is not the expected one, expected {expected}; convert it with --map {expected}={found} \
+         --scale {expected}=FACTOR"
+    )]
     WrongUnit { found: String, expected: String },
+    #[error("{fact} = {value} in the facts: expected {expected}")]
+    ImpossibleFact { fact: &'static str, value: f64, expected: &'static str },
+    #[error(
+        "the facts say {stated_hz} samples in a second, column time_s says {found_hz:.3}: expected seconds; convert the time \
+         with --scale time_s=FACTOR, or correct sample_rate_hz"
+    )]
+    TimeAgainstRate { stated_hz: f64, found_hz: f64 },
     #[error("column {0} is there twice")]
     DuplicateColumn(String),
     #[error("column {column}: expected a finite number, found {value}")]
@@ -51,8 +66,8 @@ impl TableFault {
             TableFault::WrongUnit { found, .. } => Some(found),
             TableFault::DuplicateColumn(column) => Some(column),
             TableFault::NotFinite { column, .. } | TableFault::NotWhole { column, .. } => Some(column),
-            TableFault::TimeNotRising { .. } => Some("time_s"),
-            TableFault::UnknownKind | TableFault::Empty => None,
+            TableFault::TimeNotRising { .. } | TableFault::TimeAgainstRate { .. } => Some("time_s"),
+            TableFault::UnknownKind | TableFault::Empty | TableFault::ImpossibleFact { .. } => None,
         }
     }
 }
@@ -81,6 +96,7 @@ impl RunTable {
         if let Some(row) = time_s.windows(2).position(|w| w[1] <= w[0]) {
             return Err(TableFault::TimeNotRising { row: row + 1, before: time_s[row], after: time_s[row + 1] });
         }
+        check_facts(&meta, time_s)?;
         Ok(Self { kind, meta, trace })
     }
 
@@ -133,9 +149,43 @@ fn check_names(kind: Kind, trace: &Trace) -> Result<(), TableFault> {
         }
     }
     match kind.required_columns().iter().find(|required| !names.contains(required)) {
-        Some(column) => Err(TableFault::MissingColumn { kind, column }),
+        Some(column) => {
+            let found = names.iter().map(|name| (*name).to_owned()).collect();
+            Err(TableFault::MissingColumn { kind, column, found })
+        }
         None => Ok(()),
     }
+}
+
+/// A stated rate this many times off the time column is another unit, not another rate.
+const OTHER_UNIT: f64 = 10.0;
+
+/// Facts that no set-up can have. A negative gear ratio can be: the link turns the other way round.
+fn check_facts(meta: &Meta, time_s: &[f64]) -> Result<(), TableFault> {
+    let is_positive = |value: f64| value.is_finite() && value > 0.0;
+    for (fact, value, is_possible, expected) in [
+        ("torque_constant_nm_per_a", meta.torque_constant_nm_per_a, is_positive as fn(f64) -> bool, "a number above 0"),
+        ("gear_ratio", meta.gear_ratio, |value| value.is_finite() && value != 0.0, "a number other than 0"),
+        ("rotor_inertia_kg_m2", meta.rotor_inertia_kg_m2, |value| value.is_finite() && value >= 0.0, "0 or more"),
+        ("bearing_stiffness_nm_per_rad", meta.bearing_stiffness_nm_per_rad, is_positive, "a number above 0"),
+        ("sample_rate_hz", meta.sample_rate_hz, is_positive, "a number above 0"),
+    ] {
+        if let Some(value) = value
+            && !is_possible(value)
+        {
+            return Err(TableFault::ImpossibleFact { fact, value, expected });
+        }
+    }
+    // A pause between recordings is no step: the middle one of the first thousand is.
+    let mut steps_s: Vec<f64> = time_s.windows(2).take(1000).map(|w| w[1] - w[0]).collect();
+    steps_s.sort_by(f64::total_cmp);
+    if let (Some(stated_hz), Some(step_s)) = (meta.sample_rate_hz, steps_s.get(steps_s.len() / 2)) {
+        let found_hz = 1.0 / step_s;
+        if found_hz > stated_hz * OTHER_UNIT || found_hz < stated_hz / OTHER_UNIT {
+            return Err(TableFault::TimeAgainstRate { stated_hz, found_hz });
+        }
+    }
+    Ok(())
 }
 
 /// Length of the unit suffix of a known column name, its underscore included.
@@ -196,6 +246,26 @@ mod tests {
         assert_eq!((back.row(), back.column()), (Some(1), Some("time_s")));
 
         assert_eq!(table(&NAMES, &[]).unwrap_err(), TableFault::Empty);
+    }
+
+    #[test]
+    fn facts_that_cannot_be_are_refused() {
+        let with = |meta: Meta| {
+            let mut trace = Trace::new(NAMES.iter().map(|n| Channel::new(*n)).collect());
+            (0..4).for_each(|i| trace.push_row(&[f64::from(i), 0.0, 0.0]));
+            RunTable::new(Meta { kind: Some(Kind::Friction), ..meta }, trace)
+        };
+        let fact = |fault: TableFault| match fault {
+            TableFault::ImpossibleFact { fact, .. } => fact,
+            other => panic!("{other}"),
+        };
+        let ratio = with(Meta { gear_ratio: Some(0.0), ..Meta::default() }).unwrap_err();
+        assert_eq!(fact(ratio), "gear_ratio");
+        let constant = with(Meta { torque_constant_nm_per_a: Some(-0.1), ..Meta::default() }).unwrap_err();
+        assert_eq!(fact(constant), "torque_constant_nm_per_a");
+        let rate = with(Meta { sample_rate_hz: Some(1000.0), ..Meta::default() }).unwrap_err();
+        assert_eq!(rate, TableFault::TimeAgainstRate { stated_hz: 1000.0, found_hz: 1.0 });
+        with(Meta { sample_rate_hz: Some(1.0), gear_ratio: Some(-50.0), ..Meta::default() }).unwrap();
     }
 
     #[test]

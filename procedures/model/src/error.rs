@@ -9,7 +9,7 @@ pub enum ModelError {
     UnknownEffect { id: String, kind: Kind, known: Vec<String> },
     #[error("effect {0} is named twice; name each effect once")]
     TwiceNamed(String),
-    #[error("the model has no effects: name some with --model, or give a baseline in the meta file")]
+    #[error("the model has no effects: choose some, or give a baseline in the meta file")]
     EmptyModel,
     #[error("a {run} run cannot be explained by a {model} model; choose effects of the kind {run}")]
     WrongKind { run: Kind, model: Kind },

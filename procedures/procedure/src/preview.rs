@@ -99,7 +99,10 @@ impl Plan {
             limited(Limited::BrakeCurrent, self.top_brake_current_a()),
             limited(Limited::LinkTorque, torque_nm),
             limited(Limited::BrakePower, power_w),
-            limited(Limited::MotorCurrent, motor_nm / constants.torque_constant_nm_per_a),
+            Extreme {
+                quantity: "motor current before friction",
+                ..limited(Limited::MotorCurrent, motor_nm / constants.torque_constant_nm_per_a)
+            },
         ];
         extremes.push(Extreme {
             quantity: "link travel",

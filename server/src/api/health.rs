@@ -31,3 +31,7 @@ pub async fn specification() -> Json<utoipa::openapi::OpenApi> {
 pub async fn no_such_route(request: Request) -> Problem {
     Problem::no_route(request.uri().path())
 }
+
+pub async fn no_such_method(request: Request) -> Problem {
+    Problem::no_method(request.method().as_str(), request.uri().path())
+}

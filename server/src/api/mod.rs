@@ -113,6 +113,7 @@ pub fn router(lab: Lab, door: Door) -> Router {
     let (rest, _) = operations().split_for_parts();
     rest.route("/api", get(health::no_such_route))
         .route("/api/{*rest}", axum::routing::any(health::no_such_route))
+        .method_not_allowed_fallback(health::no_such_method)
         .fallback(dashboard::serve)
         .with_state(lab)
         .layer(middleware::from_fn_with_state(door, door::guard))

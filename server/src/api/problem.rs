@@ -15,7 +15,7 @@ use utoipa::{IntoResponses, ToSchema};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
     /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `bench_fault`, `malformed`,
-    /// `forbidden`, `unauthorized`, `too_large`, `internal`.
+    /// `forbidden`, `unauthorized`, `not_allowed`, `too_large`, `internal`.
     #[serde(rename = "type")]
     pub type_: String,
     #[schema(value_type = String)]
@@ -89,6 +89,11 @@ impl Problem {
         Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "The request is too large", detail)
     }
 
+    pub fn no_method(method: &str, path: &str) -> Self {
+        let detail = format!("{method} is not offered at {path}; /api/v1/openapi.json lists every operation");
+        Self::new(StatusCode::METHOD_NOT_ALLOWED, "not_allowed", "Not offered there", detail)
+    }
+
     pub fn no_route(path: &str) -> Self {
         let detail = format!("nothing is served at {path}; /api/v1/openapi.json lists every operation");
         Self::new(StatusCode::NOT_FOUND, "not_found", "Not there", detail)
@@ -131,25 +136,32 @@ impl From<LabError> for Problem {
     }
 }
 
+const SEE: &str = "; /api/v1/openapi.json describes every operation";
+
+/// Without the extractor's own preface.
+fn plain(text: &str) -> &str {
+    text.split_once(": ").map_or(text, |(_, what)| what)
+}
+
 impl From<JsonRejection> for Problem {
     fn from(rejection: JsonRejection) -> Self {
         match rejection.status() {
             StatusCode::PAYLOAD_TOO_LARGE => Self::too_large(rejection.body_text()),
-            StatusCode::UNPROCESSABLE_ENTITY => Self::malformed(rejection.body_text()),
-            _ => Self::malformed(format!("{}; send JSON with `Content-Type: application/json`", rejection.body_text())),
+            StatusCode::UNSUPPORTED_MEDIA_TYPE => Self::malformed("send JSON with `Content-Type: application/json`"),
+            _ => Self::malformed(format!("the JSON body does not fit: {}{SEE}", plain(&rejection.body_text()))),
         }
     }
 }
 
 impl From<QueryRejection> for Problem {
     fn from(rejection: QueryRejection) -> Self {
-        Self::malformed(rejection.body_text())
+        Self::malformed(format!("the query does not fit: {}{SEE}", plain(&rejection.body_text())))
     }
 }
 
 impl From<PathRejection> for Problem {
     fn from(rejection: PathRejection) -> Self {
-        Self::malformed(rejection.body_text())
+        Self::malformed(format!("the path does not fit: {}{SEE}", plain(&rejection.body_text())))
     }
 }
 

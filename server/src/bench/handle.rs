@@ -88,7 +88,9 @@ impl BenchHandle {
         let mut slot = lock(&self.shared.slot);
         if slot.is_some() {
             let name = self.name();
-            return Err(LabError::Conflict(format!("bench {name} has a run on: stop it, or wait for its end")));
+            return Err(LabError::Conflict(format!(
+                "bench {name} has a run on: stop it (POST /api/v1/bench/{name}/stop, or in the dashboard), or wait for its end"
+            )));
         }
         let (sender, controls) = mpsc::channel();
         *slot = Some(sender);

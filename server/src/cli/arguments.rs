@@ -83,11 +83,15 @@ pub struct Place {
     #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA")]
     pub data: Option<PathBuf>,
     /// Address and port of API and dashboard; port 0 takes a free one
-    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080")]
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080", value_parser = address)]
     pub listen: SocketAddr,
     /// Needed to listen beyond loopback; callers send it as `Authorization: Bearer TOKEN`
     #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
     pub token: Option<String>,
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_| "expected an address and a port, such as 127.0.0.1:8203".to_owned())
 }
 
 #[derive(Debug, Args)]
@@ -102,9 +106,9 @@ pub struct Check {
 /// How to reach a running daemon.
 #[derive(Debug, Args)]
 pub struct Reach {
-    /// Address of the daemon
-    #[arg(long, value_name = "URL", env = "JOINTBENCH_URL", default_value = "http://127.0.0.1:8080")]
-    pub daemon: String,
+    /// Address of the daemon [default: http://127.0.0.1:8080]
+    #[arg(long, value_name = "URL", env = "JOINTBENCH_URL")]
+    pub daemon: Option<String>,
     /// Token of a daemon that listens beyond loopback
     #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
     pub token: Option<String>,
@@ -376,7 +380,7 @@ pub struct Export {
     pub store: StorePlace,
 }
 
-/// The folder where no daemon has it, else the daemon that has it.
+/// The daemon where its address is given; else the folder, or the daemon on the usual address where one has the folder.
 #[derive(Debug, Args)]
 pub struct StorePlace {
     /// Folder of the store

@@ -8,6 +8,8 @@ use serde::de::DeserializeOwned;
 use ureq::http::Response;
 use ureq::{Agent, Body};
 
+const DEFAULT_DAEMON: &str = "http://127.0.0.1:8080";
+
 pub struct Client {
     agent: Agent,
     base: String,
@@ -17,8 +19,17 @@ pub struct Client {
 impl Client {
     pub fn new(reach: &Reach) -> Self {
         let agent = Agent::new_with_config(Agent::config_builder().http_status_as_error(false).build());
-        let base = format!("{}/api/v1", reach.daemon.trim_end_matches('/'));
+        let address = reach.daemon.as_deref().unwrap_or(DEFAULT_DAEMON).trim_end_matches('/');
+        let base = match address.contains("://") {
+            true => format!("{address}/api/v1"),
+            false => format!("http://{address}/api/v1"),
+        };
         Self { agent, base, bearer: reach.token.as_ref().map(|token| format!("Bearer {token}")) }
+    }
+
+    /// A page of the dashboard.
+    pub fn page(&self, path: &str) -> String {
+        format!("{}{path}", self.base.trim_end_matches("/api/v1"))
     }
 
     pub fn get<T: DeserializeOwned>(&self, path: &str) -> Result<T, Exit> {

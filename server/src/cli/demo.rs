@@ -35,9 +35,9 @@ pub fn demo(arguments: Demo) -> Done {
         let end = tokio::select! {
             shown = show(&daemon.lab, &hidden) => match shown {
                 Ok(run) => {
-                    println!();
-                    println!("dashboard: http://{address}/  (model workbench of this run: http://{address}/workbench/{run})");
                     if stays {
+                        println!();
+                        println!("dashboard: http://{address}/  (model workbench of this run: http://{address}/workbench/{run})");
                         println!("Ctrl-C ends.");
                         asked_to_end().await;
                     }

@@ -12,31 +12,41 @@ pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach);
-    let new = NewRun {
-        bench: choose_bench(&client, arguments.bench.as_deref())?,
-        procedure: arguments.procedure.clone(),
-        parameters: parameters(&arguments.set)?,
-    };
-    let mut run: Run = client.post("/runs", &new)?;
-    let id = run.summary.id;
-    if !arguments.json {
-        println!("run {id}: {} on {}", new.procedure, new.bench);
+    let ended = start(&client, arguments);
+    if let Some(path) = &arguments.junit {
+        std::fs::write(path, junit(&arguments.procedure, &ended))
+            .map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
     }
-    if arguments.wait || arguments.junit.is_some() {
-        run = wait(&client, id)?;
-    }
+    let run = ended?;
+    let said = if is_over(run.summary.state) { ending(&run) } else { String::new() };
     if arguments.json {
         let text = serde_json::to_string_pretty(&run).map_err(|fault| Exit::failed(fault.to_string()))?;
         println!("{text}");
-    } else if is_over(run.summary.state) {
-        println!("{}", ending(&run));
-    }
-    if let Some(path) = &arguments.junit {
-        std::fs::write(path, junit(&run)).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
+    } else if !said.is_empty() {
+        println!("{said}");
     }
     match is_over(run.summary.state) && run.summary.state != RunState::Completed {
-        true => Err(Exit::failed(if arguments.json { ending(&run) } else { String::new() })),
+        true => Err(Exit::failed(if arguments.json { said } else { String::new() })),
         false => Ok(()),
+    }
+}
+
+/// The run as it has just started, or as it ended where that is waited for.
+fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
+    let new = NewRun {
+        bench: choose_bench(client, arguments.bench.as_deref())?,
+        procedure: arguments.procedure.clone(),
+        parameters: parameters(&arguments.set)?,
+    };
+    let run: Run = client.post("/runs", &new)?;
+    let id = run.summary.id;
+    if !arguments.json {
+        println!("run {id}: {} on {}  {}", new.procedure, new.bench, client.page(&format!("/runs/{id}")));
+    }
+    match arguments.wait || arguments.junit.is_some() {
+        // The arguments were good: from here on it is the run that fails.
+        true => wait(client, id).map_err(|exit| Exit::failed(format!("run {id} is lost from sight: {}", exit.said))),
+        false => Ok(run),
     }
 }
 
@@ -108,20 +118,24 @@ pub(super) fn ending(run: &Run) -> String {
     }
 }
 
-fn junit(run: &Run) -> String {
-    let summary = &run.summary;
-    let failed = summary.state != RunState::Completed;
-    let time = summary.duration_s.unwrap_or(0.0);
-    let (suite, case) = (escape(&summary.bench), escape(&format!("{} run {}", summary.procedure, summary.id)));
-    let body = match failed {
-        true => format!("\n      <failure message=\"{}\"/>\n    ", escape(&ending(run))),
-        false => String::new(),
+/// One test case: a failure where the run did not complete, an error where there is no run to tell of.
+fn junit(procedure: &str, ended: &Result<Run, Exit>) -> String {
+    let (suite, case, time_s) = match ended {
+        Ok(Run { summary, .. }) => {
+            let case = format!("{procedure} run {}", summary.id);
+            (escape(&summary.bench), escape(&case), summary.duration_s.unwrap_or(0.0))
+        }
+        Err(_) => ("jointbench".to_owned(), escape(procedure), 0.0),
+    };
+    let (failures, errors, body) = match ended {
+        Ok(run) if run.summary.state == RunState::Completed => (0, 0, String::new()),
+        Ok(run) => (1, 0, format!("\n      <failure message=\"{}\"/>\n    ", escape(&ending(run)))),
+        Err(exit) => (0, 1, format!("\n      <error message=\"{}\"/>\n    ", escape(&exit.said))),
     };
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"{suite}\" tests=\"1\" \
-         failures=\"{}\" time=\"{time:.3}\">\n    <testcase classname=\"{suite}\" name=\"{case}\" \
-         time=\"{time:.3}\">{body}</testcase>\n  </testsuite>\n</testsuites>\n",
-        u8::from(failed)
+         failures=\"{failures}\" errors=\"{errors}\" time=\"{time_s:.3}\">\n    <testcase classname=\"{suite}\" \
+         name=\"{case}\" time=\"{time_s:.3}\">{body}</testcase>\n  </testsuite>\n</testsuites>\n"
     )
 }
 
@@ -140,6 +154,15 @@ mod tests {
         assert_eq!(parameters["repeats"], 3);
         assert_eq!(parameters["note"], "warm oil");
         assert_eq!(super::parameters(&["repeats".to_owned()]).unwrap_err().code, 2);
+    }
+
+    #[test]
+    fn a_run_that_never_was_is_an_error_in_the_report() {
+        let report = junit("friction", &Err(Exit::bad_input("repeats = 0 < 1")));
+        assert!(
+            report.contains("errors=\"1\"") && report.contains("<error message=\"repeats = 0 &lt; 1\"/>"),
+            "{report}"
+        );
     }
 
     #[test]

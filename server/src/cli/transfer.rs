@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 pub fn import(arguments: &Import) -> Done {
     let runtime = runtime()?;
-    let store = open(&runtime, &arguments.store)?;
+    let store = open(&runtime, &arguments.store, true)?;
     for file in &arguments.files {
         let request = read(file, arguments.meta.as_deref(), &arguments.columns)?;
         let run = match &store {
@@ -28,7 +28,7 @@ pub fn import(arguments: &Import) -> Done {
 pub fn export(arguments: &Export) -> Done {
     let runtime = runtime()?;
     let (run, format) = (arguments.run, arguments.format);
-    let (bytes, meta) = match open(&runtime, &arguments.store)? {
+    let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
         Way::Folder(lab) => runtime
             .block_on(async { Ok::<_, LabError>((lab.export(run, format).await?, lab.export_meta(run).await?)) })?,
         Way::Daemon(client) => {
@@ -53,10 +53,26 @@ enum Way {
     Daemon(Client),
 }
 
-fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace) -> Result<Way, Exit> {
+fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Way, Exit> {
+    if place.reach.daemon.is_some() {
+        return Ok(Way::Daemon(Client::new(&place.reach)));
+    }
+    if !makes_it && !crate::store::Store::is_in(&place.data) {
+        let folder = place.data.display();
+        return Err(Exit::bad_input(format!(
+            "no store is in {folder}: name its folder with --data, or a daemon with --daemon"
+        )));
+    }
     match runtime.block_on(crate::store::Store::open(&place.data)) {
         Ok(store) => Ok(Way::Folder(Lab::of_store(store))),
-        Err(crate::store::StoreError::InUse { .. }) => Ok(Way::Daemon(Client::new(&place.reach))),
+        Err(in_use @ crate::store::StoreError::InUse { .. }) => {
+            // Most likely by the daemon on this machine's usual address.
+            let client = Client::new(&place.reach);
+            let _: serde_json::Value = client.get("/health").map_err(|_| {
+                Exit::bad_input(format!("{in_use}; give the address of the daemon that has it with --daemon"))
+            })?;
+            Ok(Way::Daemon(client))
+        }
         Err(fault) => Err(LabError::from(fault).into()),
     }
 }

@@ -58,6 +58,10 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
             return None;
         }
     };
+    if source.is_none() && raw.mock.is_some() {
+        // Limits and constants come with the simulated joint, which is not known.
+        return None;
+    }
     let sheet = match &source {
         Some(Source::Mock(settings)) => Some(settings.joint),
         _ => None,
@@ -65,6 +69,9 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
     let place = raw.name.span();
     let limits = limits(raw.limits.as_ref(), sheet.map(Joint::limits), place.clone(), wrong);
     let constants = constants(raw.constants.as_ref(), sheet.map(Joint::constants), place, wrong);
+    if let (Some(given), Some(limits), Some(constants)) = (&raw.limits, &limits, &constants) {
+        check_reach(raw, given, limits, constants, wrong);
+    }
     Some(BenchDescription {
         name: name.clone(),
         source: source?,
@@ -72,6 +79,28 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
         constants: constants?,
         text: text.to_owned(),
     })
+}
+
+/// A source regulates around its set point: a limit a little above the rated current is no mistake.
+const ABOVE_RATED: f64 = 1.1;
+
+/// A limit beyond what an instrument can show or bear protects nothing.
+fn check_reach(raw: &RawBench, given: &RawLimits, limits: &Limits, constants: &JointConstants, wrong: &mut Collector) {
+    if let (Some(place), Some(sensor)) = (&given.link_torque_nm, &raw.torque_sensor) {
+        let nominal_nm = *sensor.nominal_nm.get_ref();
+        if limits.link_torque_nm > nominal_nm {
+            let told =
+                format!("limits.link_torque_nm = {}: the torque sensor ends at {nominal_nm} Nm", limits.link_torque_nm);
+            wrong.add(place.span(), format!("{told}; give at most that"));
+        }
+    }
+    if let Some(place) = &given.brake_current_a
+        && limits.brake_current_a > ABOVE_RATED * constants.brake_rated_current_a
+    {
+        let rated_a = constants.brake_rated_current_a;
+        let told = format!("limits.brake_current_a = {}: the brake is rated for {rated_a} A", limits.brake_current_a);
+        wrong.add(place.span(), format!("{told}; give at most a tenth more"));
+    }
 }
 
 fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {

@@ -59,6 +59,17 @@ name = \"two\"
 }
 
 #[test]
+fn a_limit_beyond_the_instrument_protects_nothing() {
+    let (_, text) = READY_MADE.iter().find(|(name, _)| *name == "joint-a").unwrap();
+    let text =
+        text.replace("link_torque_nm = ", "link_torque_nm = 1").replace("brake_current_a = ", "brake_current_a = 1");
+    let said = parse("bench.toml", &text).unwrap_err().to_string();
+    assert!(said.contains("the torque sensor ends at") && said.contains("the brake is rated for"), "{said}");
+    let said = parse("b.toml", "[[bench]]\nname = \"a\"\n[bench.mock]\njoint = \"z\"\n").unwrap_err().to_string();
+    assert!(said.contains("joint \"z\" is not known") && !said.contains("missing"), "{said}");
+}
+
+#[test]
 fn what_toml_itself_refuses_has_a_line_too() {
     for (text, line, said) in [
         ("[[bench]]\nname = \n", 2, ""),

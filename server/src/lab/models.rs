@@ -18,6 +18,11 @@ impl Lab {
         {
             return Err(LabError::Invalid(format!("model version {parent} belongs to another run than {run}")));
         }
+        for run in runs {
+            if !self.inner.store.run(*run).await?.state.is_final() {
+                return Err(LabError::Conflict(format!("run {run} is still on: fit a model when it has ended")));
+            }
+        }
         let table = self.tables(runs).await?;
         let spec = self.spec(table.kind(), effects).await?;
         let options = Options::default();

@@ -16,6 +16,7 @@ static MIGRATIONS: Migrator = sqlx::migrate!("../migrations");
 const APPLICATION_ID: i64 = 0x4a42_656e;
 /// Commits of the recorder stay under 1 ms in 99 of 100 cases with pages of this size.
 const PAGE_BYTES: u32 = 16_384;
+const FILE_NAME: &str = "jointbench.db";
 const MAPPED_BYTES: &str = "1073741824";
 const READERS: u32 = 4;
 
@@ -23,7 +24,7 @@ impl Store {
     /// Opens the store in `folder`, which is made where it is missing.
     pub async fn open(folder: &Path) -> Result<Store, StoreError> {
         let lock = lock(folder)?;
-        let file = folder.join("jointbench.db");
+        let file = folder.join(FILE_NAME);
         let options = SqliteConnectOptions::new()
             .filename(&file)
             .create_if_missing(true)
@@ -42,6 +43,11 @@ impl Store {
         migrate(&writer, &file).await?;
         let readers = pool(READERS).connect_with(options.read_only(true)).await?;
         Ok(Store { writer, readers, lock: Arc::new(lock) })
+    }
+
+    /// Whether a store was made in the folder.
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(FILE_NAME).is_file()
     }
 
     /// Waits for what is under way and lets the file go. A store that is never closed loses nothing that was committed.

@@ -36,6 +36,7 @@ fn every_refusal_is_a_problem_document() {
             "conflict",
             "not blocked",
         ),
+        (daemon.post("/api/v1/runs/1", "{}"), 405, "not_allowed", "POST is not offered"),
         (daemon.post("/api/v1/runs", &"x".repeat(2 << 20)), 413, "too_large", ""),
     ] {
         let (found, problem) = answer;

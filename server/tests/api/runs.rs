@@ -60,6 +60,8 @@ fn a_run_can_be_paused_resumed_and_stopped_and_the_bench_has_one_run() {
     let run = format!("/api/v1/runs/{id}");
     daemon.wait_for(&run, |run| run["state"] == "running");
     assert_eq!(daemon.post("/api/v1/runs", SHORT_RUN).0, 409);
+    let early = daemon.post("/api/v1/models", &format!(r#"{{"run": {id}, "effects": ["coulomb"]}}"#));
+    assert_eq!(early.0, 409, "half a run is no measurement: {}", early.1);
     assert_eq!(daemon.post(&format!("{run}/pause"), "").0, 200);
     daemon.wait_for(&run, |run| run["state"] == "paused");
     assert_eq!(daemon.get("/api/v1/bench").1[0]["state"], "paused");

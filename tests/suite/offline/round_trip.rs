@@ -16,6 +16,20 @@ fn table(path: &Path) -> RunTable {
 }
 
 #[test]
+fn nothing_is_made_where_nothing_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let data = folder.path().join("attic");
+    let output =
+        jointbench().args(["export", "1", "--format", "csv", "--data"]).arg(&data).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("no store is in") && !data.exists(), "{}", stderr(&output));
+    // An address that is given is where it goes, whatever the folder holds.
+    let nowhere = ["export", "1", "--format", "csv", "--daemon", "127.0.0.1:9", "--data"];
+    let output = jointbench().args(nowhere).arg(&data).output().expect("it starts");
+    assert!(stderr(&output).contains("no daemon answers at http://127.0.0.1:9"), "{}", stderr(&output));
+}
+
+#[test]
 fn import_and_export_keep_every_bit() {
     let Some(source) = shared("data/placid-b5zd-brake/run.csv") else { return };
     let folder = tempfile::tempdir().expect("a folder");
