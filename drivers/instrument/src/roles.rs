@@ -108,7 +108,7 @@ pub trait TorqueStream: Instrument {
     /// Starts at the period nearest to `period` that the sensor has, and returns it.
     fn start_stream(&mut self, period: Seconds, clock: Arc<dyn Clock>) -> Result<Seconds, Fault>;
     /// The samples since the last call, in order. After those before a gap comes [`crate::FaultKind::StreamGap`], then
-    /// those behind it. Any other fault ends the stream.
+    /// those behind it. Any other fault ends the stream. May wait for up to a period, to see how old the newest sample is.
     fn collect(&mut self) -> Result<Vec<TorqueSample>, Fault>;
     fn stop_stream(&mut self) -> Result<(), Fault>;
 }

@@ -111,7 +111,8 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     }
     let pace = raw.pace.as_ref().and_then(|pace| positive(pace, "pace", wrong));
     let effects = raw.effects.iter().map(|effect| effect.get_ref().clone()).collect();
-    Some(MockSettings { effects, pace, ..MockSettings::new(joint?, raw.seed.unwrap_or(1)) })
+    let troubles = raw.troubles.clone();
+    Some(MockSettings { effects, pace, troubles, ..MockSettings::new(joint?, raw.seed.unwrap_or(1)) })
 }
 
 fn check_hardware(raw: &RawBench, joint: &RawJoint, wrong: &mut Collector) -> Option<Hardware> {

@@ -1,5 +1,6 @@
 //! The bench description as it is written. Values keep their place in the file, for messages.
 
+use jointbench_devices::sim::PlannedTrouble;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -31,6 +32,8 @@ pub struct RawMock {
     #[serde(default)]
     pub effects: Vec<Spanned<String>>,
     pub pace: Option<Spanned<f64>>,
+    #[serde(default)]
+    pub troubles: Vec<PlannedTrouble>,
 }
 
 #[derive(Debug, Deserialize)]

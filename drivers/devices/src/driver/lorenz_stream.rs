@@ -59,8 +59,12 @@ impl Stream {
         self.number + self.frames.waiting()
     }
 
-    /// Takes in what is there, and waits a moment for what should be.
+    /// Takes in what is there, and waits a moment for what should be. Some looks are put off by a part of the period.
     fn listen(&mut self, link: &mut Link) -> Result<f64, Fault> {
+        let delay_s = self.placed.delay_s();
+        if delay_s > 0.0 {
+            self.clock.sleep_until_s(self.clock.now_s() + delay_s);
+        }
         let now_s = self.clock.now_s();
         let deadline = link.deadline();
         let mut bytes = Vec::new();

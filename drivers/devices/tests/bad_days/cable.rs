@@ -10,21 +10,27 @@ use jointbench_instrument::units::{Amperes, NewtonMetres, RadPerSec};
 use std::time::{Duration, Instant};
 
 /// The fault is seen within two deadlines, stays while the trouble lasts, and is over when the trouble is.
-fn check_passing(trouble: Trouble, expected: impl Fn(&FaultKind) -> bool) {
-    for transport in [Transport::Terminal, Transport::Tcp] {
+fn check_passing(trouble: Trouble, expected: fn(&FaultKind) -> bool) {
+    let check = |transport, instrument| {
         let (mock, mut bench) = start(transport);
-        for instrument in MockInstrument::ALL {
-            ask(&mut bench, instrument).unwrap();
-            mock.trouble(instrument, trouble);
-            let asked = Instant::now();
-            let fault = ask(&mut bench, instrument).unwrap_err();
-            assert!(asked.elapsed() < 2 * DEADLINE, "{fault} after {:?}", asked.elapsed());
-            assert!(expected(&fault.kind) && fault.is_retryable(), "{instrument:?} over {transport:?}: {fault}");
-            assert!(ask(&mut bench, instrument).is_err(), "{instrument:?}: still in trouble");
-            mock.trouble(instrument, Trouble::None);
-            ask(&mut bench, instrument).unwrap_or_else(|fault| panic!("{instrument:?} does not recover: {fault}"));
+        ask(&mut bench, instrument).unwrap();
+        mock.trouble(instrument, trouble);
+        let asked = Instant::now();
+        let fault = ask(&mut bench, instrument).unwrap_err();
+        assert!(asked.elapsed() < 2 * DEADLINE, "{fault} after {:?}", asked.elapsed());
+        assert!(expected(&fault.kind) && fault.is_retryable(), "{instrument:?} over {transport:?}: {fault}");
+        assert!(ask(&mut bench, instrument).is_err(), "{instrument:?}: still in trouble");
+        mock.trouble(instrument, Trouble::None);
+        ask(&mut bench, instrument).unwrap_or_else(|fault| panic!("{instrument:?} does not recover: {fault}"));
+    };
+    // Side by side: nearly all of it is waiting for deadlines.
+    std::thread::scope(|scope| {
+        for transport in [Transport::Terminal, Transport::Tcp] {
+            for instrument in MockInstrument::ALL {
+                scope.spawn(move || check(transport, instrument));
+            }
         }
-    }
+    });
 }
 
 #[test]

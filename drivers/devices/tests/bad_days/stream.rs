@@ -64,7 +64,7 @@ fn every_sample_comes_once_and_in_its_place() {
         for sample in &world.samples {
             // 40 ppm of 4 s, and what the placing itself claims.
             let off_s = (sample.at_s - 1.0 - (sample.number + 1) as f64 * 1e-3).abs();
-            assert!(off_s < 0.2e-3 + sample.uncertainty_s && sample.uncertainty_s < 0.85e-3, "{sample:?}");
+            assert!(off_s < 0.2e-3 + sample.uncertainty_s && sample.uncertainty_s < 0.5e-3, "{sample:?}");
             assert!(sample.torque().unwrap().0.abs() < 0.1, "{sample:?}");
         }
         world.sensor.stop_stream().unwrap();
