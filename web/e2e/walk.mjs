@@ -33,7 +33,7 @@ await tell('walk', async () => {
 	expect((await region.count()) === 1, 'no sentence says where the model fails');
 	await region.click();
 	await page.waitForURL(/region=/);
-	expect((await page.locator('a.region[aria-current=true]').count()) === 1, 'the region is not marked');
+	await page.locator('a.region[aria-current=true]').waitFor({ timeout: 5_000 }).catch(() => expect(false, 'the region is not marked'));
 
 	await page.keyboard.press('c');
 	const chosen = await brush(page);

@@ -17,7 +17,8 @@ pub struct Problem {
     /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `bench_fault`, `malformed`,
     /// `forbidden`, `unauthorized`, `not_allowed`, `too_large`, `internal`.
     #[serde(rename = "type")]
-    pub type_: String,
+    #[schema(value_type = String)]
+    pub type_: Box<str>,
     #[schema(value_type = String)]
     pub title: Box<str>,
     pub status: u16,
@@ -38,9 +39,6 @@ pub struct Problem {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Place>)]
     pub place: Option<Box<Place>>,
-    /// Characters before the mistake, in `place.text`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub position: Option<u64>,
 }
 
 /// A mistake in a text that a user wrote.
@@ -60,7 +58,7 @@ pub struct Place {
 impl Problem {
     pub fn new(status: StatusCode, kind: &str, title: &str, detail: impl Into<String>) -> Self {
         Self {
-            type_: format!("urn:jointbench:{kind}"),
+            type_: format!("urn:jointbench:{kind}").into(),
             title: title.into(),
             status: status.as_u16(),
             detail: detail.into(),
@@ -68,7 +66,6 @@ impl Problem {
             line: None,
             column: None,
             place: None,
-            position: None,
         }
     }
 
@@ -114,7 +111,6 @@ impl From<LabError> for Problem {
                 ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "file_refused", "The file is refused", detail)
             },
             LabError::Formula(fault) => Self {
-                position: Some(fault.position as u64),
                 place: Some(Box::new(Place {
                     field: fault.field,
                     text: fault.text,

@@ -145,8 +145,6 @@ fn what_a_killed_daemon_left_open_is_interrupted_and_not_taken_up() {
 #[test]
 fn what_cannot_be_asked_of_an_autopilot_is_refused_before_anything_moves() {
     let daemon = TestDaemon::start();
-    std::fs::write("/tmp/plan-served.json", daemon.get_raw("/api/v1/openapi.json").into_body().read_to_vec().unwrap())
-        .unwrap();
     for (body, status, said) in [
         (json!({"bench": "attic"}), 404, "no bench attic"),
         (json!({"bench": BENCH, "runs": 0}), 422, "runs = 0"),

@@ -59,7 +59,7 @@ fn a_wrong_formula_is_refused_at_its_character() {
             let (status, problem) = daemon.post(path, &body(rub(formula)).to_string());
             assert_eq!(status, 422, "{problem}");
             assert_eq!(problem["type"], "urn:jointbench:formula");
-            assert_eq!(problem["position"], position, "{problem}");
+            assert_eq!(problem["place"]["position"], position, "{problem}");
             assert_eq!((&problem["place"]["length"], &problem["place"]["text"]), (&length.into(), &formula.into()));
             assert!(problem["detail"].as_str().unwrap().contains(words), "{problem}");
         }

@@ -1,11 +1,12 @@
 //! A Rigol DP821A, channel 1 on a brake's coil (DP800 programming guide PGH03109-1110, data sheet DSH03108-1110).
 
 use super::Firmware;
-use super::scpi::{Error, Pattern, Status, Unit, number, units};
+use super::dp800_channel::{Channel, Protection};
+use super::dp800_commands::{COMMANDS, Command, Quantity};
+use super::scpi::{Error, Status, Unit, number, units};
 use crate::sim::plant::{CoilSupply, Plant, Signal};
 use crate::sim::trouble::Trouble;
 use std::collections::VecDeque;
-use std::sync::LazyLock;
 
 /// From a command to a change at the output.
 const LATENCY_S: f64 = 0.118;
@@ -13,121 +14,6 @@ const LATENCY_S: f64 = 0.118;
 const LONGEST_LINE: usize = 1024;
 const READBACK_NOISE_A: f64 = 2e-4;
 const READBACK_NOISE_V: f64 = 1e-3;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Command {
-    SystemError,
-    SystemVersion,
-    SystemControl,
-    SelectNumber,
-    SelectName,
-    Voltage,
-    Current,
-    Apply,
-    Output,
-    Mode,
-    ProtectionValue(Quantity),
-    ProtectionState(Quantity),
-    ProtectionTripped(Quantity),
-    ProtectionClear(Quantity),
-    Measure(Option<Quantity>),
-    MeasurePower,
-    MeasureAll,
-    Condition,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Quantity {
-    Voltage,
-    Current,
-}
-
-static COMMANDS: LazyLock<Vec<(Pattern, Command)>> = LazyLock::new(|| {
-    use Quantity::{Current, Voltage};
-    let table = [
-        (":SYSTem:ERRor[:NEXT]", Command::SystemError),
-        (":SYSTem:VERSion", Command::SystemVersion),
-        (":SYSTem:REMote", Command::SystemControl),
-        (":SYSTem:LOCal", Command::SystemControl),
-        (":SYSTem:RWLock", Command::SystemControl),
-        (":INSTrument:NSELect", Command::SelectNumber),
-        (":INSTrument[:SELEct]", Command::SelectName),
-        ("[:SOURce#]:VOLTage[:LEVel][:IMMediate][:AMPLitude]", Command::Voltage),
-        ("[:SOURce#]:CURRent[:LEVel][:IMMediate][:AMPLitude]", Command::Current),
-        ("[:SOURce#]:VOLTage:PROTection[:LEVel]", Command::ProtectionValue(Voltage)),
-        ("[:SOURce#]:VOLTage:PROTection:STATe", Command::ProtectionState(Voltage)),
-        ("[:SOURce#]:VOLTage:PROTection:TRIPped", Command::ProtectionTripped(Voltage)),
-        ("[:SOURce#]:VOLTage:PROTection:CLEar", Command::ProtectionClear(Voltage)),
-        ("[:SOURce#]:CURRent:PROTection[:LEVel]", Command::ProtectionValue(Current)),
-        ("[:SOURce#]:CURRent:PROTection:STATe", Command::ProtectionState(Current)),
-        ("[:SOURce#]:CURRent:PROTection:TRIPped", Command::ProtectionTripped(Current)),
-        ("[:SOURce#]:CURRent:PROTection:CLEar", Command::ProtectionClear(Current)),
-        (":APPLy", Command::Apply),
-        (":OUTPut[:STATe]", Command::Output),
-        (":OUTPut:CVCC", Command::Mode),
-        (":OUTPut:MODE", Command::Mode),
-        (":OUTPut:OVP:VALue", Command::ProtectionValue(Voltage)),
-        (":OUTPut:OVP[:STATe]", Command::ProtectionState(Voltage)),
-        (":OUTPut:OVP:QUES", Command::ProtectionTripped(Voltage)),
-        (":OUTPut:OVP:CLEAR", Command::ProtectionClear(Voltage)),
-        (":OUTPut:OCP:VALue", Command::ProtectionValue(Current)),
-        (":OUTPut:OCP[:STATe]", Command::ProtectionState(Current)),
-        (":OUTPut:OCP:QUES", Command::ProtectionTripped(Current)),
-        (":OUTPut:OCP:CLEAR", Command::ProtectionClear(Current)),
-        (":MEASure:ALL[:DC]", Command::MeasureAll),
-        (":MEASure:CURRent[:DC]", Command::Measure(Some(Current))),
-        (":MEASure:POWEr[:DC]", Command::MeasurePower),
-        (":MEASure[:VOLTage][:DC]", Command::Measure(Some(Voltage))),
-        (":STATus:QUEStionable:INSTrument:ISUMmary#:CONDition", Command::Condition),
-    ];
-    table.into_iter().map(|(pattern, command)| (Pattern::new(pattern), command)).collect()
-});
-
-#[derive(Debug, Clone, Copy)]
-struct Protection {
-    value: f64,
-    enabled: bool,
-    tripped: bool,
-}
-
-#[derive(Debug, Clone)]
-struct Channel {
-    label: &'static str,
-    most_v: f64,
-    most_a: f64,
-    voltage_v: f64,
-    current_a: f64,
-    on: bool,
-    over_voltage: Protection,
-    over_current: Protection,
-}
-
-impl Channel {
-    fn new(label: &'static str, most_v: f64, most_a: f64) -> Self {
-        let protection = |most: f64| Protection { value: 1.05 * most, enabled: false, tripped: false };
-        Self {
-            label,
-            most_v,
-            most_a,
-            voltage_v: 0.0,
-            current_a: 0.0,
-            on: false,
-            over_voltage: protection(most_v),
-            over_current: protection(most_a),
-        }
-    }
-
-    fn protection(&mut self, quantity: Quantity) -> &mut Protection {
-        match quantity {
-            Quantity::Voltage => &mut self.over_voltage,
-            Quantity::Current => &mut self.over_current,
-        }
-    }
-
-    fn wanted(&self) -> Option<CoilSupply> {
-        self.on.then_some(CoilSupply { current_a: self.current_a, voltage_v: self.voltage_v })
-    }
-}
 
 pub struct Dp800 {
     channels: [Channel; 2],

@@ -1,6 +1,8 @@
 //! The instruments' side of each protocol, faithful to what the makers publish rather than to what our drivers need.
 
 mod dp800;
+mod dp800_channel;
+mod dp800_commands;
 mod lorenz;
 mod odrive;
 mod odrive_lines;
