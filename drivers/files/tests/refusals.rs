@@ -43,11 +43,13 @@ fn text_is_refused_where_it_is_wrong() {
     );
     check_refused(
         b"time_s,motor_position_rad\n0,1\n",
-        "run.csv, line 1: column motor_current_a is missing: a friction table needs time_s, motor_position_rad, motor_current_a",
+        "run.csv, line 1: column motor_current_a is missing: a friction table needs time_s, motor_position_rad, motor_current_a, \
+         and the file has time_s, motor_position_rad; take it from another column with --map motor_current_a=NAME",
     );
     check_refused(
         b"time_s,motor_position_deg,motor_current_a\n0,1,2\n",
-        "run.csv, line 1: column motor_position_deg: the unit is not the expected one, expected motor_position_rad",
+        "run.csv, line 1: column motor_position_deg: the unit is not the expected one, expected motor_position_rad; \
+         convert it with --map motor_position_rad=motor_position_deg --scale motor_position_rad=FACTOR",
     );
     check_refused(
         b"time_s;motor_position_rad;motor_current_a\n0;1,5;2\n",

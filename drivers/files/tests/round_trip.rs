@@ -18,7 +18,7 @@ prop_compose! {
     fn any_run()(rows in 1usize..40)(
         start in -1e6..1e6f64,
         columns in prop::collection::vec(prop::collection::vec(any_finite(), rows), 3),
-        gear_ratio in any_finite(),
+        gear_ratio in any_finite().prop_filter("no gear has a ratio of 0", |ratio| *ratio != 0.0),
         note in ".{0,12}",
         resolution in prop::option::of(1e-9..1.0f64),
     ) -> (Meta, Trace) {

@@ -2,11 +2,12 @@
 
 use crate::assembly::Assembly;
 use crate::effect::Stage;
+use crate::fit::report;
 use crate::linear::dot;
 use crate::maps::Maps;
 use crate::memory::memory;
 use crate::prepare::Prepared;
-use crate::report::{Invisible, NoiseFloor, Verdict};
+use crate::report::{Invisible, NoiseFloor, ParameterState, Verdict};
 use crate::select::{Library, Move, Rival, Search, Silence, held_out};
 use crate::terms::{Term, Terms};
 use crate::{ModelError, ModelSpec, Options, ResidualKind, floor};
@@ -65,7 +66,7 @@ impl<'p> Exploration<'p> {
                 None => {
                     let residual = search.now.tangent().rest(&search.now.response());
                     let maps = Maps::new(prepared, residual.clone(), options);
-                    let half = if is_structure(&maps) { half_explained(&search, prepared, options) } else { None };
+                    let half = structured(&maps).and_then(|axis| half_explained(&search, axis, prepared, options));
                     let Some(id) = half else { break (maps, residual) };
                     search.withdraw(id)
                 }
@@ -88,8 +89,9 @@ impl<'p> Exploration<'p> {
         let now = advances.last().map_or(&start, |a| &a.after);
         if now.effects.len() < start.effects.len() + most
             && let Some(rival) = memory(now, options)
+            && let after = now.with_memory(&rival.term)
+            && is_determined(&after, rival.term.id())?
         {
-            let after = now.with_memory(&rival.term);
             advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
             advances.last().into_iter().for_each(&mut *on_advance);
         }
@@ -105,7 +107,7 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        if is_structure(&self.maps) || self.repeats_itself() {
+        if structured(&self.maps).is_some() || self.repeats_itself() {
             Verdict::UnexplainedStructure
         } else {
             Verdict::Adequate
@@ -140,13 +142,21 @@ impl<'p> Exploration<'p> {
     }
 }
 
-fn is_structure(maps: &Maps) -> bool {
-    maps.removable().is_some_and(|(_, share)| share > STRUCTURE_SHARE)
+/// Whether the run decides the parameters of an effect: what could as well be zero is not suggested.
+fn is_determined(model: &Assembly, id: &str) -> Result<bool, ModelError> {
+    let mut of_effect = report(model)?.parameters.into_iter().filter(|p| p.effect == id);
+    Ok(of_effect.all(|p| p.state != ParameterState::Unidentified))
 }
 
-/// An added effect that is only the nearest relative of what is missing: any function of its own axis would take away
-/// much more than it does. A wave over the angle is not the answer to a bump at one angle.
-fn half_explained<'p>(search: &Search<'_, 'p>, prepared: &Prepared, options: &Options) -> Option<&'p str> {
+/// The axis over which structure remains.
+fn structured(maps: &Maps) -> Option<&str> {
+    maps.removable().filter(|(_, share)| *share > STRUCTURE_SHARE).map(|(axis, _)| axis)
+}
+
+/// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any
+/// function of that axis would take away much more than it does. A wave over the angle is not the answer to a bump at
+/// one angle.
+fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, options: &Options) -> Option<&'p str> {
     let now = &search.now;
     let (full, factors) = (now.linear().sse, now.linear().factors);
     let share = |term: &Term<'p>| {
@@ -160,10 +170,13 @@ fn half_explained<'p>(search: &Search<'_, 'p>, prepared: &Prepared, options: &Op
         less.refine();
         let residual = less.linear().residual;
         let own = 1.0 - full / dot(&residual, &residual);
-        let any = Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options))?;
+        let any =
+            Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;
         Some((term.id(), own / any))
     };
-    let least = search.added().filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    // What depends on the past is a function of no axis, even where a repeated motion makes it look like one.
+    let of_axes = search.added().filter(|term| term.effect.stage() != Stage::Memory);
+    let least = of_axes.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
     (least.1 < WHOLE_EXPLANATION).then_some(least.0)
 }
 

@@ -14,6 +14,9 @@ const LOADS: [f64; 4] = [0.0, 0.3, 0.5, 0.8];
 /// Link side: where the Stribeck part of friction is looked for, and where it is over.
 const SLOW_RAD_S: [f64; 2] = [0.008, 0.07];
 const FASTEST_RATIO: f64 = 8.0;
+const ACCELERATION_RAD_S2: f64 = 400.0;
+/// A stroke holds its speed for so long at least.
+const HELD_S: f64 = 0.6;
 
 /// Runs that could be made next, the ordinary one first. `run`: the one at hand, which gives the sample rate; `parameters`:
 /// what it was made with, where it came from a procedure.
@@ -40,9 +43,9 @@ pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>)
     }
     offer("friction", Value::Object(ordinary));
 
-    let top_rad_s = SHARE_OF_LIMIT * bench.limits.motor_velocity_rad_s;
     let gear = bench.constants.gear_ratio;
     let room_rad = bench.constants.link_range_rad.unwrap_or(0.6).min(0.6);
+    let top_rad_s = SHARE_OF_LIMIT * bench.limits.motor_velocity_rad_s.min(fastest_rad_s(room_rad * gear));
     let slow = SLOW_RAD_S.map(|v| (v * gear).min(top_rad_s));
     let ranges = [
         (slow[0], slow[1], 5.0),
@@ -53,7 +56,11 @@ pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>)
         for load in LOADS.iter().filter(|load| **load == 0.0 || bench.has_brake && bench.has_torque_sensor) {
             // Under load the wind-up of joint and brake outlasts a slow stroke.
             for (low_rad_s, high_rad_s, dwell_s) in ranges.into_iter().skip(usize::from(*load > 0.0)) {
-                let acceleration_rad_s2 = if *load > 0.0 { 400.0 } else { rounded((high_rad_s / 0.2).min(400.0)) };
+                let acceleration_rad_s2 = if *load > 0.0 {
+                    ACCELERATION_RAD_S2
+                } else {
+                    rounded((high_rad_s / 0.2).min(ACCELERATION_RAD_S2))
+                };
                 offer(
                     "strokes",
                     json!({
@@ -67,6 +74,12 @@ pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>)
         }
     }
     menu
+}
+
+/// The highest speed that a stroke of this length reaches, holds and leaves: `v·t + v²/a = way`.
+fn fastest_rad_s(way_rad: f64) -> f64 {
+    let half = 0.5 * ACCELERATION_RAD_S2 * HELD_S;
+    (half * half + ACCELERATION_RAD_S2 * way_rad).sqrt() - half
 }
 
 /// Two digits, downwards: what a person would type, and never beyond a limit.

@@ -51,10 +51,10 @@ fn a_wrong_formula_is_refused_at_its_character() {
     for path in ["/api/v1/effects", "/api/v1/effects/check"] {
         let body = |effect: Value| if path.ends_with("check") { json!({ "effect": effect }) } else { effect };
         for (formula, position, length, words) in [
-            ("tau = a * tanh(velocity / w1) * abs(load)", 26, 2, "did you mean"),
+            ("tau = a * tanh(velocity / w1) * abs(load)", 26, 2, "neither a signal nor a parameter"),
             ("tau = a * tanh(velocity / w0 * abs(load)", 40, 0, "closing bracket"),
             ("torque = a * velocity / w0", 0, 6, "begins with tau"),
-            ("tau = velocity ^ (a / w0)", 6, 19, "multiply it"),
+            ("tau = velocity ^ (a / w0)", 6, 18, "multiply it"),
         ] {
             let (status, problem) = daemon.post(path, &body(rub(formula)).to_string());
             assert_eq!(status, 422, "{problem}");

@@ -55,14 +55,14 @@ impl Maps {
         shares.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// What any function of an axis would take off this residual at most, of the axes that `contribution` is itself a
-    /// function of. `None` where it is a function of no axis.
-    pub fn any_function(&self, contribution: &Maps) -> Option<f64> {
+    /// What any function of an axis would take off this residual. `None` where `contribution` is no function of that axis.
+    pub fn any_function(&self, contribution: &Maps, axis: &str) -> Option<f64> {
         /// Share of a contribution that the map of its own axis reproduces.
         const IS_FUNCTION: f64 = 0.9;
         let own = contribution.axes.iter().chain(&contribution.by_direction);
         let pairs = own.zip(self.axes.iter().chain(&self.by_direction));
-        pairs.filter(|(own, _)| own.removable > IS_FUNCTION).map(|(_, map)| map.removable).max_by(f64::total_cmp)
+        let same = pairs.filter(|(own, _)| own.x.name == axis && own.removable > IS_FUNCTION);
+        same.map(|(_, map)| map.removable).max_by(f64::total_cmp)
     }
 
     /// Half of the band of a cell, where it has one, together with the cells of all axes.

@@ -318,7 +318,7 @@ fn step<'p>(
     };
     let winner = ties.iter().copied().filter(near).chain([0]).min_by_key(rank).unwrap_or(0);
     ties.push(0);
-    ties.retain(|i| *i != winner);
+    ties.retain(|i| *i != winner && !encompasses(now, &rivals[winner].term, &rivals[*i].term, options));
 
     let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
     let mut rival = rivals.swap_remove(winner);
@@ -366,6 +366,22 @@ fn is_tie(a: &Rival, b: &Rival) -> bool {
     let mean = differences.iter().sum::<f64>() / n;
     let spread = (differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
     differences.iter().sum::<f64>() <= 2.0 * n.sqrt() * spread + 1e-9 * a.held_out
+}
+
+/// Whether the model with `one` leaves nothing that matters for `other`, and the other way round it does (the encompassing
+/// test of Davidson and MacKinnon 1981, by sign flips of blocks). Two effects may be apart in few of the folds, and clearly.
+fn encompasses(now: &Terms, one: &Term, other: &Term, options: &Options) -> bool {
+    let left_for = |beside: &Term, there: &Term| {
+        let mut with = now.clone();
+        with.terms.push(there.clone());
+        with.refine();
+        let basis = with.tangent();
+        let residual = basis.rest(&with.response());
+        let share = gain(&beside.columns, &basis, &residual, dot(&residual, &residual)).share;
+        (share, family_wise(beside, Vec::new(), &basis, &residual, now.problem, options))
+    };
+    let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));
+    needed >= options.practical_share && p_value <= options.alpha && needless < options.practical_share
 }
 
 /// The added term without which the model is as good, with the model without it.

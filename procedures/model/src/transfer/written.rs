@@ -104,6 +104,10 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
             ("saturation", "polynomial") => {
                 Some(["current * current", "current * current * current"].map(|f| Column::Formula(f.into())).into())
             }
+            ("saturation", "quintic") => {
+                let power = |n: usize| Column::Formula(vec!["current"; n].join(" * "));
+                Some([2, 3, 4, 5].map(power).into())
+            }
             ("saturation", "tanh") => formula("tanh(current / i_s)"),
             ("saturation", _) => formula("tanh((current - i_0) / i_s) + tanh(i_0 / i_s)"),
             ("hysteresis", "bands") => {
