@@ -9,13 +9,13 @@ export async function startRun(page, base) {
 	await page.goto(base);
 	const start = page.getByRole('button', { name: 'Start' });
 	try {
-		await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 20_000 });
+		await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 30_000 });
 	} catch {
 		const reason = await page.locator('#start-reason').textContent({ timeout: 500 }).catch(() => 'the page has no Start');
 		expect(false, `Start stays disabled: ${reason}`);
 	}
 	await start.click();
-	await page.waitForURL(/\/runs\/\d+/, { timeout: 10_000 });
+	await page.waitForURL(/\/runs\/\d+/, { timeout: 30_000 });
 	return Number(/runs\/(\d+)/.exec(page.url())[1]);
 }
 
@@ -66,7 +66,7 @@ export async function tryAndDrop(page) {
 export async function observe(page, base) {
 	await page.goto(base);
 	await page.getByRole('button', { name: 'Operator' }).click();
-	await page.getByText('this browser only observes').waitFor({ timeout: 10_000 });
+	await page.getByText('this browser only observes').waitFor({ timeout: 30_000 });
 	expect(await page.getByRole('button', { name: 'Start' }).isDisabled(), 'an observer can start');
 }
 
@@ -75,7 +75,7 @@ export async function stopByKey(page, who) {
 	await page.keyboard.press('Escape');
 	await page.keyboard.press('Escape');
 	const said = page.getByText(/acknowledged (in|late)/i).first();
-	await said.waitFor({ timeout: 10_000 }).catch(() => expect(false, `nobody acknowledged the stop of the ${who}`));
+	await said.waitFor({ timeout: 30_000 }).catch(() => expect(false, `nobody acknowledged the stop of the ${who}`));
 	await page.getByRole('button', { name: 'The bench stands still' }).click({ timeout: 500 }).catch(() => {});
 }
 
@@ -84,10 +84,10 @@ export async function importForeign(page, base, table) {
 	await page.goto(`${base}/runs`);
 	await page.setInputFiles('input[type=file]', { name: 'foreign.csv', mimeType: 'text/csv', buffer: Buffer.from(table) });
 	const form = page.getByRole('form', { name: /foreign.csv/ });
-	await form.waitFor({ timeout: 10_000 });
+	await form.waitFor({ timeout: 30_000 });
 	for (const [name, value] of [['torque constant', '0.08'], ['gear ratio', '50'], ['rotor inertia', '4e-5']]) await form.getByLabel(name).fill(value);
 	await form.getByRole('button', { name: 'Import' }).click();
-	await page.getByRole('link', { name: 'open in the workbench' }).waitFor({ timeout: 20_000 });
+	await page.getByRole('link', { name: 'open in the workbench' }).waitFor({ timeout: 30_000 });
 }
 
 /** Drags over the residual below the overlay; says how many samples the page calls chosen. */

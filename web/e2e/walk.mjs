@@ -19,7 +19,7 @@ await tell('walk', async () => {
 	const watcher = await another();
 	await observe(watcher, where.base);
 	const run = await startRun(page, where.base);
-	await watcher.getByText('RUNNING').first().waitFor({ timeout: 15_000 }).catch(() => expect(false, 'the observer does not see the run'));
+	await watcher.getByText('RUNNING').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the observer does not see the run'));
 	const toWorkbench = await watchRun(page);
 	await audit(page, 'the run');
 	console.log(`run ${run} is done`);
@@ -33,7 +33,7 @@ await tell('walk', async () => {
 	expect((await region.count()) === 1, 'no sentence says where the model fails');
 	await region.click();
 	await page.waitForURL(/region=/);
-	await page.locator('a.region[aria-current=true]').waitFor({ timeout: 5_000 }).catch(() => expect(false, 'the region is not marked'));
+	await page.locator('a.region[aria-current=true]').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the region is not marked'));
 
 	await page.keyboard.press('c');
 	const chosen = await brush(page);
@@ -76,8 +76,8 @@ await tell('walk', async () => {
 	await importForeign(page, where.base, ['Time [ms],pos_deg,Iq [A]', ...rows].join('\n'));
 	await page.getByLabel(`Compare run ${run}`).check();
 	await page.getByLabel(`Compare run ${run + 1}`).check();
-	await page.getByRole('heading', { name: 'Compare 2 runs' }).waitFor({ timeout: 10_000 });
-	await page.locator('.uplot').first().waitFor({ timeout: 10_000 });
+	await page.getByRole('heading', { name: 'Compare 2 runs' }).waitFor({ timeout: 30_000 });
+	await page.locator('.uplot').first().waitFor({ timeout: 30_000 });
 	await audit(page, 'the comparison');
 
 	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);

@@ -9,6 +9,9 @@ use crate::words::{figure, percent};
 /// More regions than these nobody reads.
 const MOST: usize = 8;
 
+/// Regions that share more of their rows than this tell the same failure twice.
+const SAME: f64 = 0.8;
+
 /// What an error is measured against in words.
 pub struct Yardstick {
     value: f64,
@@ -34,13 +37,26 @@ struct Stretch<'m> {
     y: usize,
     mean: f64,
     half_width: f64,
-    rows: usize,
+    count: usize,
 }
 
 pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
     let mut stretches: Vec<Stretch> = maps.axes.iter().chain(&maps.by_direction).flat_map(|m| join(maps, m)).collect();
     stretches.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
-    stretches.iter().take(MOST).map(|s| s.region(unit, yardstick)).collect()
+    let mut told: Vec<(&Stretch, Vec<usize>)> = Vec::new();
+    for stretch in &stretches {
+        let rows = stretch.rows();
+        if told.len() < MOST && told.iter().all(|(_, other)| overlap(other, &rows) < SAME) {
+            told.push((stretch, rows));
+        }
+    }
+    told.iter().map(|(stretch, _)| stretch.region(unit, yardstick)).collect()
+}
+
+/// Rows that two rising lists share, of all rows that are in either.
+fn overlap(one: &[usize], other: &[usize]) -> f64 {
+    let shared = one.iter().filter(|row| other.binary_search(row).is_ok()).count();
+    shared as f64 / (one.len() + other.len() - shared).max(1) as f64
 }
 
 /// Joins what lies beside each other: the mean of means lies within the mean of their bands.
@@ -53,15 +69,15 @@ fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
         let beside = |s: &&mut Stretch| s.y == cell.y && s.last + 1 == cell.x && s.mean * cell.mean > 0.0;
         match out.last_mut().filter(beside) {
             Some(s) => {
-                let (n, more) = (s.rows as f64, cell.rows as f64);
+                let (n, more) = (s.count as f64, cell.rows as f64);
                 s.mean = (s.mean * n + cell.mean * more) / (n + more);
                 s.half_width = (s.half_width * n + half_width * more) / (n + more);
-                s.rows += cell.rows;
+                s.count += cell.rows;
                 s.last = cell.x;
             }
             None => {
-                let (mean, rows) = (cell.mean, cell.rows);
-                out.push(Stretch { map, first: cell.x, last: cell.x, y: cell.y, mean, half_width, rows });
+                let (mean, count) = (cell.mean, cell.rows);
+                out.push(Stretch { map, first: cell.x, last: cell.x, y: cell.y, mean, half_width, count });
             }
         }
     }
@@ -71,7 +87,15 @@ fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
 impl Stretch<'_> {
     /// Squared error that it stands for.
     fn weight(&self) -> f64 {
-        self.mean.powi(2) * self.rows as f64
+        self.mean.powi(2) * self.count as f64
+    }
+
+    fn rows(&self) -> Vec<usize> {
+        let inside = |row: &usize| {
+            let side = self.map.y.as_ref().is_none_or(|y| y.bin[*row] == self.y);
+            side && (self.first..=self.last).contains(&self.map.x.bin[*row])
+        };
+        (0..self.map.x.bin.len()).filter(inside).collect()
     }
 
     fn region(&self, unit: &str, yardstick: Option<&Yardstick>) -> Region {
@@ -88,7 +112,7 @@ impl Stretch<'_> {
             to,
             mean_residual: self.mean,
             ci95: [self.mean - self.half_width, self.mean + self.half_width],
-            samples: self.rows,
+            samples: self.count,
             direction: direction.map(Into::into),
             sentence: format!(
                 "the model is {} too {side} {}{motion}{measure}",

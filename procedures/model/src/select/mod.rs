@@ -2,6 +2,7 @@
 
 mod flips;
 mod library;
+mod rivals;
 mod search;
 
 pub use library::{Library, gain};

@@ -2,6 +2,7 @@
 
 use super::flips::{Null, Score};
 use super::library::{Gain, Library, factors, gain};
+use super::rivals::{encompasses, is_tie};
 use crate::Options;
 use crate::linear::{Basis, BlockGrams, dot};
 use crate::prepare::Problem;
@@ -20,7 +21,7 @@ pub struct Rival<'p> {
     pub held_out: f64,
     pub p_value: f64,
     /// Held-out squared error of each fold.
-    losses: Vec<f64>,
+    pub(super) losses: Vec<f64>,
 }
 
 impl<'p> Rival<'p> {
@@ -344,7 +345,7 @@ pub fn significance(
 }
 
 /// The same from scores that are there already.
-fn family_wise(
+pub(super) fn family_wise(
     term: &Term,
     mut scores: Vec<Score>,
     basis: &Basis,
@@ -357,31 +358,6 @@ fn family_wise(
     let z = own.z();
     scores.push(own);
     Null::new(&scores, problem.blocks, options.flips, options.seed).p_value(z)
-}
-
-/// Two effects tie where the difference of their held-out errors is not larger than its own scatter over the folds.
-fn is_tie(a: &Rival, b: &Rival) -> bool {
-    let differences: Vec<f64> = b.losses.iter().zip(&a.losses).map(|(b, a)| b - a).collect();
-    let n = differences.len() as f64;
-    let mean = differences.iter().sum::<f64>() / n;
-    let spread = (differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
-    differences.iter().sum::<f64>() <= 2.0 * n.sqrt() * spread + 1e-9 * a.held_out
-}
-
-/// Whether the model with `one` leaves nothing that matters for `other`, and the other way round it does (the encompassing
-/// test of Davidson and MacKinnon 1981, by sign flips of blocks). Two effects may be apart in few of the folds, and clearly.
-fn encompasses(now: &Terms, one: &Term, other: &Term, options: &Options) -> bool {
-    let left_for = |beside: &Term, there: &Term| {
-        let mut with = now.clone();
-        with.terms.push(there.clone());
-        with.refine();
-        let basis = with.tangent();
-        let residual = basis.rest(&with.response());
-        let share = gain(&beside.columns, &basis, &residual, dot(&residual, &residual)).share;
-        (share, family_wise(beside, Vec::new(), &basis, &residual, now.problem, options))
-    };
-    let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));
-    needed >= options.practical_share && p_value <= options.alpha && needless < options.practical_share
 }
 
 /// The added term without which the model is as good, with the model without it.
