@@ -2,6 +2,7 @@ import createClient from 'openapi-fetch';
 import type { paths } from '../../gen/schema';
 import { Refusal, asRefusal } from './problem';
 import { authorization } from './token';
+import type { NewAutopilot } from './types';
 
 export const BASE = '/api/v1';
 
@@ -17,6 +18,7 @@ async function body<T>(answer: Promise<{ data?: T; error?: unknown; response: Re
 	try {
 		const { data, error, response } = await answer;
 		if (data !== undefined) return data;
+		if (response.status === 204) return undefined as T;
 		const known = typeof error === 'object' && error !== null ? error : { detail: String(error ?? '') };
 		throw new Refusal({ title: response.statusText || 'Refused', ...known, status: response.status });
 	} catch (failure) {
@@ -55,11 +57,18 @@ export const api = {
 
 	effects: (kind?: string, signal?: Signal) => body(client.GET('/api/v1/effects', { params: { query: { kind } }, signal })),
 	models: (run: number, signal?: Signal) => body(client.GET('/api/v1/models', { params: { query: { run } }, signal })),
-	fit: (run: number, effects: string[], parent?: number) => body(client.POST('/api/v1/models', { body: { run, effects, parent } })),
+	fit: (run: number, effects: string[], parent?: { id: number; more_runs: number[] }) =>
+		body(client.POST('/api/v1/models', { body: { run, effects, parent: parent?.id, more_runs: parent?.more_runs } })),
 	residuals: (id: number, signal?: Signal) =>
 		body(client.GET('/api/v1/models/{id}/residuals', { params: { path: { id } }, signal })),
-	diagnoses: (model: number, signal?: Signal) => body(client.GET('/api/v1/diagnoses', { params: { query: { model } }, signal })),
+	/** The kept diagnosis where nothing has changed since, else a new one. */
 	diagnose: (model: number, signal?: Signal) => body(client.POST('/api/v1/diagnoses', { body: { model }, signal })),
+
+	autopilots: (signal?: Signal) => body(client.GET('/api/v1/autopilots', { signal })),
+	startAutopilot: (asked: NewAutopilot) => body(client.POST('/api/v1/autopilots', { body: asked })),
+	stopAutopilot: (id: number) => body(client.POST('/api/v1/autopilots/{id}/stop', { params: { path: { id } } })),
+	experiment: (diagnosis: number, bench: string) =>
+		body(client.POST('/api/v1/diagnoses/{id}/experiment', { params: { path: { id: diagnosis } }, body: { bench } })),
 };
 
 export function exportHref(run: number, format: 'csv' | 'parquet'): string {

@@ -3,12 +3,16 @@ import type { components } from '../../gen/schema';
 
 type Schemas = components['schemas'];
 
+export type Autopilot = Schemas['Autopilot'];
+export type AutopilotStep = Schemas['AutopilotStep'];
 export type Bench = Schemas['Bench'];
 export type Channel = Schemas['ChannelInfo'];
 export type Diagnosis = Schemas['Diagnosis'];
 export type Effect = Schemas['Effect'];
+export type Experiment = Schemas['Experiment'];
 export type LiveMessage = Schemas['LiveMessage'];
 export type Model = Schemas['Model'];
+export type NewAutopilot = Schemas['NewAutopilot'];
 export type Parameter = Schemas['FittedParameter'];
 export type Preview = Schemas['Preview'];
 export type Problem = Schemas['Problem'];

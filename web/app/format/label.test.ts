@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { axisTitle, label } from './label';
+import { axisTitle, label, prose } from './label';
 
 it('reads the unit from the suffix', () => {
 	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
@@ -11,4 +11,8 @@ it('reads the unit from the suffix', () => {
 it('trusts a unit that is given', () => {
 	expect(axisTitle('motor_position_rad', 'm')).toBe('motor position [m]');
 	expect(axisTitle('direction', '1')).toBe('direction of motion');
+});
+
+it('says ids of a sentence as words', () => {
+	expect(prose('it would show load_linear and stribeck_load, at 5 mNm')).toBe('It would show load linear and stribeck load, at 5 mNm');
 });

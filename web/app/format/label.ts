@@ -49,3 +49,9 @@ const WORDS: Record<string, string> = {
 export function words(id: string): string {
 	return WORDS[id] ?? id.replaceAll('_', ' ');
 }
+
+/** A sentence of the daemon as people write it: ids as words, a capital at its start. */
+export function prose(sentence: string): string {
+	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, words);
+	return spoken.charAt(0).toUpperCase() + spoken.slice(1);
+}

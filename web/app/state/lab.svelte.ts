@@ -25,6 +25,8 @@ class LabState {
 	dropped = $state(0);
 	/** Raised when a model version was made anywhere. */
 	models = $state(0);
+	/** Raised when an autopilot made a step or ended. */
+	autopilots = $state(0);
 	line = $state(false);
 	/** The daemon wants a token that it was not given. */
 	unauthorized = $state(false);
@@ -117,6 +119,9 @@ class LabState {
 				break;
 			case 'model':
 				this.models += 1;
+				break;
+			case 'autopilot':
+				this.autopilots += 1;
 				break;
 		}
 	}

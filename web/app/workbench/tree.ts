@@ -10,17 +10,28 @@ export function chain(models: readonly Model[], id: number): Model[] {
 	return path;
 }
 
-/** A child that already holds these effects: going there again needs no new fit. */
-export function childWith(models: readonly Model[], parent: number | null, effects: readonly string[]): Model | undefined {
+/** A child on the same data that already holds these effects: going there again needs no new fit. */
+export function childWith(models: readonly Model[], parent: Model | null, effects: readonly string[]): Model | undefined {
 	const wanted = [...effects].sort().join();
-	return models.find((model) => (model.parent ?? null) === parent && [...model.effects].sort().join() === wanted);
+	return models.find(
+		(model) =>
+			(model.parent ?? null) === (parent?.id ?? null) &&
+			(parent ? sameData(parent, model) : model.more_runs.length === 0) &&
+			[...model.effects].sort().join() === wanted,
+	);
+}
+
+/** Only errors on the same data can be set against each other. */
+export function sameData(one: Model, other: Model): boolean {
+	return one.run === other.run && one.more_runs.join() === other.more_runs.join();
 }
 
 /** What a version did to its parent, in a few words. */
 export function stepName(model: Model): string {
 	if (model.parent == null) return 'start';
 	const parts = [...model.added.map((id) => `+ ${id}`), ...model.removed.map((id) => `− ${id}`)];
-	return parts.join(', ').replaceAll('_', ' ') || 'same effects';
+	if (parts.length > 0) return parts.join(', ').replaceAll('_', ' ');
+	return model.more_runs.length > 0 ? `with run ${model.more_runs.join(', ')}` : 'same effects';
 }
 
 export interface Branch {

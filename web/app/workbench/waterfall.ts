@@ -1,5 +1,5 @@
 import type { Model, Suggestion } from '../api/types';
-import { stepName } from './tree';
+import { sameData, stepName } from './tree';
 
 export interface Bar {
 	key: string;
@@ -8,7 +8,7 @@ export interface Bar {
 	held: number;
 	/** Training RMS; unknown for a bar that is only foreseen. */
 	training: number | null;
-	/** Change of the held-out RMS against the bar before, as a share. */
+	/** Change of the held-out RMS against the bar before, as a share; not where that one was held against other data. */
 	change: number | null;
 	id: number | null;
 }
@@ -22,7 +22,7 @@ export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' |
 			label: stepName(model),
 			held: model.validation_rms,
 			training: model.rms,
-			change: before ? model.validation_rms / before.validation_rms - 1 : null,
+			change: before && sameData(before, model) ? model.validation_rms / before.validation_rms - 1 : null,
 			id: model.id,
 		};
 	});

@@ -11,7 +11,7 @@ import { isFinal } from '../ui/states';
 import { type Side } from '../residual/points';
 import { selected } from '../residual/selected';
 import { readRegion } from './region';
-import { childWith, gain } from './tree';
+import { childWith, gain, sameData } from './tree';
 import { tries } from './tries.svelte';
 
 /** Less than this is no gain. */
@@ -65,18 +65,18 @@ export function openWorkbench(id: number) {
 	const chosen = $derived(residuals.data ? selected(residuals.data.set, region, side, ramps) : null);
 	const diagnosis = resource(
 		() => model?.id ?? null,
-		async (version, signal) => (await api.diagnoses(version, signal)).at(-1) ?? (await api.diagnose(version, signal)),
+		(version, signal) => api.diagnose(version, signal),
 	);
 
 	/** A version with these effects. A set that was fitted before from the same parent needs no new fit. */
 	async function version(set: string[], parent: Model | null, what: string): Promise<Model | null> {
 		if (busy !== null) return null;
-		const known = childWith(versions, parent?.id ?? null, set);
+		const known = childWith(versions, parent, set);
 		if (known) return known;
 		busy = what;
 		refused = null;
 		try {
-			const made = await api.fit(id, set, parent?.id);
+			const made = await api.fit(id, set, parent ?? undefined);
 			models.put([...versions.filter((one) => one.id !== made.id), made]);
 			return made;
 		} catch (failure) {
@@ -113,7 +113,8 @@ export function openWorkbench(id: number) {
 
 	const beside = (version: number | null) => router.set({ with: version }, 'push');
 
-	function told(before: Model, after: Model): { text: string; good: boolean } {
+	function told(before: Model, after: Model): { text: string; good: boolean } | null {
+		if (!sameData(before, after)) return null;
 		const share = gain(before, after);
 		const unit = after.fit.unit;
 		const figures = `${quantity(before.validation_rms, unit)} → ${quantity(after.validation_rms, unit)}`;

@@ -11,7 +11,7 @@ import { branches, chain, childWith, gain, stepName } from './tree';
 import { barsOf, topOf } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
-	({ id, parent, effects, added, removed: [], validation_rms: held, rms: held * 0.9 }) as unknown as Model;
+	({ id, parent, effects, added, removed: [], run: 1, more_runs: [], validation_rms: held, rms: held * 0.9 }) as unknown as Model;
 
 const models = [
 	version(1, null, ['coulomb'], 10),
@@ -27,8 +27,15 @@ describe('the tree of versions', () => {
 	});
 
 	it('visits a set that was fitted before instead of fitting it again', () => {
-		expect(childWith(models, 2, ['load_linear', 'coulomb', 'stribeck'])?.id).toBe(4);
-		expect(childWith(models, 3, ['load_linear', 'coulomb', 'stribeck'])).toBeUndefined();
+		expect(childWith(models, models[1]!, ['load_linear', 'coulomb', 'stribeck'])?.id).toBe(4);
+		expect(childWith(models, models[2]!, ['load_linear', 'coulomb', 'stribeck'])).toBeUndefined();
+	});
+
+	it('holds no version for the same that was fitted on more runs', () => {
+		const more = { ...version(5, 2, ['coulomb', 'stribeck'], 5), more_runs: [2] };
+		expect(childWith([...models, more], models[1]!, ['coulomb', 'stribeck'])).toBeUndefined();
+		expect(stepName(more)).toBe('with run 2');
+		expect(barsOf([models[1]!, more], null).map((bar) => bar.change)).toEqual([null, null]);
 	});
 
 	it('lists children under their parents', () => {

@@ -1,0 +1,45 @@
+import type { Autopilot, AutopilotStep } from '../api/types';
+import type { Mood } from '../ui/states';
+
+const ENDS: Record<Autopilot['state'], { word: string; icon: string; mood: Mood }> = {
+	running: { word: 'ON', icon: '▶', mood: 'busy' },
+	finished: { word: 'DONE', icon: '✓', mood: 'good' },
+	budget_spent: { word: 'BUDGET SPENT', icon: '◔', mood: 'warn' },
+	stopped: { word: 'STOPPED', icon: '■', mood: 'warn' },
+	failed: { word: 'FAILED', icon: '✕', mood: 'bad' },
+	interrupted: { word: 'INTERRUPTED', icon: '⚡', mood: 'bad' },
+};
+
+export const sayEnd = (state: Autopilot['state']) => ENDS[state];
+
+/** The diagnosis whose run it makes; `null` for one that goes on until nothing is missing. */
+export function asked(flight: Autopilot): number | null {
+	const diagnosis = flight.request['diagnosis'];
+	return typeof diagnosis === 'number' ? diagnosis : null;
+}
+
+/** The run under which its models are found: a further run is looked at together with the first. */
+export function home(flight: Autopilot): number | null {
+	return asked(flight) === null ? (flight.runs[0] ?? null) : null;
+}
+
+/** The run that is on, or `null` between runs. */
+export function running(flight: Autopilot): number | null {
+	const last = flight.state === 'running' ? flight.steps.at(-1) : undefined;
+	return last?.action === 'measure' ? (last.run ?? null) : null;
+}
+
+/** A step for people: the start of a run and its end are one, once it has ended. */
+export function told(steps: readonly AutopilotStep[]): AutopilotStep[] {
+	return steps.flatMap((step, i) => {
+		const next = steps[i + 1];
+		if (step.action === 'measure' && next?.action === 'measured') return [];
+		const begun = steps[i - 1];
+		return [step.action === 'measured' && begun?.experiment ? { ...step, experiment: begun.experiment } : step];
+	});
+}
+
+/** Share of the held-out error that a step took away; unknown where before and after are of different data. */
+export function fall({ action, before_rms, after_rms }: AutopilotStep): number | null {
+	return action === 'add' && before_rms && after_rms != null ? 1 - after_rms / before_rms : null;
+}

@@ -1,0 +1,62 @@
+import { untrack } from 'svelte';
+import { api } from '../api/client';
+import { type Refusal, asRefusal } from '../api/problem';
+import { asked } from '../autopilot/flight';
+import { lab } from '../state/lab.svelte';
+import { resource } from '../state/resource.svelte';
+import { router } from '../state/router.svelte';
+import type { Bench } from './workbench.svelte';
+
+/** The run that a diagnosis asks for: started here, followed, and its answer shown. Call while a component is being set up. */
+export function measuring(bench: Bench) {
+	let refused: Refusal | null = $state.raw(null);
+	let starting = $state(false);
+	/** The flight that this page began, with the version that asked for it. */
+	let mine: { flight: number; from: number } | null = $state.raw(null);
+	const flights = resource(
+		() => `${lab.autopilots} ${lab.line}`,
+		(_key, signal) => api.autopilots(signal),
+	);
+	/** The bench that made the run, or the one that there is. */
+	const where = $derived(lab.benches?.find((one) => one.name === bench.run.data?.bench) ?? lab.bench);
+	const diagnosis = $derived(bench.diagnosed ? (bench.diagnosis.data?.id ?? null) : null);
+	const flight = $derived(diagnosis === null ? null : (flights.data?.find((one) => asked(one) === diagnosis) ?? null));
+
+	/** The answer is the same model on more data: shown to whoever asked and has stayed. */
+	$effect(() => {
+		const ended = flights.data?.find((one) => one.id === mine?.flight && one.state !== 'running');
+		if (!ended || !mine) return;
+		const stayed = mine.from === untrack(() => bench.model?.id);
+		mine = null;
+		if (ended.model != null && stayed) router.set({ model: ended.model, with: null, region: null, side: null, zoom: null }, 'push');
+	});
+
+	async function start(): Promise<void> {
+		if (diagnosis === null || !where || !bench.model || starting) return;
+		starting = true;
+		refused = null;
+		try {
+			mine = { flight: (await api.experiment(diagnosis, where.name)).id, from: bench.model.id };
+			lab.autopilots += 1;
+		} catch (failure) {
+			refused = asRefusal(failure);
+		}
+		starting = false;
+	}
+
+	return {
+		start,
+		get where() {
+			return where;
+		},
+		get flight() {
+			return flight;
+		},
+		get starting() {
+			return starting;
+		},
+		get refused() {
+			return refused;
+		},
+	};
+}
