@@ -2,7 +2,7 @@
 
 use crate::config::{BenchDescription, Hardware, Source};
 use crate::view::{Instrument, InstrumentIdentity};
-use jointbench_devices::driver::{LorenzSettings, OdriveSettings, Range, ScpiSettings, Thermistor};
+use jointbench_devices::driver::{LorenzSettings, OdriveSettings, ScpiSettings, Thermistor};
 use jointbench_devices::{LorenzSensor, MockBench, OdriveJoint, PortSettings, ScpiSource};
 use jointbench_instrument::roles::{self, CurrentSource, Identity, TorqueSensor};
 use jointbench_instrument::{Bench, Clock, Fault, SystemClock};
@@ -42,6 +42,7 @@ pub fn open(description: &BenchDescription) -> Opened {
 
 fn simulated(mock: &MockBench) -> Hardware {
     let ports = mock.ports();
+    let (range, nominal_nm) = mock.settings().torque_range();
     Hardware {
         joint: OdriveSettings {
             name: "joint".into(),
@@ -54,8 +55,8 @@ fn simulated(mock: &MockBench) -> Hardware {
             name: "torque_sensor".into(),
             port: PortSettings::new(ports.torque_sensor, 230_400),
             deadline_ms: MOCK_DEADLINE_MS,
-            range: Range::Fine,
-            nominal_nm: 20.0,
+            range,
+            nominal_nm,
         }),
         brake: Some(ScpiSettings {
             name: "brake_a".into(),

@@ -4,7 +4,7 @@ use super::mistake::{Collector, Mistakes};
 use super::raw::{RawBench, RawBrake, RawConstants, RawFile, RawJoint, RawLimits, RawMock, RawTorqueSensor};
 use super::{BenchDescription, Hardware, Source};
 use jointbench_devices::driver::{LorenzSettings, OdriveSettings, Range, ScpiSettings, Thermistor};
-use jointbench_devices::sim::HIDDEN_EFFECTS;
+use jointbench_devices::sim::{HIDDEN_EFFECTS, Load};
 use jointbench_devices::{Joint, MockSettings, PortSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
@@ -63,12 +63,12 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
         return None;
     }
     let sheet = match &source {
-        Some(Source::Mock(settings)) => Some(settings.joint),
+        Some(Source::Mock(settings)) => Some((settings.joint, settings.load)),
         _ => None,
     };
     let place = raw.name.span();
-    let limits = limits(raw.limits.as_ref(), sheet.map(Joint::limits), place.clone(), wrong);
-    let constants = constants(raw.constants.as_ref(), sheet.map(Joint::constants), place, wrong);
+    let limits = limits(raw.limits.as_ref(), sheet.map(|(joint, load)| joint.limits(load)), place.clone(), wrong);
+    let constants = constants(raw.constants.as_ref(), sheet.map(|(joint, load)| joint.constants(load)), place, wrong);
     if let (Some(given), Some(limits), Some(constants)) = (&raw.limits, &limits, &constants) {
         check_reach(raw, given, limits, constants, wrong);
     }
@@ -109,10 +109,12 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
         let known = HIDDEN_EFFECTS.join(", ");
         wrong.add(effect.span(), format!("effect {:?}: the mock bench can hide {known}", effect.get_ref()));
     }
+    let loads = [("brake_a", Load::BrakeA), ("gear_and_brake_b", Load::GearAndBrakeB)];
+    let load = raw.load.as_ref().map_or(Some(Load::default()), |load| choice(load, "load", &loads, wrong));
     let pace = raw.pace.as_ref().and_then(|pace| positive(pace, "pace", wrong));
     let effects = raw.effects.iter().map(|effect| effect.get_ref().clone()).collect();
     let troubles = raw.troubles.clone();
-    Some(MockSettings { effects, pace, troubles, ..MockSettings::new(joint?, raw.seed.unwrap_or(1)) })
+    Some(MockSettings { load: load?, effects, pace, troubles, ..MockSettings::new(joint?, raw.seed.unwrap_or(1)) })
 }
 
 fn check_hardware(raw: &RawBench, joint: &RawJoint, wrong: &mut Collector) -> Option<Hardware> {

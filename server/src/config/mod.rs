@@ -9,6 +9,7 @@ mod tests;
 pub use mistake::{Mistake, Mistakes};
 
 use jointbench_devices::driver::{LorenzSettings, OdriveSettings, ScpiSettings};
+use jointbench_devices::sim::Load;
 use jointbench_devices::{Joint, MockSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
@@ -51,11 +52,11 @@ pub struct Hardware {
 impl BenchDescription {
     /// A mock bench with the constants and limits of its joint's data sheet.
     pub fn mock(name: &str, settings: MockSettings) -> Self {
-        let joint: Joint = settings.joint;
+        let (joint, load): (Joint, Load) = (settings.joint, settings.load);
         Self {
             name: name.to_owned(),
-            limits: joint.limits(),
-            constants: joint.constants(),
+            limits: joint.limits(load),
+            constants: joint.constants(load),
             source: Source::Mock(settings),
             text: String::new(),
         }

@@ -28,6 +28,7 @@ pub struct RawBench {
 #[serde(deny_unknown_fields)]
 pub struct RawMock {
     pub joint: Spanned<String>,
+    pub load: Option<Spanned<String>>,
     pub seed: Option<u64>,
     #[serde(default)]
     pub effects: Vec<Spanned<String>>,

@@ -1,7 +1,7 @@
 //! The mock bench as its owner sees it.
 
 use super::clock::SteppedClock;
-use super::data_sheet::Joint;
+use super::data_sheet::{Joint, Load};
 use super::firmware::Odrive;
 use super::plant::{HIDDEN_EFFECTS, Hidden, Plant, Truth};
 #[cfg(unix)]
@@ -32,6 +32,7 @@ pub enum Transport {
 #[derive(Debug, Clone)]
 pub struct MockSettings {
     pub joint: Joint,
+    pub load: Load,
     pub seed: u64,
     /// Names out of [`HIDDEN_EFFECTS`].
     pub effects: Vec<String>,
@@ -47,12 +48,21 @@ impl MockSettings {
     pub fn new(joint: Joint, seed: u64) -> Self {
         Self {
             joint,
+            load: Load::default(),
             seed,
             effects: Vec::new(),
             pace: None,
             transport: Transport::Terminal,
             deadline_ms: DEADLINE_MS,
             troubles: Vec::new(),
+        }
+    }
+
+    /// The smallest range of the torque sensor that holds the load, and its nominal torque [Nm].
+    pub fn torque_range(&self) -> (Range, f64) {
+        match self.load {
+            Load::BrakeA => (Range::Fine, 20.0),
+            Load::GearAndBrakeB => (Range::Coarse, 200.0),
         }
     }
 
@@ -99,7 +109,7 @@ impl MockBench {
         }
         let hidden =
             Hidden::draw(settings.joint, settings.seed, &settings.effects).map_err(MockError::UnknownEffect)?;
-        let plant = Plant::new(settings.joint, settings.seed, hidden);
+        let plant = Plant::new(settings.joint, settings.load, settings.seed, hidden);
         let truth = plant.truth(settings.joint, settings.seed);
         let rig = Arc::new(Mutex::new(Rig::new(plant, Odrive::new(settings.joint), &settings.troubles)));
         let clock = Arc::new(SteppedClock::new(Arc::clone(&rig), settings.pace));
@@ -148,6 +158,7 @@ impl MockBench {
     /// The bench with the ordinary drivers on the ports of this mock bench.
     pub fn open_bench(&self, name: &str) -> Result<Bench, Fault> {
         let ports = self.ports();
+        let (range, nominal_nm) = self.settings.torque_range();
         let joint = OdriveJoint::open(
             OdriveSettings {
                 name: "joint".into(),
@@ -162,8 +173,8 @@ impl MockBench {
             name: "torque_sensor".into(),
             port: PortSettings::new(ports.torque_sensor, 230_400),
             deadline_ms: self.settings.deadline_ms,
-            range: Range::Fine,
-            nominal_nm: 20.0,
+            range,
+            nominal_nm,
         })?;
         let brake = ScpiSource::open(ScpiSettings {
             name: "brake_a".into(),
@@ -174,8 +185,8 @@ impl MockBench {
             name: name.to_owned(),
             simulated: true,
             clock: self.clock(),
-            limits: self.settings.joint.limits(),
-            constants: self.settings.joint.constants(),
+            limits: self.settings.joint.limits(self.settings.load),
+            constants: self.settings.joint.constants(self.settings.load),
             joint: Box::new(joint),
             torque_sensor: Some(Box::new(torque_sensor)),
             brake: Some(Box::new(brake)),

@@ -15,6 +15,17 @@ pub enum Joint {
     JointB,
 }
 
+/// What loads the joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Load {
+    /// Up to 15 Nm, the same at every speed.
+    #[default]
+    BrakeA,
+    /// Up to 150 Nm: brake B behind a gear 1:10, whose friction depends on speed; brake A turns along unfed.
+    GearAndBrakeB,
+}
+
 /// Figures of the thesis: tables of the joints, of friction (motor side) and of stiffness (link side).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DataSheet {
@@ -29,6 +40,8 @@ pub(super) struct DataSheet {
     pub stribeck_velocity_rad_s: f64,
     pub stribeck_exponent: f64,
     pub stiffness_nm_rad: f64,
+    /// What the link turns further than a linear gear would let it, under load. Zero: a linear gear.
+    pub soft_rad: f64,
     /// Assumed: the thesis gives none.
     pub rotor_inertia_kg_m2: f64,
     pub max_motor_velocity_rad_s: f64,
@@ -43,6 +56,9 @@ pub(super) mod brake {
     pub const INERTIA_KG_M2: f64 = 5.63e-3;
     pub const CONTINUOUS_W: f64 = 350.0;
 }
+
+/// Turns of brake B for each turn of the link.
+pub(super) const LINE_RATIO: f64 = 10.0;
 
 /// Holds rated current in a coil of 100 °C (40.4 V) with something to spare.
 const COMPLIANCE_V: f64 = 45.0;
@@ -61,6 +77,7 @@ impl Joint {
                 stribeck_velocity_rad_s: 0.06,
                 stribeck_exponent: 0.8,
                 stiffness_nm_rad: 5722.5,
+                soft_rad: 0.0,
                 rotor_inertia_kg_m2: 1.2e-5,
                 max_motor_velocity_rad_s: 350.0,
                 max_motor_current_a: 8.0,
@@ -76,6 +93,7 @@ impl Joint {
                 stribeck_velocity_rad_s: 0.08,
                 stribeck_exponent: 1.9,
                 stiffness_nm_rad: 684.3,
+                soft_rad: 0.9588e-3,
                 rotor_inertia_kg_m2: 4.4e-5,
                 max_motor_velocity_rad_s: 350.0,
                 max_motor_current_a: 8.0,
@@ -83,26 +101,34 @@ impl Joint {
         }
     }
 
-    pub fn constants(self) -> JointConstants {
+    pub fn constants(self, load: Load) -> JointConstants {
         let sheet = self.data_sheet();
+        let turns = match load {
+            Load::BrakeA => 1.0,
+            Load::GearAndBrakeB => LINE_RATIO,
+        };
         JointConstants {
             torque_constant_nm_per_a: sheet.torque_constant_nm_per_a,
             gear_ratio: sheet.ratio,
             rotor_inertia_kg_m2: sheet.rotor_inertia_kg_m2,
             brake_compliance_v: COMPLIANCE_V,
             brake_rated_current_a: brake::RATED_CURRENT_A,
-            brake_rated_torque_nm: brake::RATED_TORQUE_NM,
+            brake_rated_torque_nm: turns * brake::RATED_TORQUE_NM,
             link_range_rad: sheet.range_rad,
         }
     }
 
-    /// What the bench must never exceed: the joint's, the fine torque range's and the brake's own limits.
-    pub fn limits(self) -> Limits {
+    /// What the bench must never exceed: the joint's, the torque range's and the brake's own limits.
+    pub fn limits(self, load: Load) -> Limits {
         let sheet = self.data_sheet();
+        let sensor_nm = match load {
+            Load::BrakeA => 18.0,
+            Load::GearAndBrakeB => 150.0,
+        };
         Limits {
             motor_velocity_rad_s: sheet.max_motor_velocity_rad_s,
             motor_current_a: sheet.max_motor_current_a,
-            link_torque_nm: sheet.max_torque_nm.min(18.0),
+            link_torque_nm: sheet.max_torque_nm.min(sensor_nm),
             temperature_c: 70.0,
             brake_current_a: 0.62,
             brake_power_w: brake::CONTINUOUS_W,

@@ -22,7 +22,7 @@ mod trouble;
 mod wire;
 
 pub use bench::{MockBench, MockError, MockPorts, MockSettings, Transport};
-pub use data_sheet::Joint;
+pub use data_sheet::{Joint, Load};
 pub use plant::{HIDDEN_EFFECTS, HiddenEffect, Truth};
 pub use replay::Replay;
 pub use rig::MockInstrument;

@@ -6,10 +6,13 @@ use super::super::data_sheet::DataSheet;
 const DAMPING: f64 = 0.1;
 /// Stops far stiffer than any load, soft against the substep [Nm/rad].
 const STOP_NM_RAD: f64 = 3000.0;
+/// A gear that is soft at first has this much of its stiffness there (assumed).
+const SOFT_SHARE: f64 = 0.6;
 
 pub struct Gear {
     ratio: f64,
     stiffness_nm_rad: f64,
+    soft_rad: f64,
     damping_nm_s: f64,
     link_inertia_kg_m2: f64,
     range_rad: f64,
@@ -20,6 +23,7 @@ impl Gear {
         Self {
             ratio: sheet.ratio,
             stiffness_nm_rad: sheet.stiffness_nm_rad,
+            soft_rad: sheet.soft_rad,
             damping_nm_s: 2.0 * DAMPING * (sheet.stiffness_nm_rad * link_inertia_kg_m2).sqrt(),
             link_inertia_kg_m2,
             range_rad: sheet.range_rad.unwrap_or(f64::INFINITY),
@@ -32,12 +36,40 @@ impl Gear {
 
     /// Torque that the gear hands to the link.
     pub fn torque(&self, motor_rad: f64, link_rad: f64, motor_rad_s: f64, link_rad_s: f64) -> f64 {
-        self.stiffness_nm_rad * (motor_rad / self.ratio - link_rad)
+        let twist_rad = motor_rad / self.ratio - link_rad;
+        self.stiffness_nm_rad * (twist_rad - self.given(twist_rad))
             + self.damping_nm_s * (motor_rad_s / self.ratio - link_rad_s)
+    }
+
+    /// The part of a twist that the belts give before they pull with all their teeth: `soft_rad` to either side at most.
+    fn given(&self, twist_rad: f64) -> f64 {
+        let until_rad = self.soft_rad / (1.0 - SOFT_SHARE);
+        if self.soft_rad > 0.0 { self.soft_rad * twist_rad / until_rad.hypot(twist_rad) } else { 0.0 }
     }
 
     /// Torque of the stops against the link.
     pub fn stop(&self, link_rad: f64) -> f64 {
         STOP_NM_RAD * (link_rad - link_rad.clamp(-self.range_rad, self.range_rad))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::data_sheet::Joint;
+
+    fn stiffness_nm_rad(joint: Joint, twist_rad: f64) -> f64 {
+        let gear = Gear::new(&joint.data_sheet(), 0.01);
+        let torque = |twist_rad: f64| gear.torque(twist_rad * gear.ratio, 0.0, 0.0, 0.0);
+        (torque(twist_rad + 1e-6) - torque(twist_rad - 1e-6)) / 2e-6
+    }
+
+    #[test]
+    fn joint_a_is_linear_and_joint_b_softer_at_low_torque() {
+        for twist_rad in [0.0, 0.005, 0.02] {
+            assert!((stiffness_nm_rad(Joint::JointA, twist_rad) - 5722.5).abs() < 1e-3);
+        }
+        assert!((stiffness_nm_rad(Joint::JointB, 0.0) / 684.3 - SOFT_SHARE).abs() < 1e-3);
+        assert!((stiffness_nm_rad(Joint::JointB, 0.025) / 684.3 - 1.0).abs() < 1e-3);
     }
 }

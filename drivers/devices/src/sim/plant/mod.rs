@@ -1,22 +1,25 @@
 //! The simulated world: rotor, gear, link, brake, heat. Plain physics in SI, link side and motor side named.
 //!
 //! Two inertias joined by the gear's elasticity; friction on the rotor; the brake on the link. The torque sensor sits
-//! between the joint's own output and the brake's rotor.
+//! between the joint's own output and what brakes it.
 
 mod brake;
+mod curve;
 mod friction;
 mod gear;
 mod hidden;
+mod line;
 mod noise;
 mod thermal;
 
 pub use hidden::{HIDDEN_EFFECTS, HiddenEffect, Truth};
 
-use super::data_sheet::{self, DataSheet, Joint};
+use super::data_sheet::{DataSheet, Joint, Load};
 use brake::Brake;
 use friction::Friction;
 use gear::Gear;
 pub(super) use hidden::Hidden;
+use line::Line;
 pub(super) use noise::{Noise, Signal};
 use std::f64::consts::TAU;
 use thermal::Thermal;
@@ -63,6 +66,8 @@ pub(super) struct Plant {
     sheet: DataSheet,
     friction: Friction,
     gear: Gear,
+    line: Line,
+    line_inertia_kg_m2: f64,
     thermal: Thermal,
     hidden: Hidden,
     step: u64,
@@ -78,8 +83,9 @@ pub(super) struct Plant {
 }
 
 impl Plant {
-    pub fn new(joint: Joint, seed: u64, hidden: Hidden) -> Self {
+    pub fn new(joint: Joint, load: Load, seed: u64, hidden: Hidden) -> Self {
         let sheet = joint.data_sheet();
+        let line_inertia_kg_m2 = line::inertia_kg_m2(load);
         let noise = Noise::new(seed);
         let coulomb_nm = sheet.coulomb_nm * (1.0 + 0.08 * noise.trait_of(Signal::Coulomb));
         let viscous_nm_s = sheet.viscous_nm_s * (1.0 + 0.08 * noise.trait_of(Signal::Viscous));
@@ -90,7 +96,9 @@ impl Plant {
             sensor_shift_nm: 0.0,
             thermistor_fault_k: 0.0,
             friction: Friction::new(coulomb_nm, viscous_nm_s, sheet.rotor_inertia_kg_m2),
-            gear: Gear::new(&sheet, LINK_INERTIA_KG_M2 + COUPLING_INERTIA_KG_M2 + data_sheet::brake::INERTIA_KG_M2),
+            gear: Gear::new(&sheet, LINK_INERTIA_KG_M2 + COUPLING_INERTIA_KG_M2 + line_inertia_kg_m2),
+            line: Line::new(load),
+            line_inertia_kg_m2,
             thermal: Thermal::new(AMBIENT_C),
             hidden,
             step: 0,
@@ -129,13 +137,13 @@ impl Plant {
         self.motor_velocity_rad_s += motor_nm / self.sheet.rotor_inertia_kg_m2 * STEP_S;
         self.motor_angle_rad += self.motor_velocity_rad_s * STEP_S;
 
-        let brake_nm = self.brake.advance(self.inputs.coil, self.link_velocity_rad_s);
+        let brake_nm = self.line.advance(&mut self.brake, self.inputs.coil, self.link_velocity_rad_s);
         let outside_nm = self.hidden.gravity(self.link_angle_rad) + self.gear.stop(self.link_angle_rad);
         let link_acceleration = (gear_nm - outside_nm - brake_nm) / self.gear.link_inertia_kg_m2();
         self.link_velocity_rad_s += link_acceleration * STEP_S;
         self.link_angle_rad += self.link_velocity_rad_s * STEP_S;
 
-        let felt_nm = brake_nm + data_sheet::brake::INERTIA_KG_M2 * link_acceleration;
+        let felt_nm = brake_nm + self.line_inertia_kg_m2 * link_acceleration;
         self.sensor_torque_nm += self.sensor_gain * (felt_nm - self.sensor_torque_nm);
         self.thermal.advance(self.motor_current_a, friction_nm * velocity);
         self.step += 1;
@@ -174,8 +182,7 @@ impl Plant {
     }
 
     pub fn truth(&self, joint: Joint, seed: u64) -> Truth {
-        let reflected_kg_m2 =
-            (self.gear.link_inertia_kg_m2() - data_sheet::brake::INERTIA_KG_M2) / self.sheet.ratio.powi(2);
+        let reflected_kg_m2 = (self.gear.link_inertia_kg_m2() - self.line_inertia_kg_m2) / self.sheet.ratio.powi(2);
         Truth {
             joint,
             seed,

@@ -2,14 +2,14 @@
 
 use super::super::Firmware;
 use super::super::dp800::Dp800;
-use crate::sim::data_sheet::Joint;
+use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant, STEP_S};
 
 struct Supply(Dp800, Plant);
 
 impl Supply {
     fn new() -> Self {
-        Self(Dp800::new(), Plant::new(Joint::JointA, 1, Hidden::default()))
+        Self(Dp800::new(), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()))
     }
 
     fn say(&mut self, text: &str) -> String {

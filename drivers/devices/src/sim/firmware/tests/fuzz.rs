@@ -1,7 +1,7 @@
 //! The instruments' own parsers against garbage: no panic, bounded memory, and the next proper request is answered.
 
 use super::super::{Dp800, Firmware, Lorenz, Odrive};
-use crate::sim::data_sheet::Joint;
+use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -16,7 +16,7 @@ fn pieces() -> impl Strategy<Value = Vec<Vec<u8>>> {
 
 /// Feeds garbage in pieces, then `end`, then `request`; returns the reply to that.
 fn ask(firmware: &mut dyn Firmware, garbage: &[Vec<u8>], end: &[u8], request: &[u8]) -> Vec<u8> {
-    let mut plant = Plant::new(Joint::JointA, 1, Hidden::default());
+    let mut plant = Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default());
     let (mut input, mut output) = (Vec::new(), Vec::new());
     for piece in garbage.iter().map(Vec::as_slice).chain([end]) {
         input.extend_from_slice(piece);

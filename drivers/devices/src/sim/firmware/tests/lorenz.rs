@@ -5,14 +5,14 @@ use super::super::lorenz::{
     ADDRESS, BROADCAST, Lorenz, NACK, STX, UNKNOWN_COMMAND, WRITE_ONCE, WRONG_CHECKSUM, WRONG_PARAMETER, WRONG_SIZE,
     checks, send,
 };
-use crate::sim::data_sheet::Joint;
+use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant};
 
 struct Sensor(Lorenz, Plant);
 
 impl Sensor {
     fn new() -> Self {
-        Self(Lorenz::new(), Plant::new(Joint::JointA, 1, Hidden::default()))
+        Self(Lorenz::new(), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()))
     }
 
     fn say(&mut self, bytes: &[u8]) -> Vec<u8> {

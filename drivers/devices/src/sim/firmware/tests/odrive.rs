@@ -2,14 +2,14 @@
 
 use super::super::Firmware;
 use super::super::odrive::Odrive;
-use crate::sim::data_sheet::Joint;
+use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant, STEP_S};
 
 struct Drive(Odrive, Plant);
 
 impl Drive {
     fn new() -> Self {
-        Self(Odrive::new(Joint::JointA), Plant::new(Joint::JointA, 1, Hidden::default()))
+        Self(Odrive::new(Joint::JointA), Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default()))
     }
 
     fn say(&mut self, text: &str) -> String {

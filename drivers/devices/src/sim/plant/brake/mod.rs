@@ -1,0 +1,104 @@
+//! A hysteresis brake: coil with lag and heat, torque with a rising and a falling branch, a rotor that follows its poles
+//! and keeps them when the current falls at standstill.
+//!
+//! Sources: Magtrol HB data sheet EN 04/2025 for resistance, rating, drag; everything marked assumed is so in the bench's
+//! physics notes as well.
+
+mod branches;
+mod heat;
+mod poles;
+
+use super::super::data_sheet::brake::{COIL_OHM_25C, RATED_CURRENT_A, RATED_TORQUE_NM};
+use super::{CoilSupply, STEP_S};
+use branches::Branches;
+use heat::Heat;
+use poles::Poles;
+
+/// L/R of the coil (assumed: the data sheet gives none).
+const COIL_LAG_S: f64 = 0.08;
+/// Extra lag of the torque behind the current (assumed).
+const TORQUE_LAG_S: f64 = 0.02;
+const COPPER_PER_K: f64 = 0.003_93;
+/// Drag at 1000 rpm is 0.0918 Nm; a part of it stays at standstill (split assumed).
+const DRAG_NM: f64 = 0.03;
+const DRAG_NM_S: f64 = 5.9e-4;
+/// Wind-up of the rotor before it slips [rad] (assumed).
+const WIND_UP_RAD: f64 = 0.01;
+const WIND_UP_DAMPING_NM_S: f64 = 1.0;
+/// Torque over the rotor's temperature (assumed).
+const PER_K: f64 = -0.0007;
+/// Eddy currents: 3 % at 1000 rpm, the most at the highest speed of the data sheet (assumed).
+const EDDY_PER_RAD_S: f64 = 0.03 / 104.7;
+const EDDY_MOST_RAD_S: f64 = 628.0;
+
+pub struct Brake {
+    /// Of a bad contact in the coil's circuit.
+    pub contact_ohm: f64,
+    current_a: f64,
+    branches: Branches,
+    poles: Poles,
+    magnetic_nm: f64,
+    wind_up_rad: f64,
+    angle_rad: f64,
+    heat: Heat,
+    coil_gain: f64,
+    torque_gain: f64,
+}
+
+impl Brake {
+    pub fn new() -> Self {
+        Self {
+            contact_ohm: 0.0,
+            current_a: 0.0,
+            branches: Branches::new(),
+            poles: Poles::default(),
+            magnetic_nm: 0.0,
+            wind_up_rad: 0.0,
+            angle_rad: 0.0,
+            heat: Heat::new(),
+            coil_gain: 1.0 - (-STEP_S / COIL_LAG_S).exp(),
+            torque_gain: 1.0 - (-STEP_S / TORQUE_LAG_S).exp(),
+        }
+    }
+
+    pub fn coil_a(&self) -> f64 {
+        self.current_a
+    }
+
+    pub fn coil_ohm(&self) -> f64 {
+        COIL_OHM_25C * (1.0 + COPPER_PER_K * (self.heat.housing_c - 25.0)) + self.contact_ohm
+    }
+
+    /// Current that a supply drives in the end: what it is set to, or what its voltage reaches.
+    pub fn settled_a(&self, supply: Option<CoilSupply>) -> f64 {
+        supply.map_or(0.0, |supply| supply.current_a.min(supply.voltage_v / self.coil_ohm()))
+    }
+
+    /// Torque against the rotor after one step. Without a supply the current dies in the flyback diode with the same lag.
+    pub fn advance(&mut self, supply: Option<CoilSupply>, velocity_rad_s: f64) -> f64 {
+        self.current_a += self.coil_gain * (self.settled_a(supply) - self.current_a);
+        let current = self.current_a / RATED_CURRENT_A;
+        let speed_rad_s = velocity_rad_s.abs();
+        let eddy = EDDY_PER_RAD_S * speed_rad_s / (1.0 + (speed_rad_s / EDDY_MOST_RAD_S).powi(2));
+        let warm = 1.0 + PER_K * (self.heat.rotor_c - 25.0);
+        let target_nm = RATED_TORQUE_NM * self.branches.advance(current) * warm * (1.0 + eddy);
+        self.magnetic_nm += self.torque_gain * (target_nm - self.magnetic_nm);
+
+        let turned_rad = velocity_rad_s * STEP_S;
+        self.angle_rad += turned_rad;
+        let cogging_nm = RATED_TORQUE_NM * self.poles.advance(current, self.angle_rad, turned_rad);
+
+        let holding_nm = self.magnetic_nm + DRAG_NM;
+        let before = self.wind_up_rad;
+        let slipping = velocity_rad_s.signum() * WIND_UP_RAD;
+        self.wind_up_rad = slipping + (before - slipping) * (-turned_rad.abs() / WIND_UP_RAD).exp();
+        let winding_rad_s = (self.wind_up_rad - before) / STEP_S;
+        let torque_nm = holding_nm * self.wind_up_rad / WIND_UP_RAD
+            + WIND_UP_DAMPING_NM_S * winding_rad_s
+            + DRAG_NM_S * velocity_rad_s
+            + cogging_nm;
+
+        self.heat.advance((torque_nm * velocity_rad_s).max(0.0), self.current_a.powi(2) * self.coil_ohm());
+        torque_nm
+    }
+}

@@ -1,0 +1,44 @@
+//! What the torque sensor's far end turns: brake A alone, or brake A idle and behind it the gear 1:10 with brake B.
+
+use super::brake::Brake;
+use super::friction::Friction;
+use super::{CoilSupply, curve};
+use crate::sim::data_sheet::{LINE_RATIO as RATIO, Load, brake};
+
+/// Shafts and wheels, seen from the link (assumed).
+const GEAR_KG_M2: f64 = 0.05;
+/// What holds the gear, link side, over the link's speed [rad/s]: a breakaway of several Nm, far less once it turns, more
+/// again as the wheels churn oil (assumed: the bench's owner says no more than "strongly non-linear").
+const GRIP_NM: [(f64, f64); 7] = [(0.0, 4.0), (0.05, 3.0), (0.2, 2.2), (0.6, 1.9), (1.5, 2.3), (4.0, 3.6), (8.0, 5.0)];
+
+struct Geared {
+    idle: Brake,
+    friction: Friction,
+}
+
+pub struct Line {
+    geared: Option<Geared>,
+}
+
+impl Line {
+    pub fn new(load: Load) -> Self {
+        let geared = || Geared { idle: Brake::new(), friction: Friction::new(GRIP_NM[0].1, 0.0, inertia_kg_m2(load)) };
+        Self { geared: (load == Load::GearAndBrakeB).then(geared) }
+    }
+
+    /// Torque against the link after one step in which `fed` is the brake that the supply feeds.
+    pub fn advance(&mut self, fed: &mut Brake, supply: Option<CoilSupply>, link_rad_s: f64) -> f64 {
+        let Some(Geared { idle, friction }) = &mut self.geared else { return fed.advance(supply, link_rad_s) };
+        let grip_nm = curve::at(&GRIP_NM, link_rad_s.abs());
+        let gear_nm = friction.advance(link_rad_s, grip_nm);
+        idle.advance(None, link_rad_s) + gear_nm + RATIO * fed.advance(supply, RATIO * link_rad_s)
+    }
+}
+
+/// Everything that turns behind the torque sensor.
+pub fn inertia_kg_m2(load: Load) -> f64 {
+    match load {
+        Load::BrakeA => brake::INERTIA_KG_M2,
+        Load::GearAndBrakeB => brake::INERTIA_KG_M2 * (1.0 + RATIO * RATIO) + GEAR_KG_M2,
+    }
+}
