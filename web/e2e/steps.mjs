@@ -4,9 +4,9 @@ import { expect } from './browser.mjs';
 const RUN_MS = 180_000;
 const FIT_MS = 60_000;
 
-/** Starts the procedure that is offered, as it is offered. Gives the run's number. */
-export async function startRun(page, base) {
-	await page.goto(base);
+/** Starts the procedure that is offered, as it is offered or with settings as the address carries them. Gives the run's number. */
+export async function startRun(page, base, settings = '') {
+	await page.goto(`${base}/${settings}`);
 	const start = page.getByRole('button', { name: 'Start' });
 	try {
 		await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 30_000 });
@@ -92,7 +92,7 @@ export async function importForeign(page, base, table) {
 
 /** Drags over the residual below the overlay; says how many samples the page calls chosen. */
 export async function brush(page) {
-	const plot = page.locator('.uplot .u-over').last();
+	const plot = page.locator('section', { has: page.getByRole('heading', { name: 'Measured against model' }) }).locator('.uplot .u-over').last();
 	await plot.scrollIntoViewIfNeeded();
 	const box = await plot.boundingBox();
 	await page.mouse.move(box.x + box.width * 0.55, box.y + box.height / 2);
@@ -102,4 +102,32 @@ export async function brush(page) {
 	await page.waitForURL(/region=/);
 	const note = await page.getByText(/\d chosen/).first().innerText();
 	return Number(/([\d,]+) chosen/.exec(note)[1].replaceAll(',', ''));
+}
+
+/** Has the run made that would tell, and waits for the same model on both runs; says what the card promised. */
+export async function measureNext(page) {
+	const card = page.locator('[data-experiment]');
+	await card.waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'no run is suggested'));
+	await card.locator('.uplot').first().waitFor({ timeout: FIT_MS });
+	const said = await card.innerText();
+	const go = card.getByRole('button', { name: 'Run it and diagnose both runs together' });
+	const version = await toAnotherVersion(page, () => go.click());
+	return { said, ...version };
+}
+
+/** Writes an effect of one's own with a mistake in it, mends it, tries it on the run and adds it. */
+export async function writeEffect(page, run) {
+	await page.getByRole('button', { name: 'Own formula' }).click();
+	const form = page.getByRole('form', { name: 'Own formula' });
+	const formula = form.getByLabel('formula', { exact: true });
+	await form.getByLabel('name', { exact: true }).fill('Walked load');
+	await formula.fill('tau = a * direction * abs(load');
+	await form.getByText('character 31').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the mistake is not marked at its character'));
+	expect((await form.locator('mark').count()) === 1, 'nothing is marked in the formula');
+	await formula.fill('tau = a * direction * abs(load)');
+	await form.getByRole('button', { name: 'Make a a parameter' }).click();
+	await form.getByRole('button', { name: `Try on run #${run}` }).click();
+	const found = await form.locator('.tried').innerText({ timeout: FIT_MS });
+	expect(/a = \d/.test(found), `the formula is not fitted to the run: ${found}`);
+	return toAnotherVersion(page, () => form.getByRole('button', { name: 'Keep and add' }).click());
 }

@@ -1,11 +1,11 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Start the procedure, watch it finish, open the workbench, see where the model fails, add the first suggestion, see the
-// error fall, undo, and find the same through REST; an observer in a second browser; a foreign table; the software stop by key;
+// Start the procedure, watch it finish, open the workbench, have the run made that would tell more, see where the model fails on
+// both, add the first suggestion, see the error fall, undo, find the same through REST; write an own effect; an observer in a second browser; a foreign table; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { brush, importForeign, observe, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun } from './steps.mjs';
+import { brush, importForeign, measureNext, observe, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const rest = async (path) => {
@@ -14,19 +14,25 @@ const rest = async (path) => {
 	return answer.json();
 };
 
+/** Short, and without load: what grows with the load cannot show in it. */
+const BARE = '?p.load_levels=1&p.warm_up_s=2&p.dwell_s=0.6&p.fast_speeds=4';
+
 await tell('walk', async () => {
 	const { browser, page, faults, another } = await open(where);
 	const watcher = await another();
 	await observe(watcher, where.base);
-	const run = await startRun(page, where.base);
+	const run = await startRun(page, where.base, BARE);
 	await watcher.getByText('RUNNING').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the observer does not see the run'));
 	const toWorkbench = await watchRun(page);
 	await audit(page, 'the run');
 	console.log(`run ${run} is done`);
 
 	await toWorkbench.click();
-	const first = await readVersion(page);
-	expect(first.verdict === 'missing_effect', `the first model should lack an effect, but the verdict is ${first.verdict}`);
+	const bare = await readVersion(page);
+	expect(bare.verdict === 'adequate', `without load nothing can be missing, but the verdict is ${bare.verdict}`);
+	const { said: promised, ...first } = await measureNext(page);
+	expect(/expected separation/.test(promised), `the card does not say what it expects: ${promised}`);
+	expect(first.verdict === 'missing_effect', `with both runs the model should lack an effect, but the verdict is ${first.verdict}`);
 	console.log(`held-out error ${first.held}, missing: ${first.effects.join(', ')}`);
 
 	const region = page.locator('a.region').first();
@@ -61,9 +67,14 @@ await tell('walk', async () => {
 	expect(parent && child, `REST does not know the versions ${undone.model} and ${second.model}`);
 	expect(child.parent === parent.id && child.added.includes(first.effects[0]), 'REST tells another story of the versions');
 	expect(parent.validation_rms === first.held && child.validation_rms === second.held, 'REST has other errors');
+	expect(parent.more_runs.join() === String(run + 1) && child.more_runs.join() === String(run + 1), 'REST does not know the second run');
 	const [diagnosis] = await rest(`/diagnoses?model=${parent.id}`);
 	expect(diagnosis?.suggestions[0]?.effect === first.effects[0], 'REST has another first suggestion');
 	expect(diagnosis.where.length > 0, 'REST does not say where the model fails');
+
+	const own = await writeEffect(page, run);
+	expect(own.held < first.held, `the own effect should make the error fall, but it went from ${first.held} to ${own.held}`);
+	await audit(page, 'the own effect');
 
 	for (const path of ['/', '/log', '/settings']) {
 		await page.goto(where.base + path);
@@ -75,7 +86,7 @@ await tell('walk', async () => {
 	const rows = Array.from({ length: 200 }, (_, i) => `${i * 4},${i % 90},0.${i % 9}`);
 	await importForeign(page, where.base, ['Time [ms],pos_deg,Iq [A]', ...rows].join('\n'));
 	await page.getByLabel(`Compare run ${run}`).check();
-	await page.getByLabel(`Compare run ${run + 1}`).check();
+	await page.getByLabel(`Compare run ${run + 2}`).check();
 	await page.getByRole('heading', { name: 'Compare 2 runs' }).waitFor({ timeout: 30_000 });
 	await page.locator('.uplot').first().waitFor({ timeout: 30_000 });
 	await audit(page, 'the comparison');

@@ -2,7 +2,7 @@ import createClient from 'openapi-fetch';
 import type { paths } from '../../gen/schema';
 import { Refusal, asRefusal } from './problem';
 import { authorization } from './token';
-import type { NewAutopilot } from './types';
+import type { EffectDefinition, NewAutopilot } from './types';
 
 export const BASE = '/api/v1';
 
@@ -56,6 +56,12 @@ export const api = {
 		body(client.GET('/api/v1/runs/{id}/samples', { params: { path: { id }, query }, signal })),
 
 	effects: (kind?: string, signal?: Signal) => body(client.GET('/api/v1/effects', { params: { query: { kind } }, signal })),
+	formulas: (kind: string, signal?: Signal) => body(client.GET('/api/v1/formulas/{kind}', { params: { path: { kind } }, signal })),
+	checkEffect: (trial: { effect: EffectDefinition; run?: number }, signal?: Signal) =>
+		body(client.POST('/api/v1/effects/check', { body: trial, signal })),
+	defineEffect: (effect: EffectDefinition) => body(client.POST('/api/v1/effects', { body: effect })),
+	forgetEffect: (kind: string, id: string) =>
+		body<undefined>(client.DELETE('/api/v1/effects/{kind}/{id}', { params: { path: { kind, id } } })),
 	models: (run: number, signal?: Signal) => body(client.GET('/api/v1/models', { params: { query: { run } }, signal })),
 	fit: (run: number, effects: string[], parent?: { id: number; more_runs: number[] }) =>
 		body(client.POST('/api/v1/models', { body: { run, effects, parent: parent?.id, more_runs: parent?.more_runs } })),

@@ -69,9 +69,9 @@ export function openWorkbench(id: number) {
 	);
 
 	/** A version with these effects. A set that was fitted before from the same parent needs no new fit. */
-	async function version(set: string[], parent: Model | null, what: string): Promise<Model | null> {
+	async function version(set: string[], parent: Model | null, what: string, anew = false): Promise<Model | null> {
 		if (busy !== null) return null;
-		const known = childWith(versions, parent, set);
+		const known = anew ? undefined : childWith(versions, parent, set);
 		if (known) return known;
 		busy = what;
 		refused = null;
@@ -87,8 +87,8 @@ export function openWorkbench(id: number) {
 		}
 	}
 
-	async function refit(set: string[], parent: Model | null, what: string): Promise<void> {
-		const next = await version(set, parent, what);
+	async function refit(set: string[], parent: Model | null, what: string, anew = false): Promise<void> {
+		const next = await version(set, parent, what, anew);
 		if (next) show(next, parent);
 	}
 
@@ -124,6 +124,9 @@ export function openWorkbench(id: number) {
 	}
 
 	const add = (effect: string) => model && refit([...model.effects, effect], model, `Refitting with ${words(effect)}`);
+	/** Adds a user's effect. Its formula may be new under a name that the model holds already: then all is fitted again. */
+	const addOwn = async (effect: string) =>
+		model && refit([...new Set([...model.effects, effect])], model, `Refitting with ${words(effect)}`, true);
 	const remove = (effect: string) =>
 		model && refit(model.effects.filter((one) => one !== effect), model, `Refitting without ${words(effect)}`);
 	const begin = (set: string[]) => refit(set, null, 'Fitting the first model');
@@ -157,6 +160,7 @@ export function openWorkbench(id: number) {
 		residuals,
 		diagnosis,
 		add,
+		addOwn,
 		attempt,
 		beside,
 		/** Makes the version beside the one at hand the one at hand. */

@@ -1,0 +1,80 @@
+import type { EffectDefinition, Place } from '../api/types';
+
+/** One parameter as a person types it. */
+export interface ParameterDraft {
+	name: string;
+	unit: string;
+	min: string;
+	max: string;
+}
+
+/** A user's effect as a person types it. */
+export interface Draft {
+	title: string;
+	sentence: string;
+	formula: string;
+	parameters: ParameterDraft[];
+}
+
+export const parameterDraft = (name = ''): ParameterDraft => ({ name, unit: '', min: '', max: '' });
+
+/** The id of an effect from its name: `My load term` → `my_load_term`. */
+export function idOf(title: string): string {
+	return title
+		.toLowerCase()
+		.replace(/[^a-z0-9]+/g, '_')
+		.replace(/^_+|_+$/g, '');
+}
+
+/** A bound as typed; none where nothing is typed. NaN where it is no number. */
+function bound(text: string): number | null {
+	const plain = text.trim().replace(',', '.');
+	return plain === '' ? null : Number(plain);
+}
+
+/** The first thing that the page sees itself, before the daemon is asked. */
+export function faultOf(draft: Draft): string | null {
+	if (idOf(draft.title) === '') return 'Give the effect a name, with letters in it.';
+	if (draft.formula.trim() === '') return 'Write the formula.';
+	for (const p of draft.parameters) {
+		const [min, max] = [bound(p.min), bound(p.max)];
+		if (Number.isNaN(min) || Number.isNaN(max)) return `${p.name}: a bound is a number, or nothing.`;
+	}
+	return null;
+}
+
+export function definitionOf(draft: Draft, kind: string): EffectDefinition {
+	return {
+		id: idOf(draft.title),
+		kind,
+		title: draft.title.trim(),
+		sentence: draft.sentence.trim(),
+		formula: draft.formula,
+		parameters: draft.parameters.map((p) => ({ name: p.name.trim(), unit: p.unit.trim() || '1', min: bound(p.min), max: bound(p.max) })),
+	};
+}
+
+export function draftOf(definition: EffectDefinition): Draft {
+	const text = (value: number | null | undefined) => (value == null ? '' : String(value));
+	return {
+		title: definition.title || definition.id.replaceAll('_', ' '),
+		sentence: definition.sentence ?? '',
+		formula: definition.formula,
+		parameters: definition.parameters.map((p) => ({ name: p.name, unit: p.unit ?? '', min: text(p.min), max: text(p.max) })),
+	};
+}
+
+/** A text in three: before the mistake, the mistake, after it. Positions count characters, not code units. */
+export function cut({ text, position, length }: Place): [string, string, string] {
+	const letters = [...text];
+	const part = (from: number, to?: number) => letters.slice(from, to).join('');
+	return [part(0, position), part(position, position + length), part(position + length)];
+}
+
+/** A name that the formula uses and nobody knows may become a parameter. */
+export function unknownName(place: Place | null, draft: Draft): string | null {
+	if (place?.field !== 'formula') return null;
+	const [, name, rest] = cut(place);
+	const isCall = /^\s*\(/.test(rest);
+	return /^[a-z]\w*$/i.test(name) && !isCall && !draft.parameters.some((p) => p.name === name) ? name : null;
+}
