@@ -65,6 +65,9 @@ export const api = {
 	models: (run: number, signal?: Signal) => body(client.GET('/api/v1/models', { params: { query: { run } }, signal })),
 	fit: (run: number, effects: string[], parent?: { id: number; more_runs: number[] }) =>
 		body(client.POST('/api/v1/models', { body: { run, effects, parent: parent?.id, more_runs: parent?.more_runs } })),
+	compare: (first: number, second: number, run: number, signal?: Signal) =>
+		body(client.GET('/api/v1/models/{id}/compare/{other}', { params: { path: { id: first, other: second }, query: { run } }, signal })),
+	importModel: (run: number, model: Values) => body(client.POST('/api/v1/models/import', { body: { run, model } })),
 	residuals: (id: number, signal?: Signal) =>
 		body(client.GET('/api/v1/models/{id}/residuals', { params: { path: { id } }, signal })),
 	/** The kept diagnosis where nothing has changed since, else a new one. */
@@ -76,6 +79,8 @@ export const api = {
 	experiment: (diagnosis: number, bench: string) =>
 		body(client.POST('/api/v1/diagnoses/{id}/experiment', { params: { path: { id: diagnosis } }, body: { bench } })),
 };
+
+export const modelHref = (id: number, format: 'json' | 'c' | 'lut' | 'mujoco' | 'urdf') => `${BASE}/models/${id}/export?format=${format}`;
 
 export function exportHref(run: number, format: 'csv' | 'parquet'): string {
 	return `${BASE}/runs/${run}/export?format=${format}`;

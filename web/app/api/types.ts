@@ -7,6 +7,7 @@ export type Autopilot = Schemas['Autopilot'];
 export type AutopilotStep = Schemas['AutopilotStep'];
 export type Bench = Schemas['Bench'];
 export type Channel = Schemas['ChannelInfo'];
+export type Comparison = Schemas['Comparison'];
 export type Diagnosis = Schemas['Diagnosis'];
 export type Effect = Schemas['Effect'];
 export type EffectCheck = Schemas['EffectCheck'];

@@ -25,9 +25,11 @@ export function forest(parameters: readonly Parameter[], tradeOffs: readonly Tra
 			flags.push(`ρ ${correlation.toFixed(2).replace('-', '−')} with ${name === first ? second : first}`);
 		}
 		const state = SAID[parameter.state];
-		if (state) flags.push(state);
+		// The daemon's own words are better than any made here.
+		if (parameter.note) flags.push(parameter.note);
+		else if (state) flags.push(state);
 		if (!known) flags.push('no interval');
-		if (known && low < 0 && high > 0) flags.push('may be zero');
+		if (known && low < 0 && high > 0 && !parameter.note) flags.push('may be zero');
 		if (value === 0 || !known) return { parameter, interval: null, flags };
 		const ends = [low / value, high / value].sort((a, b) => a - b) as [number, number];
 		return { parameter, interval: ends, flags };

@@ -2,7 +2,6 @@ import { describe, expect, it } from 'vitest';
 import type { Model, Parameter, ResidualSet, Suggestion } from '../api/types';
 import { forest } from './forest';
 import { overlay } from './overlay';
-import { differences } from './differences';
 import { readView, writeView } from './lens';
 import { readRegion, strength, writeRegion, writeStretch } from './region';
 import { sharesOf } from '../residual/line';
@@ -139,19 +138,4 @@ it('flags parameters in words', () => {
 	const pair = ['a', 'b'].map((name) => ({ effect: 'e', name, value: 1, ci95: [0.5, 1.5], state: 'ok' })) as Parameter[];
 	const [first] = forest(pair, [{ first: 'e.a', second: 'e.b', correlation: -0.96 }]);
 	expect(first!.flags).toEqual(['ρ −0.96 with e.b']);
-});
-
-it('tells where two versions differ', () => {
-	const of = (...parameters: [string, number, number | null, number | null][]) =>
-		({ fit: { parameters: parameters.map(([name, value, low, high]) => ({ effect: 'e', name, value, ci95: [low, high] })) } }) as unknown as Model;
-	const mine = of(['a', 1, 0.9, 1.1], ['b', 1, 0.9, 1.1], ['c', 1, 0.9, 1.1], ['d', 1, null, null], ['gone', 1, 0, 2]);
-	const theirs = of(['a', 1.05, 0.95, 1.15], ['b', 1.15, 1.05, 1.25], ['c', 2, 1.9, 2.1], ['d', 1, 0, 2], ['new', 1, 0, 2]);
-	expect(differences(mine, theirs).map(({ key, word }) => [key, word])).toEqual([
-		['e.a', 'same'],
-		['e.b', 'overlap'],
-		['e.c', 'apart'],
-		['e.d', 'unknown'],
-		['e.gone', 'gone'],
-		['e.new', 'new'],
-	]);
 });

@@ -1,0 +1,21 @@
+import { Refusal, asRefusal } from './problem';
+import { authorization } from './token';
+
+/** Fetches a file and hands it to the person: an ordinary link can carry no token, and would save a refusal as if it were the file. */
+export async function download(href: string, name: string): Promise<void> {
+	let answer: Response;
+	try {
+		answer = await fetch(href, { headers: authorization() });
+	} catch (failure) {
+		throw asRefusal(failure);
+	}
+	if (!answer.ok) {
+		const problem = (await answer.json().catch(() => ({}))) as object;
+		throw new Refusal({ title: answer.statusText || 'Refused', ...problem, status: answer.status });
+	}
+	const link = document.createElement('a');
+	link.href = URL.createObjectURL(await answer.blob());
+	link.download = /filename="([^"]+)"/.exec(answer.headers.get('content-disposition') ?? '')?.[1] ?? name;
+	link.click();
+	URL.revokeObjectURL(link.href);
+}
