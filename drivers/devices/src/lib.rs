@@ -15,6 +15,9 @@ pub mod protocol;
 pub mod sim;
 pub mod transport;
 
-pub use driver::{LorenzSensor, LorenzSettings, OdriveJoint, OdriveSettings, ScpiSettings, ScpiSource};
+pub use driver::{
+    AdamSettings, AdamThermometer, LorenzSensor, LorenzSettings, OdriveJoint, OdriveSettings, QsbCounter, QsbSettings,
+    ScpiSettings, ScpiSource,
+};
 pub use sim::{Joint, MockBench, MockSettings, Replay};
 pub use transport::{Address, PortSettings};

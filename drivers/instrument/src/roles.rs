@@ -140,3 +140,33 @@ pub trait CurrentSource: Instrument {
     fn output_off(&mut self) -> Result<(), Fault>;
     fn resolution(&self) -> Option<Amperes>;
 }
+
+/// One reading of a counter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CounterReading {
+    /// Moment of the reading on the bench's clock.
+    pub at_s: f64,
+    pub position: Radians,
+    /// The counter's own time stamp, in its own units.
+    pub stamp: u32,
+}
+
+/// Counts the periods of an incremental encoder.
+pub trait PositionCounter: Instrument {
+    /// The position is 0 here.
+    fn zero(&mut self) -> Result<(), Fault>;
+    fn read(&mut self) -> Result<CounterReading, Fault>;
+    fn resolution(&self) -> Radians;
+}
+
+/// Tells whether a magnetic encoder's sensor sits well enough on its ring to count its periods.
+pub trait EncoderStatus: Instrument {
+    fn periods_are_consistent(&mut self) -> Result<bool, Fault>;
+}
+
+/// Feels temperatures.
+pub trait Thermometer: Instrument {
+    /// One for each channel that is in use, in the order of the bench description.
+    fn read(&mut self) -> Result<Vec<Celsius>, Fault>;
+    fn resolution(&self) -> Celsius;
+}

@@ -1,13 +1,17 @@
 //! One driver for each instrument, behind the narrow role that the bench needs.
 
+mod adam;
 mod lorenz;
 mod lorenz_stream;
 mod odrive;
+mod qsb;
 mod scpi;
 mod stream_clock;
 
+pub use adam::{AdamSettings, AdamThermometer};
 pub use lorenz::{LorenzSensor, LorenzSettings, Range};
 pub use odrive::{OdriveJoint, OdriveSettings, Thermistor};
+pub use qsb::{QsbCounter, QsbSettings};
 pub use scpi::{ScpiSettings, ScpiSource};
 
 use crate::transport::Link;

@@ -1,7 +1,9 @@
 //! What the instruments speak: bytes in, bytes out, no port. One type for each command; a request knows its reply.
 
 pub mod lorenz;
+pub mod modbus;
 pub mod odrive;
+pub mod qsb;
 pub mod scpi;
 
 use crate::transport::Scan;

@@ -42,6 +42,8 @@ pub struct MockSettings {
     /// For the drivers that [`MockBench::open_bench`] opens.
     pub deadline_ms: u64,
     pub troubles: Vec<PlannedTrouble>,
+    /// Beyond joint, torque sensor and brake.
+    pub others: Vec<MockInstrument>,
 }
 
 impl MockSettings {
@@ -55,6 +57,7 @@ impl MockSettings {
             transport: Transport::Terminal,
             deadline_ms: DEADLINE_MS,
             troubles: Vec::new(),
+            others: Vec::new(),
         }
     }
 
@@ -111,10 +114,15 @@ impl MockBench {
             Hidden::draw(settings.joint, settings.seed, &settings.effects).map_err(MockError::UnknownEffect)?;
         let plant = Plant::new(settings.joint, settings.load, settings.seed, hidden);
         let truth = plant.truth(settings.joint, settings.seed);
-        let rig = Arc::new(Mutex::new(Rig::new(plant, Odrive::new(settings.joint), &settings.troubles)));
+        let rig =
+            Arc::new(Mutex::new(Rig::new(plant, Odrive::new(settings.joint), &settings.others, &settings.troubles)));
         let clock = Arc::new(SteppedClock::new(Arc::clone(&rig), settings.pace));
         let mut bench = Self { settings, truth, rig, clock, ports: Vec::new(), threads: Vec::new() };
-        for instrument in MockInstrument::ALL {
+        let others = bench.settings.others.clone().into_iter();
+        for instrument in MockInstrument::JOINT_BENCH.into_iter().chain(others) {
+            if bench.address(instrument).is_some() {
+                continue;
+            }
             let rig = Arc::clone(&bench.rig);
             let (port, thread) = match bench.settings.transport {
                 #[cfg(unix)]
@@ -128,7 +136,7 @@ impl MockBench {
     }
 
     pub fn ports(&self) -> MockPorts {
-        let address = |wanted| self.port(wanted).address();
+        let address = |wanted| self.address(wanted).expect("every mock bench has these");
         MockPorts {
             joint: address(MockInstrument::Joint),
             torque_sensor: address(MockInstrument::TorqueSensor),
@@ -193,9 +201,9 @@ impl MockBench {
         })
     }
 
-    fn port(&self, wanted: MockInstrument) -> &Port {
-        let found = self.ports.iter().find(|(instrument, _)| *instrument == wanted);
-        &found.expect("every instrument has a port").1
+    /// Where an instrument answers now. `None`: this bench does not have it.
+    pub fn address(&self, wanted: MockInstrument) -> Option<Address> {
+        self.ports.iter().find(|(instrument, _)| *instrument == wanted).map(|(_, port)| port.address())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Everything behind the wires: the plant and the instruments' firmware, advanced together.
 
-use super::firmware::{Dp800, Firmware, Lorenz, Odrive};
+use super::firmware::{Adam, Dp800, Encoder, Firmware, Lorenz, Odrive, Qsb};
 use super::plant::{Plant, STEP_S};
 use super::trouble::{PlannedTrouble, Trouble};
 use serde::{Deserialize, Serialize};
@@ -12,16 +12,39 @@ pub enum MockInstrument {
     Joint,
     TorqueSensor,
     Brake,
+    /// Encoder S1 of the encoder bench, on the motor's shaft.
+    CounterS1,
+    /// Encoder S2, beside it; its status output is wired to the counter's first digital input.
+    CounterS2,
+    /// Channel 0: the brake's housing; 1: the joint's gear; the others: the room.
+    Thermometer,
 }
 
 impl MockInstrument {
-    pub const ALL: [MockInstrument; 3] = [MockInstrument::Joint, MockInstrument::TorqueSensor, MockInstrument::Brake];
+    /// What every mock bench has.
+    pub const JOINT_BENCH: [MockInstrument; 3] =
+        [MockInstrument::Joint, MockInstrument::TorqueSensor, MockInstrument::Brake];
+
+    const COUNT: usize = 6;
 
     pub(super) fn label(self) -> &'static str {
         match self {
             MockInstrument::Joint => "joint",
             MockInstrument::TorqueSensor => "torque_sensor",
             MockInstrument::Brake => "brake",
+            MockInstrument::CounterS1 => "counter_s1",
+            MockInstrument::CounterS2 => "counter_s2",
+            MockInstrument::Thermometer => "thermometer",
+        }
+    }
+
+    /// The firmware of an instrument that not every mock bench has.
+    fn other(self) -> Option<Box<dyn Firmware + Send>> {
+        match self {
+            MockInstrument::Joint | MockInstrument::TorqueSensor | MockInstrument::Brake => None,
+            MockInstrument::CounterS1 => Some(Box::new(Qsb::new(Encoder::S1))),
+            MockInstrument::CounterS2 => Some(Box::new(Qsb::new(Encoder::S2))),
+            MockInstrument::Thermometer => Some(Box::new(Adam::new())),
         }
     }
 }
@@ -36,13 +59,15 @@ pub(super) struct Rig {
     joint: Odrive,
     torque_sensor: Lorenz,
     brake: Dp800,
-    troubles: [Trouble; MockInstrument::ALL.len()],
+    others: Vec<(MockInstrument, Box<dyn Firmware + Send>)>,
+    troubles: [Trouble; MockInstrument::COUNT],
     /// What begins, or ends, at which moment. The next one last.
     planned: Vec<(f64, MockInstrument, Trouble)>,
 }
 
 impl Rig {
-    pub fn new(plant: Plant, joint: Odrive, planned: &[PlannedTrouble]) -> Self {
+    pub fn new(plant: Plant, joint: Odrive, others: &[MockInstrument], planned: &[PlannedTrouble]) -> Self {
+        let others = others.iter().filter_map(|other| Some((*other, other.other()?))).collect();
         let mut moments = Vec::new();
         for plan in planned {
             moments.push((plan.from_s, plan.instrument, plan.trouble));
@@ -50,7 +75,7 @@ impl Rig {
         }
         moments.sort_by(|(a_s, ..), (b_s, ..)| b_s.total_cmp(a_s));
         let (torque_sensor, brake) = (Lorenz::new(), Dp800::new());
-        Self { plant, joint, torque_sensor, brake, troubles: Default::default(), planned: moments }
+        Self { plant, joint, torque_sensor, brake, others, troubles: Default::default(), planned: moments }
     }
 
     pub fn advance(&mut self) {
@@ -60,6 +85,7 @@ impl Rig {
         self.joint.step(&mut self.plant);
         self.brake.step(&mut self.plant);
         self.torque_sensor.step(&mut self.plant);
+        self.others.iter_mut().for_each(|(_, firmware)| firmware.step(&mut self.plant));
         self.plant.advance();
     }
 
@@ -77,7 +103,7 @@ impl Rig {
     /// Gives an instrument a bad day, or ends it.
     pub fn afflict(&mut self, instrument: MockInstrument, trouble: Trouble) {
         let before = std::mem::replace(&mut self.troubles[instrument as usize], trouble);
-        let (firmware, plant) = self.firmware(instrument);
+        let Some((firmware, plant)) = self.firmware(instrument) else { return };
         firmware.afflict(trouble);
         if before != trouble && [before, trouble].contains(&Trouble::PowerCycled) {
             firmware.power_cycle(plant);
@@ -96,27 +122,30 @@ impl Rig {
         if self.trouble(instrument) == Trouble::PowerCycled {
             return input.clear();
         }
-        let (firmware, plant) = self.firmware(instrument);
-        firmware.receive(input, plant, output);
+        if let Some((firmware, plant)) = self.firmware(instrument) {
+            firmware.receive(input, plant, output);
+        }
     }
 
     /// What an instrument sends without being asked.
     pub fn unasked(&mut self, instrument: MockInstrument, output: &mut Vec<u8>) {
-        if instrument == MockInstrument::TorqueSensor {
-            self.torque_sensor.take_stream(output);
+        if let Some((firmware, _)) = self.firmware(instrument) {
+            firmware.unasked(output);
         }
     }
 
-    pub fn is_streaming(&self, instrument: MockInstrument) -> bool {
-        instrument == MockInstrument::TorqueSensor && self.torque_sensor.is_streaming()
+    pub fn is_streaming(&mut self, instrument: MockInstrument) -> bool {
+        self.firmware(instrument).is_some_and(|(firmware, _)| firmware.is_streaming())
     }
 
-    fn firmware(&mut self, instrument: MockInstrument) -> (&mut dyn Firmware, &mut Plant) {
+    /// `None`: this bench does not have it.
+    fn firmware(&mut self, instrument: MockInstrument) -> Option<(&mut dyn Firmware, &mut Plant)> {
         let firmware: &mut dyn Firmware = match instrument {
             MockInstrument::Joint => &mut self.joint,
             MockInstrument::TorqueSensor => &mut self.torque_sensor,
             MockInstrument::Brake => &mut self.brake,
+            other => self.others.iter_mut().find(|(known, _)| *known == other).map(|(_, firmware)| firmware)?.as_mut(),
         };
-        (firmware, &mut self.plant)
+        Some((firmware, &mut self.plant))
     }
 }

@@ -26,7 +26,7 @@ fn check_passing(trouble: Trouble, expected: fn(&FaultKind) -> bool) {
     // Side by side: nearly all of it is waiting for deadlines.
     std::thread::scope(|scope| {
         for transport in [Transport::Terminal, Transport::Tcp] {
-            for instrument in MockInstrument::ALL {
+            for instrument in MockInstrument::JOINT_BENCH {
                 scope.spawn(move || check(transport, instrument));
             }
         }
@@ -57,7 +57,7 @@ fn the_reply_to_an_earlier_question_answers_no_later_one() {
 fn a_second_copy_of_a_reply_is_nobodys() {
     for transport in [Transport::Terminal, Transport::Tcp] {
         let (mock, mut bench) = start(transport);
-        for instrument in MockInstrument::ALL {
+        for instrument in MockInstrument::JOINT_BENCH {
             mock.trouble(instrument, Trouble::Doubled);
             // The first reply is right; its copy waits for the next question, or comes with it.
             let fault = (0..2).find_map(|_| ask(&mut bench, instrument).err()).expect("the copy is noticed");
@@ -88,7 +88,7 @@ fn a_late_reply_answers_no_later_question() {
 fn a_pulled_cable_is_a_lost_port() {
     for transport in [Transport::Terminal, Transport::Tcp] {
         let (mock, mut bench) = start(transport);
-        for instrument in MockInstrument::ALL {
+        for instrument in MockInstrument::JOINT_BENCH {
             mock.trouble(instrument, Trouble::Unplugged);
             let asked = Instant::now();
             // Until the cable is out the instrument may still answer.

@@ -2,6 +2,7 @@
 
 mod cable;
 mod instrument;
+mod others;
 mod replay;
 mod stream;
 
@@ -32,5 +33,6 @@ fn ask(bench: &mut Bench, instrument: MockInstrument) -> Result<(), Fault> {
         MockInstrument::Joint => bench.joint.read().map(drop),
         MockInstrument::TorqueSensor => bench.torque_sensor.as_mut().unwrap().read().map(drop),
         MockInstrument::Brake => bench.brake.as_mut().unwrap().read().map(drop),
+        other => panic!("{other:?} is not of the joint bench"),
     }
 }

@@ -95,14 +95,6 @@ impl Lorenz {
         Self { check_signal: false, stream: None, pending: Vec::new(), blocks, trouble: Trouble::None }
     }
 
-    pub fn is_streaming(&self) -> bool {
-        self.stream.is_some() || !self.pending.is_empty()
-    }
-
-    pub fn take_stream(&mut self, output: &mut Vec<u8>) {
-        output.append(&mut self.pending);
-    }
-
     fn restart(&mut self) {
         *self = Self { blocks: std::mem::take(&mut self.blocks), trouble: self.trouble, ..Self::new() };
     }
@@ -308,6 +300,14 @@ impl Firmware for Lorenz {
             stream.left = stream.left.map(|left| left - 1);
         }
         self.stream = (stream.left != Some(0)).then_some(stream);
+    }
+
+    fn unasked(&mut self, output: &mut Vec<u8>) {
+        output.append(&mut self.pending);
+    }
+
+    fn is_streaming(&self) -> bool {
+        self.stream.is_some() || !self.pending.is_empty()
     }
 
     fn afflict(&mut self, trouble: Trouble) {

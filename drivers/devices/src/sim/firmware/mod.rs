@@ -1,5 +1,6 @@
 //! The instruments' side of each protocol, faithful to what the makers publish rather than to what our drivers need.
 
+mod adam;
 mod dp800;
 mod dp800_channel;
 mod dp800_commands;
@@ -7,14 +8,18 @@ mod lorenz;
 mod odrive;
 mod odrive_lines;
 mod odrive_properties;
+mod qsb;
+mod qsb_registers;
 mod scan;
 mod scpi;
 #[cfg(test)]
 mod tests;
 
+pub use adam::Adam;
 pub use dp800::Dp800;
 pub use lorenz::Lorenz;
 pub use odrive::Odrive;
+pub use qsb::{Encoder, Qsb};
 
 use super::plant::Plant;
 use super::trouble::Trouble;
@@ -25,6 +30,14 @@ pub trait Firmware {
 
     /// One control period of the instrument, before the plant moves on.
     fn step(&mut self, plant: &mut Plant);
+
+    /// Takes what it sends without being asked.
+    fn unasked(&mut self, _output: &mut Vec<u8>) {}
+
+    /// It sends without being asked, now and then.
+    fn is_streaming(&self) -> bool {
+        false
+    }
 
     /// The bad day that it has. Troubles of the cable and of the plant are none of its business.
     fn afflict(&mut self, trouble: Trouble);

@@ -5,6 +5,7 @@
 
 mod brake;
 mod curve;
+mod encoders;
 mod friction;
 mod gear;
 mod hidden;
@@ -16,6 +17,7 @@ pub use hidden::{HIDDEN_EFFECTS, HiddenEffect, Truth};
 
 use super::data_sheet::{DataSheet, Joint, Load};
 use brake::Brake;
+use encoders::Encoders;
 use friction::Friction;
 use gear::Gear;
 pub(super) use hidden::Hidden;
@@ -69,6 +71,7 @@ pub(super) struct Plant {
     line: Line,
     line_inertia_kg_m2: f64,
     thermal: Thermal,
+    encoders: Encoders,
     hidden: Hidden,
     step: u64,
     motor_angle_rad: f64,
@@ -100,6 +103,7 @@ impl Plant {
             line: Line::new(load),
             line_inertia_kg_m2,
             thermal: Thermal::new(AMBIENT_C),
+            encoders: Encoders::new(noise),
             hidden,
             step: 0,
             motor_angle_rad: 0.0,
@@ -136,6 +140,7 @@ impl Plant {
         let motor_nm = drive_nm - friction_nm - cogging_nm - gear_nm / self.sheet.ratio;
         self.motor_velocity_rad_s += motor_nm / self.sheet.rotor_inertia_kg_m2 * STEP_S;
         self.motor_angle_rad += self.motor_velocity_rad_s * STEP_S;
+        self.encoders.advance(self.motor_angle_rad);
 
         let brake_nm = self.line.advance(&mut self.brake, self.inputs.coil, self.link_velocity_rad_s);
         let outside_nm = self.hidden.gravity(self.link_angle_rad) + self.gear.stop(self.link_angle_rad);
@@ -159,6 +164,22 @@ impl Plant {
 
     pub fn link_counts(&self) -> i64 {
         (self.link_angle_rad / TAU * LINK_COUNTS).floor() as i64
+    }
+
+    pub fn s1_counts(&self) -> i64 {
+        self.encoders.s1_counts(self.motor_angle_rad)
+    }
+
+    pub fn s2_counts(&self) -> i64 {
+        self.encoders.s2_counts(self.motor_velocity_rad_s)
+    }
+
+    pub fn power_cycle_s2(&mut self) {
+        self.encoders.power_cycle_s2(self.step);
+    }
+
+    pub fn periods_are_consistent(&self) -> bool {
+        self.encoders.periods_are_consistent()
     }
 
     pub fn motor_current_a(&self) -> f64 {

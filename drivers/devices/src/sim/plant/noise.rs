@@ -20,6 +20,9 @@ pub enum Signal {
     SupplyCurrent,
     Hidden,
     SensorQuartz,
+    EncoderStartup,
+    EncoderPhase,
+    Temperature,
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -27,7 +27,7 @@ impl Sensor {
             self.0.step(&mut self.1);
             self.1.advance();
         }
-        self.0.take_stream(&mut output);
+        self.0.unasked(&mut output);
         output
     }
 }

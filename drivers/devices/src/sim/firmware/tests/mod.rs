@@ -1,6 +1,8 @@
 //! Bytes in, bytes out: each firmware against what its maker publishes.
 
+mod adam;
 mod dp800;
 mod fuzz;
 mod lorenz;
 mod odrive;
+mod qsb;

@@ -69,6 +69,10 @@ impl Brake {
         COIL_OHM_25C * (1.0 + COPPER_PER_K * (self.heat.housing_c - 25.0)) + self.contact_ohm
     }
 
+    pub fn housing_c(&self) -> f64 {
+        self.heat.housing_c
+    }
+
     /// Current that a supply drives in the end: what it is set to, or what its voltage reaches.
     pub fn settled_a(&self, supply: Option<CoilSupply>) -> f64 {
         supply.map_or(0.0, |supply| supply.current_a.min(supply.voltage_v / self.coil_ohm()))

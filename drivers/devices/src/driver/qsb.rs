@@ -1,0 +1,156 @@
+//! An incremental encoder behind a US Digital QSB counter.
+
+use super::{Recovers, same};
+use crate::protocol::qsb::{Held, Quieten, ReadRegister, Register, Version, WriteRegister};
+use crate::transport::{Command, Link, PortSettings};
+use jointbench_instrument::roles::{CounterReading, EncoderStatus, Identity, Instrument, PositionCounter};
+use jointbench_instrument::units::Radians;
+use jointbench_instrument::{Clock, Fault, FaultKind};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Four counts a period, running freely over 32 bits, the index ignored. The factory's setting wraps at 500 counts.
+const FREE_RUNNING_X4: u32 = 0x03;
+const DOWNWARDS: u32 = 1 << 8;
+const CLEAR_COUNT: u32 = 2;
+const CLEAR_STATUS: u32 = 3;
+const POWER_WAS_LOST: u32 = 1 << 2;
+
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct QsbSettings {
+    pub name: String,
+    pub port: PortSettings,
+    pub deadline_ms: u64,
+    /// After the quadrature's factor of four: 16384 for 14 bit.
+    pub counts_per_turn: u32,
+    #[serde(default)]
+    pub reversed: bool,
+    /// Digital input that the encoder's status output is wired to. High: the periods are consistent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub status_input: Option<u8>,
+}
+
+pub struct QsbCounter {
+    settings: QsbSettings,
+    link: Link,
+    clock: Arc<dyn Clock>,
+    identity: Option<Identity>,
+    configured: bool,
+    /// The last count as it came, and without the wraps at 32 bits.
+    last: u32,
+    total: i64,
+}
+
+impl QsbCounter {
+    /// Opens the port, identifies the counter and sets how it counts. The count goes on from where it is.
+    pub fn open(settings: QsbSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
+        let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
+        if settings.counts_per_turn == 0 {
+            let what = "counts_per_turn = 0: expected the counts of one turn, four for each line".into();
+            return Err(link.fault(FaultKind::Refused { what }));
+        }
+        let mut counter = Self { settings, link, clock, identity: None, configured: false, last: 0, total: 0 };
+        counter.ready()?;
+        Ok(counter)
+    }
+
+    fn configure(&mut self) -> Result<(), Fault> {
+        let direction = if self.settings.reversed { DOWNWARDS } else { 0 };
+        for (register, value) in [
+            (Register::Mode, 0),
+            (Register::CounterMode, FREE_RUNNING_X4),
+            (Register::Direction, direction),
+            (Register::Clear, CLEAR_STATUS),
+        ] {
+            self.link.probe(&WriteRegister(register, value))?;
+        }
+        self.last = self.link.probe(&ReadRegister(Register::Encoder))?.value;
+        self.total = i64::from(self.last as i32);
+        self.configured = true;
+        Ok(())
+    }
+
+    fn read_register(&mut self, register: Register) -> Result<Held, Fault> {
+        self.ready()?.request(&ReadRegister(register))
+    }
+}
+
+impl Recovers for QsbCounter {
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
+    }
+
+    fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
+        let mut quieten = Vec::new();
+        Quieten.encode(&mut quieten);
+        self.link.drain(&quieten, true)?;
+        let version = Version::from(self.link.probe(&ReadRegister(Register::Version))?.value);
+        let found = Identity {
+            maker: "US Digital".into(),
+            model: format!("QSB-{}", version.variant),
+            serial: format!("{:05X}", version.serial),
+            firmware: version.firmware.to_string(),
+        };
+        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        let lost = self.link.probe(&ReadRegister(Register::Status))?.value & POWER_WAS_LOST != 0;
+        if self.configured && !lost {
+            return Ok(identity);
+        }
+        let had_counted = std::mem::take(&mut self.configured);
+        self.configure()?;
+        if had_counted {
+            let what = "its power was interrupted, and it counts from 0 again: positions before and after do not fit";
+            return Err(self.link.fault(FaultKind::Reported { what: what.into() }));
+        }
+        Ok(identity)
+    }
+}
+
+impl Instrument for QsbCounter {
+    fn name(&self) -> &str {
+        &self.settings.name
+    }
+
+    fn port(&self) -> &str {
+        self.link.address()
+    }
+
+    fn identify(&mut self) -> Result<Identity, Fault> {
+        self.resume()
+    }
+}
+
+impl PositionCounter for QsbCounter {
+    fn zero(&mut self) -> Result<(), Fault> {
+        self.ready()?.request(&WriteRegister(Register::Clear, CLEAR_COUNT))?;
+        (self.last, self.total) = (0, 0);
+        Ok(())
+    }
+
+    fn read(&mut self) -> Result<CounterReading, Fault> {
+        let Held { value, stamp } = self.read_register(Register::Encoder)?;
+        // Differences are right across the wrap at 32 bits.
+        self.total += i64::from(value.wrapping_sub(self.last) as i32);
+        self.last = value;
+        let turns = self.total as f64 / f64::from(self.settings.counts_per_turn);
+        Ok(CounterReading { at_s: self.clock.now_s(), position: Radians(TAU * turns), stamp })
+    }
+
+    fn resolution(&self) -> Radians {
+        Radians(TAU / f64::from(self.settings.counts_per_turn))
+    }
+}
+
+impl EncoderStatus for QsbCounter {
+    fn periods_are_consistent(&mut self) -> Result<bool, Fault> {
+        let Some(input) = self.settings.status_input else {
+            let what = "no status_input is given: which digital input is the encoder's status output wired to?";
+            return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
+        };
+        let inputs = self.read_register(Register::DigitalInputs)?.value;
+        Ok(inputs.checked_shr(input.into()).unwrap_or(0) & 1 == 1)
+    }
+}

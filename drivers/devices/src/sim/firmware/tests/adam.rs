@@ -1,0 +1,39 @@
+//! The thermometer, byte for byte.
+
+use super::super::{Adam, Firmware};
+use crate::sim::data_sheet::{Joint, Load};
+use crate::sim::plant::{Hidden, Plant};
+
+fn say(adam: &mut Adam, pieces: &[&[u8]]) -> Vec<u8> {
+    let mut plant = Plant::new(Joint::JointA, Load::BrakeA, 1, Hidden::default());
+    let (mut input, mut output) = (Vec::new(), Vec::new());
+    for piece in pieces {
+        input.extend_from_slice(piece);
+        adam.receive(&mut input, &mut plant, &mut output);
+        assert!(input.len() < 8);
+    }
+    output
+}
+
+#[test]
+fn published_conversation() {
+    let mut adam = Adam::new();
+    let name = b"\x01\x03\x00\xD2\x00\x02\x64\x32";
+    assert_eq!(say(&mut adam, &[name]), b"\x01\x03\x04\x40\x15\x00\x00\xFE\x37");
+    assert_eq!(say(&mut adam, &[&name[..3], &name[3..]]), b"\x01\x03\x04\x40\x15\x00\x00\xFE\x37", "in two pieces");
+    assert_eq!(say(&mut adam, &[b"\x17\x01", name]), b"\x01\x03\x04\x40\x15\x00\x00\xFE\x37", "behind noise");
+    let values = say(&mut adam, &[b"\x01\x03\x00\x00\x00\x06\xC5\xC8"]);
+    assert_eq!((values.len(), &values[..3]), (17, &b"\x01\x03\x0C"[..]));
+    let codes = say(&mut adam, &[b"\x01\x03\x00\xC8\x00\x06\x44\x36"]);
+    assert_eq!(codes[3..15], [0x00, 0x23].repeat(6));
+}
+
+#[test]
+fn silence_and_exceptions() {
+    let mut adam = Adam::new();
+    assert_eq!(say(&mut adam, &[b"\x01\x03\x00\x00\x00\x06\xC5\xC9"]), b"", "a wrong checksum");
+    assert_eq!(say(&mut adam, &[b"\x02\x03\x00\x00\x00\x06\xC5\xFB"]), b"", "another slave");
+    let mut beyond = b"\x01\x03\x01\x00\x00\x01".to_vec();
+    beyond.extend(super::super::adam::crc(&beyond).to_le_bytes());
+    assert_eq!(say(&mut adam, &[&beyond]), b"\x01\x83\x02\xC0\xF1");
+}

@@ -1,0 +1,96 @@
+//! The two encoders of the encoder bench on the motor's shaft: S1 optical, S2 a magnetic ring whose sensor sits on the stage.
+
+use super::{Noise, Signal};
+use std::f64::consts::TAU;
+
+/// Counts for each turn, after the quadrature's factor of four.
+pub const S1_COUNTS: f64 = 16_384.0;
+pub const S2_COUNTS: f64 = 262_144.0;
+
+/// Disparity over speed, 0.2811 points/rpm: 64.34 µs.
+const DELAY_S: f64 = 64.34e-6;
+/// Shape error about 250 points: once a turn by eccentricity, twice by tilt (split assumed).
+const ECCENTRIC_POINTS: f64 = 190.0;
+const TILT_POINTS: f64 = 55.0;
+/// More of each for what the stage shifts and tilts (assumed).
+const ECCENTRIC_POINTS_PER_M: f64 = 190.0 / 0.15e-3;
+const TILT_POINTS_PER_RAD: f64 = 55.0 / 8.7e-3;
+/// Inside a pole pair (assumed), of which the ring has 64 (assumed).
+const POLE_POINTS: f64 = 12.0;
+const POLE_PAIRS: f64 = 64.0;
+/// Half the width between both directions (assumed).
+const HYSTERESIS_POINTS: f64 = 6.0;
+/// After power-up the zero is off by up to this (assumed).
+const STARTUP_POINTS: f64 = 30.0;
+
+/// Where an error of the period consistency appears: table 4.4, in m and rad, of radial shift, axial shift, rotation about
+/// the chip's normal, tilt. The vertical shift brings none.
+const RADIAL_M: [f64; 2] = [-0.25e-3, 0.3e-3];
+const AXIAL_M: f64 = 0.65e-3;
+const ROTATION_RAD: f64 = 1.0 * TAU / 360.0;
+const TILT_RAD: f64 = 1.5 * TAU / 360.0;
+
+/// How the stage holds the sensor of S2: x radial, y vertical, z axial [m], then rotations about them [rad].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Pose {
+    pub shift_m: [f64; 3],
+    pub rotation_rad: [f64; 3],
+}
+
+pub struct Encoders {
+    pub pose: Pose,
+    noise: Noise,
+    startup_points: f64,
+    phase_rad: f64,
+    drag_rad: f64,
+}
+
+impl Encoders {
+    pub fn new(noise: Noise) -> Self {
+        Self {
+            pose: Pose::default(),
+            noise,
+            startup_points: STARTUP_POINTS * noise.trait_of(Signal::EncoderStartup),
+            phase_rad: TAU * noise.trait_of(Signal::EncoderPhase),
+            drag_rad: 0.0,
+        }
+    }
+
+    /// After one step of the shaft: the magnetic ring's reading drags behind a reversal.
+    pub fn advance(&mut self, angle_rad: f64) {
+        let half_rad = HYSTERESIS_POINTS / S2_COUNTS * TAU;
+        self.drag_rad = self.drag_rad.clamp(angle_rad - half_rad, angle_rad + half_rad);
+    }
+
+    /// S2 was switched off and on.
+    pub fn power_cycle_s2(&mut self, step: u64) {
+        self.startup_points = STARTUP_POINTS * self.noise.at(Signal::EncoderStartup, step).clamp(-1.0, 1.0);
+    }
+
+    pub fn s1_counts(&self, angle_rad: f64) -> i64 {
+        (angle_rad / TAU * S1_COUNTS).floor() as i64
+    }
+
+    pub fn s2_counts(&self, velocity_rad_s: f64) -> i64 {
+        let angle_rad = self.drag_rad - DELAY_S * velocity_rad_s;
+        let points = S2_COUNTS * angle_rad / TAU;
+        (points + self.shape_points(angle_rad) + self.startup_points).floor() as i64
+    }
+
+    fn shape_points(&self, angle_rad: f64) -> f64 {
+        let eccentric = ECCENTRIC_POINTS + ECCENTRIC_POINTS_PER_M * self.pose.shift_m[0];
+        let tilt = TILT_POINTS + TILT_POINTS_PER_RAD * self.pose.rotation_rad[0].hypot(self.pose.rotation_rad[1]);
+        eccentric * (angle_rad + self.phase_rad).sin()
+            + tilt * (2.0 * angle_rad - self.phase_rad).cos()
+            + POLE_POINTS * (POLE_PAIRS * angle_rad).sin()
+    }
+
+    /// The period consistency that S2 watches itself.
+    pub fn periods_are_consistent(&self) -> bool {
+        let Pose { shift_m: [radial_m, _, axial_m], rotation_rad: [a_rad, b_rad, about_rad] } = self.pose;
+        (RADIAL_M[0]..=RADIAL_M[1]).contains(&radial_m)
+            && axial_m <= AXIAL_M
+            && about_rad.abs() <= ROTATION_RAD
+            && a_rad.abs().max(b_rad.abs()) <= TILT_RAD
+    }
+}

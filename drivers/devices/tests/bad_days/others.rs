@@ -1,0 +1,154 @@
+//! Bad days of the counters and the thermometer.
+
+use super::{DEADLINE, settings};
+use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
+use jointbench_devices::{
+    AdamSettings, AdamThermometer, MockBench, MockSettings, PortSettings, QsbCounter, QsbSettings,
+};
+use jointbench_instrument::roles::{EncoderStatus, PositionCounter, Thermometer};
+use jointbench_instrument::units::{Amperes, RadPerSec};
+use jointbench_instrument::{Fault, FaultKind};
+
+const OTHERS: [MockInstrument; 3] = [MockInstrument::CounterS1, MockInstrument::CounterS2, MockInstrument::Thermometer];
+
+fn start(transport: Transport) -> MockBench {
+    MockBench::start(MockSettings { others: OTHERS.to_vec(), ..settings(transport) }).unwrap()
+}
+
+fn counter(mock: &MockBench, instrument: MockInstrument) -> QsbCounter {
+    let counts_per_turn = if instrument == MockInstrument::CounterS1 { 16_384 } else { 262_144 };
+    let settings = QsbSettings {
+        name: "counter".into(),
+        port: PortSettings::new(mock.address(instrument).unwrap(), 230_400),
+        deadline_ms: DEADLINE.as_millis() as u64,
+        counts_per_turn,
+        reversed: false,
+        status_input: Some(0),
+    };
+    QsbCounter::open(settings, mock.clock()).unwrap()
+}
+
+fn thermometer(mock: &MockBench) -> AdamThermometer {
+    let settings = AdamSettings {
+        name: "thermometer".into(),
+        port: PortSettings::new(mock.address(MockInstrument::Thermometer).unwrap(), 9600),
+        deadline_ms: DEADLINE.as_millis() as u64,
+        slave: 1,
+        channels: vec![0, 1, 5],
+    };
+    AdamThermometer::open(settings).unwrap()
+}
+
+/// A use of the instrument that needs a reply.
+fn user(mock: &MockBench, instrument: MockInstrument) -> Box<dyn FnMut() -> Result<(), Fault>> {
+    if instrument == MockInstrument::Thermometer {
+        let mut thermometer = thermometer(mock);
+        return Box::new(move || thermometer.read().map(drop));
+    }
+    let mut counter = counter(mock, instrument);
+    Box::new(move || counter.read().map(drop))
+}
+
+#[test]
+fn a_passing_trouble_is_seen_and_over_when_it_is() {
+    let check = |transport, instrument, trouble| {
+        let mock = start(transport);
+        let mut ask = user(&mock, instrument);
+        ask().unwrap();
+        mock.trouble(instrument, trouble);
+        let fault = (0..2).find_map(|_| ask().err()).expect("noticed at the second question at the latest");
+        let expected = match trouble {
+            Trouble::Garbled | Trouble::Truncated | Trouble::Doubled => matches!(fault.kind, FaultKind::Garbled { .. }),
+            _ => matches!(fault.kind, FaultKind::Silent { .. }),
+        };
+        assert!(expected && fault.is_retryable(), "{instrument:?}, {trouble:?}: {fault}");
+        mock.trouble(instrument, Trouble::None);
+        ask().unwrap_or_else(|fault| panic!("{instrument:?} does not recover from {trouble:?}: {fault}"));
+    };
+    // Side by side: nearly all of it is waiting for deadlines.
+    std::thread::scope(|scope| {
+        for instrument in [MockInstrument::CounterS1, MockInstrument::Thermometer] {
+            for (transport, trouble) in [
+                (Transport::Terminal, Trouble::Silent),
+                (Transport::Tcp, Trouble::Late),
+                (Transport::Terminal, Trouble::Garbled),
+                (Transport::Tcp, Trouble::Truncated),
+                (Transport::Terminal, Trouble::Doubled),
+                (Transport::Tcp, Trouble::Stale),
+            ] {
+                scope.spawn(move || check(transport, instrument, trouble));
+            }
+        }
+    });
+}
+
+#[test]
+fn a_pulled_cable_is_named_and_another_unit_is_not_ours() {
+    let mock = start(Transport::Tcp);
+    for instrument in OTHERS {
+        let mut ask = user(&mock, instrument);
+        mock.trouble(instrument, Trouble::Unplugged);
+        let fault = std::iter::repeat_with(&mut ask).find_map(Result::err).unwrap();
+        assert!(matches!(fault.kind, FaultKind::Disconnected { .. }), "{instrument:?}: {fault}");
+        mock.trouble(instrument, Trouble::Exchanged);
+        let fault = ask().unwrap_err();
+        assert!(matches!(fault.kind, FaultKind::WrongInstrument { .. }), "{instrument:?}: {fault}");
+        mock.trouble(instrument, Trouble::Refusing);
+        let fault = ask().unwrap_err();
+        assert!(matches!(fault.kind, FaultKind::Refused { .. }), "{instrument:?}: {fault}");
+        mock.trouble(instrument, Trouble::None);
+        ask().unwrap();
+    }
+}
+
+#[test]
+fn a_counter_that_lost_its_power_says_that_positions_do_not_fit() {
+    let mock = start(Transport::Terminal);
+    let mut counter = counter(&mock, MockInstrument::CounterS2);
+    counter.read().unwrap();
+    mock.trouble(MockInstrument::CounterS2, Trouble::PowerCycled);
+    mock.trouble(MockInstrument::CounterS2, Trouble::None);
+    let fault = (0..3).find_map(|_| counter.read().err()).expect("the greeting gives it away");
+    let told = if fault.is_retryable() { counter.read().unwrap_err() } else { fault };
+    assert!(told.to_string().contains("power was interrupted"), "{told}");
+    assert!(counter.read().is_ok(), "usable again");
+}
+
+#[test]
+fn a_broken_sensor_is_a_fault_and_no_temperature() {
+    let mock = start(Transport::Terminal);
+    let mut thermometer = thermometer(&mock);
+    let read = thermometer.read().unwrap();
+    assert!(read.len() == 3 && read.iter().all(|t| (t.0 - 24.0).abs() < 1.0), "{read:?}");
+    mock.trouble(MockInstrument::Thermometer, Trouble::Saturated);
+    let fault = thermometer.read().unwrap_err();
+    assert!(matches!(fault.kind, FaultKind::Saturated { .. }) && !fault.is_retryable(), "{fault}");
+    mock.trouble(MockInstrument::Thermometer, Trouble::None);
+    thermometer.read().unwrap();
+}
+
+#[test]
+fn both_encoders_follow_the_shaft_and_differ_by_their_shape_and_delay() {
+    let mock = start(Transport::Terminal);
+    let mut bench = mock.open_bench("mock").unwrap();
+    let (mut s1, mut s2) = (counter(&mock, MockInstrument::CounterS1), counter(&mock, MockInstrument::CounterS2));
+    assert!(s2.periods_are_consistent().unwrap());
+    bench.joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
+    let mut mean_disparity = |velocity_rad_s: f64| {
+        let (mut sum_rad, readings) = (0.0, 400);
+        for reading in 0..readings + 50 {
+            bench.joint.set_velocity(RadPerSec(velocity_rad_s)).unwrap();
+            bench.clock.sleep_until_s(bench.clock.now_s() + 0.0053);
+            let disparity_rad = s2.read().unwrap().position.0 - s1.read().unwrap().position.0;
+            assert!(disparity_rad.abs() < 0.05, "{disparity_rad} rad apart");
+            if reading >= 50 {
+                sum_rad += disparity_rad;
+            }
+        }
+        sum_rad / f64::from(readings)
+    };
+    // 64.34 µs (the thesis), and the width of the hysteresis.
+    let apart_rad = mean_disparity(-100.0) - mean_disparity(100.0);
+    let expected_rad = 2.0 * 100.0 * 64.34e-6;
+    assert!((apart_rad - expected_rad).abs() < 6e-4, "{apart_rad} rad, expected {expected_rad} rad");
+}
