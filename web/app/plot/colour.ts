@@ -35,11 +35,11 @@ export function rgb(hex: string): [number, number, number] {
 	return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
 }
 
-/** Diverging: −1 is `low`, 0 `middle`, +1 `high`. */
-export function diverging(at: number, low: string, middle: string, high: string): string {
-	const from = rgb(middle);
-	const to = rgb(at < 0 ? low : high);
-	const share = Math.min(1, Math.abs(at));
+/** Diverging: −1 is `low`, 0 `middle`, +1 `high`; from there to ±2 the deep end of the same side. */
+export function diverging(at: number, [lowest, low, middle, high, highest]: readonly [string, string, string, string, string]): string {
+	const size = Math.min(2, Math.abs(at));
+	const [full, deep] = at < 0 ? [low, lowest] : [high, highest];
+	const [from, to, share] = size <= 1 ? [rgb(middle), rgb(full), size] : [rgb(full), rgb(deep), size - 1];
 	const mixed = from.map((value, i) => Math.round(value + (to[i]! - value) * share));
 	return `rgb(${mixed.join(' ')})`;
 }

@@ -48,3 +48,15 @@ export function binOf(edges: readonly number[], value: number): number {
 	}
 	return low;
 }
+
+/** A stretch as the bins that lie in it by their middles; the one bin that it lies in where there is none. */
+export function wholeBins({ edges, levels }: Bins, stretch: readonly [number, number] | null): [number, number] | null {
+	if (!stretch || edges.length < 2) return null;
+	const [from, to] = stretch;
+	const middles = levels ?? edges.slice(1).map((edge, i) => (edges[i]! + edge) / 2);
+	const first = middles.findIndex((middle) => middle >= from && middle <= to);
+	const last = middles.findLastIndex((middle) => middle >= from && middle <= to);
+	if (first >= 0) return [edges[first]!, edges[last + 1]!];
+	const inside = binOf(edges, Math.max(edges[0]!, Math.min(edges.at(-1)!, (from + to) / 2)));
+	return [edges[inside]!, edges[inside + 1]!];
+}

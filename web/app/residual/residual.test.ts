@@ -4,6 +4,8 @@ import { curve, explainedShare } from './curve';
 import { residualMap } from './map';
 import { middle, place } from './place';
 import { score, Sums } from './tally';
+import { wholeBins } from './bins';
+import { deepest, depth } from './tally';
 
 /** Repeatable noise in −1…1. */
 function noise(seed = 1): () => number {
@@ -89,11 +91,27 @@ describe('scores', () => {
 
 	it('has no colour for fewer than ten points', () => {
 		expect(score(tally(ten.slice(1)))).toBeNull();
-		expect(score(tally(ten))).toBe(5);
+		expect(score(tally(ten))).toBe(9);
 	});
 
 	it('is not surer than the known noise', () => {
 		expect(tally(ten, 10).se).toBeCloseTo(10 / Math.sqrt(10), 9);
 		expect(score(tally(ten, 10))).toBeCloseTo(1.5 / (10 / Math.sqrt(10)), 9);
 	});
+});
+
+it('goes on deepening past the clip, and ends', () => {
+	expect([0, 2.5, 5, 50, 500].map((z) => depth(z, 50))).toEqual([0, 0.5, 1, 2, 2]);
+	expect(depth(-20, 50)).toBeLessThan(depth(-10, 50));
+	expect(deepest([{ n: 100, mean: 3, se: 0.1 }, { n: 2, mean: 9, se: 0.1 }])).toBe(30);
+	expect(deepest([])).toBe(10);
+});
+
+it('frames whole cells: those whose middle lies in the stretch, or the one that holds it', () => {
+	const bins = { edges: [0, 1, 2, 3], levels: null };
+	expect(wholeBins(bins, [0.4, 1.6])).toEqual([0, 2]);
+	expect(wholeBins(bins, [1.1, 1.2])).toEqual([1, 2]);
+	expect(wholeBins(bins, [2.9, 9])).toEqual([2, 3]);
+	expect(wholeBins({ ...bins, levels: [0.1, 1, 2.9] }, [0, 0.2])).toEqual([0, 1]);
+	expect(wholeBins(bins, null)).toBeNull();
 });

@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { afterHand, readLook, viewOf, writeLook } from './follow';
 import { groupsOf } from './groups';
+import { stepOn } from './progress';
 
 describe('following the live end', () => {
 	const follow = readLook(null, true);
@@ -32,4 +33,9 @@ it('draws channels of one unit together', () => {
 		['current [A]', 2],
 	]);
 	expect(groups[0]!.curves[0]!.dash).not.toEqual(groups[0]!.curves[1]!.dash);
+});
+
+it('counts the step that is on, and stays on the last', () => {
+	const at = (step: number) => stepOn({ step, steps: 3, label: '', elapsed_s: 0, remaining_s: 0 });
+	expect([at(0), at(1), at(3)]).toEqual([1, 2, 3]);
 });

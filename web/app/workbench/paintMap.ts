@@ -1,8 +1,8 @@
 import { colour, diverging } from '../plot/colour';
-import type { Bins } from '../residual/bins';
+import { type Bins, wholeBins } from '../residual/bins';
 import type { ResidualMap } from '../residual/map';
 import { type Place, middle, place } from '../residual/place';
-import { CLIP, score } from '../residual/tally';
+import { deepest, depth, score } from '../residual/tally';
 
 export const MARGIN = { left: 58, right: 6, top: 6, bottom: 38 };
 
@@ -28,7 +28,8 @@ export function paintMap(
 	marked: ReadonlySet<number>,
 ): void {
 	const { x, y } = axesOf(map, size);
-	const palette = [colour('--map-low'), colour('--map-mid'), colour('--map-high')] as const;
+	const palette = [colour('--map-lowest'), colour('--map-low'), colour('--map-mid'), colour('--map-high'), colour('--map-highest')] as const;
+	const deep = deepest(map.cells);
 	ctx.clearRect(0, 0, size.width, size.height);
 	const [right, up] = [map.x.edges.map(x.at), map.y.edges.map(y.at)];
 	const columns = right.length - 1;
@@ -39,7 +40,7 @@ export function paintMap(
 		const box = [left, top, Math.max(1, right[column + 1]! - left), Math.max(1, up[row]! - top)] as const;
 		if (cell.n === 0) return;
 		const z = score(cell);
-		ctx.fillStyle = z === null ? colour('--map-none') : diverging(z / CLIP, ...palette);
+		ctx.fillStyle = z === null ? colour('--map-none') : diverging(depth(z, deep), palette);
 		ctx.fillRect(...box);
 		if (z === null) hatch(ctx, box);
 		ctx.strokeStyle = colour('--panel');
@@ -48,7 +49,7 @@ export function paintMap(
 		if (marked.has(i)) mark(ctx, box);
 	});
 	frame(ctx, size);
-	outline(ctx, size, region.x?.map(x.at) ?? null, region.y?.map(y.at) ?? null);
+	outline(ctx, size, wholeBins(map.x, region.x)?.map(x.at) ?? null, wholeBins(map.y, region.y)?.map(y.at) ?? null);
 	ink(ctx, map, size, titles);
 }
 

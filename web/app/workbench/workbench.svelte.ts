@@ -123,6 +123,12 @@ export function openWorkbench(id: number) {
 		return { text: `${verdict}: ${figures}. Undo with z.`, good: false };
 	}
 
+	const standing = $derived.by(() => {
+		const before = model?.added.length ? versions.find((one) => one.id === model.parent) : undefined;
+		const said = before && model ? told(before, model) : null;
+		return said?.good ? null : said;
+	});
+
 	const add = (effect: string) => model && refit([...model.effects, effect], model, `Refitting with ${words(effect)}`);
 	/** Adds a user's effect. Its formula may be new under a name that the model holds already: then all is fitted again. */
 	const addOwn = async (effect: string) =>
@@ -207,8 +213,9 @@ export function openWorkbench(id: number) {
 		get busy() {
 			return busy;
 		},
+		/** What was just done; or, for whoever comes later, that the last step gained nothing. */
 		get notice() {
-			return notice;
+			return notice ?? standing;
 		},
 		get refused() {
 			return refused;
