@@ -115,6 +115,22 @@ export async function measureNext(page) {
 	return { said, ...version };
 }
 
+/** Starts an autopilot within a budget, sees it measure, and ends it; says where it ended. */
+export async function flyAndStop(page, base) {
+	await page.goto(`${base}/workbench`);
+	const form = page.getByRole('form', { name: 'Autopilot' });
+	await form.getByLabel('runs, at most').fill('2');
+	await form.getByLabel('bench time').fill('20');
+	await form.getByRole('button', { name: 'Start the autopilot' }).click();
+	const flight = page.locator('[data-autopilot=running]');
+	await flight.getByText('Measuring').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the autopilot does not measure'));
+	await flight.getByText(/step \d+ of \d+/).waitFor({ timeout: 30_000 });
+	await flight.getByRole('button', { name: 'Stop' }).click();
+	const ended = page.locator('[data-autopilot=stopped]');
+	await ended.waitFor({ timeout: RUN_MS }).catch(() => expect(false, 'the autopilot does not stop'));
+	return ended.innerText();
+}
+
 /** Writes an effect of one's own with a mistake in it, mends it, tries it on the run and adds it. */
 export async function writeEffect(page, run) {
 	await page.getByRole('button', { name: 'Own formula' }).click();

@@ -1,11 +1,11 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Start the procedure, watch it finish, open the workbench, have the run made that would tell more, see where the model fails on
-// both, add the first suggestion, see the error fall, undo, find the same through REST; write an own effect; an observer in a second browser; a foreign table; the software stop by key;
+// both, add the first suggestion, see the error fall, undo, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { brush, importForeign, measureNext, observe, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
+import { brush, flyAndStop, importForeign, measureNext, observe, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const rest = async (path) => {
@@ -76,6 +76,10 @@ await tell('walk', async () => {
 	expect(own.held < first.held, `the own effect should make the error fall, but it went from ${first.held} to ${own.held}`);
 	await audit(page, 'the own effect');
 
+	const ended = await flyAndStop(page, where.base);
+	expect(/Where it ended\. A person has ended it/.test(ended), `the autopilot does not say where it ended: ${ended}`);
+	await audit(page, 'the autopilot');
+
 	for (const path of ['/', '/log', '/settings']) {
 		await page.goto(where.base + path);
 		await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
@@ -86,7 +90,7 @@ await tell('walk', async () => {
 	const rows = Array.from({ length: 200 }, (_, i) => `${i * 4},${i % 90},0.${i % 9}`);
 	await importForeign(page, where.base, ['Time [ms],pos_deg,Iq [A]', ...rows].join('\n'));
 	await page.getByLabel(`Compare run ${run}`).check();
-	await page.getByLabel(`Compare run ${run + 2}`).check();
+	await page.getByLabel(`Compare run ${run + 3}`).check();
 	await page.getByRole('heading', { name: 'Compare 2 runs' }).waitFor({ timeout: 30_000 });
 	await page.locator('.uplot').first().waitFor({ timeout: 30_000 });
 	await audit(page, 'the comparison');
