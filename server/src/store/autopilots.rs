@@ -1,19 +1,10 @@
 //! Autopilots and their steps, which are only appended to.
 
-use super::runs::now;
+use super::runs::{json, now};
 use super::{AutopilotRecord, Store, StoreError};
 use serde_json::{Map, Value};
-
-#[derive(sqlx::FromRow)]
-struct AutopilotRow {
-    id: i64,
-    bench: String,
-    request: String,
-    state: String,
-    reason: Option<String>,
-    created_at: String,
-    finished_at: Option<String>,
-}
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
 
 impl Store {
     /// `state` is what it begins with.
@@ -77,37 +68,36 @@ impl Store {
     }
 
     pub async fn autopilot(&self, id: i64) -> Result<AutopilotRecord, StoreError> {
-        let row: Option<AutopilotRow> =
-            sqlx::query_as("SELECT * FROM autopilots WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
-        self.with_steps(row.ok_or(StoreError::NoAutopilot(id))?).await
+        let row = sqlx::query("SELECT * FROM autopilots WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
+        self.with_steps(&row.ok_or(StoreError::NoAutopilot(id))?).await
     }
 
     /// All autopilots, newest first.
     pub async fn autopilots(&self) -> Result<Vec<AutopilotRecord>, StoreError> {
-        let rows: Vec<AutopilotRow> =
-            sqlx::query_as("SELECT * FROM autopilots ORDER BY id DESC").fetch_all(&self.readers).await?;
+        let rows = sqlx::query("SELECT * FROM autopilots ORDER BY id DESC").fetch_all(&self.readers).await?;
         let mut records = Vec::new();
-        for row in rows {
+        for row in &rows {
             records.push(self.with_steps(row).await?);
         }
         Ok(records)
     }
 
-    async fn with_steps(&self, row: AutopilotRow) -> Result<AutopilotRecord, StoreError> {
+    async fn with_steps(&self, row: &SqliteRow) -> Result<AutopilotRecord, StoreError> {
+        let id: i64 = row.try_get("id")?;
         let steps: Vec<String> =
             sqlx::query_scalar("SELECT step FROM autopilot_steps WHERE autopilot = ? ORDER BY sequence")
-                .bind(row.id)
+                .bind(id)
                 .fetch_all(&self.readers)
                 .await?;
         Ok(AutopilotRecord {
-            id: row.id,
-            bench: row.bench,
-            request: serde_json::from_str(&row.request)?,
-            state: row.state,
-            reason: row.reason,
+            id,
+            bench: row.try_get("bench")?,
+            request: json(row, "request")?,
+            state: row.try_get("state")?,
+            reason: row.try_get("reason")?,
             steps: steps.iter().map(|step| serde_json::from_str(step)).collect::<Result<_, _>>()?,
-            created_at: row.created_at,
-            finished_at: row.finished_at,
+            created_at: row.try_get("created_at")?,
+            finished_at: row.try_get("finished_at")?,
         })
     }
 }

@@ -1,49 +1,30 @@
 //! Model versions, a tree that only grows, and the diagnoses of its nodes.
 
-use super::runs::{exists, now};
+use super::runs::{exists, json, now};
 use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError};
 use jointbench_procedure::RunId;
 use serde_json::Value;
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
 
-#[derive(sqlx::FromRow)]
-struct ModelRow {
-    id: i64,
-    run: RunId,
-    more_runs: String,
-    parent: Option<i64>,
-    kind: String,
-    effects: String,
-    added: String,
-    removed: String,
-    fit: String,
-    residual: String,
-    rms: f64,
-    validation_rms: f64,
-    noise_floor_rms: Option<f64>,
-    options: String,
-    created_at: String,
-}
-
-impl ModelRow {
-    fn into_record(self) -> Result<ModelRecord, StoreError> {
-        Ok(ModelRecord {
-            id: self.id,
-            run: self.run,
-            more_runs: serde_json::from_str(&self.more_runs)?,
-            parent: self.parent,
-            kind: self.kind,
-            effects: serde_json::from_str(&self.effects)?,
-            added: serde_json::from_str(&self.added)?,
-            removed: serde_json::from_str(&self.removed)?,
-            fit: serde_json::from_str(&self.fit)?,
-            residual: self.residual,
-            rms: self.rms,
-            validation_rms: self.validation_rms,
-            noise_floor_rms: self.noise_floor_rms,
-            options: serde_json::from_str(&self.options)?,
-            created_at: self.created_at,
-        })
-    }
+fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
+    Ok(ModelRecord {
+        id: row.try_get("id")?,
+        run: row.try_get("run")?,
+        more_runs: json(row, "more_runs")?,
+        parent: row.try_get("parent")?,
+        kind: row.try_get("kind")?,
+        effects: json(row, "effects")?,
+        added: json(row, "added")?,
+        removed: json(row, "removed")?,
+        fit: json(row, "fit")?,
+        residual: row.try_get("residual")?,
+        rms: row.try_get("rms")?,
+        validation_rms: row.try_get("validation_rms")?,
+        noise_floor_rms: row.try_get("noise_floor_rms")?,
+        options: json(row, "options")?,
+        created_at: row.try_get("created_at")?,
+    })
 }
 
 impl Store {
@@ -66,7 +47,7 @@ impl Store {
         let without = |these: &[String], those: &[String]| {
             these.iter().filter(|effect| !those.contains(effect)).cloned().collect::<Vec<String>>()
         };
-        let row: ModelRow = sqlx::query_as(
+        let row = sqlx::query(
             "INSERT INTO models (run, more_runs, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
              noise_floor_rms, options, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
         )
@@ -86,21 +67,20 @@ impl Store {
         .bind(now())
         .fetch_one(&self.writer)
         .await?;
-        row.into_record()
+        record(&row)
     }
 
     pub async fn model(&self, id: i64) -> Result<ModelRecord, StoreError> {
-        let row: Option<ModelRow> =
-            sqlx::query_as("SELECT * FROM models WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
-        row.ok_or(StoreError::NoModel(id))?.into_record()
+        let row = sqlx::query("SELECT * FROM models WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
+        record(&row.ok_or(StoreError::NoModel(id))?)
     }
 
     /// All versions of a run, oldest first: parents before their children.
     pub async fn models(&self, run: RunId) -> Result<Vec<ModelRecord>, StoreError> {
         exists(&mut *self.readers.acquire().await?, run).await?;
-        let rows: Vec<ModelRow> =
-            sqlx::query_as("SELECT * FROM models WHERE run = ? ORDER BY id").bind(run).fetch_all(&self.readers).await?;
-        rows.into_iter().map(ModelRow::into_record).collect()
+        let rows =
+            sqlx::query("SELECT * FROM models WHERE run = ? ORDER BY id").bind(run).fetch_all(&self.readers).await?;
+        rows.iter().map(record).collect()
     }
 
     pub async fn save_diagnosis(&self, model: i64, diagnosis: &Value) -> Result<DiagnosisRecord, StoreError> {

@@ -1,5 +1,6 @@
 //! Opening: one daemon for each data folder, one schema, settings that keep what was committed.
 
+use super::migrations::Migrations;
 use super::{Store, StoreError};
 use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
@@ -9,8 +10,6 @@ use std::io::{Read, Seek, Write};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
-
-static MIGRATIONS: Migrator = sqlx::migrate!("../migrations");
 
 /// Marks the file as ours: "JBen".
 const APPLICATION_ID: i64 = 0x4a42_656e;
@@ -108,7 +107,8 @@ async fn check_ours(connection: &mut SqliteConnection, file: &Path) -> Result<()
 }
 
 async fn migrate(writer: &SqlitePool, file: &Path) -> Result<(), StoreError> {
-    MIGRATIONS.run(writer).await.map_err(|fault| match fault {
+    let migrator = Migrator::new(Migrations).await.map_err(|fault| StoreError::Database(fault.to_string()))?;
+    migrator.run(writer).await.map_err(|fault| match fault {
         MigrateError::VersionMissing(schema) => StoreError::Newer { file: file.into(), schema },
         MigrateError::VersionMismatch(_) | MigrateError::VersionTooOld(..) | MigrateError::Dirty(_) => {
             StoreError::Old { file: file.into(), what: fault.to_string() }

@@ -6,7 +6,8 @@ use jointbench_instrument::Channel;
 use jointbench_procedure::{Event, EventKind, RunId, RunState, Safe};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
-use sqlx::SqliteConnection;
+use sqlx::sqlite::SqliteRow;
+use sqlx::{Row, SqliteConnection};
 
 /// Now, as it is written in the store.
 pub(super) fn now() -> String {
@@ -18,48 +19,31 @@ fn word<T: DeserializeOwned>(text: &str) -> Result<T, StoreError> {
     Ok(serde_json::from_value(Value::from(text))?)
 }
 
-#[derive(sqlx::FromRow)]
-struct RunRow {
-    id: RunId,
-    bench: String,
-    procedure: String,
-    kind: String,
-    simulated: bool,
-    state: String,
-    safe: Option<String>,
-    reason: Option<String>,
-    created_at: String,
-    started_at: Option<String>,
-    finished_at: Option<String>,
-    rows: i64,
-    duration_s: Option<f64>,
-    parameters: String,
-    provenance: String,
-    meta: String,
+fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreError> {
+    Ok(RunRecord {
+        id: row.try_get("id")?,
+        bench: row.try_get("bench")?,
+        procedure: row.try_get("procedure")?,
+        kind: row.try_get("kind")?,
+        simulated: row.try_get("simulated")?,
+        state: word(row.try_get("state")?)?,
+        safe: row.try_get::<Option<&str>, _>("safe")?.map(word).transpose()?,
+        reason: row.try_get("reason")?,
+        created_at: row.try_get("created_at")?,
+        started_at: row.try_get("started_at")?,
+        finished_at: row.try_get("finished_at")?,
+        rows: row.try_get::<i64, _>("rows")? as u64,
+        duration_s: row.try_get("duration_s")?,
+        parameters: json(row, "parameters")?,
+        provenance: json(row, "provenance")?,
+        meta: json(row, "meta")?,
+        channels,
+    })
 }
 
-impl RunRow {
-    fn into_record(self, channels: Vec<Channel>) -> Result<RunRecord, StoreError> {
-        Ok(RunRecord {
-            id: self.id,
-            bench: self.bench,
-            procedure: self.procedure,
-            kind: self.kind,
-            simulated: self.simulated,
-            state: word(&self.state)?,
-            safe: self.safe.as_deref().map(word).transpose()?,
-            reason: self.reason,
-            created_at: self.created_at,
-            started_at: self.started_at,
-            finished_at: self.finished_at,
-            rows: self.rows as u64,
-            duration_s: self.duration_s,
-            parameters: serde_json::from_str(&self.parameters)?,
-            provenance: serde_json::from_str(&self.provenance)?,
-            meta: serde_json::from_str(&self.meta)?,
-            channels,
-        })
-    }
+/// A column that holds JSON.
+pub(super) fn json<T: DeserializeOwned>(row: &SqliteRow, column: &str) -> Result<T, StoreError> {
+    Ok(serde_json::from_str(row.try_get(column)?)?)
 }
 
 impl Store {
@@ -70,9 +54,8 @@ impl Store {
 
     pub async fn run(&self, run: RunId) -> Result<RunRecord, StoreError> {
         let mut reader = self.readers.begin().await?;
-        let row: Option<RunRow> =
-            sqlx::query_as("SELECT * FROM runs_told WHERE id = ?").bind(run).fetch_optional(&mut *reader).await?;
-        row.ok_or(StoreError::NoRun(run))?.into_record(channels(&mut reader, run).await?)
+        let row = sqlx::query("SELECT * FROM runs_told WHERE id = ?").bind(run).fetch_optional(&mut *reader).await?;
+        record(&row.ok_or(StoreError::NoRun(run))?, channels(&mut reader, run).await?)
     }
 
     /// A page of the runs that match, and how many match. The page's runs come without their channels.
@@ -83,7 +66,7 @@ impl Store {
             .bind(&search)
             .fetch_one(&mut *reader)
             .await?;
-        let rows: Vec<RunRow> = sqlx::query_as(
+        let rows = sqlx::query(
             "SELECT * FROM runs_told WHERE ?1 = '' OR instr(words, ?1) > 0 ORDER BY id DESC LIMIT ?2 OFFSET ?3",
         )
         .bind(search)
@@ -91,7 +74,7 @@ impl Store {
         .bind(filter.offset)
         .fetch_all(&mut *reader)
         .await?;
-        let runs = rows.into_iter().map(|row| row.into_record(Vec::new())).collect::<Result<_, _>>()?;
+        let runs = rows.iter().map(|row| record(row, Vec::new())).collect::<Result<_, _>>()?;
         Ok((total as u64, runs))
     }
 

@@ -161,7 +161,7 @@ fn unpack_share(share: &[Piece<'_>], rows: &Range<i64>, mut values: &mut [f64]) 
 }
 
 /// The rows of one commit, all channels, before they are part of a block.
-#[derive(Debug, sqlx::FromRow)]
+#[derive(Debug)]
 pub(super) struct TailPiece {
     pub first_row: i64,
     pub rows: i64,
@@ -174,14 +174,15 @@ pub(super) async fn tail(
     run: RunId,
     rows: Range<i64>,
 ) -> Result<Vec<TailPiece>, StoreError> {
-    Ok(sqlx::query_as(
+    let pieces: Vec<(i64, i64, Vec<u8>)> = sqlx::query_as(
         "SELECT first_row, rows, data FROM tail WHERE run = ? AND first_row + rows > ? AND first_row < ? ORDER BY first_row",
     )
     .bind(run)
     .bind(rows.start)
     .bind(rows.end)
     .fetch_all(reader)
-    .await?)
+    .await?;
+    Ok(pieces.into_iter().map(|(first_row, rows, data)| TailPiece { first_row, rows, data }).collect())
 }
 
 impl From<Broken> for StoreError {

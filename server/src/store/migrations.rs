@@ -1,0 +1,55 @@
+//! The schema, step by step. What a store has applied is never edited.
+
+use sqlx::SqlSafeStr;
+use sqlx::error::BoxDynError;
+use sqlx::migrate::{Migration, MigrationSource, MigrationType};
+use std::future::{self, Future};
+use std::pin::Pin;
+
+/// Name and text of every file in `migrations/`, in order. Listed by hand: the macro that would do it compiles SQLite twice.
+const FILES: [(&str, &str); 5] = [
+    ("0001_runs.sql", include_str!("../../../migrations/0001_runs.sql")),
+    ("0002_models.sql", include_str!("../../../migrations/0002_models.sql")),
+    ("0003_safety.sql", include_str!("../../../migrations/0003_safety.sql")),
+    ("0004_own_effects.sql", include_str!("../../../migrations/0004_own_effects.sql")),
+    ("0005_experiments.sql", include_str!("../../../migrations/0005_experiments.sql")),
+];
+
+#[derive(Debug)]
+pub struct Migrations;
+
+impl<'s> MigrationSource<'s> for Migrations {
+    fn resolve(self) -> Pin<Box<dyn Future<Output = Result<Vec<Migration>, BoxDynError>> + Send + 's>> {
+        let step = |(version, (name, text)): (i64, &(&'static str, &'static str))| {
+            let description = name.trim_end_matches(".sql").split_once('_').map_or(*name, |(_, words)| words);
+            Migration::new(
+                version,
+                description.replace('_', " ").into(),
+                MigrationType::Simple,
+                text.into_sql_str(),
+                false,
+            )
+        };
+        Box::pin(future::ready(Ok((1..).zip(&FILES).map(step).collect())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_is_listed_under_its_number() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../migrations");
+        let mut there: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.ends_with(".sql"))
+            .collect();
+        there.sort();
+        assert_eq!(there, FILES.map(|(name, _)| name));
+        for (number, name) in (1..).zip(&there) {
+            assert!(name.starts_with(&format!("{number:04}_")), "{name} is number {number}");
+        }
+    }
+}
