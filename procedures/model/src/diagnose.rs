@@ -132,8 +132,9 @@ fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<S
         let evidence = if apart {
             format!("Around reversals it takes {} off the squared error.", percent(rival.share))
         } else {
-            let times = 1.0 / (1.0 - importance).max(1e-3);
-            format!("Without it the complete model's squared error would be {times:.1} times as large.")
+            let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
+            let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };
+            format!("Without this effect the complete model's squared error would be {times} times as large.")
         };
         let why = format!("{} {evidence}{tie}", info.sentence);
         out.push(Suggestion {
@@ -181,11 +182,18 @@ fn summary(
             let first = &suggestions[0];
             let more: Vec<&str> = suggestions[1..].iter().map(|s| s.effect.as_str()).collect();
             let more = if more.is_empty() { String::new() } else { format!(", then {}", list(&more)) };
-            format!(
-                "{} is missing{more}: with it the held-out error falls from {error} to {}; {floor}.",
-                first.effect,
-                figure(first.validation_rms, &fit.unit),
-            )
+            let with = figure(first.validation_rms, &fit.unit);
+            let effect = &first.effect;
+            if with == error {
+                format!(
+                    "{effect} is missing{more}: it acts around reversals; settled motion has a held-out error of {error} \
+                     with it and without it, and {floor}."
+                )
+            } else {
+                format!(
+                    "{effect} is missing{more}: with {effect} the held-out error falls from {error} to {with}; {floor}."
+                )
+            }
         }
         Verdict::UnexplainedStructure => {
             let repeats = match found.floor.repeatable_share {

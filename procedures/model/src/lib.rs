@@ -25,7 +25,7 @@ mod spec;
 mod terms;
 pub mod transfer;
 pub mod view;
-mod words;
+pub mod words;
 
 pub use compare::compare;
 pub use diagnose::{diagnose, discover};

@@ -1,7 +1,8 @@
 //! Figures as people say them.
 
-/// A value with its unit, three digits, and a prefix that keeps them before the point: `6.1 mNm`.
+/// A value with its unit, three digits, and a prefix that keeps them before the point: `6.1 mNm`. A unit of `1` is not said.
 pub fn figure(value: f64, unit: &str) -> String {
+    let unit = if unit == "1" { "" } else { unit };
     let size = value.abs();
     let prefixed = unit.starts_with("Nm") || unit.starts_with("rad") || unit == "N" || unit == "m";
     let (factor, prefix) = match size {
@@ -16,7 +17,7 @@ pub fn figure(value: f64, unit: &str) -> String {
         s if s >= 10.0 => 1,
         _ => 2,
     };
-    format!("{scaled:.digits$} {prefix}{unit}")
+    format!("{scaled:.digits$} {prefix}{unit}").trim_end().to_owned()
 }
 
 pub fn percent(share: f64) -> String {
@@ -43,6 +44,7 @@ mod tests {
     fn figures_read_well() {
         assert_eq!(figure(-0.00612, "Nm"), "-6.12 mNm");
         assert_eq!(figure(95.106, "kg"), "95.1 kg");
+        assert_eq!(figure(0.226, "1"), "0.23");
         assert_eq!(percent(0.184), "18 %");
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
     }

@@ -371,8 +371,9 @@ pub struct Import {
 pub struct Export {
     /// Number of the run
     pub run: i64,
+    /// Kind of file [default: what the ending of --output says, else csv]
     #[arg(long, value_enum)]
-    pub format: FileFormat,
+    pub format: Option<FileFormat>,
     /// File to write; a CSV gets its facts beside it as NAME.meta.json [default: run-N.csv or run-N.parquet]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

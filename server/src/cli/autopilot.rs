@@ -3,7 +3,6 @@
 use super::arguments::Autopilot as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::print::figure;
 use super::progress::RunProgress;
 use super::run::{LOOK_EVERY, choose_bench, is_over, parameters};
 use crate::view::{Autopilot, AutopilotState, AutopilotStep, Model, NewAutopilot, NewExperiment, Run, Verdict};
@@ -70,13 +69,8 @@ fn wait(client: &Client, id: i64, tells: bool) -> Result<Autopilot, Exit> {
 }
 
 fn line(step: &AutopilotStep) -> String {
-    let fall = match (step.before_rms, step.after_rms) {
-        (Some(before), Some(after)) => format!(" [{} → {}]", figure(before), figure(after)),
-        (None, Some(after)) => format!(" [{}]", figure(after)),
-        _ => String::new(),
-    };
     let model = step.model.map_or_else(String::new, |model| format!("model {model}: "));
-    format!("{:>3}  {model}{}{fall}", step.sequence, step.text)
+    format!("{:>3}  {model}{}", step.sequence, step.text)
 }
 
 fn conclude(client: &Client, autopilot: &Autopilot) -> Done {

@@ -32,10 +32,12 @@ fn check_bench(description: &BenchDescription) -> usize {
     for instrument in &opened.instruments {
         let (role, port) = (&instrument.role, &instrument.port);
         match (&instrument.identity, &instrument.fault) {
-            (Some(who), _) => println!(
-                "  ok    {role:<14} {port:<16} {} {}, serial {}, firmware {}",
-                who.maker, who.model, who.serial, who.firmware
-            ),
+            (Some(who), _) => {
+                let told = [("serial", &who.serial), ("firmware", &who.firmware)];
+                let told = told.into_iter().filter(|(_, value)| !value.is_empty());
+                let told: String = told.map(|(name, value)| format!(", {name} {value}")).collect();
+                println!("  ok    {role:<14} {port:<16} {} {}{told}", who.maker, who.model);
+            }
             (None, Some(fault)) => println!("  FAIL  {role:<14} {port:<16} {fault}"),
             (None, None) => println!("  FAIL  {role:<14} {port:<16} no answer"),
         }

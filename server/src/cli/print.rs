@@ -1,8 +1,8 @@
 //! Results as a person reads them.
 
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Parameter, ParameterPair,
-    ParameterState, Region, ResidualKind, Suggestion,
+    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Options, Parameter, ParameterPair,
+    ParameterState, Region, ResidualKind, Suggestion, words,
 };
 use std::path::Path;
 
@@ -15,15 +15,13 @@ pub fn fit(fit: &Fit) {
     parameters(&fit.parameters);
     println!();
     println!(
-        "error     {} {} on data that took no part in the fit ({})",
-        figure(fit.validation_rms),
-        fit.unit,
+        "error     {} on data that took no part in the fit ({})",
+        words::figure(fit.validation_rms, &fit.unit),
         of(fit.residual)
     );
     println!(
-        "          {} {} on the fitted data, {:.2} % of what was measured",
-        figure(fit.rms),
-        fit.unit,
+        "          {} on the fitted data, {:.2} % of what was measured",
+        words::figure(fit.rms, &fit.unit),
         100.0 * fit.relative_error
     );
     for pair in &fit.trade_offs {
@@ -37,10 +35,9 @@ pub fn fit(fit: &Fit) {
 pub fn evaluation(file: &Path, evaluation: &Evaluation) {
     println!();
     println!(
-        "on {}: error {} {}, {:.2} % of what was measured ({} points)",
+        "on {}: error {}, {:.2} % of what was measured ({} points)",
         file.display(),
-        figure(evaluation.rms),
-        evaluation.unit,
+        words::figure(evaluation.rms, &evaluation.unit),
         100.0 * evaluation.relative_error,
         evaluation.rows
     );
@@ -64,17 +61,15 @@ pub fn comparison(file: &Path, comparison: &Comparison) {
             Some(true) => "  differ",
             _ => "",
         };
-        println!("{:effect$}  {:name$}  {:unit$}  {first:>34}  {second:>34}{differ}", p.effect, p.name, p.unit);
+        println!("{:effect$}  {:name$}  {:unit$}  {first:>34}  {second:>34}{differ}", p.effect, p.name, shown(&p.unit));
     }
     println!();
     let (first, second) = (&comparison.first, &comparison.second);
     println!(
-        "on {}: error {} {} and {} {} ({:+.1} %)",
+        "on {}: error {} and {} ({:+.1} %)",
         file.display(),
-        figure(first.rms),
-        first.unit,
-        figure(second.rms),
-        second.unit,
+        words::figure(first.rms, &first.unit),
+        words::figure(second.rms, &second.unit),
         100.0 * (second.rms / first.rms - 1.0)
     );
 }
@@ -144,7 +139,7 @@ pub fn parameters(parameters: &[Parameter]) {
             parameter.effect,
             parameter.name,
             figure(parameter.value),
-            parameter.unit
+            shown(&parameter.unit)
         );
     }
 }
@@ -154,10 +149,11 @@ pub fn regions(regions: &[Region], unit: &str) {
         return;
     }
     println!();
-    println!("where the model fails (mean error [{unit}], interval over all regions at once):");
+    println!("where the model fails (intervals over all regions at once):");
     for region in regions {
-        let [low, high] = region.ci95;
-        println!("  {:>11}  [{} … {}]  {}", figure(region.mean_residual), figure(low), figure(high), region.sentence);
+        let [low, high] = region.ci95.map(f64::abs);
+        let (low, high) = (words::figure(low.min(high), unit), words::figure(low.max(high), unit));
+        println!("  {}  [{low} … {high}]", region.sentence);
     }
 }
 
@@ -174,21 +170,32 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         let elsewhere = (1.0 - rms / present_rms - share).abs() > 0.01;
         let gain = match elsewhere {
             true => format!("error {:+.1} % where it acts, settled motion stays as it is", -100.0 * share),
-            false => format!("error {:+.1} % to {} {unit}", -100.0 * share, figure(rms)),
+            false => format!("error {:+.1} % to {}", -100.0 * share, words::figure(rms, unit)),
         };
-        println!("  {}. {}: {gain}, p = {:.3}", i + 1, suggestion.effect, suggestion.p_value);
+        println!("  {}. {}: {gain}, {}", i + 1, suggestion.effect, chance(suggestion.p_value));
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
             let [low, high] = parameter.ci95;
             let (value, low, high) = (figure(parameter.value), figure(low), figure(high));
-            println!("     {} = {value} {}  [{low} … {high}]", parameter.name, parameter.unit);
+            println!("     {} = {value} {}  [{low} … {high}]", parameter.name, shown(&parameter.unit));
         }
     }
 }
 
+/// No flip can show less than one in all of them.
+fn chance(p_value: f64) -> String {
+    let least = 1.0 / (Options::default().flips + 1) as f64;
+    if p_value <= 1.001 * least { format!("p ≤ {least:.3}") } else { format!("p = {p_value:.3}") }
+}
+
+/// A number without a unit is not followed by one.
+fn shown(unit: &str) -> &str {
+    if unit == "1" { "" } else { unit }
+}
+
 fn floor(floor: &NoiseFloor, unit: &str) {
     match floor.rms {
-        Some(rms) => println!("noise     {} {unit}: {}", figure(rms), floor.source),
+        Some(rms) => println!("noise     {}: {}", words::figure(rms, unit), floor.source),
         None => println!("noise     {}", floor.source),
     }
 }

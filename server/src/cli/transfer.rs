@@ -4,7 +4,7 @@ use super::arguments::{Columns, Export, Import, StorePlace};
 use super::client::Client;
 use super::exit::{Done, Exit};
 use super::serve::runtime;
-use crate::lab::{ImportRequest, Lab, LabError};
+use crate::lab::{FileFormat, ImportRequest, Lab, LabError};
 use crate::view::Run;
 use jointbench_files::meta_path_of;
 use std::fs;
@@ -27,7 +27,7 @@ pub fn import(arguments: &Import) -> Done {
 
 pub fn export(arguments: &Export) -> Done {
     let runtime = runtime()?;
-    let (run, format) = (arguments.run, arguments.format);
+    let (run, format) = (arguments.run, format(arguments)?);
     let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
         Way::Folder(lab) => runtime
             .block_on(async { Ok::<_, LabError>((lab.export(run, format).await?, lab.export_meta(run).await?)) })?,
@@ -40,12 +40,26 @@ pub fn export(arguments: &Export) -> Done {
     let path = arguments.output.clone().unwrap_or_else(named);
     write(&path, &bytes)?;
     println!("{}", path.display());
-    if format == crate::lab::FileFormat::Csv {
+    if format == FileFormat::Csv {
         let beside = meta_path_of(&path);
         write(&beside, meta.as_bytes())?;
         println!("{}", beside.display());
     }
     Ok(())
+}
+
+/// What was asked for, or what the file's ending says.
+fn format(arguments: &Export) -> Result<FileFormat, Exit> {
+    let ending = arguments.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
+    let said = [FileFormat::Csv, FileFormat::Parquet].into_iter().find(|format| Some(format.extension()) == ending);
+    match (arguments.format, said) {
+        (Some(asked), Some(said)) if asked != said => Err(Exit::bad_input(format!(
+            "--format {} and a file that ends in .{}: leave one of them out",
+            asked.extension(),
+            said.extension()
+        ))),
+        (asked, said) => Ok(asked.or(said).unwrap_or(FileFormat::Csv)),
+    }
 }
 
 enum Way {

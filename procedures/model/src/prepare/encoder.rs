@@ -19,7 +19,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         return Err(ModelError::Constant { column: "reference_position_rad".into() });
     }
     let target = difference(column("test_position_rad"), column("reference_position_rad"));
-    let cutoff_hz = options.cutoff_hz.unwrap_or(0.1 / step_s).min(0.45 / step_s);
+    let cutoff_hz = super::cutoff_hz(options, step_s)?;
     let measured = run.column("velocity_rad_s");
     let velocity = measured.map_or_else(
         || {

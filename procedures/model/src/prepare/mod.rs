@@ -151,6 +151,19 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
 }
 
 /// The middle value of the step from sample to sample.
+/// Corner of the low-pass filter: what was asked for, or a tenth of the rate.
+fn cutoff_hz(options: &Options, step_s: f64) -> Result<f64, ModelError> {
+    let highest_hz = 0.45 / step_s;
+    match options.cutoff_hz {
+        Some(cutoff_hz) if cutoff_hz > highest_hz => Err(ModelError::BadOption {
+            option: "cutoff_hz",
+            why: format!("these are {:.0} samples in a second: expected at most {highest_hz:.0} Hz", 1.0 / step_s),
+        }),
+        Some(cutoff_hz) => Ok(cutoff_hz),
+        None => Ok(0.1 / step_s),
+    }
+}
+
 fn sample_s(time_s: &[f64]) -> f64 {
     let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
     let middle = steps.len() / 2;

@@ -20,7 +20,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let step_s = sample_s(&time_s);
     let link = column("link_position_rad");
     let target: Vec<f64> = column("motor_position_rad").iter().zip(link).map(|(m, l)| m / gear - l).collect();
-    let cutoff_hz = options.cutoff_hz.unwrap_or(0.1 / step_s).min(0.45 / step_s);
+    let cutoff_hz = super::cutoff_hz(options, step_s)?;
     let measured = run.column("link_velocity_rad_s");
     let velocity = measured.map_or_else(
         || {

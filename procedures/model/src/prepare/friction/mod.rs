@@ -38,7 +38,7 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
     let time_s = column("time_s").to_vec();
     let step_s = sample_s(&time_s);
     let starts = segments::recordings(&time_s, position, step_s);
-    let cutoff_hz = options.cutoff_hz.unwrap_or(0.1 / step_s).min(0.45 / step_s);
+    let cutoff_hz = super::cutoff_hz(options, step_s)?;
     let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
     let smoothed = |values: &[f64]| filter::by_recording(values, &starts, |_, v| smooth.both_ways(v, 12));
     let slope =
