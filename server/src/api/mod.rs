@@ -26,7 +26,8 @@ use axum::extract::DefaultBodyLimit;
 use axum::routing::get;
 use axum::{Router, middleware};
 use tower_http::trace::TraceLayer;
-use utoipa::OpenApi;
+use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
+use utoipa::{Modify, OpenApi};
 use utoipa_axum::{router::OpenApiRouter, routes};
 
 /// Largest body of an ordinary request; an upload may have [`UPLOAD_LIMIT_BYTES`].
@@ -42,6 +43,8 @@ const UPLOAD_LIMIT_BYTES: usize = 1 << 30;
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
     components(schemas(Problem, LiveMessage)),
+    modifiers(&Token),
+    security((), ("token" = [])),
     tags(
         (name = "bench", description = "Benches and instruments"),
         (name = "procedures", description = "What a bench can be asked to do"),
@@ -56,6 +59,19 @@ const UPLOAD_LIMIT_BYTES: usize = 1 << 30;
     )
 )]
 struct Description;
+
+/// A daemon on loopback asks nobody; beyond it every request carries the token.
+struct Token;
+
+impl Modify for Token {
+    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
+        let scheme = HttpBuilder::new()
+            .scheme(HttpAuthScheme::Bearer)
+            .description(Some("Needed where the daemon listens beyond loopback (`--token`)"))
+            .build();
+        document.components.get_or_insert_default().add_security_scheme("token", SecurityScheme::Http(scheme));
+    }
+}
 
 fn operations() -> OpenApiRouter<Lab> {
     let uploads =

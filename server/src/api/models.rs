@@ -34,6 +34,7 @@ pub async fn create(State(lab): State<Lab>, Json(new): Json<NewModel>) -> Create
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct ModelQuery {
+    /// The run that they were fitted to.
     pub run: i64,
 }
 
@@ -85,6 +86,7 @@ pub async fn diagnosis(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Di
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct DiagnosisQuery {
+    /// The version that was diagnosed.
     pub model: i64,
 }
 

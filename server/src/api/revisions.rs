@@ -70,6 +70,7 @@ impl From<ExportFormat> for Format {
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct ModelExportQuery {
+    /// Kind of file.
     #[param(inline)]
     pub format: ExportFormat,
 }

@@ -16,6 +16,7 @@ pub struct RunQuery {
     /// At most so many; 50 where left out, 500 at most.
     #[param(maximum = 500)]
     pub limit: Option<u32>,
+    /// Leave out so many of the newest.
     pub offset: Option<u32>,
     /// Part of the bench, procedure, kind, state or reason.
     pub search: Option<String>,
@@ -97,7 +98,9 @@ pub async fn events(
 pub struct SampleQuery {
     /// Names with commas between; all where left out.
     pub channels: Option<String>,
+    /// Begin of the window on the run's clock; its first row where left out.
     pub from_s: Option<f64>,
+    /// End of the window; the last row where left out.
     pub to_s: Option<f64>,
     /// Width of the view in pixels; 2000 where left out.
     #[param(minimum = 1, maximum = 20_000)]

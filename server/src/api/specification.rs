@@ -32,6 +32,9 @@ fn every_response_is_described() {
                 "{method} {path}: two operations are called {name}; name one with operation_id"
             );
             assert!(operation["summary"].is_string() && operation["tags"].is_array(), "{method} {path}");
+            for parameter in operation["parameters"].as_array().into_iter().flatten() {
+                assert!(parameter["description"].is_string(), "{method} {path}: {parameter} has no description");
+            }
             for (status, response) in operation["responses"].as_object().unwrap() {
                 let described = response["description"].as_str().is_some_and(|text| !text.is_empty());
                 assert!(described, "{method} {path}: response {status} has no description");

@@ -15,6 +15,7 @@ use utoipa::{IntoParams, ToSchema};
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct ExportQuery {
+    /// Kind of file.
     #[param(inline)]
     pub format: FileFormat,
 }
