@@ -4,7 +4,7 @@
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, open, settings, tell } from './browser.mjs';
-import { readVersion, startRun, toAnotherVersion, watchRun } from './steps.mjs';
+import { BARE, flyAndStop, measureNext, readVersion, startRun, toAnotherVersion, watchRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/screenshots.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const folder = process.env.JB_SCREENS ?? fileURLToPath(new URL('../../docs/screens', import.meta.url));
@@ -46,6 +46,21 @@ await tell(`screens in ${folder}`, async () => {
 	await page.setViewportSize(NARROW);
 	await shoot(page, 'workbench-narrow');
 	await page.setViewportSize(WIDE);
+
+	await startRun(page, where.base, BARE);
+	await (await watchRun(page)).click();
+	await readVersion(page);
+	await shoot(page, 'workbench-next');
+	await measureNext(page);
+	await page.getByRole('button', { name: 'Own formula' }).click();
+	const form = page.getByRole('form', { name: 'Own formula' });
+	await form.getByLabel('formula', { exact: true }).fill('tau = a * tanh(velocity / w0) * abs(load');
+	await form.getByLabel('name', { exact: true }).fill('Load drag');
+	await form.locator('mark').waitFor();
+	await form.scrollIntoViewIfNeeded();
+	await shoot(page, 'workbench-formula');
+	await flyAndStop(page, where.base);
+	await shoot(page, 'autopilot');
 
 	await page.goto(`${where.base}/runs`);
 	await page.getByRole('link', { name: `#${run}` }).waitFor();

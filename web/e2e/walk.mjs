@@ -5,7 +5,7 @@
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { brush, flyAndStop, importForeign, measureNext, observe, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
+import { BARE, brush, flyAndStop, importForeign, measureNext, observe, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const rest = async (path) => {
@@ -13,9 +13,6 @@ const rest = async (path) => {
 	expect(answer.ok, `GET ${path} answers ${answer.status}`);
 	return answer.json();
 };
-
-/** Short, and without load: what grows with the load cannot show in it. */
-const BARE = '?p.load_levels=1&p.warm_up_s=2&p.dwell_s=0.6&p.fast_speeds=4';
 
 await tell('walk', async () => {
 	const { browser, page, faults, another } = await open(where);
