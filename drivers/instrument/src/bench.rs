@@ -1,8 +1,9 @@
 //! One bench: the instruments in their roles, one clock, one set of limits. Owned by exactly one thread.
 
-use crate::roles::{CurrentSource, JointController, TorqueSensor};
-use crate::{Clock, Limits};
+use crate::roles::{CurrentSource, Instrument, JointController, TorqueSensor};
+use crate::{Clock, Fault, Limits};
 use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The constants of the joint under test that every run records.
@@ -34,4 +35,28 @@ pub struct Bench {
     pub joint: Box<dyn JointController>,
     pub torque_sensor: Option<Box<dyn TorqueSensor>>,
     pub brake: Option<Box<dyn CurrentSource>>,
+}
+
+impl Bench {
+    /// Writes the traffic of every instrument down in `folder` from now on, a file each (`joint.traffic`), and returns the
+    /// files; `None` ends the record. Nothing is recorded where one of them cannot be.
+    pub fn record(&mut self, folder: Option<&Path>) -> Result<Vec<PathBuf>, Fault> {
+        let mut files = Vec::new();
+        for instrument in self.instruments() {
+            let file = folder.map(|folder| folder.join(format!("{}.traffic", instrument.name())));
+            if let Err(fault) = instrument.record(file.as_deref()) {
+                self.record(None)?;
+                return Err(fault);
+            }
+            files.extend(file);
+        }
+        Ok(files)
+    }
+
+    fn instruments(&mut self) -> Vec<&mut dyn Instrument> {
+        let mut instruments: Vec<&mut dyn Instrument> = vec![self.joint.as_mut()];
+        instruments.extend(self.torque_sensor.as_mut().map(|sensor| -> &mut dyn Instrument { sensor.as_mut() }));
+        instruments.extend(self.brake.as_mut().map(|brake| -> &mut dyn Instrument { brake.as_mut() }));
+        instruments
+    }
 }

@@ -6,6 +6,7 @@
 use crate::units::{Amperes, Celsius, NewtonMetres, RadPerSec, Radians, Seconds, Volts};
 use crate::{Clock, Fault};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Who answers on a port.
@@ -25,6 +26,11 @@ pub trait Instrument: Send {
     /// Drains the link and identifies the instrument again. Nothing is commanded.
     fn recover(&mut self) -> Result<Identity, Fault> {
         self.identify()
+    }
+    /// Writes all traffic down in a new file from now on; `None` ends the record. Where there is no wire there is nothing to
+    /// record.
+    fn record(&mut self, _file: Option<&Path>) -> Result<(), Fault> {
+        Ok(())
     }
 }
 
@@ -169,4 +175,25 @@ pub trait Thermometer: Instrument {
     /// One for each channel that is in use, in the order of the bench description.
     fn read(&mut self) -> Result<Vec<Celsius>, Fault>;
     fn resolution(&self) -> Celsius;
+}
+
+/// Where a six-axis stage stands: shifts along x, y, z, then rotations about them.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Pose {
+    pub shift_m: [f64; 3],
+    pub rotation_rad: [f64; 3],
+}
+
+/// Holds a sensor in a pose.
+pub trait AlignmentStage: Instrument {
+    /// Begins to find the axes' zeros, which takes seconds. Without it no pose can be taken.
+    fn reference(&mut self) -> Result<(), Fault>;
+    fn is_referenced(&mut self) -> Result<bool, Fault>;
+    /// Sets off; a pose that cannot be reached is refused, and nothing moves.
+    fn move_to(&mut self, pose: Pose) -> Result<(), Fault>;
+    fn pose(&mut self) -> Result<Pose, Fault>;
+    /// On target, and settled.
+    fn is_settled(&mut self) -> Result<bool, Fault>;
+    /// At once, also in the middle of a reference move.
+    fn stop(&mut self) -> Result<(), Fault>;
 }

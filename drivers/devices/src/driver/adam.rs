@@ -7,6 +7,7 @@ use jointbench_instrument::roles::{Identity, Instrument, Thermometer};
 use jointbench_instrument::units::Celsius;
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::time::Duration;
 
 const CHANNELS: u8 = 6;
@@ -115,6 +116,10 @@ impl Instrument for AdamThermometer {
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         self.resume()
+    }
+
+    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
+        self.link.record(file)
     }
 }
 

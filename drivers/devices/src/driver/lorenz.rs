@@ -8,6 +8,7 @@ use jointbench_instrument::roles::{Identity, Instrument, TorqueSensor, TorqueStr
 use jointbench_instrument::units::NewtonMetres;
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::time::Duration;
 
 /// Stator header and rotor header: type and serial number.
@@ -103,6 +104,10 @@ impl Instrument for LorenzSensor {
 
     fn recover(&mut self) -> Result<Identity, Fault> {
         self.resume()
+    }
+
+    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
+        self.link.record(file)
     }
 }
 

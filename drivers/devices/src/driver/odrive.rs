@@ -11,6 +11,7 @@ use jointbench_instrument::units::{Amperes, Celsius, RadPerSec, Radians, Volts};
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -135,6 +136,10 @@ impl Instrument for OdriveJoint {
 
     fn recover(&mut self) -> Result<Identity, Fault> {
         self.resume()
+    }
+
+    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
+        self.link.record(file)
     }
 }
 

@@ -8,6 +8,7 @@ use jointbench_instrument::units::Radians;
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -120,6 +121,10 @@ impl Instrument for QsbCounter {
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         self.resume()
+    }
+
+    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
+        self.link.record(file)
     }
 }
 

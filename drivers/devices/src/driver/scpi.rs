@@ -10,6 +10,7 @@ use jointbench_instrument::roles::{CurrentSource, Identity, Instrument, Regulati
 use jointbench_instrument::units::{Amperes, Volts};
 use jointbench_instrument::{Fault, FaultKind};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::time::Duration;
 
 /// Channel 1 of a DP821A is programmed in steps of this.
@@ -38,7 +39,7 @@ impl ScpiSource {
     pub fn open(settings: ScpiSettings) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
         let line_end = match settings.port.address {
-            Address::Serial(_) => Terminator::CrLf,
+            Address::Serial(_) | Address::Usb(_) => Terminator::CrLf,
             Address::Tcp(_) => Terminator::Lf,
         };
         let mut source = Self { settings, link, line_end, identity: None, on: false };
@@ -140,6 +141,10 @@ impl Instrument for ScpiSource {
 
     fn recover(&mut self) -> Result<Identity, Fault> {
         self.resume()
+    }
+
+    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
+        self.link.record(file)
     }
 }
 

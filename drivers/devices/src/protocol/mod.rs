@@ -1,5 +1,6 @@
 //! What the instruments speak: bytes in, bytes out, no port. One type for each command; a request knows its reply.
 
+pub mod gcs;
 pub mod lorenz;
 pub mod modbus;
 pub mod odrive;

@@ -1,6 +1,6 @@
 //! Everything behind the wires: the plant and the instruments' firmware, advanced together.
 
-use super::firmware::{Adam, Dp800, Encoder, Firmware, Lorenz, Odrive, Qsb};
+use super::firmware::{Adam, Dp800, Encoder, Firmware, Gcs, Lorenz, Odrive, Qsb};
 use super::plant::{Plant, STEP_S};
 use super::trouble::{PlannedTrouble, Trouble};
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,8 @@ pub enum MockInstrument {
     CounterS2,
     /// Channel 0: the brake's housing; 1: the joint's gear; the others: the room.
     Thermometer,
+    /// Holds the sensor of S2: x radial, y vertical, z axial.
+    Stage,
 }
 
 impl MockInstrument {
@@ -25,7 +27,7 @@ impl MockInstrument {
     pub const JOINT_BENCH: [MockInstrument; 3] =
         [MockInstrument::Joint, MockInstrument::TorqueSensor, MockInstrument::Brake];
 
-    const COUNT: usize = 6;
+    const COUNT: usize = 7;
 
     pub(super) fn label(self) -> &'static str {
         match self {
@@ -35,6 +37,7 @@ impl MockInstrument {
             MockInstrument::CounterS1 => "counter_s1",
             MockInstrument::CounterS2 => "counter_s2",
             MockInstrument::Thermometer => "thermometer",
+            MockInstrument::Stage => "stage",
         }
     }
 
@@ -45,6 +48,7 @@ impl MockInstrument {
             MockInstrument::CounterS1 => Some(Box::new(Qsb::new(Encoder::S1))),
             MockInstrument::CounterS2 => Some(Box::new(Qsb::new(Encoder::S2))),
             MockInstrument::Thermometer => Some(Box::new(Adam::new())),
+            MockInstrument::Stage => Some(Box::new(Gcs::new())),
         }
     }
 }

@@ -6,18 +6,23 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// `tcp://host:port`, or the name of a serial port (`/dev/ttyUSB0`, `COM3`, the path of a pseudo-terminal).
+/// `tcp://host:port`, `usb://` and the serial number of a USB device wherever it is plugged in, or the name of a serial port
+/// (`/dev/ttyUSB0`, `COM3`, the path of a pseudo-terminal).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum Address {
     Serial(String),
+    Usb(String),
     Tcp(String),
 }
 
 impl From<&str> for Address {
     fn from(text: &str) -> Self {
-        match text.strip_prefix("tcp://") {
-            Some(host) => Address::Tcp(host.to_owned()),
+        if let Some(host) = text.strip_prefix("tcp://") {
+            return Address::Tcp(host.to_owned());
+        }
+        match text.strip_prefix("usb://") {
+            Some(serial_number) => Address::Usb(serial_number.to_owned()),
             None => Address::Serial(text.to_owned()),
         }
     }
@@ -47,6 +52,7 @@ impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Address::Serial(path) => f.write_str(path),
+            Address::Usb(serial_number) => write!(f, "usb://{serial_number}"),
             Address::Tcp(host) => write!(f, "tcp://{host}"),
         }
     }
@@ -76,7 +82,7 @@ mod tests {
 
     #[test]
     fn an_address_survives_its_text() {
-        for text in ["tcp://127.0.0.1:5555", "/dev/ttyUSB0", "COM3"] {
+        for text in ["tcp://127.0.0.1:5555", "usb://FT1234", "/dev/ttyUSB0", "COM3"] {
             assert_eq!(Address::from(text).to_string(), text);
         }
         assert_eq!(Address::from("tcp://localhost:5025"), Address::Tcp("localhost:5025".into()));

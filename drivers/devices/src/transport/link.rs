@@ -5,6 +5,7 @@ use super::wire::Wire;
 use super::{Command, PortSettings, Recorder, Request, Scan};
 use jointbench_instrument::{Fault, FaultKind};
 use std::io;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Silence after which a line counts as drained.
@@ -42,23 +43,35 @@ impl Link {
     pub fn open(instrument: &str, settings: &PortSettings, deadline: Duration) -> Result<Self, Fault> {
         let address = settings.address.to_string();
         let wire = Wire::open(settings).map_err(|kind| kind.at(instrument, &address))?;
-        let recorder = settings.record.as_ref().map(|path| {
-            Recorder::create(path, instrument, &address).map_err(|error| {
-                let what = format!("its traffic cannot be recorded in {}: {error}", path.display());
-                FaultKind::NotOpened { what }.at(instrument, &address)
-            })
-        });
-        Ok(Self {
+        let mut link = Self {
             instrument: instrument.to_owned(),
             settings: settings.clone(),
             address,
             deadline,
             wire: Some(wire),
-            recorder: recorder.transpose()?,
+            recorder: None,
             trust: Trust::Stale,
             outgoing: Vec::with_capacity(256),
             received: Vec::with_capacity(256),
-        })
+        };
+        link.record(settings.record.as_deref())?;
+        Ok(link)
+    }
+
+    /// Writes the traffic down in a new file from now on, or no more. The record begins with a drain and an identification,
+    /// as every replay does.
+    pub fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
+        let recorder = file.map(|path| {
+            Recorder::create(path, &self.instrument, &self.address).map_err(|error| {
+                let what = format!("its traffic cannot be recorded in {}: {error}", path.display());
+                self.fault(FaultKind::NotOpened { what })
+            })
+        });
+        self.recorder = recorder.transpose()?;
+        if self.recorder.is_some() {
+            self.distrust();
+        }
+        Ok(())
     }
 
     pub fn instrument(&self) -> &str {

@@ -3,6 +3,7 @@
 mod address;
 mod codec;
 mod link;
+mod ports;
 mod traffic;
 mod wire;
 
@@ -10,4 +11,5 @@ pub use address::{Address, PortSettings};
 pub(crate) use codec::shown;
 pub use codec::{Command, Request, Scan};
 pub use link::Link;
+pub use ports::{FoundPort, UsbDevice, ports, why_closed};
 pub use traffic::{Event, Recorder, Traffic, TrafficError};

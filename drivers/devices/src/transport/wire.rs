@@ -1,5 +1,6 @@
 //! One open port: a serial port held exclusively, or a TCP stream. Reads come in chunks; nothing blocks past its deadline.
 
+use super::ports::path_of;
 use super::{Address, PortSettings};
 use jointbench_instrument::FaultKind;
 use std::io::{self, ErrorKind, Read, Write};
@@ -22,6 +23,7 @@ impl Wire {
     pub fn open(settings: &PortSettings) -> Result<Self, FaultKind> {
         match &settings.address {
             Address::Serial(path) => open_serial(path, settings.baud),
+            Address::Usb(serial_number) => open_serial(&path_of(serial_number)?, settings.baud),
             Address::Tcp(host) => open_tcp(host).map_err(|e| FaultKind::NotOpened { what: e.to_string() }),
         }
     }

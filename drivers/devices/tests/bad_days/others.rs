@@ -3,13 +3,15 @@
 use super::{DEADLINE, settings};
 use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
 use jointbench_devices::{
-    AdamSettings, AdamThermometer, MockBench, MockSettings, PortSettings, QsbCounter, QsbSettings,
+    AdamSettings, AdamThermometer, GcsSettings, GcsStage, MockBench, MockSettings, PortSettings, QsbCounter,
+    QsbSettings,
 };
-use jointbench_instrument::roles::{EncoderStatus, PositionCounter, Thermometer};
+use jointbench_instrument::roles::{AlignmentStage, EncoderStatus, Pose, PositionCounter, Thermometer};
 use jointbench_instrument::units::{Amperes, RadPerSec};
 use jointbench_instrument::{Fault, FaultKind};
 
-const OTHERS: [MockInstrument; 3] = [MockInstrument::CounterS1, MockInstrument::CounterS2, MockInstrument::Thermometer];
+const OTHERS: [MockInstrument; 4] =
+    [MockInstrument::CounterS1, MockInstrument::CounterS2, MockInstrument::Thermometer, MockInstrument::Stage];
 
 fn start(transport: Transport) -> MockBench {
     MockBench::start(MockSettings { others: OTHERS.to_vec(), ..settings(transport) }).unwrap()
@@ -39,11 +41,21 @@ fn thermometer(mock: &MockBench) -> AdamThermometer {
     AdamThermometer::open(settings).unwrap()
 }
 
+fn stage(mock: &MockBench) -> GcsStage {
+    let port = PortSettings::new(mock.address(MockInstrument::Stage).unwrap(), 115_200);
+    let settings = GcsSettings { name: "stage".into(), port, deadline_ms: DEADLINE.as_millis() as u64 };
+    GcsStage::open(settings).unwrap()
+}
+
 /// A use of the instrument that needs a reply.
 fn user(mock: &MockBench, instrument: MockInstrument) -> Box<dyn FnMut() -> Result<(), Fault>> {
     if instrument == MockInstrument::Thermometer {
         let mut thermometer = thermometer(mock);
         return Box::new(move || thermometer.read().map(drop));
+    }
+    if instrument == MockInstrument::Stage {
+        let mut stage = stage(mock);
+        return Box::new(move || stage.pose().map(drop));
     }
     let mut counter = counter(mock, instrument);
     Box::new(move || counter.read().map(drop))
@@ -67,7 +79,7 @@ fn a_passing_trouble_is_seen_and_over_when_it_is() {
     };
     // Side by side: nearly all of it is waiting for deadlines.
     std::thread::scope(|scope| {
-        for instrument in [MockInstrument::CounterS1, MockInstrument::Thermometer] {
+        for instrument in [MockInstrument::CounterS1, MockInstrument::Thermometer, MockInstrument::Stage] {
             for (transport, trouble) in [
                 (Transport::Terminal, Trouble::Silent),
                 (Transport::Tcp, Trouble::Late),
@@ -95,7 +107,9 @@ fn a_pulled_cable_is_named_and_another_unit_is_not_ours() {
         assert!(matches!(fault.kind, FaultKind::WrongInstrument { .. }), "{instrument:?}: {fault}");
         mock.trouble(instrument, Trouble::Refusing);
         let fault = ask().unwrap_err();
-        assert!(matches!(fault.kind, FaultKind::Refused { .. }), "{instrument:?}: {fault}");
+        // The stage does not answer a query that it does not execute.
+        let silent = instrument == MockInstrument::Stage && matches!(fault.kind, FaultKind::Silent { .. });
+        assert!(silent || matches!(fault.kind, FaultKind::Refused { .. }), "{instrument:?}: {fault}");
         mock.trouble(instrument, Trouble::None);
         ask().unwrap();
     }
@@ -151,4 +165,57 @@ fn both_encoders_follow_the_shaft_and_differ_by_their_shape_and_delay() {
     let apart_rad = mean_disparity(-100.0) - mean_disparity(100.0);
     let expected_rad = 2.0 * 100.0 * 64.34e-6;
     assert!((apart_rad - expected_rad).abs() < 6e-4, "{apart_rad} rad, expected {expected_rad} rad");
+}
+
+/// Waits on the bench's clock until `done`.
+fn wait_until(mock: &MockBench, mut done: impl FnMut() -> bool) {
+    let clock = mock.clock();
+    for _ in 0..200 {
+        if done() {
+            return;
+        }
+        clock.sleep_until_s(clock.now_s() + 0.1);
+    }
+    panic!("not within 20 s");
+}
+
+#[test]
+fn a_stage_moves_only_when_referenced_and_finds_where_the_encoder_loses_its_periods() {
+    let mock = start(Transport::Terminal);
+    let (mut stage, mut s2) = (stage(&mock), counter(&mock, MockInstrument::CounterS2));
+    let radial = |mm: f64| Pose { shift_m: [1e-3 * mm, 0.0, 0.0], ..Pose::default() };
+    let fault = stage.move_to(radial(0.1)).unwrap_err();
+    assert!(fault.to_string().contains("not referenced"), "{fault}");
+    stage.reference().unwrap();
+    let fault = stage.move_to(radial(0.1)).unwrap_err();
+    assert!(fault.to_string().contains("busy"), "{fault}");
+    wait_until(&mock, || stage.is_referenced().unwrap());
+    assert!(stage.move_to(radial(40.0)).unwrap_err().to_string().contains("cannot be reached"));
+    // Table 4.4: −0.25 and +0.3 mm.
+    for (mm, consistent) in [(0.28, true), (0.32, false), (-0.23, true), (-0.27, false), (0.0, true)] {
+        stage.move_to(radial(mm)).unwrap();
+        wait_until(&mock, || stage.is_settled().unwrap());
+        assert!((stage.pose().unwrap().shift_m[0] - 1e-3 * mm).abs() < 1e-6);
+        assert_eq!(s2.periods_are_consistent().unwrap(), consistent, "{mm} mm");
+    }
+}
+
+#[test]
+fn a_stage_stops_at_once_and_says_when_it_lost_its_reference() {
+    let mock = start(Transport::Terminal);
+    let mut stage = stage(&mock);
+    stage.reference().unwrap();
+    wait_until(&mock, || stage.is_referenced().unwrap());
+    stage.move_to(Pose { shift_m: [0.01, 0.0, 0.0], ..Pose::default() }).unwrap();
+    mock.clock().sleep_until_s(mock.clock().now_s() + 1.0);
+    stage.stop().unwrap();
+    let there = stage.pose().unwrap().shift_m[0];
+    mock.clock().sleep_until_s(mock.clock().now_s() + 1.0);
+    assert!((0.001..0.003).contains(&there) && (stage.pose().unwrap().shift_m[0] - there).abs() < 1e-6, "{there} m");
+    stage.move_to(Pose::default()).unwrap();
+    mock.trouble(MockInstrument::Stage, Trouble::PowerCycled);
+    assert!(stage.pose().is_err());
+    mock.trouble(MockInstrument::Stage, Trouble::None);
+    let fault = stage.pose().unwrap_err();
+    assert!(fault.to_string().contains("not referenced any more"), "{fault}");
 }

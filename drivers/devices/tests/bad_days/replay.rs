@@ -1,10 +1,11 @@
 //! A recorded conversation, had again with an instrument that only knows the record.
 
 use super::{DEADLINE, start};
+use jointbench_devices::driver::{LorenzSettings, Range};
 use jointbench_devices::sim::{MockInstrument, Replay, Transport, Trouble};
 use jointbench_devices::transport::{Address, Traffic};
-use jointbench_devices::{MockBench, PortSettings, ScpiSettings, ScpiSource};
-use jointbench_instrument::roles::{CurrentSource, SupplyReading};
+use jointbench_devices::{LorenzSensor, MockBench, PortSettings, ScpiSettings, ScpiSource};
+use jointbench_instrument::roles::{CurrentSource, SupplyReading, TorqueSensor};
 use jointbench_instrument::units::{Amperes, Volts};
 use jointbench_instrument::{Fault, FaultKind};
 use std::path::PathBuf;
@@ -74,4 +75,30 @@ fn a_lost_port_is_lost_again_and_a_record_that_cannot_be_written_is_told() {
     port.record = Some(PathBuf::from("/nowhere/at/all.txt"));
     drop(bench);
     assert!(open(port).unwrap_err().to_string().contains("/nowhere/at/all.txt"));
+}
+
+#[test]
+fn any_stretch_of_a_bench_can_be_recorded_and_had_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_mock, mut bench) = start(Transport::Terminal);
+    bench.joint.read().unwrap();
+    let files = bench.record(Some(folder.path())).unwrap();
+    let sensor = bench.torque_sensor.as_mut().unwrap();
+    let recorded = [sensor.read().unwrap(), sensor.read().unwrap()];
+    bench.record(None).unwrap();
+    bench.torque_sensor.as_mut().unwrap().read().unwrap();
+    let names: Vec<_> = files.iter().map(|file| file.file_name().unwrap().to_str().unwrap()).collect();
+    assert_eq!(names, ["joint.traffic", "torque_sensor.traffic", "brake_a.traffic"]);
+
+    let traffic = Traffic::parse(&std::fs::read_to_string(&files[1]).unwrap()).unwrap();
+    let replay = Replay::start(traffic, Transport::Terminal).unwrap();
+    let port = PortSettings::new(replay.address().clone(), 230_400);
+    let deadline_ms = DEADLINE.as_millis() as u64;
+    let settings = LorenzSettings { name: "torque".into(), port, deadline_ms, range: Range::Fine, nominal_nm: 20.0 };
+    let mut sensor = LorenzSensor::open(settings).unwrap();
+    assert_eq!([sensor.read().unwrap(), sensor.read().unwrap()], recorded);
+    assert!(replay.is_done() && replay.departure().is_none(), "{:?}", replay.departure());
+
+    let fault = bench.record(Some(&folder.path().join("nowhere"))).unwrap_err();
+    assert!(fault.to_string().contains("nowhere"), "{fault}");
 }

@@ -4,6 +4,8 @@ mod adam;
 mod dp800;
 mod dp800_channel;
 mod dp800_commands;
+mod gcs;
+mod gcs_motion;
 mod lorenz;
 mod odrive;
 mod odrive_lines;
@@ -17,6 +19,7 @@ mod tests;
 
 pub use adam::Adam;
 pub use dp800::Dp800;
+pub use gcs::Gcs;
 pub use lorenz::Lorenz;
 pub use odrive::Odrive;
 pub use qsb::{Encoder, Qsb};

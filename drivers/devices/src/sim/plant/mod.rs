@@ -178,6 +178,11 @@ impl Plant {
         self.encoders.power_cycle_s2(self.step);
     }
 
+    /// Where the stage holds the sensor of S2.
+    pub fn hold_sensor(&mut self, shift_m: [f64; 3], rotation_rad: [f64; 3]) {
+        self.encoders.pose = encoders::Pose { shift_m, rotation_rad };
+    }
+
     pub fn periods_are_consistent(&self) -> bool {
         self.encoders.periods_are_consistent()
     }

@@ -23,6 +23,7 @@ pub enum Signal {
     EncoderStartup,
     EncoderPhase,
     Temperature,
+    Stage,
 }
 
 #[derive(Debug, Clone, Copy)]

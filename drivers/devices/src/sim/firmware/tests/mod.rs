@@ -3,6 +3,7 @@
 mod adam;
 mod dp800;
 mod fuzz;
+mod gcs;
 mod lorenz;
 mod odrive;
 mod qsb;

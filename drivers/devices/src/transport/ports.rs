@@ -1,0 +1,126 @@
+//! The serial ports of this computer: what is plugged in where, and what may not be opened and why. Opens none of them:
+//! opening can reset an instrument.
+
+use super::Address;
+use jointbench_instrument::FaultKind;
+use serde::Serialize;
+use serialport::{SerialPortType, available_ports};
+#[cfg(unix)]
+use std::path::PathBuf;
+
+/// What a USB device says of itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct UsbDevice {
+    pub vendor_id: u16,
+    pub product_id: u16,
+    pub serial_number: Option<String>,
+    pub maker: Option<String>,
+    pub product: Option<String>,
+}
+
+/// A port that is there, whether it may be used or not.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct FoundPort {
+    pub address: Address,
+    /// The address that stays the same in another socket: `usb://` and the serial number.
+    pub lasting_address: Option<Address>,
+    pub usb: Option<UsbDevice>,
+    /// What devices with this vendor and product are on this kind of bench.
+    pub likely: Option<&'static str>,
+    /// Why it may not be opened, and the cure. `None`: nothing stands against it.
+    pub closed: Option<String>,
+}
+
+/// Vendor, product (`None`: any), what it is on a bench.
+const KNOWN: [(u16, Option<u16>, &str); 4] = [
+    (0x10C4, Some(0x8056), "torque sensor (Lorenz)"),
+    (0x1209, Some(0x0D32), "joint controller (ODrive)"),
+    (0x1AB1, None, "current source (Rigol)"),
+    (0x0403, None, "quadrature counter (QSB), or another instrument behind an FTDI converter"),
+];
+
+/// Every serial port of this computer, by name.
+pub fn ports() -> Result<Vec<FoundPort>, FaultKind> {
+    let mut found = available_ports().map_err(|error| FaultKind::NotOpened { what: error.to_string() })?;
+    found.sort_by(|a, b| a.port_name.cmp(&b.port_name));
+    let port = |info: serialport::SerialPortInfo| {
+        let usb = match info.port_type {
+            SerialPortType::UsbPort(usb) => Some(UsbDevice {
+                vendor_id: usb.vid,
+                product_id: usb.pid,
+                serial_number: usb.serial_number,
+                maker: usb.manufacturer,
+                product: usb.product,
+            }),
+            _ => None,
+        };
+        let likely = usb.as_ref().and_then(|usb| {
+            let is = |(vendor, product, _): &&(u16, Option<u16>, &str)| {
+                *vendor == usb.vendor_id && product.is_none_or(|product| product == usb.product_id)
+            };
+            KNOWN.iter().find(is).map(|(.., what)| *what)
+        });
+        FoundPort {
+            lasting_address: usb.as_ref().and_then(|usb| usb.serial_number.clone()).map(Address::Usb),
+            closed: why_closed(&info.port_name),
+            address: Address::Serial(info.port_name),
+            usb,
+            likely,
+        }
+    };
+    Ok(found.into_iter().map(port).collect())
+}
+
+/// Where the device with this serial number is plugged in now.
+pub(super) fn path_of(serial_number: &str) -> Result<String, FaultKind> {
+    let not_opened = |what: String| FaultKind::NotOpened { what };
+    let ports = available_ports().map_err(|error| not_opened(error.to_string()))?;
+    let wanted = |info: &&serialport::SerialPortInfo| match &info.port_type {
+        SerialPortType::UsbPort(usb) => usb.serial_number.as_deref() == Some(serial_number),
+        _ => false,
+    };
+    match ports.iter().filter(wanted).collect::<Vec<_>>()[..] {
+        [info] => Ok(info.port_name.clone()),
+        [] => Err(not_opened(format!("no USB device with the serial number {serial_number}; is it plugged in?"))),
+        [..] => Err(not_opened(format!("several USB ports with the serial number {serial_number}: name the port"))),
+    }
+}
+
+/// Why the port at `path` may not be opened, without opening it. `None`: nothing stands against it.
+#[cfg(unix)]
+pub fn why_closed(path: &str) -> Option<String> {
+    use rustix::fs::{Access, access};
+    use rustix::io::Errno;
+    use std::os::unix::fs::MetadataExt;
+    match access(path, Access::READ_OK | Access::WRITE_OK) {
+        Ok(()) => {}
+        Err(Errno::ACCESS) => {
+            let group = std::fs::metadata(path).map(|port| format!(" (number {})", port.gid())).unwrap_or_default();
+            return Some(format!(
+                "permission denied; add the user to the group that owns the port{group}, and log in again"
+            ));
+        }
+        Err(Errno::NOENT) => return Some("it is not there; is it plugged in?".into()),
+        Err(error) => return Some(error.to_string()),
+    }
+    user_of(path).map(|user| format!("in use by {user}; end it first"))
+}
+
+#[cfg(not(unix))]
+pub fn why_closed(_path: &str) -> Option<String> {
+    None
+}
+
+/// A process that has the port open, where the system tells (Linux does of the user's own processes).
+#[cfg(unix)]
+fn user_of(path: &str) -> Option<String> {
+    let path = std::fs::canonicalize(path).ok()?;
+    let processes = std::fs::read_dir("/proc").ok()?.flatten().map(|process| process.path());
+    let is_process = |path: &PathBuf| path.file_name().is_some_and(|name| name.as_encoded_bytes()[0].is_ascii_digit());
+    let holder = processes.filter(is_process).find(|process| {
+        let open = std::fs::read_dir(process.join("fd")).into_iter().flatten().flatten();
+        open.into_iter().any(|file| std::fs::read_link(file.path()).is_ok_and(|target| target == path))
+    })?;
+    let name = std::fs::read_to_string(holder.join("comm")).unwrap_or_default();
+    Some(format!("{} (process {})", name.trim(), holder.file_name()?.display()))
+}
