@@ -16,8 +16,8 @@ pub mod sim;
 pub mod transport;
 
 pub use driver::{
-    AdamSettings, AdamThermometer, GcsSettings, GcsStage, LorenzSensor, LorenzSettings, OdriveJoint, OdriveSettings,
-    QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
+    AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, LorenzSensor, LorenzSettings,
+    OdriveJoint, OdriveSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
 };
 pub use sim::{Joint, MockBench, MockSettings, Replay};
 pub use transport::{Address, PortSettings};

@@ -1,15 +1,20 @@
 //! Every codec against bytes that no instrument would send: no panic, always forward, and back in step afterwards.
 
+use jointbench_devices::protocol::gcs::{self, QueryAxes};
 use jointbench_devices::protocol::lorenz::{
     Frames, Hello, Item, ReadConfig, ReadRaw, ReadStatusShort, StartStream, Telegram,
 };
+use jointbench_devices::protocol::modbus::ReadRegisters;
 use jointbench_devices::protocol::odrive::{Part, ReadErrors, ReadFeedback, ReadInfo, ReadNumber, SetVelocity};
+use jointbench_devices::protocol::qsb::{ReadRegister, Register, WriteRegister};
 use jointbench_devices::protocol::scpi::{
-    Identify, QueryError, QueryNumber, QueryOutput, ReadCondition, ReadMeasured, Set, Terminator,
+    Identify, QueryError, QueryNumber, QueryOutput, ReadCondition, ReadMeasured, ReadVoltage, Set, Terminator,
 };
 use jointbench_devices::transport::{Request, Scan, Traffic};
 use proptest::collection::vec;
 use proptest::prelude::*;
+
+const REGISTERS: ReadRegisters = ReadRegisters { slave: 1, first: 0, count: 6 };
 
 /// Anything, with more of what the protocols give a meaning to.
 fn bytes() -> impl Strategy<Value = Vec<u8>> {
@@ -74,6 +79,13 @@ proptest! {
         walk(&ReadMeasured(lf), &noise);
         walk(&ReadCondition(lf), &noise);
         walk(&Set(lf, ":OUTP CH1,ON".into()), &noise);
+        walk(&ReadVoltage(lf), &noise);
+        walk(&ReadRegister(Register::Encoder), &noise);
+        walk(&WriteRegister(Register::Mode, 0), &noise);
+        walk(&REGISTERS, &noise);
+        walk(&QueryAxes("POS?"), &noise);
+        walk(&gcs::Identify, &noise);
+        walk(&gcs::Set("FRF".into()), &noise);
         walk(&Hello, &noise);
         walk(&ReadRaw, &noise);
         walk(&ReadStatusShort, &noise);
@@ -87,6 +99,9 @@ proptest! {
         check_back_in_step(&ReadNumber { path: "vbus_voltage" }, &noise, b"\n", b"24.087744*32\r\n");
         check_back_in_step(&ReadMeasured(Terminator::Lf), &noise, b"\n", b"12.9870,0.2498,3.2441\n");
         check_back_in_step(&QueryError(Terminator::Lf), &noise, b"\n", b"-222,\"Data out of range\"\n");
+        check_back_in_step(&ReadRegister(Register::Encoder), &noise, b"\n", b"r 0E 000012F3 0000ABD0 !\r\n");
+        // A line that ends with a blank is not the last one of its reply.
+        check_back_in_step(&gcs::QueryError, &noise, b".\n", b"7\n");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! One driver for each instrument, behind the narrow role that the bench needs.
 
 mod adam;
+mod dmm;
 mod gcs;
 mod lorenz;
 mod lorenz_stream;
@@ -10,6 +11,7 @@ mod scpi;
 mod stream_clock;
 
 pub use adam::{AdamSettings, AdamThermometer};
+pub use dmm::{DmmSettings, DmmTorqueSensor};
 pub use gcs::{GcsSettings, GcsStage};
 pub use lorenz::{LorenzSensor, LorenzSettings, Range};
 pub use odrive::{OdriveJoint, OdriveSettings, Thermistor};

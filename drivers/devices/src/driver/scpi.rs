@@ -5,7 +5,7 @@ use crate::protocol::scpi::{
     ClearStatus, ERROR_QUEUE_DEPTH, Identify, QueryError, QueryNumber, QueryOutput, ReadCondition, ReadMeasured, Set,
     SwitchOff, Terminator,
 };
-use crate::transport::{Address, Command, Link, PortSettings};
+use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::roles::{CurrentSource, Identity, Instrument, Regulation, SupplyReading};
 use jointbench_instrument::units::{Amperes, Volts};
 use jointbench_instrument::{Fault, FaultKind};
@@ -38,10 +38,7 @@ impl ScpiSource {
     /// Opens the port and identifies the supply. Nothing is commanded.
     pub fn open(settings: ScpiSettings) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
-        let line_end = match settings.port.address {
-            Address::Serial(_) | Address::Usb(_) => Terminator::CrLf,
-            Address::Tcp(_) => Terminator::Lf,
-        };
+        let line_end = Terminator::for_address(&settings.port.address);
         let mut source = Self { settings, link, line_end, identity: None, on: false };
         source.ready()?;
         Ok(source)

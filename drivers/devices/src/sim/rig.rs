@@ -1,6 +1,6 @@
 //! Everything behind the wires: the plant and the instruments' firmware, advanced together.
 
-use super::firmware::{Adam, Dp800, Encoder, Firmware, Gcs, Lorenz, Odrive, Qsb};
+use super::firmware::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Lorenz, Odrive, Qsb};
 use super::plant::{Plant, STEP_S};
 use super::trouble::{PlannedTrouble, Trouble};
 use serde::{Deserialize, Serialize};
@@ -20,6 +20,8 @@ pub enum MockInstrument {
     Thermometer,
     /// Holds the sensor of S2: x radial, y vertical, z axial.
     Stage,
+    /// On the analogue output of the torque sensor's small range, 10 V for 20 Nm.
+    Multimeter,
 }
 
 impl MockInstrument {
@@ -27,7 +29,7 @@ impl MockInstrument {
     pub const JOINT_BENCH: [MockInstrument; 3] =
         [MockInstrument::Joint, MockInstrument::TorqueSensor, MockInstrument::Brake];
 
-    const COUNT: usize = 7;
+    const COUNT: usize = 8;
 
     pub(super) fn label(self) -> &'static str {
         match self {
@@ -38,6 +40,7 @@ impl MockInstrument {
             MockInstrument::CounterS2 => "counter_s2",
             MockInstrument::Thermometer => "thermometer",
             MockInstrument::Stage => "stage",
+            MockInstrument::Multimeter => "multimeter",
         }
     }
 
@@ -49,6 +52,7 @@ impl MockInstrument {
             MockInstrument::CounterS2 => Some(Box::new(Qsb::new(Encoder::S2))),
             MockInstrument::Thermometer => Some(Box::new(Adam::new())),
             MockInstrument::Stage => Some(Box::new(Gcs::new())),
+            MockInstrument::Multimeter => Some(Box::new(Dmm::new())),
         }
     }
 }

@@ -3,15 +3,20 @@
 use super::{DEADLINE, settings};
 use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
 use jointbench_devices::{
-    AdamSettings, AdamThermometer, GcsSettings, GcsStage, MockBench, MockSettings, PortSettings, QsbCounter,
-    QsbSettings,
+    AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, MockBench, MockSettings,
+    PortSettings, QsbCounter, QsbSettings,
 };
-use jointbench_instrument::roles::{AlignmentStage, EncoderStatus, Pose, PositionCounter, Thermometer};
+use jointbench_instrument::roles::{AlignmentStage, EncoderStatus, Pose, PositionCounter, Thermometer, TorqueSensor};
 use jointbench_instrument::units::{Amperes, RadPerSec};
 use jointbench_instrument::{Fault, FaultKind};
 
-const OTHERS: [MockInstrument; 4] =
-    [MockInstrument::CounterS1, MockInstrument::CounterS2, MockInstrument::Thermometer, MockInstrument::Stage];
+const OTHERS: [MockInstrument; 5] = [
+    MockInstrument::Multimeter,
+    MockInstrument::CounterS1,
+    MockInstrument::CounterS2,
+    MockInstrument::Thermometer,
+    MockInstrument::Stage,
+];
 
 fn start(transport: Transport) -> MockBench {
     MockBench::start(MockSettings { others: OTHERS.to_vec(), ..settings(transport) }).unwrap()
@@ -47,11 +52,21 @@ fn stage(mock: &MockBench) -> GcsStage {
     GcsStage::open(settings).unwrap()
 }
 
+fn multimeter(mock: &MockBench) -> DmmTorqueSensor {
+    let port = PortSettings::new(mock.address(MockInstrument::Multimeter).unwrap(), 9600);
+    let deadline_ms = DEADLINE.as_millis() as u64;
+    DmmTorqueSensor::open(DmmSettings { name: "multimeter".into(), port, deadline_ms, nominal_nm: 20.0 }).unwrap()
+}
+
 /// A use of the instrument that needs a reply.
 fn user(mock: &MockBench, instrument: MockInstrument) -> Box<dyn FnMut() -> Result<(), Fault>> {
     if instrument == MockInstrument::Thermometer {
         let mut thermometer = thermometer(mock);
         return Box::new(move || thermometer.read().map(drop));
+    }
+    if instrument == MockInstrument::Multimeter {
+        let mut multimeter = multimeter(mock);
+        return Box::new(move || multimeter.read().map(drop));
     }
     if instrument == MockInstrument::Stage {
         let mut stage = stage(mock);
@@ -79,7 +94,9 @@ fn a_passing_trouble_is_seen_and_over_when_it_is() {
     };
     // Side by side: nearly all of it is waiting for deadlines.
     std::thread::scope(|scope| {
-        for instrument in [MockInstrument::CounterS1, MockInstrument::Thermometer, MockInstrument::Stage] {
+        for instrument in
+            [MockInstrument::CounterS1, MockInstrument::Thermometer, MockInstrument::Stage, MockInstrument::Multimeter]
+        {
             for (transport, trouble) in [
                 (Transport::Terminal, Trouble::Silent),
                 (Transport::Tcp, Trouble::Late),
@@ -218,4 +235,16 @@ fn a_stage_stops_at_once_and_says_when_it_lost_its_reference() {
     mock.trouble(MockInstrument::Stage, Trouble::None);
     let fault = stage.pose().unwrap_err();
     assert!(fault.to_string().contains("not referenced any more"), "{fault}");
+}
+
+#[test]
+fn an_overloaded_analogue_output_is_a_fault_and_no_torque() {
+    let mock = start(Transport::Terminal);
+    let mut multimeter = multimeter(&mock);
+    assert!(multimeter.read().unwrap().0.abs() < 0.1);
+    mock.trouble(MockInstrument::TorqueSensor, Trouble::Saturated);
+    let fault = multimeter.read().unwrap_err();
+    assert!(matches!(fault.kind, FaultKind::Saturated { .. }) && !fault.is_retryable(), "{fault}");
+    mock.trouble(MockInstrument::TorqueSensor, Trouble::None);
+    multimeter.read().unwrap();
 }

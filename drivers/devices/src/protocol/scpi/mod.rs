@@ -7,5 +7,5 @@ mod requests;
 
 pub use requests::{
     ClearStatus, Condition, ERROR_QUEUE_DEPTH, Identify, Measured, QueryError, QueryNumber, QueryOutput, ReadCondition,
-    ReadMeasured, Set, SwitchOff, Terminator,
+    ReadMeasured, ReadVoltage, Set, SwitchOff, Terminator,
 };

@@ -1,7 +1,7 @@
 //! One type for each command.
 
 use crate::protocol::scan_line;
-use crate::transport::{Command, Request, Scan, shown};
+use crate::transport::{Address, Command, Request, Scan, shown};
 use jointbench_instrument::FaultKind;
 use jointbench_instrument::roles::Identity;
 
@@ -17,6 +17,13 @@ pub enum Terminator {
 }
 
 impl Terminator {
+    pub fn for_address(address: &Address) -> Self {
+        match address {
+            Address::Serial(_) | Address::Usb(_) => Terminator::CrLf,
+            Address::Tcp(_) => Terminator::Lf,
+        }
+    }
+
     fn push(self, out: &mut Vec<u8>, text: &str) {
         out.extend_from_slice(text.as_bytes());
         out.extend_from_slice(match self {
@@ -151,6 +158,16 @@ query!(ReadCondition, |_this| ":STAT:QUES:INST:ISUM1:COND?", Condition, |text| {
     })
 });
 
+/// Takes a reading of a multimeter. `None`: overload.
+#[derive(Debug, Clone, Copy)]
+pub struct ReadVoltage(pub Terminator);
+
+query!(ReadVoltage, |_this| "READ?", Option<f64>, |text| match text.parse::<f64>() {
+    // 9.9E37 to either side; 9.91E37 is SCPI's "not a number".
+    Ok(value) if (value.abs() - 9.9e37).abs() < 5e34 => Ok(None),
+    _ => number(text).map(Some),
+});
+
 /// A command with the question whether it was accepted.
 #[derive(Debug, Clone)]
 pub struct Set(pub Terminator, pub String);
@@ -226,6 +243,14 @@ mod tests {
         let measured = ReadMeasured(lf).decode(b"12.9870,0.2498,3.2441\n").unwrap();
         assert_eq!(measured, Measured { voltage_v: 12.987, current_a: 0.2498 });
         assert!(ReadCondition(lf).decode(b"1\n").unwrap().constant_current);
+    }
+
+    #[test]
+    fn an_overload_is_no_number_and_no_garbage() {
+        let read = ReadVoltage(Terminator::Lf);
+        assert_eq!(read.decode(b"+4.50012345E+00\n"), Ok(Some(4.500_123_45)));
+        assert_eq!(read.decode(b"-9.90000000E+37\n"), Ok(None));
+        assert!(matches!(read.decode(b"+9.91000000E+37\n"), Err(FaultKind::Garbled { .. })));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The instruments' side of each protocol, faithful to what the makers publish rather than to what our drivers need.
 
 mod adam;
+mod dmm;
 mod dp800;
 mod dp800_channel;
 mod dp800_commands;
@@ -18,6 +19,7 @@ mod scpi;
 mod tests;
 
 pub use adam::Adam;
+pub use dmm::Dmm;
 pub use dp800::Dp800;
 pub use gcs::Gcs;
 pub use lorenz::Lorenz;

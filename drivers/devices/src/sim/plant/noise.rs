@@ -24,6 +24,7 @@ pub enum Signal {
     EncoderPhase,
     Temperature,
     Stage,
+    Multimeter,
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! The instruments' own parsers against garbage: no panic, bounded memory, and the next proper request is answered.
 
-use super::super::{Dp800, Firmware, Lorenz, Odrive};
+use super::super::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Lorenz, Odrive, Qsb};
 use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant};
 use proptest::collection::vec;
@@ -44,6 +44,19 @@ proptest! {
     fn a_supply_is_back_after_one_line_end(garbage in pieces()) {
         let reply = ask(&mut Dp800::new(), &garbage, b"\n", b"*IDN?\n");
         prop_assert!(reply.starts_with(b"RIGOL"), "{}", reply.escape_ascii());
+    }
+
+    #[test]
+    fn the_others_are_back_after_one_line_end_or_one_frame(garbage in pieces()) {
+        // Garbage may hold what changes the format of a counter's replies, and not whether it replies.
+        let reply = ask(&mut Qsb::new(Encoder::S2), &garbage, b"\r", b"R06\r");
+        prop_assert!(reply.starts_with(b"r"), "{}", reply.escape_ascii());
+        let reply = ask(&mut Gcs::new(), &garbage, b"\n", b"CSV?\n");
+        prop_assert_eq!(reply, b"2.0\n");
+        let reply = ask(&mut Dmm::new(), &garbage, b"\n", b"*OPC?\n");
+        prop_assert_eq!(reply, b"1\n");
+        let reply = ask(&mut Adam::new(), &garbage, &[0; 8], b"\x01\x03\x00\xD2\x00\x02\x64\x32");
+        prop_assert_eq!(reply, b"\x01\x03\x04\x40\x15\x00\x00\xFE\x37");
     }
 
     #[test]

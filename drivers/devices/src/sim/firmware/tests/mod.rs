@@ -1,6 +1,7 @@
 //! Bytes in, bytes out: each firmware against what its maker publishes.
 
 mod adam;
+mod dmm;
 mod dp800;
 mod fuzz;
 mod gcs;
