@@ -1,7 +1,7 @@
 //! Which effect is missing, and what is left when all that can be named is in the model.
 
 use crate::assembly::Assembly;
-use crate::explore::{Advance, Exploration};
+use crate::explore::{Advance, Exploration, Withdrawal, Withdrawn};
 use crate::fit::report;
 use crate::linear::dot;
 use crate::maps::{Maps, spoken, yardstick};
@@ -43,7 +43,8 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        summary: summary(&found, &fit, verdict, &suggestions, structure.as_ref()),
+        undecided: undecided(&found, verdict, options),
+        summary: summary(&found, &fit, verdict, &suggestions, structure.as_ref(), options),
         regions,
         structure,
         experiment: experiment(&found, &prepared),
@@ -86,7 +87,12 @@ pub fn discover(
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        summary: summary(&found, &fit, verdict, &[], structure.as_ref()),
+        undecided: undecided(&found, verdict, options),
+        summary: format!(
+            "{}{}",
+            summary(&found, &fit, verdict, &[], structure.as_ref(), options),
+            taken_back(&found.withdrawn, &fit)
+        ),
         model: found.end().effects.clone(),
         regions: regions(&found.maps, &fit, &found, verdict),
         structure,
@@ -168,6 +174,7 @@ fn summary(
     verdict: Verdict,
     suggestions: &[Suggestion],
     structure: Option<&PairMap>,
+    options: &Options,
 ) -> String {
     let error = figure(fit.validation_rms, &fit.unit);
     let floor = match found.floor.rms {
@@ -175,9 +182,13 @@ fn summary(
         None => "how well the run repeats itself is not known".into(),
     };
     match verdict {
-        Verdict::Adequate => {
-            format!("The model explains this run: its held-out error is {error}, and {floor}.")
-        }
+        Verdict::Adequate => match undecided(found, verdict, options) {
+            None => format!("The model explains this run: its held-out error is {error}, and {floor}."),
+            Some(why) => format!(
+                "Nothing more can be named in this run, whose held-out error is {error}; whether the model is adequate \
+                 cannot be decided: {why}."
+            ),
+        },
         Verdict::MissingEffect => {
             let first = &suggestions[0];
             let more: Vec<&str> = suggestions[1..].iter().map(|s| s.effect.as_str()).collect();
@@ -215,6 +226,42 @@ fn summary(
             format!("Structure remains that no effect of the library explains: {shows}; {floor}.")
         }
     }
+}
+
+/// What too short a run cannot decide, however well the model fits it.
+fn undecided(found: &Exploration, verdict: Verdict, options: &Options) -> Option<String> {
+    let blocks = found.start.main.problem.blocks;
+    // The smallest p-value that flipping the signs of so many blocks can give.
+    let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
+    match verdict {
+        Verdict::Adequate if smallest > options.alpha => {
+            Some(format!("{blocks} independent stretches of motion are too few to name anything"))
+        }
+        Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
+        _ => None,
+    }
+}
+
+/// Effects that came in and were taken back, and what that cost.
+fn taken_back(withdrawn: &[Withdrawn], fit: &Fit) -> String {
+    let of = |why: Withdrawal| withdrawn.iter().filter(move |w| w.why == why);
+    let named = |why: Withdrawal| {
+        let mut names: Vec<&str> = of(why).map(|w| w.effect).filter(|e| !fit.effects.iter().any(|f| f == e)).collect();
+        names.reverse();
+        (!names.is_empty()).then(|| list(&names))
+    };
+    let open = named(Withdrawal::Undecided).map(|names| {
+        let with = of(Withdrawal::Undecided).map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
+        format!(
+            " Left out: {names}. With it all the held-out error would be {} instead of {}, but this run does not \
+             decide how large these effects are.",
+            figure(with, &fit.unit),
+            figure(fit.validation_rms, &fit.unit)
+        )
+    });
+    let half = named(Withdrawal::HalfExplains)
+        .map(|names| format!(" Taken back: {names}, because it explains only a part of what shows over its own axis."));
+    open.into_iter().chain(half).collect()
 }
 
 /// What to measure next.

@@ -3,11 +3,12 @@
 use crate::assembly::Assembly;
 use crate::effect::Stage;
 use crate::fit::report;
+use crate::intervals::intervals;
 use crate::linear::dot;
 use crate::maps::Maps;
 use crate::memory::memory;
 use crate::prepare::Prepared;
-use crate::report::{Invisible, NoiseFloor, ParameterState, Verdict};
+use crate::report::{Invisible, NoiseFloor, Parameter, ParameterState, Verdict};
 use crate::select::{Library, Move, Rival, Search, Silence, held_out};
 use crate::terms::{Term, Terms};
 use crate::{ModelError, ModelSpec, Options, ResidualKind, floor};
@@ -20,9 +21,25 @@ pub struct Advance<'p> {
     pub after: Assembly<'p>,
 }
 
+/// An effect that came in and was taken back, with the held-out RMS that the model had with it.
+pub struct Withdrawn<'p> {
+    pub effect: &'p str,
+    pub why: Withdrawal,
+    pub held_out_rms: f64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Withdrawal {
+    /// The run does not decide its size or shape.
+    Undecided,
+    /// It explains only a part of what shows over its own axis.
+    HalfExplains,
+}
+
 pub struct Exploration<'p> {
     pub start: Assembly<'p>,
     pub advances: Vec<Advance<'p>>,
+    pub withdrawn: Vec<Withdrawn<'p>>,
     pub silent: Vec<Silence<'p>>,
     pub invisible: Vec<Invisible>,
     /// Maps of what the last model leaves.
@@ -39,6 +56,9 @@ const REPEATABLE_SHARE: f64 = 0.6;
 
 /// Held-out error beyond this multiple of the noise floor is not noise.
 const FAR_FROM_FLOOR: f64 = 1.5;
+
+/// An effect that the run does not decide stays where held-out squared error without it is larger by this share.
+const CLEARLY_NEEDED: f64 = 0.1;
 
 /// An effect that takes less than this share of what any function of its own axis would take is not what is missing.
 const WHOLE_EXPLANATION: f64 = 0.7;
@@ -57,18 +77,26 @@ impl<'p> Exploration<'p> {
         let apart = prepared.about.residual == ResidualKind::PlateauMean;
         let stages = if apart { &all[..1] } else { &all[..] };
         let library = Library::new(spec, &prepared.main, stages);
-        let mut search = Search::new(start.main.clone(), &library, most, options);
+        let mut search = Search::new(start.main.clone(), &library, &prepared.baseline, most, options);
         let mut advances: Vec<Advance> = Vec::new();
         let mut effects = start.effects.clone();
+        let mut withdrawn = Vec::new();
         let (maps, residual) = loop {
             let made = match search.next() {
                 Some(made) => made,
                 None => {
-                    let residual = search.now.tangent().rest(&search.now.response());
-                    let maps = Maps::new(prepared, residual.clone(), options);
-                    let half = structured(&maps).and_then(|axis| half_explained(&search, axis, prepared, options));
-                    let Some(id) = half else { break (maps, residual) };
-                    search.withdraw(id)
+                    let open = undecided(&search, prepared);
+                    let (effect, why) = if let Some(id) = open {
+                        (id, Withdrawal::Undecided)
+                    } else {
+                        let residual = search.now.tangent().rest(&search.now.response());
+                        let maps = Maps::new(prepared, residual.clone(), options);
+                        let half = structured(&maps).and_then(|axis| half_explained(&search, axis, prepared, options));
+                        let Some(id) = half else { break (maps, residual) };
+                        (id, Withdrawal::HalfExplains)
+                    };
+                    withdrawn.push(Withdrawn { effect, why, held_out_rms: held_out_rms(&search.now) });
+                    search.withdraw(effect)
                 }
             };
             let (added, removed, ties) = match made {
@@ -98,7 +126,7 @@ impl<'p> Exploration<'p> {
         let mut invisible = library.invisible;
         invisible.retain(|i| !start.hidden.iter().any(|h| h.effect == i.effect));
         let floor = floor::noise_floor(prepared, &residual);
-        Ok(Self { start, advances, silent, invisible, maps, floor })
+        Ok(Self { start, advances, withdrawn, silent, invisible, maps, floor })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
@@ -117,8 +145,7 @@ impl<'p> Exploration<'p> {
     /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
     /// noise, whether or not a map shows where it comes from.
     fn repeats_itself(&self) -> bool {
-        let main = &self.end().main;
-        let held_out = (held_out(main).iter().sum::<f64>() / main.problem.rows() as f64).sqrt();
+        let held_out = held_out_rms(&self.end().main);
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
             || self.floor.rms.is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
     }
@@ -142,10 +169,30 @@ impl<'p> Exploration<'p> {
     }
 }
 
+fn held_out_rms(terms: &Terms) -> f64 {
+    (held_out(terms).iter().sum::<f64>() / terms.problem.rows() as f64).sqrt()
+}
+
 /// Whether the run decides the parameters of an effect: what could as well be zero is not suggested.
 fn is_determined(model: &Assembly, id: &str) -> Result<bool, ModelError> {
     let mut of_effect = report(model)?.parameters.into_iter().filter(|p| p.effect == id);
     Ok(of_effect.all(|p| p.state != ParameterState::Unidentified))
+}
+
+/// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger.
+fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
+    let parameters = intervals(&search.now, prepared.motion).parameters;
+    let is_open = |term: &&Term<'p>| {
+        let mut own = parameters.iter().filter(|p| p.effect == term.id());
+        let is_factor = |p: &&Parameter| term.form.linear.contains(&p.name.as_str());
+        let at_bound = own.clone().any(|p| p.state == ParameterState::AtBound);
+        // Of a wave's two factors one may well be zero.
+        at_bound || own.by_ref().filter(is_factor).all(|p| p.state == ParameterState::Unidentified)
+    };
+    let present: f64 = held_out(&search.now).iter().sum();
+    let more = |id| held_out(&search.without(id)).iter().sum::<f64>() / present - 1.0;
+    let open = search.added().filter(is_open).map(|term| (term.id(), more(term.id())));
+    open.filter(|(_, more)| *more < CLEARLY_NEEDED).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }
 
 /// The axis over which structure remains.
@@ -165,10 +212,7 @@ fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, 
         for (column, factor) in term.columns.iter().zip(&factors[at]) {
             contribution.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
         }
-        let mut less = now.clone();
-        less.terms.remove(at);
-        less.refine();
-        let residual = less.linear().residual;
+        let residual = search.without(term.id()).linear().residual;
         let own = 1.0 - full / dot(&residual, &residual);
         let any =
             Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;

@@ -3,7 +3,7 @@
 mod common;
 
 use common::bench::{Moment, Staircase};
-use jointbench_instrument::RunTable;
+use jointbench_instrument::{Channel, RunTable, Trace};
 use jointbench_model::{
     Choice, Diagnosis, ModelSpec, Open, Options, Stretch, Verdict, diagnose, discover, fit, next_run,
 };
@@ -18,6 +18,22 @@ fn plain(m: Moment) -> f64 {
 
 fn with_square_of_load(m: Moment) -> f64 {
     plain(m) + 2.0e-4 * m.load * m.load * m.velocity.signum()
+}
+
+fn without_repeats(run: &RunTable) -> RunTable {
+    let kept: Vec<Channel> = run.trace().channels().iter().filter(|c| c.name != "repeat").cloned().collect();
+    let columns = kept.iter().map(|c| run.column(&c.name).unwrap().to_vec()).collect();
+    RunTable::new(run.meta().clone(), Trace::from_columns(kept, columns)).unwrap()
+}
+
+#[test]
+fn a_run_without_repeats_decides_nothing_where_nothing_is_missing() {
+    let run = bench(4).run(plain);
+    assert_eq!(diagnosed(&run).undecided, None);
+    let found = diagnosed(&without_repeats(&run));
+    assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+    assert!(found.undecided.is_some_and(|why| why.contains("no repeats")));
+    assert!(found.summary.contains("cannot be decided"), "{}", found.summary);
 }
 
 fn diagnosed(run: &RunTable) -> Diagnosis {

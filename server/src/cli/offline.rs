@@ -15,10 +15,11 @@ pub fn diagnose(arguments: &Diagnose) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
     let diagnosis = crate::lab::diagnose(&run, &spec, &options, &Offer::shown_by(&run))?;
     if arguments.run.json {
-        return json_out(&diagnosis);
+        json_out(&diagnosis)?;
+    } else {
+        print::diagnosis(&diagnosis);
     }
-    print::diagnosis(&diagnosis);
-    Ok(())
+    decided(diagnosis.undecided.as_ref())
 }
 
 pub fn discover(arguments: &Discover) -> Done {
@@ -26,10 +27,19 @@ pub fn discover(arguments: &Discover) -> Done {
     let mut discovery = jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {})?;
     discovery.experiment = next_run(&run, &Open::from(&discovery), &Offer::shown_by(&run), &options);
     if arguments.run.json {
-        return json_out(&discovery);
+        json_out(&discovery)?;
+    } else {
+        print::discovery(&discovery);
     }
-    print::discovery(&discovery);
-    Ok(())
+    decided(discovery.undecided.as_ref())
+}
+
+/// The summary has said why.
+fn decided(undecided: Option<&String>) -> Done {
+    match undecided {
+        None => Ok(()),
+        Some(_) => Err(Exit::undecided("")),
+    }
 }
 
 pub fn fit(arguments: &Fit) -> Done {

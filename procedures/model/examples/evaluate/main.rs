@@ -1,7 +1,7 @@
 //! Measures the diagnosis, as docs/diagnosis.md reports it:
 //!
 //! `cargo run --release -p jointbench-model --example evaluate -- [--part hidden,practice,null,power,speed]
-//! [--rounds 3] [--count 400] [--family friction] [--only NAME] [--quiet]`, or a FOLDER that holds a run.
+//! [--rounds 3] [--count 400] [--first 0] [--family friction] [--only NAME] [--quiet]`, or a FOLDER that holds a run.
 //!
 //! hidden: machines with hidden effects, simulated here (`made`). practice: measurements with a known answer from beside
 //! the repository. null: runs with nothing hidden. power: weak effects. speed: seconds and memory.
@@ -27,7 +27,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     if asked.wants("hidden") {
         let mut table = Table::new("Hidden effects, simulated", asked.quiet);
-        for case in (0..asked.rounds).flat_map(made::round).filter(|c| asked.takes(c.family, &c.name)) {
+        for case in
+            (asked.first..).take(asked.rounds as usize).flat_map(made::round).filter(|c| asked.takes(c.family, &c.name))
+        {
             table.judge(&case)?;
         }
         table.print();

@@ -8,7 +8,7 @@ use std::error::Error;
 
 pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
     let (mut runs, mut named, mut structure, mut false_names) = (0usize, 0usize, 0usize, 0usize);
-    for case in (0..asked.count).map(made::null).filter(|c| asked.takes(c.family, &c.name)) {
+    for case in (asked.first..).take(asked.count as usize).map(made::null).filter(|c| asked.takes(c.family, &c.name)) {
         let found = diagnose(&case.run, &ModelSpec::baseline(&case.run)?, &Options::default())?;
         runs += 1;
         named += usize::from(!found.suggestions.is_empty());

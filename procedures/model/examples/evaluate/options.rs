@@ -8,6 +8,8 @@ pub struct Asked {
     pub rounds: u64,
     /// Null runs, and runs for each weak effect: a tenth of it.
     pub count: u64,
+    /// Number of the first round, null run or weak effect: other numbers are other machines and other noise.
+    pub first: u64,
     family: String,
     only: String,
     /// Tables only.
@@ -23,6 +25,7 @@ impl Asked {
             parts: PARTS.map(String::from).into(),
             rounds: 3,
             count: 400,
+            first: 0,
             family: String::new(),
             only: String::new(),
             quiet: false,
@@ -35,6 +38,7 @@ impl Asked {
                 "--part" => asked.parts = value()?.split(',').map(String::from).collect(),
                 "--rounds" => asked.rounds = number(value()?)?,
                 "--count" => asked.count = number(value()?)?,
+                "--first" => asked.first = number(value()?)?,
                 "--family" => asked.family = value()?,
                 "--only" => asked.only = value()?,
                 "--quiet" => asked.quiet = true,

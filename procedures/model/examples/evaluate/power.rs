@@ -32,7 +32,7 @@ pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
     for size in [0.4, 0.2] {
         let mut power = Power::default();
         for (e, effect) in EFFECTS.iter().enumerate() {
-            for i in 0..asked.count / 10 {
+            for i in (asked.first..).take(asked.count as usize / 10) {
                 let run = run(effect, size, &mut Dice::new(700_000 + 1000 * e as u64 + i));
                 let found = one(effect, &run, &mut power)?;
                 if !asked.quiet && found != [*effect] {

@@ -20,7 +20,12 @@ pub fn show(folder: &Path) -> Result<(), Box<dyn Error>> {
     first.not_visible.iter().for_each(|n| println!("  not visible: {} ({})", n.effect, n.why));
     let whole = discover(&run, &spec, &Options::default(), 6, |_| {})?;
     for s in &whole.steps {
-        println!("  {:24} rms {:.4e} held out {:.4e}", s.added.as_deref().unwrap_or("-"), s.rms, s.validation_rms);
+        let made = match (&s.added, &s.removed) {
+            (Some(added), _) => format!("+ {added}"),
+            (None, Some(removed)) => format!("− {removed}"),
+            (None, None) => "start".into(),
+        };
+        println!("  {made:24} rms {:.4e} held out {:.4e}", s.rms, s.validation_rms);
     }
     for p in &whole.fit.parameters {
         println!("  {}.{} = {:.5} {} [{:.5}, {:.5}]", p.effect, p.name, p.value, p.unit, p.ci95[0], p.ci95[1]);

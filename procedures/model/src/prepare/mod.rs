@@ -81,6 +81,8 @@ impl Reduce {
 pub struct Prepared {
     pub kind: Kind,
     pub motion: Motion,
+    /// Effects that the run's facts take for granted.
+    pub baseline: Vec<String>,
     /// What most effects are judged on.
     pub main: Problem,
     /// Ramps and reversals, where the main problem holds settled motion only.

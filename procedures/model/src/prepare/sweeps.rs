@@ -52,6 +52,7 @@ pub fn prepare(
     Ok(Prepared {
         kind: run.kind(),
         motion: run.meta().motion,
+        baseline: run.meta().baseline.clone(),
         main,
         moving: None,
         memory: None,

@@ -31,6 +31,9 @@ pub struct Diagnosis {
     pub noise_floor_rms: Option<f64>,
     pub noise_floor: NoiseFloor,
     pub verdict: Verdict,
+    /// Why `adequate` could not be decided: too little was measured to find fault with the model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub undecided: Option<String>,
     /// One plain sentence.
     pub summary: String,
     /// Regions in which the model errs, the worst first.
@@ -148,6 +151,9 @@ pub struct Discovery {
     pub noise_floor_rms: Option<f64>,
     pub noise_floor: NoiseFloor,
     pub verdict: Verdict,
+    /// Why `adequate` could not be decided: too little was measured to find fault with the model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub undecided: Option<String>,
     pub summary: String,
     pub model: Vec<String>,
     pub fit: Fit,

@@ -6,4 +6,5 @@ mod rivals;
 mod search;
 
 pub use library::{Library, gain};
-pub use search::{Move, Rival, Search, Silence, held_out, significance};
+pub use rivals::{Rival, significance};
+pub use search::{Move, Search, Silence, held_out};

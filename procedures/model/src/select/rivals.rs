@@ -1,13 +1,171 @@
-//! Whether a run can tell two effects apart.
+//! The candidates of one step: which is best, whether it is more than luck, and what the run cannot tell it from.
 
-use super::library::gain;
-use super::search::{Rival, family_wise};
+use super::flips::{Null, Score};
+use super::library::{Gain, Library, factors, gain};
+use super::search::losses;
 use crate::Options;
-use crate::linear::dot;
-use crate::terms::{Term, Terms};
+use crate::linear::{Basis, dot};
+use crate::prepare::Problem;
+use crate::terms::{Term, Terms, polish};
+
+/// Candidates that are refined and held against each other at each step.
+const SHORT_LIST: usize = 8;
+
+/// A candidate of one step with its evidence.
+#[derive(Clone)]
+pub struct Rival<'p> {
+    pub term: Term<'p>,
+    /// Share of the remaining squared error.
+    pub share: f64,
+    /// Held-out squared error of the model with it.
+    pub held_out: f64,
+    pub p_value: f64,
+    /// Held-out squared error of each fold.
+    pub(super) losses: Vec<f64>,
+}
+
+impl<'p> Rival<'p> {
+    /// A candidate that was judged apart from the others, without folds.
+    pub fn alone(term: Term<'p>, share: f64, p_value: f64) -> Self {
+        Self { term, share, held_out: f64::NAN, p_value, losses: Vec::new() }
+    }
+}
+
+/// What an effect must explain to be worth a name.
+#[derive(Clone, Copy)]
+pub struct Bar<'l> {
+    /// Squared error of the baseline.
+    pub plain: f64,
+    pub options: &'l Options,
+}
+
+/// No formula fits nature better than to this share of what it explains, squared (4.5 % in RMS).
+const FORM_ERROR: f64 = 0.002;
+
+/// What takes so much of the error that is left is no remainder of another effect's formula.
+const UNMISTAKABLE: f64 = 0.5;
+
+impl Bar<'_> {
+    /// `share` of the squared error `energy` that is left.
+    fn is_worth(&self, share: f64, energy: f64) -> bool {
+        let remainder = FORM_ERROR * (self.plain - energy).max(0.0);
+        share >= self.options.practical_share && (share >= UNMISTAKABLE || share * energy >= remainder)
+    }
+}
+
+/// The effect that makes the model best, with those that it ties with.
+pub fn step<'p>(
+    now: &Terms<'p>,
+    library: &Library<'p>,
+    withdrawn: &[&'p str],
+    bar: Bar,
+) -> Option<(Rival<'p>, Vec<&'p str>)> {
+    let options = bar.options;
+    let problem = now.problem;
+    let basis = now.tangent();
+    let residual = basis.rest(&now.response());
+    let energy = dot(&residual, &residual);
+    let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
+    let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
+    let gains: Vec<Gain> =
+        open.iter().map(|i| gain(&library.candidates[*i].columns, &basis, &residual, energy)).collect();
+
+    // The best shape of each form of each effect, the most telling first.
+    let mut best: Vec<usize> = Vec::new();
+    let form = |at: usize| (library.candidates[open[at]].id(), library.candidates[open[at]].form.name);
+    for at in 0..open.len() {
+        match best.iter_mut().find(|b| form(**b) == form(at)) {
+            Some(b) if gains[at].share > gains[*b].share => *b = at,
+            Some(_) => {}
+            None => best.push(at),
+        }
+    }
+    best.sort_by(|a, b| gains[*b].share.total_cmp(&gains[*a].share));
+    best.truncate(SHORT_LIST);
+    best.retain(|b| gains[*b].share > 0.5 * options.practical_share);
+    if best.is_empty() {
+        return None;
+    }
+
+    let present: f64 = losses(&now.columns(), &residual, problem).iter().sum();
+    let mut rivals: Vec<Rival> = best
+        .iter()
+        .map(|b| {
+            let mut term = [library.candidates[open[*b]].term()];
+            let sse = polish(&mut term, &basis, &residual, problem);
+            let [term] = term;
+            let possible = term.allows(&factors(&term.columns, &basis, &residual));
+            let sse = if possible { sse } else { energy };
+            let mut columns = now.columns();
+            columns.extend(term.columns.iter().map(Vec::as_slice));
+            let losses = losses(&columns, &residual, problem);
+            Rival { share: 1.0 - sse / energy, held_out: losses.iter().sum(), p_value: 1.0, losses, term }
+        })
+        .filter(|r| bar.is_worth(r.share, energy) && r.held_out < present)
+        .collect();
+    rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
+    // The forms of one effect are one group: the best of them speaks for it.
+    let mut seen: Vec<&str> = Vec::new();
+    rivals.retain(|r| {
+        !seen.contains(&r.term.id()) && {
+            seen.push(r.term.id());
+            true
+        }
+    });
+    let first = rivals.first()?;
+
+    let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(first, &rivals[*i])).collect();
+    // Of what explains the data equally well, the simplest, and of those the one that the contract names first.
+    let near = |i: &usize| rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
+    let rank = |i: &usize| {
+        let id = rivals[*i].term.id();
+        (rivals[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
+    };
+    let winner = ties.iter().copied().filter(near).chain([0]).min_by_key(rank).unwrap_or(0);
+    ties.push(0);
+    ties.retain(|i| *i != winner && !encompasses(now, &rivals[winner].term, &rivals[*i].term, options));
+
+    let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
+    let mut rival = rivals.swap_remove(winner);
+    let scores = gains.iter().map(|g| Score::new(&g.rest, &residual, &problem.block, problem.blocks)).collect();
+    rival.p_value = family_wise(&rival.term, scores, &basis, &residual, problem, options);
+    (rival.p_value <= options.alpha).then_some((rival, ties))
+}
+
+/// How often noise alone would bring any candidate of the library as far as this one: the family-wise p-value.
+pub fn significance(
+    term: &Term,
+    library: &Library,
+    basis: &Basis,
+    residual: &[f64],
+    problem: &Problem,
+    options: &Options,
+) -> f64 {
+    let score = |columns: &[Vec<f64>]| {
+        Score::new(&gain(columns, basis, residual, 1.0).rest, residual, &problem.block, problem.blocks)
+    };
+    let scores = library.candidates.iter().map(|c| score(&c.columns)).collect();
+    family_wise(term, scores, basis, residual, problem, options)
+}
+
+/// The same from scores that are there already.
+fn family_wise(
+    term: &Term,
+    mut scores: Vec<Score>,
+    basis: &Basis,
+    residual: &[f64],
+    problem: &Problem,
+    options: &Options,
+) -> f64 {
+    let own = gain(&term.columns, basis, residual, 1.0);
+    let own = Score::new(&own.rest, residual, &problem.block, problem.blocks);
+    let z = own.z();
+    scores.push(own);
+    Null::new(&scores, problem.blocks, options.flips, options.seed).p_value(z)
+}
 
 /// Two effects tie where the difference of their held-out errors is not larger than its own scatter over the folds.
-pub fn is_tie(a: &Rival, b: &Rival) -> bool {
+fn is_tie(a: &Rival, b: &Rival) -> bool {
     let differences: Vec<f64> = b.losses.iter().zip(&a.losses).map(|(b, a)| b - a).collect();
     let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;
@@ -17,7 +175,7 @@ pub fn is_tie(a: &Rival, b: &Rival) -> bool {
 
 /// Whether the model with `one` leaves nothing that matters for `other`, and the other way round it does (the encompassing
 /// test of Davidson and MacKinnon 1981, by sign flips of blocks). Two effects may be apart in few of the folds, and clearly.
-pub fn encompasses(now: &Terms, one: &Term, other: &Term, options: &Options) -> bool {
+fn encompasses(now: &Terms, one: &Term, other: &Term, options: &Options) -> bool {
     let left_for = |beside: &Term, there: &Term| {
         let mut with = now.clone();
         with.terms.push(there.clone());

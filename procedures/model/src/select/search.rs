@@ -1,35 +1,11 @@
 //! From a model to the model that is left when nothing more can be named.
 
-use super::flips::{Null, Score};
-use super::library::{Gain, Library, factors, gain};
-use super::rivals::{encompasses, is_tie};
+use super::library::{Library, gain};
+use super::rivals::{Bar, Rival, significance, step};
 use crate::Options;
-use crate::linear::{Basis, BlockGrams, dot};
+use crate::linear::{BlockGrams, dot};
 use crate::prepare::Problem;
 use crate::terms::{Term, Terms, polish};
-
-/// Candidates that are refined and held against each other at each step.
-const SHORT_LIST: usize = 8;
-
-/// A candidate of one step with its evidence.
-#[derive(Clone)]
-pub struct Rival<'p> {
-    pub term: Term<'p>,
-    /// Share of the remaining squared error.
-    pub share: f64,
-    /// Held-out squared error of the model with it.
-    pub held_out: f64,
-    pub p_value: f64,
-    /// Held-out squared error of each fold.
-    pub(super) losses: Vec<f64>,
-}
-
-impl<'p> Rival<'p> {
-    /// A candidate that was judged apart from the others, without folds.
-    pub fn alone(term: Term<'p>, share: f64, p_value: f64) -> Self {
-        Self { term, share, held_out: f64::NAN, p_value, losses: Vec::new() }
-    }
-}
 
 pub enum Move<'p> {
     Added { rival: Box<Rival<'p>>, ties: Vec<&'p str> },
@@ -49,7 +25,7 @@ pub fn held_out(terms: &Terms) -> Vec<f64> {
     losses(&terms.columns(), &linear.residual, terms.problem)
 }
 
-fn losses(columns: &[&[f64]], residual: &[f64], problem: &Problem) -> Vec<f64> {
+pub(super) fn losses(columns: &[&[f64]], residual: &[f64], problem: &Problem) -> Vec<f64> {
     BlockGrams::new(columns, residual, &problem.fold, problem.folds).held_out()
 }
 
@@ -61,6 +37,8 @@ pub struct Search<'l, 'p> {
     pub now: Terms<'p>,
     library: &'l Library<'p>,
     options: &'l Options,
+    /// Squared error of the model without any effect but those of the baseline.
+    plain: f64,
     /// Effects of the model that was given.
     kept: Vec<&'p str>,
     /// Effects that were withdrawn and are not tried again.
@@ -70,10 +48,24 @@ pub struct Search<'l, 'p> {
 }
 
 impl<'l, 'p> Search<'l, 'p> {
-    /// `most` effects are added at most.
-    pub fn new(start: Terms<'p>, library: &'l Library<'p>, most: usize, options: &'l Options) -> Self {
+    /// `most` effects are added at most. `baseline` is what the run's own facts take for granted.
+    pub fn new(
+        start: Terms<'p>,
+        library: &'l Library<'p>,
+        baseline: &[String],
+        most: usize,
+        options: &'l Options,
+    ) -> Self {
         let kept = start.terms.iter().map(Term::id).collect();
-        Self { now: start, library, options, kept, withdrawn: Vec::new(), left: most, exchanges: EXCHANGES }
+        let mut plain = start.clone();
+        plain.terms.retain(|t| baseline.is_empty() || baseline.iter().any(|b| b == t.id()));
+        plain.refine();
+        let plain = plain.linear().sse;
+        Self { now: start, library, options, plain, kept, withdrawn: Vec::new(), left: most, exchanges: EXCHANGES }
+    }
+
+    fn step(&self, now: &Terms<'p>) -> Option<(Rival<'p>, Vec<&'p str>)> {
+        step(now, self.library, &self.withdrawn, Bar { plain: self.plain, options: self.options })
     }
 
     /// Takes an effect back that turned out not to be the answer.
@@ -83,8 +75,7 @@ impl<'l, 'p> Search<'l, 'p> {
     }
 
     fn remove(&mut self, id: &'p str) -> Move<'p> {
-        self.now.terms.retain(|t| t.id() != id);
-        self.now.refine();
+        self.now = self.without(id);
         self.left += 1;
         Move::Removed(id)
     }
@@ -95,14 +86,19 @@ impl<'l, 'p> Search<'l, 'p> {
         let present: f64 = held_out(&self.now).iter().sum();
         let ids: Vec<&'p str> = self.added().map(Term::id).collect();
         ids.into_iter().filter(|_| self.now.terms.len() > self.kept.len() + 1).find(|id| {
-            let mut less = self.now.clone();
-            less.terms.retain(|t| t.id() != *id);
-            less.refine();
-            let better = step(&less, self.library, &self.withdrawn, self.options);
+            let better = self.step(&self.without(id));
             better.is_some_and(|(rival, _)| {
                 rival.term.id() != *id && rival.held_out < (1.0 - self.options.practical_share) * present
             })
         })
+    }
+
+    /// The model without one of its effects.
+    pub fn without(&self, id: &str) -> Terms<'p> {
+        let mut less = self.now.clone();
+        less.terms.retain(|t| t.id() != id);
+        less.refine();
+        less
     }
 
     /// Effects that were added and are still there.
@@ -123,7 +119,7 @@ impl<'p> Iterator for Search<'_, 'p> {
             self.now = less;
             return Some(Move::Removed(id));
         }
-        let found = if self.left > 0 { step(&self.now, self.library, &self.withdrawn, self.options) } else { None };
+        let found = if self.left > 0 { self.step(&self.now) } else { None };
         let Some((rival, ties)) = found else {
             self.exchanges = self.exchanges.checked_sub(1)?;
             let id = self.misplaced()?;
@@ -249,115 +245,6 @@ fn silences<'p>(end: &Terms<'p>, library: &Library<'p>, withdrawn: &[&'p str], o
     }
     out.retain(|s| s.detectable_rms < f64::MAX);
     out
-}
-
-fn step<'p>(
-    now: &Terms<'p>,
-    library: &Library<'p>,
-    withdrawn: &[&'p str],
-    options: &Options,
-) -> Option<(Rival<'p>, Vec<&'p str>)> {
-    let problem = now.problem;
-    let basis = now.tangent();
-    let residual = basis.rest(&now.response());
-    let energy = dot(&residual, &residual);
-    let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
-    let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
-    let gains: Vec<Gain> =
-        open.iter().map(|i| gain(&library.candidates[*i].columns, &basis, &residual, energy)).collect();
-
-    // The best shape of each form of each effect, the most telling first.
-    let mut best: Vec<usize> = Vec::new();
-    let form = |at: usize| (library.candidates[open[at]].id(), library.candidates[open[at]].form.name);
-    for at in 0..open.len() {
-        match best.iter_mut().find(|b| form(**b) == form(at)) {
-            Some(b) if gains[at].share > gains[*b].share => *b = at,
-            Some(_) => {}
-            None => best.push(at),
-        }
-    }
-    best.sort_by(|a, b| gains[*b].share.total_cmp(&gains[*a].share));
-    best.truncate(SHORT_LIST);
-    best.retain(|b| gains[*b].share > 0.5 * options.practical_share);
-    if best.is_empty() {
-        return None;
-    }
-
-    let present: f64 = losses(&now.columns(), &residual, problem).iter().sum();
-    let mut rivals: Vec<Rival> = best
-        .iter()
-        .map(|b| {
-            let mut term = [library.candidates[open[*b]].term()];
-            let sse = polish(&mut term, &basis, &residual, problem);
-            let [term] = term;
-            let possible = term.allows(&factors(&term.columns, &basis, &residual));
-            let sse = if possible { sse } else { energy };
-            let mut columns = now.columns();
-            columns.extend(term.columns.iter().map(Vec::as_slice));
-            let losses = losses(&columns, &residual, problem);
-            Rival { share: 1.0 - sse / energy, held_out: losses.iter().sum(), p_value: 1.0, losses, term }
-        })
-        .filter(|r| r.share >= options.practical_share && r.held_out < present)
-        .collect();
-    rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
-    // The forms of one effect are one group: the best of them speaks for it.
-    let mut seen: Vec<&str> = Vec::new();
-    rivals.retain(|r| {
-        !seen.contains(&r.term.id()) && {
-            seen.push(r.term.id());
-            true
-        }
-    });
-    let first = rivals.first()?;
-
-    let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(first, &rivals[*i])).collect();
-    // Of what explains the data equally well, the simplest, and of those the one that the contract names first.
-    let near = |i: &usize| rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
-    let rank = |i: &usize| {
-        let id = rivals[*i].term.id();
-        (rivals[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
-    };
-    let winner = ties.iter().copied().filter(near).chain([0]).min_by_key(rank).unwrap_or(0);
-    ties.push(0);
-    ties.retain(|i| *i != winner && !encompasses(now, &rivals[winner].term, &rivals[*i].term, options));
-
-    let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
-    let mut rival = rivals.swap_remove(winner);
-    let scores = gains.iter().map(|g| Score::new(&g.rest, &residual, &problem.block, problem.blocks)).collect();
-    rival.p_value = family_wise(&rival.term, scores, &basis, &residual, problem, options);
-    (rival.p_value <= options.alpha).then_some((rival, ties))
-}
-
-/// How often noise alone would bring any candidate of the library as far as this one: the family-wise p-value.
-pub fn significance(
-    term: &Term,
-    library: &Library,
-    basis: &Basis,
-    residual: &[f64],
-    problem: &Problem,
-    options: &Options,
-) -> f64 {
-    let score = |columns: &[Vec<f64>]| {
-        Score::new(&gain(columns, basis, residual, 1.0).rest, residual, &problem.block, problem.blocks)
-    };
-    let scores = library.candidates.iter().map(|c| score(&c.columns)).collect();
-    family_wise(term, scores, basis, residual, problem, options)
-}
-
-/// The same from scores that are there already.
-pub(super) fn family_wise(
-    term: &Term,
-    mut scores: Vec<Score>,
-    basis: &Basis,
-    residual: &[f64],
-    problem: &Problem,
-    options: &Options,
-) -> f64 {
-    let own = gain(&term.columns, basis, residual, 1.0);
-    let own = Score::new(&own.rest, residual, &problem.block, problem.blocks);
-    let z = own.z();
-    scores.push(own);
-    Null::new(&scores, problem.blocks, options.flips, options.seed).p_value(z)
 }
 
 /// The added term without which the model is as good, with the model without it.

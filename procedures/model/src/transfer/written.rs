@@ -108,6 +108,9 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
                 let power = |n: usize| Column::Formula(vec!["current"; n].join(" * "));
                 Some([2, 3, 4, 5].map(power).into())
             }
+            ("saturation", "curve") => {
+                Some((2..).take(term.linear.len()).map(|n| Column::Formula(chebyshev(n))).collect())
+            }
             ("saturation", "tanh") => formula("tanh(current / i_s)"),
             ("saturation", _) => formula("tanh((current - i_0) / i_s) + tanh(i_0 / i_s)"),
             ("hysteresis", "bands") => {
@@ -125,6 +128,17 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
             _ => None,
         },
     }
+}
+
+/// Chebyshev polynomial over the range of currents, by Horner's rule.
+fn chebyshev(degree: usize) -> String {
+    let next = |before: &[i64], now: &[i64]| -> Vec<i64> {
+        let at = |c: &[i64], k: Option<usize>| k.and_then(|k| c.get(k)).copied().unwrap_or(0);
+        (0..=now.len()).map(|k| 2 * at(now, k.checked_sub(1)) - at(before, Some(k))).collect()
+    };
+    let (_, factors) = (1..degree).fold((vec![1], vec![0, 1]), |(before, now), _| (now.clone(), next(&before, &now)));
+    let rest = factors.iter().rev().map(i64::to_string);
+    rest.reduce(|inner, factor| format!("({inner}) * (2 * current / i_max - 1) + {factor}")).unwrap_or_default()
 }
 
 /// Names of the orders of a term: `harmonic`, `harmonic_2` and so on.

@@ -6,12 +6,15 @@ use jointbench_instrument::Kind;
 
 pub struct Saturation;
 
+/// Factors of the Chebyshev polynomials of degree 2 to 8: a curve of any smooth shape.
+const CURVE: [&str; 7] = ["k_2", "k_3", "k_4", "k_5", "k_6", "k_7", "k_8"];
+
 static INFO: EffectInfo = EffectInfo {
     id: "saturation",
     kind: Kind::Brake,
     title: "Saturation",
     sentence: "The curve starts flat, is steep in the middle and bends when the iron is full.",
-    formula: "c_2·i² + c_3·i³, also up to i⁵, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s)",
+    formula: "c_2·i² + c_3·i³, also up to i⁵, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s), or Σ k_n·T_n(2·i/i_max − 1)",
     source: "makers' data of hysteresis brakes (S-shape); contract section 2",
     looks: "a curve over current, the same on the way up and down",
     parameters: &[
@@ -22,6 +25,14 @@ static INFO: EffectInfo = EffectInfo {
         parameter("c", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("i_0", "A", 0.0, f64::INFINITY),
         parameter("i_s", "A", 0.0, f64::INFINITY),
+        parameter("k_2", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("k_3", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("k_4", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("k_5", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("k_6", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("k_7", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("k_8", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("i_max", "A", 0.0, f64::INFINITY),
     ],
     needs: &[],
 };
@@ -35,6 +46,8 @@ impl Effect for Saturation {
         let peak = view.peak(Signal::Current);
         let bend = Shape { name: "i_s", min: 0.05 * peak, max: 2.0 * peak, search: Search::Smooth };
         let onset = Shape { name: "i_0", min: 0.01 * peak, max: peak, search: Search::Smooth };
+        // Where the curve ends belongs to the fit: another run has another largest current.
+        let range = Shape { name: "i_max", min: peak, max: peak, search: Search::Whole };
         let widths = crate::effects::log_grid(0.1 * peak, 1.5 * peak, 4);
         let onsets = [0.1, 0.3, 0.6].map(|o| o * peak);
         let pairs = onsets.iter().flat_map(|o| widths.iter().map(|w| vec![*o, *w])).collect();
@@ -53,6 +66,7 @@ impl Effect for Saturation {
                 grid: widths.iter().map(|w| vec![*w]).collect(),
             },
             Form { name: "s_shape", linear: vec!["c"], shape: vec![onset, bend], grid: pairs },
+            Form { name: "curve", linear: CURVE.to_vec(), shape: vec![range], grid: vec![vec![peak]] },
         ]
     }
 
@@ -61,7 +75,15 @@ impl Effect for Saturation {
             "polynomial" => [2, 3].map(|n| view.map(Signal::Current, |i| i.powi(n))).into(),
             "quintic" => [2, 3, 4, 5].map(|n| view.map(Signal::Current, |i| i.powi(n))).into(),
             "tanh" => vec![view.map(Signal::Current, |i| (i / shape[0]).tanh())],
+            "curve" => (2..)
+                .take(CURVE.len())
+                .map(|n| view.map(Signal::Current, |i| chebyshev(n, 2.0 * i / shape[0] - 1.0)))
+                .collect(),
             _ => vec![view.map(Signal::Current, |i| ((i - shape[0]) / shape[1]).tanh() + (shape[0] / shape[1]).tanh())],
         }
     }
+}
+
+fn chebyshev(degree: usize, x: f64) -> f64 {
+    (1..degree).fold((1.0, x), |(before, now), _| (now, 2.0 * x * now - before)).1
 }

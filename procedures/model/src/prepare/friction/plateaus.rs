@@ -108,6 +108,7 @@ pub fn prepare(
     Ok(Prepared {
         kind: run.kind(),
         motion: run.meta().motion,
+        baseline: run.meta().baseline.clone(),
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
         main,
         moving,
