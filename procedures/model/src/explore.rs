@@ -173,10 +173,11 @@ fn held_out_rms(terms: &Terms) -> f64 {
     (held_out(terms).iter().sum::<f64>() / terms.problem.rows() as f64).sqrt()
 }
 
-/// Whether the run decides the parameters of an effect: what could as well be zero is not suggested.
+/// Whether the run decides the parameters of an effect: what could as well be zero, or lies at the edge of what the run can
+/// speak about, is not suggested.
 fn is_determined(model: &Assembly, id: &str) -> Result<bool, ModelError> {
     let mut of_effect = report(model)?.parameters.into_iter().filter(|p| p.effect == id);
-    Ok(of_effect.all(|p| p.state != ParameterState::Unidentified))
+    Ok(of_effect.all(|p| p.state == ParameterState::Ok))
 }
 
 /// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger.
