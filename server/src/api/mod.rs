@@ -13,6 +13,7 @@ mod problem;
 mod procedures;
 mod revisions;
 mod runs;
+mod size;
 #[cfg(test)]
 mod specification;
 mod transfer;
@@ -29,10 +30,6 @@ use tower_http::trace::TraceLayer;
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::{Modify, OpenApi};
 use utoipa_axum::{router::OpenApiRouter, routes};
-
-/// Largest body of an ordinary request; an upload may have [`UPLOAD_LIMIT_BYTES`].
-const BODY_LIMIT_BYTES: usize = 1 << 20;
-const UPLOAD_LIMIT_BYTES: usize = 1 << 30;
 
 #[derive(OpenApi)]
 #[openapi(
@@ -75,7 +72,7 @@ impl Modify for Token {
 
 fn operations() -> OpenApiRouter<Lab> {
     let uploads =
-        OpenApiRouter::new().routes(routes!(transfer::import)).layer(DefaultBodyLimit::max(UPLOAD_LIMIT_BYTES));
+        OpenApiRouter::new().routes(routes!(transfer::import)).layer(DefaultBodyLimit::max(size::UPLOAD_LIMIT_BYTES));
     let rest = OpenApiRouter::new()
         .routes(routes!(bench::list))
         .routes(routes!(bench::get))
@@ -115,7 +112,8 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(live::stream))
         .routes(routes!(health::health))
         .routes(routes!(health::specification))
-        .layer(DefaultBodyLimit::max(BODY_LIMIT_BYTES));
+        .layer(middleware::from_fn(size::guard))
+        .layer(DefaultBodyLimit::max(size::BODY_LIMIT_BYTES));
     OpenApiRouter::with_openapi(Description::openapi()).nest("/api/v1", rest.merge(uploads))
 }
 
