@@ -5,9 +5,10 @@ mod legs;
 mod strokes;
 mod warm_up;
 
+use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
-use jointbench_instrument::Kind;
+use jointbench_instrument::{Kind, RunTable};
 use serde_json::{Map, Value};
 
 /// Decides what a bench shall do; the engine does it. Pure and deterministic: the same choices on the same bench give
@@ -22,6 +23,11 @@ pub trait Procedure: Sync {
     fn schema(&self) -> &'static [Parameter];
     /// Plans with checked values.
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault>;
+    /// What a run of this procedure shows, with the values that it was planned with. Pure; a run that ended early or a
+    /// table that says nothing gets its verdict too. `None`: nothing but samples is asked of it.
+    fn identify(&self, _values: &Values, _run: &RunTable) -> Option<Identification> {
+        None
+    }
 
     /// Checks the choices against the schema, fills in the defaults and plans. Nothing moves.
     fn plan(&self, parameters: &Map<String, Value>, bench: &BenchFacts) -> Result<Plan, PlanFault> {

@@ -1,0 +1,128 @@
+//! What a procedure makes of its run: a verdict in words, quantities with their intervals, figures. A pure function of the
+//! stored run, so that it can be repeated later with newer code.
+
+use serde::Serialize;
+
+/// Whether the run has shown what it was made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    Identified,
+    /// The run says too little; [`Identification::advice`] tells what to measure.
+    Inconclusive,
+    /// The run cannot be used; [`Identification::summary`] tells why.
+    Failed,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Identification {
+    pub verdict: Verdict,
+    /// One plain sentence.
+    pub summary: String,
+    /// What to measure or mend next.
+    pub advice: Option<String>,
+    pub quantities: Vec<Quantity>,
+    pub figures: Vec<Figure>,
+}
+
+impl Identification {
+    /// The run cannot be used: why, and what to do about it.
+    pub fn failed(why: impl Into<String>, advice: impl Into<String>) -> Self {
+        Self {
+            verdict: Verdict::Failed,
+            summary: why.into(),
+            advice: Some(advice.into()),
+            quantities: Vec::new(),
+            figures: Vec::new(),
+        }
+    }
+
+    /// The first quantity of that name.
+    pub fn quantity(&self, name: &str) -> Option<&Quantity> {
+        self.quantities.iter().find(|quantity| quantity.name == name)
+    }
+}
+
+/// One figure of a result, in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Quantity {
+    /// Stable and unique in its identification: `tau_c_positive`. Scripts and limits hold on to it.
+    pub name: String,
+    /// As in the source document: `τ_c⁺`.
+    pub symbol: String,
+    /// In words: "Coulomb friction, positive direction".
+    pub title: String,
+    /// SI symbol; empty for a share or a count.
+    pub unit: String,
+    pub value: f64,
+    /// 95 % interval, where one can be had from the run.
+    pub ci95: Option<[f64; 2]>,
+}
+
+/// A plot of a result.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Figure {
+    /// Stable and unique in its identification.
+    pub name: String,
+    pub title: String,
+    pub form: Form,
+    pub x: Axis,
+    pub y: Axis,
+    pub series: Vec<Series>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    Cartesian,
+    /// x is the angle [rad], y the radius.
+    Polar,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Axis {
+    pub label: String,
+    /// SI symbol; empty for a share or a count.
+    pub unit: String,
+    /// Where the axis counts things that have names, instead of a quantity: 0 is the first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub names: Vec<String>,
+}
+
+impl Axis {
+    pub fn of(label: &str, unit: &str) -> Self {
+        Self { label: label.to_owned(), unit: unit.to_owned(), names: Vec::new() }
+    }
+
+    pub fn names(label: &str, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { label: label.to_owned(), unit: String::new(), names: names.into_iter().map(Into::into).collect() }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mark {
+    Points,
+    Line,
+    Bars,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Series {
+    pub label: String,
+    pub mark: Mark,
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    /// Lower and upper end of the 95 % band at each point; empty where there is none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub band: Vec<[f64; 2]>,
+}
+
+impl Series {
+    /// # Panics
+    /// Where x and y differ in length.
+    pub fn new(label: &str, mark: Mark, x: Vec<f64>, y: Vec<f64>) -> Self {
+        assert_eq!(x.len(), y.len(), "series {label}");
+        Self { label: label.to_owned(), mark, x, y, band: Vec::new() }
+    }
+}
