@@ -1,7 +1,7 @@
 //! Which effect is missing, and what is left when all that can be named is in the model.
 
 use crate::assembly::Assembly;
-use crate::explore::{Advance, Exploration, Withdrawal, Withdrawn};
+use crate::explore::{Advance, Exploration, Withdrawal};
 use crate::fit::report;
 use crate::linear::dot;
 use crate::maps::{Maps, spoken, yardstick};
@@ -44,7 +44,11 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor: found.floor.clone(),
         verdict,
         undecided: undecided(&found, verdict, options),
-        summary: summary(&found, &fit, verdict, &suggestions, structure.as_ref(), options),
+        summary: format!(
+            "{}{}",
+            summary(&found, &fit, verdict, &suggestions, structure.as_ref(), options),
+            taken_back(&found, &fit.unit)
+        ),
         regions,
         structure,
         experiment: experiment(&found, &prepared),
@@ -91,7 +95,7 @@ pub fn discover(
         summary: format!(
             "{}{}",
             summary(&found, &fit, verdict, &[], structure.as_ref(), options),
-            taken_back(&found.withdrawn, &fit)
+            taken_back(&found, &fit.unit)
         ),
         model: found.end().effects.clone(),
         regions: regions(&found.maps, &fit, &found, verdict),
@@ -243,10 +247,11 @@ fn undecided(found: &Exploration, verdict: Verdict, options: &Options) -> Option
 }
 
 /// Effects that came in and were taken back, and what that cost.
-fn taken_back(withdrawn: &[Withdrawn], fit: &Fit) -> String {
-    let of = |why: Withdrawal| withdrawn.iter().filter(move |w| w.why == why);
+fn taken_back(found: &Exploration, unit: &str) -> String {
+    let of = |why: Withdrawal| found.withdrawn.iter().filter(move |w| w.why == why);
+    let is_out = |e: &&str| !found.end().effects.iter().any(|f| f == e);
     let named = |why: Withdrawal| {
-        let mut names: Vec<&str> = of(why).map(|w| w.effect).filter(|e| !fit.effects.iter().any(|f| f == e)).collect();
+        let mut names: Vec<&str> = of(why).map(|w| w.effect).filter(is_out).collect();
         names.reverse();
         (!names.is_empty()).then(|| list(&names))
     };
@@ -255,8 +260,8 @@ fn taken_back(withdrawn: &[Withdrawn], fit: &Fit) -> String {
         format!(
             " Left out: {names}. With it all the held-out error would be {} instead of {}, but this run does not \
              decide how large these effects are.",
-            figure(with, &fit.unit),
-            figure(fit.validation_rms, &fit.unit)
+            figure(with, unit),
+            figure(found.end_held_out_rms(), unit)
         )
     });
     let half = named(Withdrawal::HalfExplains)

@@ -2,7 +2,6 @@
 
 use crate::assembly::Assembly;
 use crate::effect::Stage;
-use crate::fit::report;
 use crate::intervals::intervals;
 use crate::linear::dot;
 use crate::maps::Maps;
@@ -96,6 +95,7 @@ impl<'p> Exploration<'p> {
                         (id, Withdrawal::HalfExplains)
                     };
                     withdrawn.push(Withdrawn { effect, why, held_out_rms: held_out_rms(&search.now) });
+                    search.closed |= why == Withdrawal::HalfExplains;
                     search.withdraw(effect)
                 }
             };
@@ -116,9 +116,11 @@ impl<'p> Exploration<'p> {
         let silent = search.silences();
         let now = advances.last().map_or(&start, |a| &a.after);
         if now.effects.len() < start.effects.len() + most
+            && !search.closed
             && let Some(rival) = memory(now, options)
             && let after = now.with_memory(&rival.term)
-            && is_determined(&after, rival.term.id())?
+            && let Some(moving) = &after.moving
+            && is_decided(&rival.term, &intervals(moving, prepared.motion).parameters)
         {
             advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
             advances.last().into_iter().for_each(&mut *on_advance);
@@ -133,6 +135,10 @@ impl<'p> Exploration<'p> {
         self.advances.last().map_or(&self.start, |a| &a.after)
     }
 
+    pub fn end_held_out_rms(&self) -> f64 {
+        held_out_rms(&self.end().main)
+    }
+
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
         if structured(&self.maps).is_some() || self.repeats_itself() {
@@ -145,7 +151,7 @@ impl<'p> Exploration<'p> {
     /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
     /// noise, whether or not a map shows where it comes from.
     fn repeats_itself(&self) -> bool {
-        let held_out = held_out_rms(&self.end().main);
+        let held_out = self.end_held_out_rms();
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
             || self.floor.rms.is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
     }
@@ -173,26 +179,26 @@ fn held_out_rms(terms: &Terms) -> f64 {
     (held_out(terms).iter().sum::<f64>() / terms.problem.rows() as f64).sqrt()
 }
 
-/// Whether the run decides the parameters of an effect: what could as well be zero, or lies at the edge of what the run can
-/// speak about, is not suggested.
-fn is_determined(model: &Assembly, id: &str) -> Result<bool, ModelError> {
-    let mut of_effect = report(model)?.parameters.into_iter().filter(|p| p.effect == id);
-    Ok(of_effect.all(|p| p.state == ParameterState::Ok))
+/// Whether the run decides the size and shape of an effect: not where its factors could all be zero, or where its shape
+/// lies at the edge of what the run can speak about.
+fn is_decided(term: &Term, parameters: &[Parameter]) -> bool {
+    let mut own = parameters.iter().filter(|p| p.effect == term.id());
+    let is_factor = |p: &&Parameter| term.form.linear.contains(&p.name.as_str());
+    let at_bound = own.clone().any(|p| p.state == ParameterState::AtBound);
+    // Of a wave's two factors one may well be zero.
+    !at_bound && own.by_ref().filter(is_factor).any(|p| p.state != ParameterState::Unidentified)
 }
 
-/// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger.
+/// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Beside
+/// structure from outside the library no size is decided: a part of that may be in it.
 fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
-    let is_open = |term: &&Term<'p>| {
-        let mut own = parameters.iter().filter(|p| p.effect == term.id());
-        let is_factor = |p: &&Parameter| term.form.linear.contains(&p.name.as_str());
-        let at_bound = own.clone().any(|p| p.state == ParameterState::AtBound);
-        // Of a wave's two factors one may well be zero.
-        at_bound || own.by_ref().filter(is_factor).all(|p| p.state == ParameterState::Unidentified)
-    };
     let present: f64 = held_out(&search.now).iter().sum();
     let more = |id| held_out(&search.without(id)).iter().sum::<f64>() / present - 1.0;
-    let open = search.added().filter(is_open).map(|term| (term.id(), more(term.id())));
+    let open = search
+        .added()
+        .filter(|term| search.closed || !is_decided(term, &parameters))
+        .map(|term| (term.id(), more(term.id())));
     open.filter(|(_, more)| *more < CLEARLY_NEEDED).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }
 

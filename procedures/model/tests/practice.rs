@@ -25,7 +25,9 @@ fn check_family(family: &str) {
                 assert!(first.suggestions.is_empty() && added.is_empty(), "{name}: {added:?}");
             }
             "unexplained_structure" => {
+                assert_eq!(first.verdict, Verdict::UnexplainedStructure, "{name}: {}", first.summary);
                 assert_eq!(whole.verdict, Verdict::UnexplainedStructure, "{name}: {}", whole.summary);
+                assert!(first.suggestions.is_empty() && added.is_empty(), "{name}: {added:?}");
             }
             _ => {
                 assert!(accept.iter().any(|g| g.contains(&first.suggestions[0].effect)), "{name}: {}", first.summary);

@@ -45,6 +45,8 @@ pub struct Search<'l, 'p> {
     withdrawn: Vec<&'p str>,
     left: usize,
     exchanges: usize,
+    /// Something from outside the library was seen: whatever entered now would stand for it.
+    pub closed: bool,
 }
 
 impl<'l, 'p> Search<'l, 'p> {
@@ -61,7 +63,17 @@ impl<'l, 'p> Search<'l, 'p> {
         plain.terms.retain(|t| baseline.is_empty() || baseline.iter().any(|b| b == t.id()));
         plain.refine();
         let plain = plain.linear().sse;
-        Self { now: start, library, options, plain, kept, withdrawn: Vec::new(), left: most, exchanges: EXCHANGES }
+        Self {
+            now: start,
+            library,
+            options,
+            plain,
+            kept,
+            withdrawn: Vec::new(),
+            left: most,
+            exchanges: EXCHANGES,
+            closed: false,
+        }
     }
 
     fn step(&self, now: &Terms<'p>) -> Option<(Rival<'p>, Vec<&'p str>)> {
@@ -118,6 +130,9 @@ impl<'p> Iterator for Search<'_, 'p> {
         if let Some((id, less)) = drop_one(&self.now, &self.kept, self.options) {
             self.now = less;
             return Some(Move::Removed(id));
+        }
+        if self.closed {
+            return None;
         }
         let found = if self.left > 0 { self.step(&self.now) } else { None };
         let Some((rival, ties)) = found else {
