@@ -1,6 +1,6 @@
 //! A mock bench for other programs: prints where the instruments answer, and lets time pass until Enter is pressed.
 //!
-//! `cargo run -p jointbench-devices --example mock_bench -- [joint_a|joint_b] [seed] [tcp] [effect …]`
+//! `cargo run -p jointbench-devices --example mock_bench -- [joint_a|joint_b|encoder_bench] [seed] [tcp] [effect …]`
 
 use jointbench_devices::sim::Transport;
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -14,6 +14,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         match argument.as_str() {
             "joint_a" => settings.joint = Joint::JointA,
             "joint_b" => settings.joint = Joint::JointB,
+            "encoder_bench" => {
+                let bench = MockSettings::new(Joint::EncoderShaft, settings.seed);
+                (settings.joint, settings.load, settings.others) = (bench.joint, bench.load, bench.others);
+            }
             "tcp" => settings.transport = Transport::Tcp,
             other => match other.parse() {
                 Ok(seed) => settings.seed = seed,
@@ -23,8 +27,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     settings.pace = Some(1.0);
     let mock = MockBench::start(settings)?;
-    let ports = mock.ports();
-    println!("joint {}\ntorque_sensor {}\nbrake {}", ports.joint, ports.torque_sensor, ports.brake);
+    for (instrument, address) in mock.addresses() {
+        println!("{instrument} {address}");
+    }
 
     let clock = mock.clock();
     let ended = AtomicBool::new(false);

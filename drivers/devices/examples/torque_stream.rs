@@ -3,6 +3,7 @@
 //! `cargo run --release -p jointbench-devices --example torque_stream -- [bench seconds] [seed]`
 
 use jointbench_devices::driver::{LorenzSettings, OdriveSettings, Range};
+use jointbench_devices::sim::MockInstrument;
 use jointbench_devices::{Joint, LorenzSensor, MockBench, MockSettings, OdriveJoint, PortSettings};
 use jointbench_instrument::FaultKind;
 use jointbench_instrument::roles::{JointController, TorqueStream};
@@ -20,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let seed: u64 = arguments.next().map_or(Ok(1), |text| text.parse())?;
     let mock = MockBench::start(MockSettings::new(Joint::JointA, seed))?;
     let clock = mock.clock();
-    let port = PortSettings::new(mock.ports().torque_sensor, 230_400);
+    let port = PortSettings::new(mock.address(MockInstrument::TorqueSensor).unwrap(), 230_400);
     let settings = LorenzSettings {
         name: "torque_sensor".into(),
         port,
@@ -29,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         nominal_nm: 20.0,
     };
     let mut sensor = LorenzSensor::open(settings)?;
-    let port = PortSettings::new(mock.ports().joint, 921_600);
+    let port = PortSettings::new(mock.address(MockInstrument::Joint).unwrap(), 921_600);
     let settings =
         OdriveSettings { name: "joint".into(), port, deadline_ms: DEADLINE_MS, link_encoder: true, thermistor: None };
     let mut joint = OdriveJoint::open(settings, clock.clone())?;

@@ -11,6 +11,7 @@
 //! The traffic of any link can be written down ([`PortSettings::record`]) and replayed as an instrument ([`sim::Replay`]).
 
 pub mod driver;
+mod instruments;
 pub mod protocol;
 pub mod sim;
 pub mod transport;
@@ -19,5 +20,6 @@ pub use driver::{
     AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, LorenzSensor, LorenzSettings,
     OdriveJoint, OdriveSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
 };
+pub use instruments::{Asked, InstrumentSettings, Instruments, TorqueSensorSettings};
 pub use sim::{Joint, MockBench, MockSettings, Replay};
 pub use transport::{Address, PortSettings};

@@ -1,6 +1,8 @@
 //! One bench: the instruments in their roles, one clock, one set of limits. Owned by exactly one thread.
 
-use crate::roles::{CurrentSource, Instrument, JointController, TorqueSensor};
+use crate::roles::{
+    AlignmentStage, CurrentSource, Instrument, JointController, PositionCounter, Thermometer, TorqueSensor,
+};
 use crate::{Clock, Fault, Limits};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -15,7 +17,8 @@ pub struct JointConstants {
     /// N: motor turns for each link turn.
     pub gear_ratio: f64,
     pub rotor_inertia_kg_m2: f64,
-    /// Coil resistance and rating of the brake decide the supply's compliance voltage.
+    /// Coil resistance and rating of the brake decide the supply's compliance voltage. A bench without a brake has 0 here and
+    /// in its ratings.
     pub brake_compliance_v: f64,
     pub brake_rated_current_a: f64,
     /// Torque of the brake at rated current, link side.
@@ -35,6 +38,13 @@ pub struct Bench {
     pub joint: Box<dyn JointController>,
     pub torque_sensor: Option<Box<dyn TorqueSensor>>,
     pub brake: Option<Box<dyn CurrentSource>>,
+    /// S1 of an encoder bench, on the motor's shaft.
+    pub reference_encoder: Option<Box<dyn PositionCounter>>,
+    /// S2, the encoder under test, on the same shaft.
+    pub test_encoder: Option<Box<dyn PositionCounter>>,
+    /// Holds the sensor of the encoder under test.
+    pub stage: Option<Box<dyn AlignmentStage>>,
+    pub thermometer: Option<Box<dyn Thermometer>>,
 }
 
 impl Bench {
@@ -57,6 +67,10 @@ impl Bench {
         let mut instruments: Vec<&mut dyn Instrument> = vec![self.joint.as_mut()];
         instruments.extend(self.torque_sensor.as_mut().map(|sensor| -> &mut dyn Instrument { sensor.as_mut() }));
         instruments.extend(self.brake.as_mut().map(|brake| -> &mut dyn Instrument { brake.as_mut() }));
+        let counters = [&mut self.reference_encoder, &mut self.test_encoder];
+        instruments.extend(counters.into_iter().flatten().map(|counter| -> &mut dyn Instrument { counter.as_mut() }));
+        instruments.extend(self.stage.as_mut().map(|stage| -> &mut dyn Instrument { stage.as_mut() }));
+        instruments.extend(self.thermometer.as_mut().map(|felt| -> &mut dyn Instrument { felt.as_mut() }));
         instruments
     }
 }

@@ -163,6 +163,8 @@ pub trait PositionCounter: Instrument {
     fn zero(&mut self) -> Result<(), Fault>;
     fn read(&mut self) -> Result<CounterReading, Fault>;
     fn resolution(&self) -> Radians;
+    /// `None`: nobody has wired the encoder's own status to this counter.
+    fn status(&mut self) -> Option<&mut dyn EncoderStatus>;
 }
 
 /// Tells whether a magnetic encoder's sensor sits well enough on its ring to count its periods.

@@ -6,6 +6,7 @@ use crate::config::BenchDescription;
 use crate::lab::LabError;
 use crate::live::Hub;
 use crate::store::Store;
+use jointbench_devices::sim::Load;
 use jointbench_procedure::{BenchFacts, Control, Plan, RunId};
 use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -70,7 +71,7 @@ impl BenchHandle {
         use crate::config::Source;
         let description = &self.shared.description;
         let (has_torque_sensor, has_brake) = match &description.source {
-            Source::Mock(_) => (true, true),
+            Source::Mock(settings) => (settings.load != Load::None, settings.load != Load::None),
             Source::Hardware(hardware) => (hardware.torque_sensor.is_some(), hardware.brake.is_some()),
         };
         BenchFacts {

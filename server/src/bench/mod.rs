@@ -2,10 +2,12 @@
 
 mod handle;
 mod instruments;
+mod look;
 mod recorder;
 mod status;
 mod thread;
 
 pub use handle::BenchHandle;
-pub use instruments::{Opened, open};
+pub use instruments::{Opened, open, reach};
+pub use look::{Look, look};
 pub use status::Status;

@@ -69,7 +69,8 @@ pub struct Demo {
 
 #[derive(Debug, Args)]
 pub struct Serve {
-    /// Bench description: a file, or one of the ready-made ones (joint-a-mock, joint-b-mock, joint-a, joint-b)
+    /// Bench description: a file, or one of the ready-made ones (joint-a-mock, joint-b-mock,
+    /// encoder-bench-mock, joint-a, joint-b, encoder-bench)
     #[arg(long, value_name = "BENCH.TOML", default_value = "joint-a-mock")]
     pub config: String,
     #[command(flatten)]

@@ -3,8 +3,13 @@
 use super::arguments::Check;
 use super::exit::{Done, Exit};
 use super::serve::describe;
-use crate::bench::open;
+use crate::bench::{Look, look, reach};
 use crate::config::{BenchDescription, READY_MADE};
+use jiff::Zoned;
+use jointbench_instrument::roles::Identity;
+
+/// The usual interval between two calibrations.
+const LONG_AGO_DAYS: i32 = 366;
 
 pub fn check(arguments: &Check) -> Done {
     if arguments.print {
@@ -17,30 +22,65 @@ pub fn check(arguments: &Check) -> Done {
         return Ok(());
     }
     let benches = describe(&arguments.config)?;
-    let silent: usize = benches.iter().map(check_bench).sum();
-    match silent {
+    let not_ready: usize = benches.iter().map(check_bench).sum();
+    match not_ready {
         0 => Ok(()),
         _ => Err(Exit::failed("not ready: see above")),
     }
 }
 
-/// The number of instruments that do not answer.
+/// The number of instruments that are not ready.
 fn check_bench(description: &BenchDescription) -> usize {
     let kind = if description.is_simulated() { "simulated" } else { "hardware" };
     println!("bench {} ({kind}): description is right", description.name);
-    let opened = open(description);
-    for instrument in &opened.instruments {
-        let (role, port) = (&instrument.role, &instrument.port);
-        match (&instrument.identity, &instrument.fault) {
-            (Some(who), _) => {
-                let told = [("serial", &who.serial), ("firmware", &who.firmware)];
-                let told = told.into_iter().filter(|(_, value)| !value.is_empty());
-                let told: String = told.map(|(name, value)| format!(", {name} {value}")).collect();
-                println!("  ok    {role:<14} {port:<16} {} {}{told}", who.maker, who.model);
-            }
-            (None, Some(fault)) => println!("  FAIL  {role:<14} {port:<16} {fault}"),
-            (None, None) => println!("  FAIL  {role:<14} {port:<16} no answer"),
+    let mut reached = match reach(description) {
+        Ok(reached) => reached,
+        Err(fault) => {
+            println!("  FAIL  {fault}");
+            return 1;
+        }
+    };
+    let looks = look(&mut reached.slots);
+    let mut not_ready = 0;
+    for asked in &reached.slots.asked {
+        let (role, port) = (asked.role, &asked.port);
+        let seen = looks.iter().find(|look| look.role == role);
+        let (mark, said) = match (&asked.identity, seen.map(|look| &look.state)) {
+            (Err(fault), _) => ("FAIL", fault.to_string()),
+            (Ok(who), Some(Err(why))) => ("FAIL", format!("{} {}, {why}", who.maker, who.model)),
+            (Ok(who), _) => ("ok  ", named(who)),
+        };
+        not_ready += usize::from(mark == "FAIL");
+        println!("  {mark}  {role:<18} {port:<16} {said}");
+        let Some(Look { state, timing, .. }) = seen else { continue };
+        if let Ok(state) = state {
+            println!("        {:<18} {state}", "");
+        }
+        if let Some(timing) = timing {
+            let [median_ms, longest_ms] = [timing.median, timing.longest].map(|taken| 1e3 * taken.as_secs_f64());
+            let per_s = timing.per_s;
+            println!(
+                "        {:<18} {per_s:.0} readings/s, reply in {median_ms:.2} ms, at most {longest_ms:.2} ms",
+                ""
+            );
         }
     }
-    opened.instruments.iter().filter(|instrument| !instrument.ready).count()
+    calibrations(description);
+    not_ready
+}
+
+fn named(who: &Identity) -> String {
+    let told = [("serial", &who.serial), ("firmware", &who.firmware)];
+    let told = told.into_iter().filter(|(_, value)| !value.is_empty());
+    let told: String = told.map(|(name, value)| format!(", {name} {value}")).collect();
+    format!("{} {}{told}", who.maker, who.model)
+}
+
+fn calibrations(description: &BenchDescription) {
+    let today = Zoned::now().date();
+    for (role, day) in &description.calibrated {
+        let days = (today - *day).get_days();
+        let cure = if days > LONG_AGO_DAYS { ": long ago, have it looked at" } else { "" };
+        println!("  note  {role:<18} calibrated {day}, {days} days ago{cure}");
+    }
 }

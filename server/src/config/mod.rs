@@ -1,26 +1,31 @@
 //! Bench descriptions: raw in, checked out, and never checked again.
 
 mod check;
+mod figures;
+mod instruments;
 mod mistake;
 mod raw;
 #[cfg(test)]
 mod tests;
+mod values;
 
 pub use mistake::{Mistake, Mistakes};
 
-use jointbench_devices::driver::{LorenzSettings, OdriveSettings, ScpiSettings};
+use jiff::civil::Date;
 use jointbench_devices::sim::Load;
-use jointbench_devices::{Joint, MockSettings};
+use jointbench_devices::{InstrumentSettings, Joint, MockSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
 use std::path::Path;
 
 /// Ready-made descriptions, also to start a new one from.
-pub const READY_MADE: [(&str, &str); 4] = [
+pub const READY_MADE: [(&str, &str); 6] = [
     ("joint-a-mock", include_str!("../../descriptions/joint-a-mock.toml")),
     ("joint-b-mock", include_str!("../../descriptions/joint-b-mock.toml")),
+    ("encoder-bench-mock", include_str!("../../descriptions/encoder-bench-mock.toml")),
     ("joint-a", include_str!("../../descriptions/joint-a.toml")),
     ("joint-b", include_str!("../../descriptions/joint-b.toml")),
+    ("encoder-bench", include_str!("../../descriptions/encoder-bench.toml")),
 ];
 
 /// A checked bench.
@@ -30,6 +35,8 @@ pub struct BenchDescription {
     pub source: Source,
     pub limits: Limits,
     pub constants: JointConstants,
+    /// When which instrument was calibrated, by its role.
+    pub calibrated: Vec<(&'static str, Date)>,
     /// As written, for the provenance of its runs.
     pub text: String,
 }
@@ -38,15 +45,7 @@ pub struct BenchDescription {
 #[derive(Debug, Clone)]
 pub enum Source {
     Mock(MockSettings),
-    Hardware(Box<Hardware>),
-}
-
-/// Real instruments. Absence is an empty slot.
-#[derive(Debug, Clone)]
-pub struct Hardware {
-    pub joint: OdriveSettings,
-    pub torque_sensor: Option<LorenzSettings>,
-    pub brake: Option<ScpiSettings>,
+    Hardware(Box<InstrumentSettings>),
 }
 
 impl BenchDescription {
@@ -58,6 +57,7 @@ impl BenchDescription {
             limits: joint.limits(load),
             constants: joint.constants(load),
             source: Source::Mock(settings),
+            calibrated: Vec::new(),
             text: String::new(),
         }
     }

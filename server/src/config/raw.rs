@@ -3,6 +3,7 @@
 use jointbench_devices::sim::PlannedTrouble;
 use serde::Deserialize;
 use toml::Spanned;
+use toml::value::Datetime;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -18,9 +19,25 @@ pub struct RawBench {
     pub mock: Option<RawMock>,
     pub joint: Option<RawJoint>,
     pub torque_sensor: Option<RawTorqueSensor>,
-    pub brake: Option<RawBrake>,
+    pub brake: Option<RawPort>,
+    pub reference_encoder: Option<RawCounter>,
+    pub test_encoder: Option<RawCounter>,
+    pub stage: Option<RawPort>,
+    pub thermometer: Option<RawThermometer>,
     pub limits: Option<RawLimits>,
     pub constants: Option<RawConstants>,
+}
+
+impl RawBench {
+    pub fn has_instruments(&self) -> bool {
+        self.joint.is_some()
+            || self.torque_sensor.is_some()
+            || self.brake.is_some()
+            || self.reference_encoder.is_some()
+            || self.test_encoder.is_some()
+            || self.stage.is_some()
+            || self.thermometer.is_some()
+    }
 }
 
 /// Simulated instruments in place of all others.
@@ -33,6 +50,9 @@ pub struct RawMock {
     #[serde(default)]
     pub effects: Vec<Spanned<String>>,
     pub pace: Option<Spanned<f64>>,
+    /// Whether the interpolation filter of the encoder under test is on.
+    #[serde(default)]
+    pub filter: bool,
     #[serde(default)]
     pub troubles: Vec<PlannedTrouble>,
 }
@@ -56,17 +76,46 @@ pub struct RawTorqueSensor {
     pub port: Spanned<String>,
     pub baud: Option<u32>,
     pub deadline_ms: Option<Spanned<u64>>,
-    pub range: Spanned<String>,
+    pub range: Option<Spanned<String>>,
     pub nominal_nm: Spanned<f64>,
+    pub calibrated: Option<Spanned<Datetime>>,
 }
 
+/// An instrument of which nothing but its port has to be known.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RawBrake {
+pub struct RawPort {
     pub driver: Spanned<String>,
     pub port: Spanned<String>,
     pub baud: Option<u32>,
     pub deadline_ms: Option<Spanned<u64>>,
+    pub calibrated: Option<Spanned<Datetime>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawCounter {
+    pub driver: Spanned<String>,
+    pub port: Spanned<String>,
+    pub baud: Option<u32>,
+    pub deadline_ms: Option<Spanned<u64>>,
+    pub counts_per_turn: Spanned<u32>,
+    #[serde(default)]
+    pub reversed: bool,
+    pub status_input: Option<Spanned<u8>>,
+    pub calibrated: Option<Spanned<Datetime>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawThermometer {
+    pub driver: Spanned<String>,
+    pub port: Spanned<String>,
+    pub baud: Option<u32>,
+    pub deadline_ms: Option<Spanned<u64>>,
+    pub slave: Option<Spanned<u8>>,
+    pub channels: Vec<Spanned<u8>>,
+    pub calibrated: Option<Spanned<Datetime>>,
 }
 
 #[derive(Debug, Deserialize)]

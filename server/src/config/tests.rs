@@ -8,6 +8,7 @@ fn the_ready_made_descriptions_are_right() {
         let benches = parse(name, text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         assert_eq!((benches.len(), benches[0].name.as_str()), (1, name));
         assert_eq!(benches[0].is_simulated(), name.ends_with("-mock"));
+        assert_eq!(benches[0].limits.brake_power_w == 0.0, name.starts_with("encoder"), "a limit for a brake there is");
     }
 }
 
@@ -56,6 +57,56 @@ name = \"two\"
         assert!(said.contains(expected), "{expected:?} in\n{said}");
     }
     assert!(mistakes.mistakes.windows(2).all(|pair| pair[0].line <= pair[1].line));
+}
+
+#[test]
+fn every_role_names_its_mistakes() {
+    let text = "[[bench]]
+name = \"e\"
+[bench.joint]
+driver = \"odrive\"
+port = \"usb://\"
+[bench.torque_sensor]
+driver = \"multimeter\"
+port = \"tcp://10.0.0.7\"
+range = \"fine\"
+nominal_nm = 20.0
+calibrated = 2999-01-01
+[bench.reference_encoder]
+driver = \"qsb\"
+port = \"usb://1\"
+counts_per_turn = 3
+[bench.test_encoder]
+driver = \"qsb\"
+port = \"usb://1\"
+counts_per_turn = 262144
+status_input = 4
+[bench.stage]
+driver = \"pi\"
+port = \"tcp://10.0.0.8:50000\"
+calibrated = 2026-03-31T12:00:00
+[bench.thermometer]
+driver = \"adam\"
+port = \"/dev/ttyUSB3\"
+channels = []
+";
+    let said = parse("bench.toml", text).unwrap_err().to_string();
+    for expected in [
+        "line 5: port has no serial number: write usb://",
+        "line 8: port names no host and port number: write tcp://host:port",
+        "line 9: range is not for a multimeter: leave it out",
+        "line 11: calibrated = 2999-01-01 is yet to come",
+        "line 15: counts_per_turn 3: choose 4 to",
+        "line 18: port \"usb://1\" has an instrument already",
+        "line 20: status_input 4: choose 0 to 3",
+        "line 22: driver \"pi\" is not known: write \"gcs\"",
+        "line 24: calibrated = 2026-03-31T12:00:00: write the day",
+        "line 26: channels is empty",
+        "line 2: constants.gear_ratio is missing",
+    ] {
+        assert!(said.contains(expected), "{expected:?} in\n{said}");
+    }
+    assert!(!said.contains("limits.brake"), "no brake, no limit for it:\n{said}");
 }
 
 #[test]

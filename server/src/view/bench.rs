@@ -42,7 +42,7 @@ pub struct Blocked {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Instrument {
     pub bench: String,
-    /// `joint`, `torque_sensor` or `brake`.
+    /// `joint`, `torque_sensor`, `brake`, `reference_encoder`, `test_encoder`, `stage` or `thermometer`.
     pub role: String,
     pub name: String,
     pub driver: String,

@@ -147,6 +147,11 @@ impl PositionCounter for QsbCounter {
     fn resolution(&self) -> Radians {
         Radians(TAU / f64::from(self.settings.counts_per_turn))
     }
+
+    fn status(&mut self) -> Option<&mut dyn EncoderStatus> {
+        self.settings.status_input?;
+        Some(self)
+    }
 }
 
 impl EncoderStatus for QsbCounter {

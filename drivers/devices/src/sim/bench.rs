@@ -10,8 +10,9 @@ use super::port::{Port, lock, serve_tcp};
 use super::rig::{MockInstrument, Rig};
 use super::trouble::{PlannedTrouble, Trouble};
 use crate::driver::{
-    LorenzSensor, LorenzSettings, OdriveJoint, OdriveSettings, Range, ScpiSettings, ScpiSource, Thermistor,
+    AdamSettings, GcsSettings, LorenzSettings, OdriveSettings, QsbSettings, Range, ScpiSettings, Thermistor,
 };
+use crate::instruments::{InstrumentSettings, TorqueSensorSettings};
 use crate::transport::{Address, PortSettings};
 use jointbench_instrument::{Bench, Clock, Fault};
 use std::io;
@@ -34,6 +35,8 @@ pub struct MockSettings {
     pub joint: Joint,
     pub load: Load,
     pub seed: u64,
+    /// Whether the filter of the encoder under test is on.
+    pub filter: bool,
     /// Names out of [`HIDDEN_EFFECTS`].
     pub effects: Vec<String>,
     /// Bench seconds for each second of wall time. `None`: as fast as it goes.
@@ -42,45 +45,54 @@ pub struct MockSettings {
     /// For the drivers that [`MockBench::open_bench`] opens.
     pub deadline_ms: u64,
     pub troubles: Vec<PlannedTrouble>,
-    /// Beyond joint, torque sensor and brake.
+    /// Beyond the joint, and the torque sensor and the brake of a bench with a load.
     pub others: Vec<MockInstrument>,
 }
 
 impl MockSettings {
+    /// An encoder shaft comes without a load and with the instruments of its bench.
     pub fn new(joint: Joint, seed: u64) -> Self {
+        let (load, others) = match joint {
+            Joint::JointA | Joint::JointB => (Load::default(), Vec::new()),
+            Joint::EncoderShaft => (Load::None, MockInstrument::ENCODER_BENCH.to_vec()),
+        };
         Self {
             joint,
-            load: Load::default(),
+            load,
             seed,
+            filter: false,
             effects: Vec::new(),
             pace: None,
             transport: Transport::Terminal,
             deadline_ms: DEADLINE_MS,
             troubles: Vec::new(),
-            others: Vec::new(),
+            others,
         }
     }
 
     /// The smallest range of the torque sensor that holds the load, and its nominal torque [Nm].
-    pub fn torque_range(&self) -> (Range, f64) {
+    fn torque_range(&self) -> Option<(Range, f64)> {
         match self.load {
-            Load::BrakeA => (Range::Fine, 20.0),
-            Load::GearAndBrakeB => (Range::Coarse, 200.0),
+            Load::BrakeA => Some((Range::Fine, 20.0)),
+            Load::GearAndBrakeB => Some((Range::Coarse, 200.0)),
+            Load::None => None,
         }
+    }
+
+    fn instruments(&self) -> Vec<MockInstrument> {
+        let base: &[MockInstrument] = match self.load {
+            Load::None => &[MockInstrument::Joint],
+            _ => &MockInstrument::JOINT_BENCH,
+        };
+        let mut all = base.to_vec();
+        all.extend(self.others.iter().filter(|other| !base.contains(other)));
+        all
     }
 
     pub fn hiding(mut self, effects: &[&str]) -> Self {
         self.effects = effects.iter().map(|effect| (*effect).to_owned()).collect();
         self
     }
-}
-
-/// Where the instruments answer.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MockPorts {
-    pub joint: Address,
-    pub torque_sensor: Address,
-    pub brake: Address,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -112,14 +124,14 @@ impl MockBench {
         }
         let hidden =
             Hidden::draw(settings.joint, settings.seed, &settings.effects).map_err(MockError::UnknownEffect)?;
-        let plant = Plant::new(settings.joint, settings.load, settings.seed, hidden);
+        let mut plant = Plant::new(settings.joint, settings.load, settings.seed, hidden);
+        plant.filter_s2(settings.filter);
         let truth = plant.truth(settings.joint, settings.seed);
         let rig =
             Arc::new(Mutex::new(Rig::new(plant, Odrive::new(settings.joint), &settings.others, &settings.troubles)));
         let clock = Arc::new(SteppedClock::new(Arc::clone(&rig), settings.pace));
         let mut bench = Self { settings, truth, rig, clock, ports: Vec::new(), threads: Vec::new() };
-        let others = bench.settings.others.clone().into_iter();
-        for instrument in MockInstrument::JOINT_BENCH.into_iter().chain(others) {
+        for instrument in bench.settings.instruments() {
             if bench.address(instrument).is_some() {
                 continue;
             }
@@ -133,15 +145,6 @@ impl MockBench {
             bench.threads.push(thread);
         }
         Ok(bench)
-    }
-
-    pub fn ports(&self) -> MockPorts {
-        let address = |wanted| self.address(wanted).expect("every mock bench has these");
-        MockPorts {
-            joint: address(MockInstrument::Joint),
-            torque_sensor: address(MockInstrument::TorqueSensor),
-            brake: address(MockInstrument::Brake),
-        }
     }
 
     /// Moves only in `sleep_until_s`.
@@ -163,42 +166,64 @@ impl MockBench {
         lock(&self.rig).afflict(instrument, trouble);
     }
 
-    /// The bench with the ordinary drivers on the ports of this mock bench.
-    pub fn open_bench(&self, name: &str) -> Result<Bench, Fault> {
-        let ports = self.ports();
-        let (range, nominal_nm) = self.settings.torque_range();
-        let joint = OdriveJoint::open(
-            OdriveSettings {
+    /// What the ordinary drivers need to reach the instruments of this bench.
+    pub fn instruments(&self) -> InstrumentSettings {
+        let deadline_ms = self.settings.deadline_ms;
+        let port = |instrument, baud| self.address(instrument).map(|address| PortSettings::new(address, baud));
+        let counter = |name: &str, instrument, counts_per_turn, status_input| {
+            let port = port(instrument, 230_400)?;
+            let (name, reversed) = (name.into(), false);
+            Some(QsbSettings { name, port, deadline_ms, counts_per_turn, reversed, status_input })
+        };
+        let torque_sensor = self.settings.torque_range().zip(port(MockInstrument::TorqueSensor, 230_400));
+        InstrumentSettings {
+            joint: OdriveSettings {
                 name: "joint".into(),
-                port: PortSettings::new(ports.joint, 921_600),
-                deadline_ms: self.settings.deadline_ms,
-                link_encoder: true,
+                port: port(MockInstrument::Joint, 921_600).expect("every mock bench has a joint"),
+                deadline_ms,
+                link_encoder: self.settings.load != Load::None,
                 thermistor: Some(Thermistor::Motor),
             },
-            self.clock(),
-        )?;
-        let torque_sensor = LorenzSensor::open(LorenzSettings {
-            name: "torque_sensor".into(),
-            port: PortSettings::new(ports.torque_sensor, 230_400),
-            deadline_ms: self.settings.deadline_ms,
-            range,
-            nominal_nm,
-        })?;
-        let brake = ScpiSource::open(ScpiSettings {
-            name: "brake_a".into(),
-            port: PortSettings::new(ports.brake, 115_200),
-            deadline_ms: self.settings.deadline_ms,
-        })?;
-        Ok(Bench {
-            name: name.to_owned(),
-            simulated: true,
-            clock: self.clock(),
-            limits: self.settings.joint.limits(self.settings.load),
-            constants: self.settings.joint.constants(self.settings.load),
-            joint: Box::new(joint),
-            torque_sensor: Some(Box::new(torque_sensor)),
-            brake: Some(Box::new(brake)),
-        })
+            torque_sensor: torque_sensor.map(|((range, nominal_nm), port)| {
+                let name = "torque_sensor".into();
+                TorqueSensorSettings::Lorenz(LorenzSettings { name, port, deadline_ms, range, nominal_nm })
+            }),
+            brake: port(MockInstrument::Brake, 115_200).map(|port| ScpiSettings {
+                name: "brake_a".into(),
+                port,
+                deadline_ms,
+            }),
+            reference_encoder: counter("s1", MockInstrument::CounterS1, 1 << 14, None),
+            test_encoder: counter("s2", MockInstrument::CounterS2, 1 << 18, Some(0)),
+            stage: port(MockInstrument::Stage, 115_200).map(|port| GcsSettings {
+                name: "stage".into(),
+                port,
+                deadline_ms,
+            }),
+            thermometer: port(MockInstrument::Thermometer, 9600).map(|port| AdamSettings {
+                name: "thermometer".into(),
+                port,
+                deadline_ms,
+                slave: 1,
+                channels: vec![0, 1, 5],
+            }),
+        }
+    }
+
+    /// The bench with the ordinary drivers on the ports of this mock bench.
+    pub fn open_bench(&self, name: &str) -> Result<Bench, Fault> {
+        let opened = self.instruments().open(&self.clock());
+        if let Some(fault) = opened.asked.iter().find_map(|asked| asked.identity.as_ref().err()) {
+            return Err(fault.clone());
+        }
+        let (limits, constants) =
+            (self.settings.joint.limits(self.settings.load), self.settings.joint.constants(self.settings.load));
+        Ok(opened.into_bench(name, true, self.clock(), limits, constants).expect("every instrument answers"))
+    }
+
+    /// Every instrument by its name, and where it answers now.
+    pub fn addresses(&self) -> Vec<(&'static str, Address)> {
+        self.ports.iter().map(|(instrument, port)| (instrument.label(), port.address())).collect()
     }
 
     /// Where an instrument answers now. `None`: this bench does not have it.

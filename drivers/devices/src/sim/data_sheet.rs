@@ -5,7 +5,7 @@ use jointbench_instrument::bench::JointConstants;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// The two joints of the thesis behind the bench.
+/// What the drive turns: the two joints of the thesis behind the bench, or the motor of its encoder bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Joint {
@@ -13,6 +13,8 @@ pub enum Joint {
     JointA,
     /// Two belts, 50:1, 20 Nm, no stops.
     JointB,
+    /// No gear: the shaft carries the two encoders of the encoder bench, and nothing else.
+    EncoderShaft,
 }
 
 /// What loads the joint.
@@ -24,6 +26,8 @@ pub enum Load {
     BrakeA,
     /// Up to 150 Nm: brake B behind a gear 1:10, whose friction depends on speed; brake A turns along unfed.
     GearAndBrakeB,
+    /// Nothing, and no torque sensor either: the encoder bench.
+    None,
 }
 
 /// Figures of the thesis: tables of the joints, of friction (motor side) and of stiffness (link side).
@@ -42,6 +46,10 @@ pub(super) struct DataSheet {
     pub stiffness_nm_rad: f64,
     /// What the link turns further than a linear gear would let it, under load. Zero: a linear gear.
     pub soft_rad: f64,
+    /// Flange, coupling and sensor shaft on the joint's side of the torque sensor, or what the shaft carries (assumed).
+    pub link_inertia_kg_m2: f64,
+    /// Link side: what the drive's gains were tuned with.
+    pub tuned_inertia_kg_m2: f64,
     /// Assumed: the thesis gives none.
     pub rotor_inertia_kg_m2: f64,
     pub max_motor_velocity_rad_s: f64,
@@ -78,6 +86,8 @@ impl Joint {
                 stribeck_exponent: 0.8,
                 stiffness_nm_rad: 5722.5,
                 soft_rad: 0.0,
+                link_inertia_kg_m2: 0.011,
+                tuned_inertia_kg_m2: 0.017,
                 rotor_inertia_kg_m2: 1.2e-5,
                 max_motor_velocity_rad_s: 350.0,
                 max_motor_current_a: 8.0,
@@ -94,25 +104,47 @@ impl Joint {
                 stribeck_exponent: 1.9,
                 stiffness_nm_rad: 684.3,
                 soft_rad: 0.9588e-3,
+                link_inertia_kg_m2: 0.011,
+                tuned_inertia_kg_m2: 0.017,
                 rotor_inertia_kg_m2: 4.4e-5,
                 max_motor_velocity_rad_s: 350.0,
                 max_motor_current_a: 8.0,
+            },
+            // The thesis gives nothing but "BLDC motor": all assumed.
+            Joint::EncoderShaft => DataSheet {
+                torque_constant_nm_per_a: 0.08,
+                ratio: 1.0,
+                max_torque_nm: 1.0,
+                range_rad: None,
+                coulomb_nm: 0.010,
+                breakaway_nm: 0.012,
+                viscous_nm_s: 2e-5,
+                stribeck_velocity_rad_s: 1.0,
+                stribeck_exponent: 1.0,
+                stiffness_nm_rad: 20.0,
+                soft_rad: 0.0,
+                link_inertia_kg_m2: 1e-5,
+                tuned_inertia_kg_m2: 1e-5,
+                rotor_inertia_kg_m2: 4.4e-5,
+                max_motor_velocity_rad_s: 200.0,
+                max_motor_current_a: 5.0,
             },
         }
     }
 
     pub fn constants(self, load: Load) -> JointConstants {
         let sheet = self.data_sheet();
-        let turns = match load {
-            Load::BrakeA => 1.0,
-            Load::GearAndBrakeB => LINE_RATIO,
+        let (turns, brakes) = match load {
+            Load::BrakeA => (1.0, 1.0),
+            Load::GearAndBrakeB => (LINE_RATIO, 1.0),
+            Load::None => (0.0, 0.0),
         };
         JointConstants {
             torque_constant_nm_per_a: sheet.torque_constant_nm_per_a,
             gear_ratio: sheet.ratio,
             rotor_inertia_kg_m2: sheet.rotor_inertia_kg_m2,
-            brake_compliance_v: COMPLIANCE_V,
-            brake_rated_current_a: brake::RATED_CURRENT_A,
+            brake_compliance_v: brakes * COMPLIANCE_V,
+            brake_rated_current_a: brakes * brake::RATED_CURRENT_A,
             brake_rated_torque_nm: turns * brake::RATED_TORQUE_NM,
             link_range_rad: sheet.range_rad,
         }
@@ -121,17 +153,18 @@ impl Joint {
     /// What the bench must never exceed: the joint's, the torque range's and the brake's own limits.
     pub fn limits(self, load: Load) -> Limits {
         let sheet = self.data_sheet();
-        let sensor_nm = match load {
-            Load::BrakeA => 18.0,
-            Load::GearAndBrakeB => 150.0,
+        let (sensor_nm, brakes) = match load {
+            Load::BrakeA => (18.0, 1.0),
+            Load::GearAndBrakeB => (150.0, 1.0),
+            Load::None => (0.0, 0.0),
         };
         Limits {
             motor_velocity_rad_s: sheet.max_motor_velocity_rad_s,
             motor_current_a: sheet.max_motor_current_a,
             link_torque_nm: sheet.max_torque_nm.min(sensor_nm),
             temperature_c: 70.0,
-            brake_current_a: 0.62,
-            brake_power_w: brake::CONTINUOUS_W,
+            brake_current_a: brakes * 0.62,
+            brake_power_w: brakes * brake::CONTINUOUS_W,
         }
     }
 }

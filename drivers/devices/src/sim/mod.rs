@@ -21,7 +21,7 @@ mod rig;
 mod trouble;
 mod wire;
 
-pub use bench::{MockBench, MockError, MockPorts, MockSettings, Transport};
+pub use bench::{MockBench, MockError, MockSettings, Transport};
 pub use data_sheet::{Joint, Load};
 pub use plant::{HIDDEN_EFFECTS, HiddenEffect, Truth};
 pub use replay::Replay;

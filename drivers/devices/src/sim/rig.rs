@@ -25,9 +25,13 @@ pub enum MockInstrument {
 }
 
 impl MockInstrument {
-    /// What every mock bench has.
+    /// What every mock bench with a load has.
     pub const JOINT_BENCH: [MockInstrument; 3] =
         [MockInstrument::Joint, MockInstrument::TorqueSensor, MockInstrument::Brake];
+
+    /// What an encoder bench has beside its motor.
+    pub const ENCODER_BENCH: [MockInstrument; 4] =
+        [MockInstrument::CounterS1, MockInstrument::CounterS2, MockInstrument::Stage, MockInstrument::Thermometer];
 
     const COUNT: usize = 8;
 

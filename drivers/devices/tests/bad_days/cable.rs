@@ -129,18 +129,17 @@ fn a_plugged_cable_is_found_again() {
 #[test]
 fn another_instrument_behind_the_port_is_named() {
     let mock = MockBench::start(MockSettings::new(Joint::JointA, 4)).unwrap();
-    let ports = mock.ports();
     let deadline_ms = 300;
     let joint = OdriveSettings {
         name: "joint".into(),
-        port: PortSettings::new(ports.brake, 115_200),
+        port: PortSettings::new(mock.address(MockInstrument::Brake).unwrap(), 115_200),
         deadline_ms,
         link_encoder: false,
         thermistor: None,
     };
     let Err(fault) = OdriveJoint::open(joint, mock.clock()) else { panic!("a supply passed for a drive") };
     assert!(fault.to_string().starts_with("joint on /dev/"), "{fault}");
-    let port = PortSettings::new(ports.joint, 115_200);
+    let port = PortSettings::new(mock.address(MockInstrument::Joint).unwrap(), 115_200);
     let Err(fault) = ScpiSource::open(ScpiSettings { name: "brake_a".into(), port, deadline_ms }) else {
         panic!("a drive passed for a supply")
     };

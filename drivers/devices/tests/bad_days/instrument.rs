@@ -129,7 +129,7 @@ fn a_hot_joint_is_seen() {
 fn a_saturated_range_is_a_fault_and_the_larger_one_a_number() {
     for (range, nominal_nm) in [(Range::Fine, 20.0), (Range::Coarse, 200.0)] {
         let mock = MockBench::start(settings(Transport::Terminal)).unwrap();
-        let port = PortSettings::new(mock.ports().torque_sensor, 230_400);
+        let port = PortSettings::new(mock.address(MockInstrument::TorqueSensor).unwrap(), 230_400);
         let sensor = LorenzSettings { name: "torque".into(), port, deadline_ms: 400, range, nominal_nm };
         let mut sensor = LorenzSensor::open(sensor).unwrap();
         mock.trouble(MockInstrument::TorqueSensor, Trouble::Saturated);

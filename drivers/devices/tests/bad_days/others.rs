@@ -162,8 +162,8 @@ fn a_broken_sensor_is_a_fault_and_no_temperature() {
 fn both_encoders_follow_the_shaft_and_differ_by_their_shape_and_delay() {
     let mock = start(Transport::Terminal);
     let mut bench = mock.open_bench("mock").unwrap();
-    let (mut s1, mut s2) = (counter(&mock, MockInstrument::CounterS1), counter(&mock, MockInstrument::CounterS2));
-    assert!(s2.periods_are_consistent().unwrap());
+    let (mut s1, mut s2) = (bench.reference_encoder.take().unwrap(), bench.test_encoder.take().unwrap());
+    assert!(s2.status().unwrap().periods_are_consistent().unwrap());
     bench.joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
     let mut mean_disparity = |velocity_rad_s: f64| {
         let (mut sum_rad, readings) = (0.0, 400);

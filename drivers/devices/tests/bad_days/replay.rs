@@ -35,7 +35,7 @@ fn a_bad_day_can_be_had_again() {
     let folder = tempfile::tempdir().unwrap();
     for transport in [Transport::Terminal, Transport::Tcp] {
         let (mock, bench) = start(transport);
-        let address = mock.ports().brake;
+        let address = mock.address(MockInstrument::Brake).unwrap();
         drop(bench);
         let file = folder.path().join("brake.txt");
         let recorded = day(address, Some(file.clone()), Some(&mock));
@@ -71,7 +71,7 @@ fn a_lost_port_is_lost_again_and_a_record_that_cannot_be_written_is_told() {
     assert!(matches!(fault.kind, FaultKind::Disconnected { .. }), "{fault}");
 
     let (mock, bench) = start(Transport::Tcp);
-    port.address = mock.ports().brake;
+    port.address = mock.address(MockInstrument::Brake).unwrap();
     port.record = Some(PathBuf::from("/nowhere/at/all.txt"));
     drop(bench);
     assert!(open(port).unwrap_err().to_string().contains("/nowhere/at/all.txt"));

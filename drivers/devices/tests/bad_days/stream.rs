@@ -21,7 +21,7 @@ struct World {
 }
 
 fn sensor(mock: &MockBench, nominal_nm: f64) -> LorenzSensor {
-    let port = PortSettings::new(mock.ports().torque_sensor, 230_400);
+    let port = PortSettings::new(mock.address(MockInstrument::TorqueSensor).unwrap(), 230_400);
     let deadline_ms = DEADLINE.as_millis() as u64;
     let range = Range::Fine;
     LorenzSensor::open(LorenzSettings { name: "torque".into(), port, deadline_ms, range, nominal_nm }).unwrap()

@@ -125,6 +125,10 @@ impl Fakes {
             joint: Box::new(FakeJoint(fakes.clone())),
             torque_sensor: Some(Box::new(FakeTorqueSensor(fakes.clone()))),
             brake: Some(Box::new(FakeBrake(fakes.clone()))),
+            reference_encoder: None,
+            test_encoder: None,
+            stage: None,
+            thermometer: None,
         };
         (fakes, bench)
     }

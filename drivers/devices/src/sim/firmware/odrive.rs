@@ -119,7 +119,7 @@ pub struct Odrive {
 impl Odrive {
     pub fn new(joint: Joint) -> Self {
         let sheet = joint.data_sheet();
-        let inertia = sheet.rotor_inertia_kg_m2 + 0.017 / sheet.ratio.powi(2);
+        let inertia = sheet.rotor_inertia_kg_m2 + sheet.tuned_inertia_kg_m2 / sheet.ratio.powi(2);
         // Gains for a velocity loop of 300 rad/s with an integrator of 60 /s, in the drive's unit, Nm per turn/s.
         let vel_gain = (inertia * 300.0 * TAU) as f32;
         let config = Config {

@@ -16,19 +16,34 @@ struct Geared {
     friction: Friction,
 }
 
+enum Behind {
+    Nothing,
+    BrakeA,
+    Gear(Geared),
+}
+
 pub struct Line {
-    geared: Option<Geared>,
+    behind: Behind,
 }
 
 impl Line {
     pub fn new(load: Load) -> Self {
         let geared = || Geared { idle: Brake::new(), friction: Friction::new(GRIP_NM[0].1, 0.0, inertia_kg_m2(load)) };
-        Self { geared: (load == Load::GearAndBrakeB).then(geared) }
+        let behind = match load {
+            Load::None => Behind::Nothing,
+            Load::BrakeA => Behind::BrakeA,
+            Load::GearAndBrakeB => Behind::Gear(geared()),
+        };
+        Self { behind }
     }
 
     /// Torque against the link after one step in which `fed` is the brake that the supply feeds.
     pub fn advance(&mut self, fed: &mut Brake, supply: Option<CoilSupply>, link_rad_s: f64) -> f64 {
-        let Some(Geared { idle, friction }) = &mut self.geared else { return fed.advance(supply, link_rad_s) };
+        let Geared { idle, friction } = match &mut self.behind {
+            Behind::Nothing => return 0.0,
+            Behind::BrakeA => return fed.advance(supply, link_rad_s),
+            Behind::Gear(geared) => geared,
+        };
         let grip_nm = curve::at(&GRIP_NM, link_rad_s.abs());
         let gear_nm = friction.advance(link_rad_s, grip_nm);
         idle.advance(None, link_rad_s) + gear_nm + RATIO * fed.advance(supply, RATIO * link_rad_s)
@@ -38,6 +53,7 @@ impl Line {
 /// Everything that turns behind the torque sensor.
 pub fn inertia_kg_m2(load: Load) -> f64 {
     match load {
+        Load::None => 0.0,
         Load::BrakeA => brake::INERTIA_KG_M2,
         Load::GearAndBrakeB => brake::INERTIA_KG_M2 * (1.0 + RATIO * RATIO) + GEAR_KG_M2,
     }

@@ -34,9 +34,6 @@ pub(super) const AMBIENT_C: f64 = 24.0;
 pub(super) const MOTOR_COUNTS: f64 = 4096.0;
 pub(super) const LINK_COUNTS: f64 = 524_288.0;
 
-/// Flange, coupling and sensor shaft on the joint's side of the torque sensor.
-const LINK_INERTIA_KG_M2: f64 = 0.010;
-const COUPLING_INERTIA_KG_M2: f64 = 1.0e-3;
 /// i_q follows its set-point with the drive's current controller (bandwidth 1000 rad/s).
 const CURRENT_LAG_S: f64 = 1.0e-3;
 /// Low-pass of the torque sensor's electronics, 1 kHz class.
@@ -99,7 +96,7 @@ impl Plant {
             sensor_shift_nm: 0.0,
             thermistor_fault_k: 0.0,
             friction: Friction::new(coulomb_nm, viscous_nm_s, sheet.rotor_inertia_kg_m2),
-            gear: Gear::new(&sheet, LINK_INERTIA_KG_M2 + COUPLING_INERTIA_KG_M2 + line_inertia_kg_m2),
+            gear: Gear::new(&sheet, sheet.link_inertia_kg_m2 + line_inertia_kg_m2),
             line: Line::new(load),
             line_inertia_kg_m2,
             thermal: Thermal::new(AMBIENT_C),
@@ -181,6 +178,10 @@ impl Plant {
     /// Where the stage holds the sensor of S2.
     pub fn hold_sensor(&mut self, shift_m: [f64; 3], rotation_rad: [f64; 3]) {
         self.encoders.pose = encoders::Pose { shift_m, rotation_rad };
+    }
+
+    pub fn filter_s2(&mut self, on: bool) {
+        self.encoders.filtered = on;
     }
 
     pub fn periods_are_consistent(&self) -> bool {

@@ -1,0 +1,173 @@
+//! The instruments of one bench: how each is reached, and what opening them has brought.
+
+use crate::driver::{
+    AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, LorenzSensor, LorenzSettings,
+    OdriveJoint, OdriveSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
+};
+use crate::transport::PortSettings;
+use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::roles::{
+    AlignmentStage, CurrentSource, Identity, Instrument, JointController, PositionCounter, Thermometer, TorqueSensor,
+};
+use jointbench_instrument::{Bench, Clock, Fault, Limits};
+use std::sync::Arc;
+
+/// How each instrument is reached. Absence is an empty slot.
+#[derive(Debug, Clone)]
+pub struct InstrumentSettings {
+    pub joint: OdriveSettings,
+    pub torque_sensor: Option<TorqueSensorSettings>,
+    pub brake: Option<ScpiSettings>,
+    pub reference_encoder: Option<QsbSettings>,
+    pub test_encoder: Option<QsbSettings>,
+    pub stage: Option<GcsSettings>,
+    pub thermometer: Option<AdamSettings>,
+}
+
+#[derive(Debug, Clone)]
+pub enum TorqueSensorSettings {
+    Lorenz(LorenzSettings),
+    /// On the sensor's analogue output.
+    Multimeter(DmmSettings),
+}
+
+impl TorqueSensorSettings {
+    pub fn nominal_nm(&self) -> f64 {
+        match self {
+            TorqueSensorSettings::Lorenz(settings) => settings.nominal_nm,
+            TorqueSensorSettings::Multimeter(settings) => settings.nominal_nm,
+        }
+    }
+
+    fn open(self) -> Result<Box<dyn TorqueSensor>, Fault> {
+        Ok(match self {
+            TorqueSensorSettings::Lorenz(settings) => Box::new(LorenzSensor::open(settings)?),
+            TorqueSensorSettings::Multimeter(settings) => Box::new(DmmTorqueSensor::open(settings)?),
+        })
+    }
+}
+
+/// One instrument after it was asked who it is.
+#[derive(Debug, Clone)]
+pub struct Asked {
+    pub role: &'static str,
+    pub name: String,
+    pub driver: &'static str,
+    pub port: String,
+    pub identity: Result<Identity, Fault>,
+}
+
+/// The instruments that answer, each in its slot.
+pub struct Instruments {
+    pub joint: Option<Box<dyn JointController>>,
+    pub torque_sensor: Option<Box<dyn TorqueSensor>>,
+    pub brake: Option<Box<dyn CurrentSource>>,
+    pub reference_encoder: Option<Box<dyn PositionCounter>>,
+    pub test_encoder: Option<Box<dyn PositionCounter>>,
+    pub stage: Option<Box<dyn AlignmentStage>>,
+    pub thermometer: Option<Box<dyn Thermometer>>,
+    /// All that are described, those that do not answer too.
+    pub asked: Vec<Asked>,
+}
+
+impl InstrumentSettings {
+    /// Opens and identifies every instrument; one that does not answer keeps no other from being asked. Nothing moves.
+    pub fn open(&self, clock: &Arc<dyn Clock>) -> Instruments {
+        let mut desk = Desk { asked: Vec::new() };
+        let joint = self.joint.clone();
+        let joint = desk.ask("joint", "odrive", &self.joint.name, &self.joint.port, || {
+            Ok(Box::new(OdriveJoint::open(joint, Arc::clone(clock))?) as Box<dyn JointController>)
+        });
+        let torque_sensor = self.torque_sensor.clone().and_then(|settings| {
+            let (driver, name, port) = match &settings {
+                TorqueSensorSettings::Lorenz(lorenz) => ("lorenz", &lorenz.name, &lorenz.port),
+                TorqueSensorSettings::Multimeter(dmm) => ("multimeter", &dmm.name, &dmm.port),
+            };
+            let (name, port) = (name.clone(), port.clone());
+            desk.ask("torque_sensor", driver, &name, &port, || settings.open())
+        });
+        let brake = self.brake.clone().and_then(|settings| {
+            let (name, port) = (settings.name.clone(), settings.port.clone());
+            desk.ask("brake", "scpi", &name, &port, || {
+                Ok(Box::new(ScpiSource::open(settings)?) as Box<dyn CurrentSource>)
+            })
+        });
+        let mut counter = |role, settings: &Option<QsbSettings>| {
+            let settings = settings.clone()?;
+            let (name, port) = (settings.name.clone(), settings.port.clone());
+            desk.ask(role, "qsb", &name, &port, || {
+                Ok(Box::new(QsbCounter::open(settings, Arc::clone(clock))?) as Box<dyn PositionCounter>)
+            })
+        };
+        let reference_encoder = counter("reference_encoder", &self.reference_encoder);
+        let test_encoder = counter("test_encoder", &self.test_encoder);
+        let stage =
+            self.stage.clone().and_then(|settings| {
+                let (name, port) = (settings.name.clone(), settings.port.clone());
+                desk.ask("stage", "gcs", &name, &port, || {
+                    Ok(Box::new(GcsStage::open(settings)?) as Box<dyn AlignmentStage>)
+                })
+            });
+        let thermometer = self.thermometer.clone().and_then(|settings| {
+            let (name, port) = (settings.name.clone(), settings.port.clone());
+            desk.ask("thermometer", "adam", &name, &port, || {
+                Ok(Box::new(AdamThermometer::open(settings)?) as Box<dyn Thermometer>)
+            })
+        });
+        let asked = desk.asked;
+        Instruments { joint, torque_sensor, brake, reference_encoder, test_encoder, stage, thermometer, asked }
+    }
+}
+
+struct Desk {
+    asked: Vec<Asked>,
+}
+
+impl Desk {
+    fn ask<T: Instrument + ?Sized>(
+        &mut self,
+        role: &'static str,
+        driver: &'static str,
+        name: &str,
+        port: &PortSettings,
+        open: impl FnOnce() -> Result<Box<T>, Fault>,
+    ) -> Option<Box<T>> {
+        let opened = open().and_then(|mut instrument| Ok((instrument.identify()?, instrument)));
+        let (identity, instrument) = match opened {
+            Ok((identity, instrument)) => (Ok(identity), Some(instrument)),
+            Err(fault) => (Err(fault), None),
+        };
+        self.asked.push(Asked { role, driver, name: name.to_owned(), port: port.address.to_string(), identity });
+        instrument
+    }
+}
+
+impl Instruments {
+    /// `None` where an instrument does not answer: half a bench is none.
+    pub fn into_bench(
+        self,
+        name: &str,
+        simulated: bool,
+        clock: Arc<dyn Clock>,
+        limits: Limits,
+        constants: JointConstants,
+    ) -> Option<Bench> {
+        if self.asked.iter().any(|asked| asked.identity.is_err()) {
+            return None;
+        }
+        Some(Bench {
+            name: name.to_owned(),
+            simulated,
+            clock,
+            limits,
+            constants,
+            joint: self.joint?,
+            torque_sensor: self.torque_sensor,
+            brake: self.brake,
+            reference_encoder: self.reference_encoder,
+            test_encoder: self.test_encoder,
+            stage: self.stage,
+            thermometer: self.thermometer,
+        })
+    }
+}

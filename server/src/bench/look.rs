@@ -1,0 +1,184 @@
+//! A look at every instrument that answers: its state, and how fast it is read. Nothing is commanded.
+
+use jointbench_devices::Instruments;
+use jointbench_instrument::Fault;
+use jointbench_instrument::roles::{
+    AlignmentStage, CurrentSource, JointController, PositionCounter, Regulation, Thermometer, TorqueSensor,
+};
+use std::time::{Duration, Instant};
+
+/// Readings that are timed, and the longest that this may take.
+const READINGS: usize = 200;
+const LONGEST: Duration = Duration::from_millis(400);
+/// More brake current than this is not the offset of a meter.
+const NO_CURRENT_A: f64 = 0.01;
+
+/// What was seen of one instrument.
+pub struct Look {
+    pub role: &'static str,
+    /// `Err`: why it is not ready, and what to do.
+    pub state: Result<String, String>,
+    pub timing: Option<Timing>,
+}
+
+/// How long a reading takes on the clock on the wall.
+#[derive(Debug, Clone, Copy)]
+pub struct Timing {
+    pub median: Duration,
+    pub longest: Duration,
+    pub per_s: f64,
+}
+
+pub fn look(slots: &mut Instruments) -> Vec<Look> {
+    let mut looks = Vec::new();
+    let mut add = |role, (state, timing): Seen| looks.push(Look { role, state, timing });
+    if let Some(joint) = &mut slots.joint {
+        let timing = timed(|| joint.read().map(drop));
+        add("joint", seen(timing, || joint_state(joint.as_mut())));
+    }
+    if let Some(sensor) = &mut slots.torque_sensor {
+        let timing = timed(|| sensor.read().map(drop));
+        add("torque_sensor", seen(timing, || torque_state(sensor.as_mut())));
+    }
+    if let Some(brake) = &mut slots.brake {
+        let timing = timed(|| brake.read().map(drop));
+        add("brake", seen(timing, || brake_state(brake.as_mut())));
+    }
+    for (role, counter) in
+        [("reference_encoder", &mut slots.reference_encoder), ("test_encoder", &mut slots.test_encoder)]
+    {
+        if let Some(counter) = counter {
+            let timing = timed(|| counter.read().map(drop));
+            add(role, seen(timing, || counter_state(counter.as_mut())));
+        }
+    }
+    if let Some(stage) = &mut slots.stage {
+        let timing = timed(|| stage.pose().map(drop));
+        add("stage", seen(timing, || stage_state(stage.as_mut())));
+    }
+    if let Some(thermometer) = &mut slots.thermometer {
+        let timing = timed(|| thermometer.read().map(drop));
+        add("thermometer", seen(timing, || temperatures(thermometer.as_mut())));
+    }
+    looks
+}
+
+type Seen = (Result<String, String>, Option<Timing>);
+/// What an instrument tells, and what stands against its use.
+type State = Result<(String, Option<String>), Fault>;
+
+fn seen(timing: Result<Timing, Fault>, state: impl FnOnce() -> State) -> Seen {
+    let (timing, slow) = match timing {
+        Ok(timing) => (Some(timing), None),
+        Err(fault) => (None, Some(fault.to_string())),
+    };
+    let state = match (slow, state()) {
+        (Some(fault), _) => Err(fault),
+        (None, Err(fault)) => Err(fault.to_string()),
+        (None, Ok((told, Some(against)))) => Err(format!("{told}: {against}")),
+        (None, Ok((told, None))) => Ok(told),
+    };
+    (state, timing)
+}
+
+fn timed(mut read: impl FnMut() -> Result<(), Fault>) -> Result<Timing, Fault> {
+    let began = Instant::now();
+    let mut taken = Vec::with_capacity(READINGS);
+    while taken.len() < READINGS && began.elapsed() < LONGEST {
+        let asked = Instant::now();
+        read()?;
+        taken.push(asked.elapsed());
+    }
+    let per_s = taken.len() as f64 / began.elapsed().as_secs_f64();
+    taken.sort();
+    Ok(Timing { median: taken[taken.len() / 2], longest: taken[taken.len() - 1], per_s })
+}
+
+fn joint_state(joint: &mut dyn JointController) -> State {
+    let (health, reading) = (joint.health()?, joint.read()?);
+    let armed = if health.armed { "armed" } else { "off" };
+    let heat = health.temperature.map(|felt| format!(", {:.1} °C", felt.0)).unwrap_or_default();
+    let (bus_v, at_rad) = (health.bus_voltage.0, reading.motor_position.0);
+    let told = format!("{armed}, bus {bus_v:.1} V{heat}, motor at {at_rad:.3} rad");
+    let against = match (health.errors.is_empty(), health.armed) {
+        (false, _) => Some(format!("it reports {}; clear it with the drive's own tool", health.errors.join(", "))),
+        (true, true) => Some("it holds torque already; end the program that drives it".to_owned()),
+        (true, false) => None,
+    };
+    Ok((told, against))
+}
+
+fn torque_state(sensor: &mut dyn TorqueSensor) -> State {
+    Ok((format!("{:.3} Nm of ±{} Nm", sensor.read()?.0, sensor.range().0), None))
+}
+
+fn brake_state(brake: &mut dyn CurrentSource) -> State {
+    let reading = brake.read()?;
+    let regulation = match reading.regulation {
+        Regulation::ConstantCurrent => "constant current",
+        Regulation::ConstantVoltage => "constant voltage",
+        Regulation::Unregulated => "not regulated",
+        Regulation::Off => "output off",
+    };
+    let told = format!("{regulation}, {:.3} A, {:.2} V", reading.current.0, reading.voltage.0);
+    let flows = reading.regulation != Regulation::Off && reading.current.0.abs() > NO_CURRENT_A;
+    Ok((told, flows.then(|| "current flows already; ramp it down while the shaft turns".to_owned())))
+}
+
+fn counter_state(counter: &mut dyn PositionCounter) -> State {
+    let at_rad = counter.read()?.position.0;
+    let told = format!("at {at_rad:.4} rad, {:.0} counts a turn", std::f64::consts::TAU / counter.resolution().0);
+    let Some(status) = counter.status() else { return Ok((told, None)) };
+    if status.periods_are_consistent()? {
+        return Ok((format!("{told}, periods consistent"), None));
+    }
+    Ok((told, Some("its periods are not consistent; bring the sensor nearer to its place".to_owned())))
+}
+
+fn stage_state(stage: &mut dyn AlignmentStage) -> State {
+    if !stage.is_referenced()? {
+        return Ok(("not referenced yet; the first run that moves it does so".to_owned(), None));
+    }
+    let pose = stage.pose()?;
+    let [x, y, z] = pose.shift_m.map(|m| 1e3 * m);
+    let [u, v, w] = pose.rotation_rad.map(f64::to_degrees);
+    Ok((format!("at {x:.3}, {y:.3}, {z:.3} mm, turned {u:.2}, {v:.2}, {w:.2}°"), None))
+}
+
+fn temperatures(thermometer: &mut dyn Thermometer) -> State {
+    let felt: Vec<String> = thermometer.read()?.iter().map(|felt| format!("{:.1} °C", felt.0)).collect();
+    Ok((felt.join(", "), None))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::reach;
+    use crate::config::{READY_MADE, parse};
+    use jointbench_instrument::units::{Amperes, RadPerSec};
+
+    #[test]
+    fn every_mock_bench_is_ready_and_told() {
+        for (name, text) in READY_MADE.into_iter().filter(|(name, _)| name.ends_with("-mock")) {
+            let mut reached = reach(&parse(name, text).unwrap()[0]).unwrap();
+            let looks = look(&mut reached.slots);
+            assert_eq!(looks.len(), reached.slots.asked.len(), "{name}");
+            for Look { role, state, timing } in looks {
+                let told = state.unwrap_or_else(|why| panic!("{name}, {role}: {why}"));
+                let timing = timing.unwrap();
+                assert!(!told.is_empty() && timing.per_s > 0.0 && timing.median <= timing.longest);
+            }
+        }
+    }
+
+    #[test]
+    fn what_stands_against_an_instrument_is_said() {
+        let (name, text) = READY_MADE[0];
+        let mut reached = reach(&parse(name, text).unwrap()[0]).unwrap();
+        reached.slots.joint.as_mut().unwrap().arm(RadPerSec(10.0), Amperes(1.0)).unwrap();
+        let looks = look(&mut reached.slots);
+        let why = |wanted| looks.iter().find(|look| look.role == wanted).and_then(|look| look.state.as_ref().err());
+        assert!(why("joint").unwrap().contains("holds torque already"));
+        assert!(why("brake").is_none());
+    }
+}

@@ -1,0 +1,136 @@
+//! Limits and constants: given, or from a data sheet, or nothing that the bench has.
+
+use super::mistake::Collector;
+use super::raw::{RawBench, RawConstants, RawLimits};
+use super::values::{flip, positive};
+use jointbench_instrument::Limits;
+use jointbench_instrument::bench::JointConstants;
+use toml::Spanned;
+
+/// A source regulates around its set point: a limit a little above the rated current is no mistake.
+const ABOVE_RATED: f64 = 1.1;
+
+/// Where figures come from that the description does not give.
+pub struct Sheet {
+    /// Of a simulated bench.
+    known: Option<(Limits, JointConstants)>,
+    /// What a bench without a brake has for its ratings, and one that feels no torque for its limit.
+    without_brake: Option<f64>,
+    without_torque: Option<f64>,
+}
+
+impl Sheet {
+    pub fn simulated(limits: Limits, constants: JointConstants) -> Self {
+        Self { known: Some((limits, constants)), without_brake: None, without_torque: None }
+    }
+
+    pub fn of(raw: &RawBench) -> Self {
+        let without_brake = raw.brake.is_none().then_some(0.0);
+        let without_torque = without_brake.filter(|_| raw.torque_sensor.is_none());
+        Self { known: None, without_brake, without_torque }
+    }
+
+    fn limit(&self, of: fn(&Limits) -> f64) -> Option<f64> {
+        self.known.as_ref().map(|(limits, _)| of(limits))
+    }
+
+    fn constant(&self, of: fn(&JointConstants) -> f64) -> Option<f64> {
+        self.known.as_ref().map(|(_, constants)| of(constants))
+    }
+
+    /// Names every limit that is missing or wrong.
+    pub fn limits(&self, raw: &RawBench, wrong: &mut Collector) -> Option<Limits> {
+        let given = raw.limits.as_ref();
+        let mut take = |name: &str, of: fn(&RawLimits) -> Option<&Spanned<f64>>, sheet: Option<f64>| {
+            either(given.and_then(of), sheet, &format!("limits.{name}"), raw, wrong)
+        };
+        let velocity = self.limit(|l| l.motor_velocity_rad_s);
+        let velocity = take("motor_velocity_rad_s", |r| r.motor_velocity_rad_s.as_ref(), velocity);
+        let current = take("motor_current_a", |r| r.motor_current_a.as_ref(), self.limit(|l| l.motor_current_a));
+        let torque = self.limit(|l| l.link_torque_nm).or(self.without_torque);
+        let torque = take("link_torque_nm", |r| r.link_torque_nm.as_ref(), torque);
+        let heat = take("temperature_c", |r| r.temperature_c.as_ref(), self.limit(|l| l.temperature_c));
+        let brake = self.limit(|l| l.brake_current_a).or(self.without_brake);
+        let brake = take("brake_current_a", |r| r.brake_current_a.as_ref(), brake);
+        let power = self.limit(|l| l.brake_power_w).or(self.without_brake);
+        let power = take("brake_power_w", |r| r.brake_power_w.as_ref(), power);
+        Some(Limits {
+            motor_velocity_rad_s: velocity?,
+            motor_current_a: current?,
+            link_torque_nm: torque?,
+            temperature_c: heat?,
+            brake_current_a: brake?,
+            brake_power_w: power?,
+        })
+    }
+
+    /// Names every constant that is missing or wrong.
+    pub fn constants(&self, raw: &RawBench, wrong: &mut Collector) -> Option<JointConstants> {
+        let given = raw.constants.as_ref();
+        let range = given.and_then(|given| given.link_range_rad.as_ref());
+        let range = range.map(|range| positive(range, "constants.link_range_rad", wrong));
+        let mut take = |name: &str, of: fn(&RawConstants) -> Option<&Spanned<f64>>, sheet: Option<f64>| {
+            either(given.and_then(of), sheet, &format!("constants.{name}"), raw, wrong)
+        };
+        let torque_constant = self.constant(|c| c.torque_constant_nm_per_a);
+        let torque_constant =
+            take("torque_constant_nm_per_a", |r| r.torque_constant_nm_per_a.as_ref(), torque_constant);
+        let ratio = take("gear_ratio", |r| r.gear_ratio.as_ref(), self.constant(|c| c.gear_ratio));
+        let inertia = self.constant(|c| c.rotor_inertia_kg_m2);
+        let inertia = take("rotor_inertia_kg_m2", |r| r.rotor_inertia_kg_m2.as_ref(), inertia);
+        let compliance = self.constant(|c| c.brake_compliance_v).or(self.without_brake);
+        let compliance = take("brake_compliance_v", |r| r.brake_compliance_v.as_ref(), compliance);
+        let current = self.constant(|c| c.brake_rated_current_a).or(self.without_brake);
+        let current = take("brake_rated_current_a", |r| r.brake_rated_current_a.as_ref(), current);
+        let torque = self.constant(|c| c.brake_rated_torque_nm).or(self.without_brake);
+        let torque = take("brake_rated_torque_nm", |r| r.brake_rated_torque_nm.as_ref(), torque);
+        Some(JointConstants {
+            torque_constant_nm_per_a: torque_constant?,
+            gear_ratio: ratio?,
+            rotor_inertia_kg_m2: inertia?,
+            brake_compliance_v: compliance?,
+            brake_rated_current_a: current?,
+            brake_rated_torque_nm: torque?,
+            link_range_rad: flip(range)?.or(self.known.as_ref().and_then(|(_, constants)| constants.link_range_rad)),
+        })
+    }
+}
+
+/// The value given, or that of the data sheet.
+fn either(
+    given: Option<&Spanned<f64>>,
+    sheet: Option<f64>,
+    name: &str,
+    raw: &RawBench,
+    wrong: &mut Collector,
+) -> Option<f64> {
+    match given {
+        Some(given) => positive(given, name, wrong),
+        None if sheet.is_some() => sheet,
+        None => {
+            let cure = "a bench with real instruments has to give it";
+            wrong.add(raw.name.span(), format!("{name} is missing: {cure}"));
+            None
+        }
+    }
+}
+
+/// A limit beyond what an instrument can show or bear protects nothing.
+pub fn check_reach(raw: &RawBench, limits: &Limits, constants: &JointConstants, wrong: &mut Collector) {
+    let Some(given) = &raw.limits else { return };
+    if let (Some(place), Some(sensor)) = (&given.link_torque_nm, &raw.torque_sensor) {
+        let nominal_nm = *sensor.nominal_nm.get_ref();
+        if limits.link_torque_nm > nominal_nm {
+            let told =
+                format!("limits.link_torque_nm = {}: the torque sensor ends at {nominal_nm} Nm", limits.link_torque_nm);
+            wrong.add(place.span(), format!("{told}; give at most that"));
+        }
+    }
+    if let (Some(place), Some(_)) = (&given.brake_current_a, &raw.brake)
+        && limits.brake_current_a > ABOVE_RATED * constants.brake_rated_current_a
+    {
+        let rated_a = constants.brake_rated_current_a;
+        let told = format!("limits.brake_current_a = {}: the brake is rated for {rated_a} A", limits.brake_current_a);
+        wrong.add(place.span(), format!("{told}; give at most a tenth more"));
+    }
+}
