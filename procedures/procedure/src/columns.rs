@@ -2,7 +2,7 @@
 
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{DriveHealth, JointReading};
-use jointbench_instrument::{Bench, Channel, Trace};
+use jointbench_instrument::{Bench, Channel, Kind, Trace};
 
 /// Time is kept in whole microseconds: finer than any serial instrument can tell, and exact to store.
 const TIME_STEP_S: f64 = 1e-6;
@@ -25,16 +25,23 @@ pub(crate) struct Moment {
 ///
 /// Twelve where all are there: time_s, motor_position_rad, motor_velocity_rad_s, motor_current_a, link_position_rad,
 /// link_torque_nm, temperature_c, brake_current_a, brake_torque_command_nm, velocity_setpoint_rad_s, segment, repeat.
+///
+/// A run of a brake names what it feels after the brake: brake_torque_nm is the sensor's reading against the commanded
+/// way (positive while the brake brakes), position_rad and velocity_rad_s are those of its shaft, the link's, and
+/// brake_current_command_a stands in for the torque that nobody has asked for.
 #[derive(Debug, Clone)]
 pub(crate) struct Columns {
     channels: Vec<Channel>,
     brake_nm_per_a: f64,
+    /// Set for a run of a brake: the gear ratio, and the way in which the shaft was last told to turn.
+    brake: Option<(f64, f64)>,
     row: Vec<f64>,
 }
 
 impl Columns {
-    pub fn of(bench: &Bench, reading: &JointReading, health: &DriveHealth) -> Self {
+    pub fn of(kind: Kind, bench: &Bench, reading: &JointReading, health: &DriveHealth) -> Self {
         let steps = bench.joint.resolution();
+        let is_brake = kind == Kind::Brake;
         let mut channels = vec![
             channel("time_s", Some(TIME_STEP_S)),
             channel("motor_position_rad", steps.motor_position.map(|step| step.0)),
@@ -42,24 +49,31 @@ impl Columns {
             channel("motor_current_a", steps.motor_current.map(|step| step.0)),
         ];
         if reading.link_position.is_some() {
-            channels.push(channel("link_position_rad", steps.link_position.map(|step| step.0)));
+            let name = if is_brake { "position_rad" } else { "link_position_rad" };
+            channels.push(channel(name, steps.link_position.map(|step| step.0)));
         }
         if let Some(sensor) = &bench.torque_sensor {
-            channels.push(channel("link_torque_nm", sensor.resolution().map(|step| step.0)));
+            let name = if is_brake { "brake_torque_nm" } else { "link_torque_nm" };
+            channels.push(channel(name, sensor.resolution().map(|step| step.0)));
         }
         if health.temperature.is_some() {
             channels.push(channel("temperature_c", steps.temperature.map(|step| step.0)));
         }
-        let brake_nm_per_a = nominal_brake_nm_per_a(&bench.constants);
+        let brake_nm_per_a = if is_brake { 1.0 } else { nominal_brake_nm_per_a(&bench.constants) };
         if let Some(source) = &bench.brake {
             let step_a = source.resolution().map(|step| step.0);
             channels.push(channel("brake_current_a", step_a));
-            channels.push(channel("brake_torque_command_nm", step_a.map(|step| step * brake_nm_per_a)));
+            let name = if is_brake { "brake_current_command_a" } else { "brake_torque_command_nm" };
+            channels.push(channel(name, step_a.map(|step| step * brake_nm_per_a)));
         }
         channels.push(channel("velocity_setpoint_rad_s", Some(VELOCITY_STEP_RAD_S)));
+        if is_brake {
+            channels.push(channel("velocity_rad_s", None));
+        }
         channels.push(channel("segment", Some(1.0)));
         channels.push(channel("repeat", Some(1.0)));
-        Self { row: Vec::with_capacity(channels.len()), channels, brake_nm_per_a }
+        let brake = is_brake.then_some((bench.constants.gear_ratio, 1.0));
+        Self { row: Vec::with_capacity(channels.len()), channels, brake_nm_per_a, brake }
     }
 
     pub fn empty_trace(&self) -> Trace {
@@ -68,17 +82,25 @@ impl Columns {
 
     /// The row of a moment, in the order of the channels.
     pub fn row(&mut self, moment: &Moment, segment: u32, repeat: u32) -> &[f64] {
+        if let Some((_, way)) = &mut self.brake
+            && moment.velocity_setpoint_rad_s != 0.0
+        {
+            *way = moment.velocity_setpoint_rad_s.signum();
+        }
+        let way = self.brake.map_or(1.0, |(_, way)| way);
         let row = &mut self.row;
         row.clear();
         row.extend([moment.time_s, moment.joint.motor_position.0, moment.joint.motor_velocity.0]);
         row.push(moment.joint.motor_current.0);
         row.extend(moment.joint.link_position.map(|position| position.0));
-        row.extend(moment.link_torque_nm);
+        row.extend(moment.link_torque_nm.map(|torque_nm| way * torque_nm));
         row.extend(moment.temperature_c);
         if let Some((measured_a, commanded_a)) = moment.brake_a {
             row.extend([measured_a, commanded_a * self.brake_nm_per_a]);
         }
-        row.extend([moment.velocity_setpoint_rad_s, f64::from(segment), f64::from(repeat)]);
+        row.push(moment.velocity_setpoint_rad_s);
+        row.extend(self.brake.map(|(gear_ratio, _)| moment.joint.motor_velocity.0 / gear_ratio));
+        row.extend([f64::from(segment), f64::from(repeat)]);
         row
     }
 }

@@ -6,8 +6,10 @@
 
 pub mod catalogue;
 mod columns;
+pub mod conduct;
 pub mod engine;
 pub mod event;
+mod findings;
 pub mod guard;
 pub mod identification;
 mod menu;

@@ -37,6 +37,16 @@ pub enum Phase {
     Measure,
 }
 
+/// The history that a step begins with. A pause takes it away; resuming restores it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Before {
+    /// The brake as the step before has left it: a pause keeps its current, and more is approached from below.
+    #[default]
+    AsLeft,
+    /// The brake demagnetised while turning, its current 0.
+    Demagnetised,
+}
+
 /// One step: a checkpoint at its end, repeated from its beginning after a pause.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
@@ -46,6 +56,7 @@ pub struct Step {
     pub segment: u32,
     /// Number of the repetition of the whole profile.
     pub repeat: u32,
+    pub before: Before,
     /// Motor-side velocity [rad/s] over the time of the step. Starts and ends at rest.
     pub velocity: Profile,
     /// Brake current [A] over the time of the step.
@@ -140,6 +151,7 @@ pub(crate) mod testing {
             phase: Phase::Measure,
             segment: index as u32,
             repeat: 0,
+            before: Before::AsLeft,
             velocity: Profile::plateau(if index % 2 == 0 { 20.0 } else { -20.0 }, 200.0, duration_s - 0.2),
             brake: Profile::constant(0.0),
         };

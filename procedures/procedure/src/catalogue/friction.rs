@@ -12,12 +12,16 @@
 use super::Procedure;
 use super::legs::{Legs, friction_meta, turn_s};
 use super::warm_up;
+use crate::findings::verdict;
+use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault, Steady};
-use jointbench_instrument::Kind;
+use jointbench_instrument::{Kind, RunTable};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
+
+mod identify;
 
 pub(super) struct Friction;
 
@@ -107,6 +111,10 @@ impl Procedure for Friction {
                 current_share_per_min: 0.01,
             }),
         })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify::identify(run))
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the procedures of a joint share: numbered steps, legs of constant speed, the facts of a friction run.
 
-use crate::plan::{BenchFacts, Phase, Step};
+use crate::plan::{Before, BenchFacts, Phase, Step};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
@@ -48,6 +48,31 @@ impl Legs {
         self.push(format!("{:+.1} rad/s at {to_a:.2} A", -speed_rad_s), back, Profile::constant(to_a));
     }
 
+    /// One step at constant speed in which the current goes from 0 through a history of its own and back to 0: an unbroken
+    /// one, so that it is made again as a whole after a pause.
+    pub fn sweep(&mut self, label: String, speed_rad_s: f64, currents_a: &[f64], dwell_s: f64) {
+        let turning_s = speed_rad_s.abs() / self.acceleration_rad_s2;
+        let mut brake = Profile::from(0.0).hold(turning_s);
+        for current_a in currents_a.iter().chain([&0.0]) {
+            brake = brake.to(*current_a, 0.0).hold(dwell_s);
+        }
+        let velocity = Profile::plateau(speed_rad_s, self.acceleration_rad_s2, brake.duration_s() - turning_s + LAG_S);
+        self.push(label, velocity, brake);
+        let last = self.steps.len() - 1;
+        self.steps[last].before = Before::Demagnetised;
+    }
+
+    /// The rated current, then none over `turns` of the link: no pole keeps what was before.
+    pub fn demagnetise(&mut self, speed_rad_s: f64, rated_a: f64, turns: f64, bench: &BenchFacts) {
+        let turning_s = speed_rad_s / self.acceleration_rad_s2;
+        let ramp_s = (turns * TAU * bench.constants.gear_ratio / speed_rad_s).max(UNLOAD_S);
+        let brake = Profile::from(0.0).hold(turning_s).to(rated_a, RAISE_S).hold(LAG_S).to(0.0, ramp_s).hold(LAG_S);
+        let velocity = Profile::plateau(speed_rad_s, self.acceleration_rad_s2, brake.duration_s() - turning_s);
+        let back = Profile::plateau(-speed_rad_s, self.acceleration_rad_s2, brake.duration_s() - turning_s);
+        self.push("demagnetise the brake while turning".into(), velocity, brake);
+        self.push("back".into(), back, Profile::constant(0.0));
+    }
+
     /// The brake current goes to zero over at least one link turn, as fast as the joint turns, and back without load.
     pub fn unload(&mut self, speed_rad_s: f64, from_a: f64, bench: &BenchFacts) {
         let ramp_s = turn_s(1.0, speed_rad_s, bench, UNLOAD_S);
@@ -58,9 +83,15 @@ impl Legs {
         self.leg(-speed_rad_s, ramp_s + LAG_S, 0.0);
     }
 
+    /// How far the last step turns the motor [rad].
+    pub fn way_of_last(&self) -> f64 {
+        self.steps.last().and_then(|step| step.velocity.integral().last().copied()).unwrap_or(0.0)
+    }
+
     pub fn push(&mut self, label: String, velocity: Profile, brake: Profile) {
         let segment = self.steps.len() as u32;
-        self.steps.push(Step { label, phase: self.phase, segment, repeat: self.repeat, velocity, brake });
+        let (phase, repeat, before) = (self.phase, self.repeat, Before::AsLeft);
+        self.steps.push(Step { label, phase, segment, repeat, before, velocity, brake });
     }
 }
 

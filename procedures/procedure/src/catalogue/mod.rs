@@ -1,8 +1,15 @@
 //! The procedures that the product knows.
 
+mod brake_hysteresis;
+mod brake_run;
+mod brake_speed_independence;
+mod demagnetise;
 mod friction;
+mod friction_load;
+mod friction_temperature;
 mod legs;
 mod strokes;
+mod torque_sensor_zero;
 mod warm_up;
 
 use crate::identification::Identification;
@@ -37,7 +44,17 @@ pub trait Procedure: Sync {
 
 /// Every procedure, in the order in which a list shows them.
 pub fn catalogue() -> &'static [&'static dyn Procedure] {
-    &[&friction::Friction, &strokes::Strokes, &warm_up::WarmUp]
+    &[
+        &friction::Friction,
+        &friction_load::FrictionLoad,
+        &friction_temperature::FrictionTemperature,
+        &brake_speed_independence::BrakeSpeedIndependence,
+        &brake_hysteresis::BrakeHysteresis,
+        &demagnetise::Demagnetise,
+        &torque_sensor_zero::TorqueSensorZero,
+        &strokes::Strokes,
+        &warm_up::WarmUp,
+    ]
 }
 
 pub fn procedure(id: &str) -> Option<&'static dyn Procedure> {

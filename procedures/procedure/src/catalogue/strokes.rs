@@ -5,9 +5,11 @@
 
 use super::Procedure;
 use super::legs::{Legs, friction_meta};
+use crate::findings::{Line, Unusable, curve, keep, legs, plateaus, quantity, scatter, verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
-use jointbench_instrument::Kind;
+use jointbench_instrument::{Kind, RunTable};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -91,6 +93,52 @@ impl Procedure for Strokes {
             steady: None,
         })
     }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify(run))
+    }
+}
+
+/// A line through the strokes of each direction, under the load that they were made under.
+fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    let legs = legs(run);
+    let heaviest = legs.iter().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
+    let points = plateaus(&keep(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?;
+    let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
+    let (mut quantities, mut series) = (Vec::new(), Vec::new());
+    for (suffix, mark, sign) in [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)] {
+        let side = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0);
+        let side: Vec<(f64, f64)> = side.map(|p| (p.velocity_rad_s, p.target - p.load_nm)).collect();
+        let line = Line::through(&side);
+        series.push(scatter(suffix, side));
+        let Some(line) = line else { continue };
+        let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
+        series.push(curve(&format!("line, {suffix}"), ends, 1, |v| line.at(v)));
+        let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95: Option<[f64; 2]>| {
+            let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), title, unit];
+            quantity(words, value, ci95)
+        };
+        quantities.extend([
+            named("offset", "τ₀", "Friction at speed 0 by the line", "Nm", line.offset, Some(line.offset_ci95)),
+            named("slope", "c", "Slope over motor speed", "Nm·s/rad", line.slope, Some(line.slope_ci95)),
+            named("r2", "r²", "Share of the scatter explained", "", line.r2, None),
+        ]);
+    }
+    let identified = quantities.len() == 6;
+    Ok(Identification {
+        verdict: if identified { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!("{} strokes up to {top:.1} rad/s at the motor, each direction with its line.", points.len()),
+        advice: (!identified).then(|| "A line needs two speeds or more: raise speeds.".into()),
+        quantities,
+        figures: vec![Figure {
+            name: "friction_over_speed".into(),
+            title: "Friction over motor speed".into(),
+            form: Form::Cartesian,
+            x: Axis::of("motor velocity", "rad/s"),
+            y: Axis::of("friction torque (motor)", "Nm"),
+            series,
+        }],
+    })
 }
 
 /// Motor speeds with the time at each.

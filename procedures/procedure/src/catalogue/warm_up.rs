@@ -2,9 +2,11 @@
 
 use super::Procedure;
 use super::legs::{Legs, friction_meta, turn_s};
+use crate::findings::{Line, Plateau, Unusable, plateaus, quantity, scatter, verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
-use jointbench_instrument::Kind;
+use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct WarmUp;
 
@@ -26,7 +28,7 @@ const SCHEMA: &[Parameter] = &[
 /// Steps of one cycle: fast and slow, out and back.
 pub(super) const CYCLE_STEPS: usize = 4;
 /// The slow pair of a cycle: viscous friction shows apart from Coulomb friction while both change with temperature.
-const SLOW_SHARE: f64 = 0.25;
+pub(super) const SLOW_SHARE: f64 = 0.25;
 
 impl Procedure for WarmUp {
     fn id(&self) -> &'static str {
@@ -67,6 +69,73 @@ impl Procedure for WarmUp {
                 current_share_per_min: values.number("steady_share_per_min"),
             }),
         })
+    }
+
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify(values, run))
+    }
+}
+
+/// Fast legs at the end whose drift is judged: three cycles, as the engine does.
+const JUDGED: usize = 6;
+
+fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
+    let points = plateaus(run)?;
+    let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
+    let fast: Vec<Plateau> = points.into_iter().filter(|p| p.velocity_rad_s.abs() > 0.9 * top).collect();
+    let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());
+    let temperature = |p: &Plateau| (p.time_s / 60.0, p.temperature_c);
+    let end = &fast[fast.len().saturating_sub(JUDGED)..];
+    let drift = |of: fn(&Plateau) -> (f64, f64)| Line::through(&end.iter().map(of).collect::<Vec<_>>());
+    let Some(current) = drift(torque) else {
+        return Err(Unusable::TooLittle("the warm-up ended before two cycles were done: give it a higher longest_s"));
+    };
+    let last_nm = end.iter().map(|p| p.target.abs()).sum::<f64>() / end.len() as f64;
+    let share = current.slope / last_nm;
+    let mut steady = share.abs() <= values.number("steady_share_per_min");
+    let mut quantities = vec![
+        quantity(["torque", "τ_m", "Motor torque at the end, fast legs", "Nm"], last_nm, None),
+        quantity(
+            ["current_drift", "i̇/i", "Drift of the motor current", "1/min"],
+            share,
+            Some(current.slope_ci95.map(|end| end / last_nm)),
+        ),
+    ];
+    let mut figures = vec![over_time("torque", "Motor torque of the fast legs", "motor torque", "Nm", &fast, torque)];
+    if run.column("temperature_c").is_some()
+        && let Some(warmth) = drift(temperature)
+    {
+        steady &= warmth.slope.abs() <= values.number("steady_c_per_min");
+        let words = ["temperature_drift", "Ṫ", "Drift of the temperature", "°C/min"];
+        quantities.push(quantity(words, warmth.slope, Some(warmth.slope_ci95)));
+        figures.push(over_time("temperature", "Temperature", "temperature", "°C", &fast, temperature));
+    }
+    let percent = 100.0 * share;
+    Ok(if steady {
+        let summary = format!("The joint is warm: its current drifts by {percent:.2} %/min.");
+        Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures }
+    } else {
+        let summary = format!("The joint is not yet warm: its current drifts by {percent:.2} %/min.");
+        let advice = Some("Warm up again, or give it a higher longest_s.".to_owned());
+        Identification { verdict: Verdict::Inconclusive, summary, advice, quantities, figures }
+    })
+}
+
+fn over_time(
+    name: &str,
+    title: &str,
+    label: &str,
+    unit: &str,
+    points: &[Plateau],
+    of: fn(&Plateau) -> (f64, f64),
+) -> Figure {
+    Figure {
+        name: name.into(),
+        title: title.into(),
+        form: Form::Cartesian,
+        x: Axis::of("time", "min"),
+        y: Axis::of(label, unit),
+        series: vec![scatter("fast legs", points.iter().map(of))],
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::ending::Ending;
 use super::session::{Session, Wish};
-use crate::plan::Step;
+use crate::plan::{Before, Step};
 use crate::profile::Profile;
 use crate::state::Transition;
 
@@ -17,7 +17,7 @@ impl Session<'_> {
     /// Returns when the step may begin again; the brake current is the one that the pause began with [A].
     pub(super) fn pause(&mut self, step: &Step, start_rad: Option<f64>) -> Result<f64, Ending> {
         // A constant current through standstill and restart leaves no cogging behind (bench-physics, section 3).
-        let brake_a = self.commanded.brake_a;
+        let mut brake_a = self.commanded.brake_a;
         loop {
             self.enter(Transition::Pause)?;
             self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))?;
@@ -26,6 +26,10 @@ impl Session<'_> {
                 self.tick(now_s, 0.0, brake_a, None)?;
             }
             self.enter(Transition::Resume)?;
+            if step.before == Before::Demagnetised {
+                self.unload()?;
+                brake_a = self.commanded.brake_a;
+            }
             if let Some(start_rad) = start_rad {
                 self.go_back(step, start_rad, brake_a)?;
             }

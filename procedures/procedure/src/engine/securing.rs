@@ -44,7 +44,7 @@ impl Session<'_> {
     }
 
     /// Takes the brake current away while the shaft turns, then lets it come to rest.
-    fn unload(&mut self) -> Result<(), Ending> {
+    pub(super) fn unload(&mut self) -> Result<(), Ending> {
         let brake_a = self.commanded.brake_a;
         let speed_rad_s = self.unload_speed_rad_s();
         let link_rad_s = speed_rad_s.abs() / self.bench.constants.gear_ratio;

@@ -2,7 +2,7 @@
 
 use crate::fakes::{Fakes, World};
 use jointbench_instrument::{Bench, Kind, Meta, RunTable, Trace};
-use jointbench_procedure::plan::{Phase, Step};
+use jointbench_procedure::plan::{Before, Phase, Step};
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -99,6 +99,7 @@ pub fn loaded_plan() -> Plan {
         phase: Phase::Measure,
         segment,
         repeat: 0,
+        before: Before::AsLeft,
         velocity: Profile::plateau(speed, 400.0, dwell_s),
         brake,
     };

@@ -1,0 +1,47 @@
+//! Runs a procedure on a mock bench and prints what it identifies beside what the bench is.
+//!
+//! ```text
+//! cargo run -p jointbench-procedure --example on_mock -- a 1 stribeck friction '{"repeats": 2}'
+//! ```
+//! Joint a or b (ab, bb: behind the gear with brake B), seed, hidden effects (or -), then procedures with parameters.
+
+use jointbench_devices::sim::Load;
+use jointbench_devices::{Joint, MockBench, MockSettings};
+use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::{Procedure, procedure};
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [joint, seed, effects, work @ ..] = &words[..] else {
+        return Err("joint seed effects procedure json …".into());
+    };
+    let mut settings =
+        MockSettings::new(if joint.starts_with('a') { Joint::JointA } else { Joint::JointB }, seed.parse()?);
+    if joint.len() > 1 {
+        settings.load = Load::GearAndBrakeB;
+    }
+    settings.effects = effects.split(',').filter(|e| *e != "-").map(str::to_owned).collect();
+    let mock = MockBench::start(settings)?;
+    let mut bench = mock.open_bench(joint)?;
+    println!("{:#?}", mock.truth());
+    for pair in work.chunks(2) {
+        let procedure: &dyn Procedure = procedure(&pair[0]).ok_or("no such procedure")?;
+        let parameters = serde_json::from_str(pair.get(1).map_or("{}", String::as_str))?;
+        let started = Instant::now();
+        let done = conduct(&mut bench, procedure, &parameters)?;
+        let ran_s = started.elapsed().as_secs_f64();
+        println!("{}: {} rows, {:.0} s of the bench in {ran_s:.1} s", pair[0], done.table.len(), done.duration_s);
+        let Some(found) = done.identification else { continue };
+        println!("{:?}: {} {}", found.verdict, found.summary, found.advice.unwrap_or_default());
+        for q in &found.quantities {
+            let ci95 = q.ci95.map_or(String::new(), |[low, high]| {
+                format!("[{low:.6}, {high:.6}] ±{:.2} %", 50.0 * (high - low) / q.value.abs())
+            });
+            println!("  {:24} {:12.6} {:10} {ci95}", q.name, q.value, q.unit);
+        }
+        let figures: Vec<_> = found.figures.iter().map(|f| (f.name.as_str(), f.series.len())).collect();
+        println!("  figures {figures:?}");
+    }
+    Ok(())
+}

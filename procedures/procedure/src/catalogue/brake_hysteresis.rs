@@ -1,0 +1,132 @@
+//! The brake's torque over its current with all its history (thesis, figure 3.6).
+//!
+//! First the brake is demagnetised. Then come the major loop, first-order reversal curves from every current of a grid
+//! down to zero, nested minor loops, and a random history that takes no part in the model and judges it. Each is one
+//! unbroken step at constant speed from no current to none: a fall to zero while turning wipes out what was before.
+//!
+//! The model is Preisach's in Everett's form: the torque that a fall from one current to another takes away is measured
+//! on the reversal curves, and every history is a sum of such falls and rises (Mayergoyz, *Mathematical Models of
+//! Hysteresis*, chapter 1). No shape is assumed. Its inverse gives the current for a torque after any history.
+
+mod everett;
+mod identify;
+
+use super::Procedure;
+use super::brake_run;
+use super::legs::Legs;
+use crate::findings::verdict;
+use crate::identification::Identification;
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Plan, PlanFault};
+pub use everett::{Everett, History};
+use jointbench_instrument::{Kind, RunTable};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+pub(super) struct BrakeHysteresis;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::count("levels", "Currents of the grid", 14, [4, 40]),
+    Parameter::count("loops", "Major loops", 2, [1, 20]),
+    Parameter::count("random_turns", "Turns of the random history", 16, [4, 100]),
+    Parameter::number("top_current", "Highest current, share of rated", "", 1.0, [0.2, 1.0]),
+    Parameter::number("dwell_s", "Time at each current", "s", 0.9, [0.5, 20.0]),
+    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [50.0, 1000.0]),
+    Parameter::count("order_seed", "Seed of the random history", 1, [0, 1_000_000]),
+];
+
+/// What a sweep is for: kept in the column `repeat`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Demagnetise,
+    Major,
+    Reversal,
+    Minor,
+    Random,
+}
+
+impl Procedure for BrakeHysteresis {
+    fn id(&self) -> &'static str {
+        "brake_hysteresis"
+    }
+
+    fn title(&self) -> &'static str {
+        "Brake hysteresis"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Takes the brake through its major loop, minor loops and reversal curves, and finds the current that gives a torque after any history."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Brake
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        brake_run::check(bench)?;
+        let rate_hz = values.number("sample_rate_hz");
+        let top_a = values.number("top_current") * bench.constants.brake_rated_current_a;
+        let sweeps = sweeps(values, top_a);
+        let dwell_s = values.number("dwell_s");
+        let longest_s = sweeps.iter().map(|(_, _, currents)| (currents.len() + 2) as f64 * dwell_s).fold(0.0, f64::max);
+        let wanted_rad_s =
+            (values.number("speed_rad_s") * bench.constants.gear_ratio).min(0.95 * bench.limits.motor_velocity_rad_s);
+        let speed_rad_s = brake_run::speed_rad_s(wanted_rad_s, longest_s, bench);
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        legs.repeat = Part::Demagnetise as u32;
+        legs.demagnetise(wanted_rad_s, top_a, 2.0, bench);
+        // Each sweep turns towards where the first began.
+        let mut way_rad = 0.0;
+        for (part, label, currents) in &sweeps {
+            legs.repeat = *part as u32;
+            let sign = if way_rad > 0.0 { -1.0 } else { 1.0 };
+            legs.sweep(label.clone(), sign * speed_rad_s, currents, dwell_s);
+            way_rad += legs.way_of_last();
+        }
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: brake_run::meta(bench, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify::identify(run))
+    }
+}
+
+/// The currents of every sweep, each from 0 and back to it.
+fn sweeps(values: &Values, top_a: f64) -> Vec<(Part, String, Vec<f64>)> {
+    let levels = values.count("levels");
+    let grid = |level: u32| top_a * f64::from(level) / f64::from(levels);
+    let up_and_down = |top: u32| -> Vec<f64> { (1..=top).chain((1..top).rev()).map(grid).collect() };
+    let mut sweeps = Vec::new();
+    for _ in 0..values.count("loops") {
+        sweeps.push((Part::Major, "major loop".to_owned(), up_and_down(levels)));
+    }
+    for top in (1..levels).rev() {
+        sweeps.push((Part::Reversal, format!("reversal at {:.3} A", grid(top)), up_and_down(top)));
+    }
+    let minor = [0.85, 0.3, 0.7, 0.3, 0.7, 0.4, 0.6, 0.4, 0.6, 0.3, 0.85];
+    sweeps.push((Part::Minor, "minor loops".to_owned(), minor.map(|share| share * top_a).to_vec()));
+    let mut rng = ChaCha8Rng::seed_from_u64(u64::from(values.count("order_seed")));
+    // Up to a random current, down to one, and so on.
+    let (mut at, mut random) = (0.0, Vec::new());
+    for turn in 0..values.count("random_turns") {
+        at = if turn % 2 == 0 { rng.random_range(at..1.0) } else { rng.random_range(0.05 * at..at) };
+        random.push(at * top_a);
+    }
+    sweeps.push((Part::Random, "random history".to_owned(), random));
+    sweeps
+}

@@ -1,0 +1,173 @@
+//! The model of a run of sweeps, judged on the history that took no part in it.
+
+use super::super::demagnetise::rated_nm;
+use super::{Everett, History, Part};
+use crate::findings::{Hold, Mean, Unusable, curve, holds, quantity, scatter};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use jointbench_instrument::RunTable;
+
+/// The settled end of a hold.
+const SETTLED: f64 = 0.35;
+/// A torque commanded through the model may be off by this share of the rated one.
+const BOUND: f64 = 0.01;
+
+/// One sweep as it was measured: currents and torques, from no current to none.
+struct Sweep {
+    part: i64,
+    points: Vec<(f64, f64)>,
+}
+
+pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    const LITTLE: Unusable =
+        Unusable::TooLittle("the run did not reach the last of its reversal curves: make it again");
+    let sweeps = sweeps(run);
+    let of = |part: Part| sweeps.iter().filter(move |sweep| sweep.part == part as i64);
+    let major: Vec<&Sweep> = of(Part::Major).collect();
+    let first = major.first().ok_or(LITTLE)?;
+    let top = first.points.iter().map(|p| p.0).fold(0.0, f64::max);
+    let (grid, curves) = reversals(&major, of(Part::Reversal), top).ok_or(LITTLE)?;
+    let everett = Everett::from_reversals(&grid, &curves).ok_or(LITTLE)?;
+    let rated = rated_nm(run).unwrap_or_else(|| everett.torque_nm(&History::default().after(top)));
+
+    // The inverse is asked for the current that gave what was measured.
+    let (mut judged, mut current_error) = (Vec::new(), 0.0_f64);
+    for sweep in of(Part::Random).chain(of(Part::Minor)) {
+        let mut history = History::default();
+        for (current, torque) in &sweep.points {
+            if let Some(found) = everett.current_a(&history, *torque) {
+                current_error = current_error.max((found - current).abs());
+            }
+            history.go(*current);
+            judged.push((*torque, everett.torque_nm(&history)));
+        }
+    }
+    if judged.is_empty() {
+        return Err(LITTLE);
+    }
+    let errors = || judged.iter().map(|(torque, model)| (torque - model) / rated);
+    let worst = errors().map(f64::abs).fold(0.0, f64::max);
+    let rms = (errors().map(|e| e * e).sum::<f64>() / judged.len() as f64).sqrt();
+
+    let middle = 0.5 * top;
+    let rising = everett.torque_nm(&History::default().after(middle));
+    let falling = everett.torque_nm(&History::default().after(top).after(middle));
+    let full: Vec<f64> = major.iter().filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
+    let quantities = vec![
+        quantity(["torque_top", "T_max", "Torque at the highest current", "Nm"], mean(&full), spread(&full)),
+        quantity(["width", "ΔT", "Width of the loop at half the current", "Nm"], falling - rising, None),
+        quantity(["drag", "T₀", "Torque without current", "Nm"], everett.torque_nm(&History::default()), None),
+        quantity(["error_max", "e_max", "Largest error on a history not seen, share of rated", ""], worst, None),
+        quantity(["error_rms", "e_rms", "The same, root mean square", ""], rms, None),
+        quantity(
+            ["current_error", "e_I", "Largest error of the current that the inverse gives", "A"],
+            current_error,
+            None,
+        ),
+        quantity(
+            ["error_line", "e_line", "What a straight line through zero errs by at most", ""],
+            by_line(&sweeps, rated),
+            None,
+        ),
+    ];
+    let good = worst <= BOUND;
+    Ok(Identification {
+        verdict: if good { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!(
+            "The brake gives {:.2} Nm at {top:.3} A, {:.2} Nm more on the way down than up at half of it; a torque commanded through the model errs by at most {:.2} % of rated after a random history.",
+            mean(&full),
+            falling - rising,
+            100.0 * worst
+        ),
+        advice: (!good).then(|| "Raise levels or dwell_s: the model must come within 1 % of the rated torque.".into()),
+        quantities,
+        figures: vec![loops(&sweeps, &everett, top), judgement(&judged)],
+    })
+}
+
+/// The holds of every sweep, the first without current among them.
+fn sweeps(run: &RunTable) -> Vec<Sweep> {
+    let torque = run.column("brake_torque_nm").unwrap_or_default();
+    let held: Vec<Hold> = holds(run, 0.3).into_iter().filter(|hold| hold.repeat > Part::Demagnetise as i64).collect();
+    let sweep = |steps: &[Hold]| Sweep {
+        part: steps[0].repeat,
+        points: steps.iter().map(|hold| (hold.brake, hold.mean(torque, SETTLED))).collect(),
+    };
+    held.chunk_by(|a, b| a.segment == b.segment).map(sweep).collect()
+}
+
+/// The grid, and for each current of it the torques on the way down, the lowest current first.
+fn reversals<'s>(
+    major: &[&Sweep],
+    others: impl Iterator<Item = &'s Sweep>,
+    top: f64,
+) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    let mut tops: Vec<(f64, Vec<&Sweep>)> = vec![(top, major.to_vec())];
+    for sweep in others {
+        tops.push((sweep.points.iter().map(|p| p.0).fold(0.0, f64::max), vec![sweep]));
+    }
+    tops.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let grid: Vec<f64> = std::iter::once(0.0).chain(tops.iter().map(|t| t.0)).collect();
+    let mut curves = Vec::new();
+    for (number, (top, sweeps)) in tops.iter().enumerate() {
+        let mut sums = vec![0.0; number + 2];
+        for sweep in sweeps {
+            let turn = sweep.points.iter().position(|p| p.0 == *top)?;
+            let down = &sweep.points[turn..];
+            if down.len() != number + 2 {
+                return None;
+            }
+            down.iter().rev().zip(&mut sums).for_each(|((_, torque), sum)| *sum += torque / sweeps.len() as f64);
+        }
+        curves.push(sums);
+    }
+    Some((grid, curves))
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// `None` for one value.
+fn spread(values: &[f64]) -> Option<[f64; 2]> {
+    Mean::of(values).map(|mean| mean.ci95)
+}
+
+/// What the torque per current of the data sheet would err by.
+fn by_line(sweeps: &[Sweep], rated: f64) -> f64 {
+    let points = || sweeps.iter().flat_map(|sweep| &sweep.points);
+    let (ii, it) = points().fold((0.0, 0.0), |(ii, it), (i, t)| (ii + i * i, it + i * t));
+    points().map(|(i, t)| (t - it / ii * i).abs() / rated).fold(0.0, f64::max)
+}
+
+fn loops(sweeps: &[Sweep], everett: &Everett, top: f64) -> Figure {
+    let mut series: Vec<Series> = sweeps
+        .iter()
+        .map(|sweep| {
+            let label = ["", "major loop", "reversal curve", "minor loops", "random history"];
+            let label = label.get(sweep.part as usize).copied().unwrap_or("");
+            let (x, y) = sweep.points.iter().copied().unzip();
+            Series::new(label, Mark::Line, x, y)
+        })
+        .collect();
+    series.push(curve("model, first rise", [0.0, top], 60, |i| everett.torque_nm(&History::default().after(i))));
+    Figure {
+        name: "torque_over_current".into(),
+        title: "Braking torque over current".into(),
+        form: Form::Cartesian,
+        x: Axis::of("coil current", "A"),
+        y: Axis::of("braking torque", "Nm"),
+        series,
+    }
+}
+
+fn judgement(judged: &[(f64, f64)]) -> Figure {
+    let number = |error: fn(&(f64, f64)) -> f64| judged.iter().enumerate().map(move |(i, p)| (i as f64, error(p)));
+    Figure {
+        name: "error_of_the_inverse".into(),
+        title: "Error on histories that the model has not seen".into(),
+        form: Form::Cartesian,
+        x: Axis::of("turn", ""),
+        y: Axis::of("torque", "Nm"),
+        series: vec![scatter("measured less model", number(|p| p.0 - p.1))],
+    }
+}

@@ -1,0 +1,36 @@
+//! What the procedures of a brake share: what they need of a bench, and the facts of a brake run.
+
+use crate::plan::{BenchFacts, PlanFault};
+use jointbench_instrument::{Kind, Meta};
+
+/// The link turns no further than this share of its range in one step.
+const RANGE_SHARE: f64 = 0.9;
+
+pub(super) fn check(bench: &BenchFacts) -> Result<(), PlanFault> {
+    let cure = "connect it: the brake is measured by the torque sensor";
+    for (there, role) in [(bench.has_brake, "brake"), (bench.has_torque_sensor, "torque sensor")] {
+        if !there {
+            return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure });
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn meta(bench: &BenchFacts, rate_hz: f64) -> Meta {
+    let mut meta = Meta {
+        kind: Some(Kind::Brake),
+        baseline: ["drag", "torque_per_current"].map(str::to_owned).into(),
+        sample_rate_hz: Some(rate_hz),
+        gear_ratio: Some(bench.constants.gear_ratio),
+        rated_current_a: Some(bench.constants.brake_rated_current_a),
+        ..Meta::default()
+    };
+    meta.other.insert("rated_torque_nm".into(), bench.constants.brake_rated_torque_nm.into());
+    meta
+}
+
+/// The wanted speed (motor), or the highest at which a step of `duration_s` stays within the link's range.
+pub(super) fn speed_rad_s(wanted_rad_s: f64, duration_s: f64, bench: &BenchFacts) -> f64 {
+    let room_rad = bench.constants.link_range_rad.map_or(f64::INFINITY, |range_rad| RANGE_SHARE * range_rad);
+    wanted_rad_s.min(room_rad * bench.constants.gear_ratio / duration_s)
+}

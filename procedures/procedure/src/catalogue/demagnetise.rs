@@ -1,0 +1,142 @@
+//! Takes the poles out of a brake that was unloaded at standstill, and looks whether any are left.
+
+use super::Procedure;
+use super::brake_run;
+use super::legs::{Legs, turn_s};
+use crate::findings::{Unusable, holds, quantity, scatter, verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use jointbench_instrument::{Kind, RunTable};
+use std::f64::consts::TAU;
+
+pub(super) struct Demagnetise;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+    Parameter::number("turns", "Turns of the link while the current falls", "", 3.0, [1.0, 20.0]),
+    Parameter::number("top_current", "Current to begin with, share of rated", "", 1.0, [0.05, 1.0]),
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+];
+
+/// What may be left, peak to peak, as a share of the rated torque (bench-physics, section 3).
+const LEFT_SHARE: f64 = 0.005;
+/// Places on a turn at which the torque is averaged: several for each of up to 25 poles.
+const PLACES: usize = 120;
+/// The range of so many means of noise spans about this many of their standard deviations.
+const RANGE_OF_NOISE: f64 = 5.2;
+
+impl Procedure for Demagnetise {
+    fn id(&self) -> &'static str {
+        "demagnetise"
+    }
+
+    fn title(&self) -> &'static str {
+        "Demagnetise the brake"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Magnetises the brake fully and takes the current away while the shaft turns; then one turn without current shows what is left."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Brake
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        brake_run::check(bench)?;
+        let rate_hz = values.number("sample_rate_hz");
+        let speed_rad_s =
+            (values.number("speed_rad_s") * bench.constants.gear_ratio).min(0.95 * bench.limits.motor_velocity_rad_s);
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        let top_a = values.number("top_current") * bench.constants.brake_rated_current_a;
+        legs.demagnetise(speed_rad_s, top_a, values.number("turns"), bench);
+        legs.repeat = 1;
+        legs.leg(speed_rad_s, turn_s(1.2, speed_rad_s, bench, 1.0), 0.0);
+        legs.leg(-speed_rad_s, turn_s(1.2, speed_rad_s, bench, 1.0), 0.0);
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: brake_run::meta(bench, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify(run))
+    }
+}
+
+fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    const LITTLE: Unusable = Unusable::TooLittle("the run did not reach its last turn: make it again");
+    let (Some(torque), Some(angle), Some(rated_nm)) =
+        (run.column("brake_torque_nm"), run.column("position_rad"), rated_nm(run))
+    else {
+        return Err(LITTLE);
+    };
+    let mut figures = Vec::new();
+    let mut left_nm = 0.0_f64;
+    let mut noise_nm = 0.0_f64;
+    let turns: Vec<_> = holds(run, 0.5).into_iter().filter(|hold| hold.repeat == 1).collect();
+    for (label, hold) in ["out", "back"].into_iter().zip(&turns) {
+        let rows = hold.tail(0.9);
+        let mut sums = vec![(0.0, 0.0); PLACES];
+        for row in rows.clone() {
+            let place = (angle[row].rem_euclid(TAU) / TAU * PLACES as f64) as usize % PLACES;
+            sums[place] = (sums[place].0 + torque[row], sums[place].1 + 1.0);
+        }
+        let means: Vec<(f64, f64)> = sums
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, n))| *n > 0.0)
+            .map(|(place, (sum, n))| ((place as f64 + 0.5) / PLACES as f64 * TAU, sum / n))
+            .collect();
+        let (low, high) = means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (_, v)| (v.min(l), v.max(h)));
+        // Noise by the differences of neighbours in time, which no pole of the rotor spans.
+        let steps = torque[rows.clone()].windows(2).map(|w| (w[1] - w[0]).powi(2));
+        let sigma_nm = (steps.sum::<f64>() / (2.0 * (rows.len() - 1) as f64)).sqrt();
+        left_nm = left_nm.max(high - low);
+        noise_nm = noise_nm.max(RANGE_OF_NOISE * sigma_nm / (rows.len() as f64 / means.len() as f64).sqrt());
+        figures.push(scatter(label, means));
+    }
+    if figures.len() < 2 {
+        return Err(LITTLE);
+    }
+    let allowed_nm = LEFT_SHARE * rated_nm + noise_nm;
+    let clean = left_nm <= allowed_nm;
+    Ok(Identification {
+        verdict: if clean { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!(
+            "Over one turn without current the torque varies by {left_nm:.3} Nm, {} the {allowed_nm:.3} Nm that noise and 0.5 % of the rating make up.",
+            if clean { "within" } else { "more than" }
+        ),
+        advice: (!clean)
+            .then(|| "Poles are left in the rotor: make more turns, or begin with a higher current.".into()),
+        quantities: vec![
+            quantity(["left", "ΔT", "Torque left over one turn, peak to peak", "Nm"], left_nm, None),
+            quantity(["noise", "σ", "Of it, what noise makes up", "Nm"], noise_nm, None),
+        ],
+        figures: vec![Figure {
+            name: "torque_over_angle".into(),
+            title: "Torque without current over one turn".into(),
+            form: Form::Polar,
+            x: Axis::of("link angle", "rad"),
+            y: Axis::of("torque", "Nm"),
+            series: figures,
+        }],
+    })
+}
+
+/// Torque of the brake at rated current, as the bench's description has it.
+pub(super) fn rated_nm(run: &RunTable) -> Option<f64> {
+    run.meta().other.get("rated_torque_nm").and_then(serde_json::Value::as_f64)
+}

@@ -1,0 +1,233 @@
+//! Coulomb, viscous and Stribeck friction of the free joint, each direction (seed-facts, tables 4.5 and 4.6).
+
+use crate::findings::{
+    Leg, Line, Plateau, Unusable, combined, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter,
+};
+use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
+use jointbench_instrument::RunTable;
+use jointbench_model::{Fit, ModelSpec, Options, fit};
+
+/// A figure with its 95 % interval.
+type Figured = (f64, [f64; 2]);
+
+/// Static friction over speed, motor side.
+pub(crate) struct FreeFriction {
+    pub coulomb: Figured,
+    pub viscous: Figured,
+    /// `None`: the run shows no rise towards standstill.
+    pub stribeck: Option<Stribeck>,
+}
+
+/// What Coulomb friction rises by, the speed at which it does (motor) and how sharply.
+pub(crate) struct Stribeck {
+    pub rise: Figured,
+    pub speed: Figured,
+    pub exponent: Figured,
+}
+
+impl FreeFriction {
+    /// Fits the free legs; the Stribeck part where the run decides it and predicts itself the better for it.
+    pub fn of(run: &RunTable) -> Result<Self, Unusable> {
+        let given = if run.column("link_torque_nm").is_some() { vec!["load_transmission"] } else { Vec::new() };
+        let with = |more: &[&'static str]| {
+            let effects = given.iter().chain(["coulomb", "viscous"].iter()).chain(more).copied();
+            ModelSpec::new(run.kind(), effects).and_then(|spec| fit(run, &spec, &Options::default()))
+        };
+        let plain = with(&[])?;
+        if let Ok(rich) = with(&["stribeck"])
+            && rich.validation_rms < plain.validation_rms
+            && let Some(rise) = parameter(&rich, "stribeck", "tau_s")
+            && let Some(speed) = parameter(&rich, "stribeck", "omega_s")
+            && let Some(exponent) = rich.parameters.iter().find(|p| p.effect == "stribeck" && p.name == "delta")
+        {
+            let [rise, speed, exponent] = [rise, speed, exponent].map(|p| interval_of(p, 1.0));
+            return Self::from(&rich, Some(Stribeck { rise, speed, exponent }));
+        }
+        Self::from(&plain, None)
+    }
+
+    fn from(fit: &Fit, stribeck: Option<Stribeck>) -> Result<Self, Unusable> {
+        let figure = |effect, name| parameter(fit, effect, name).map(|p| interval_of(p, 1.0));
+        let coulomb = figure("coulomb", "tau_c");
+        let viscous = figure("viscous", "c_v");
+        match (coulomb, viscous) {
+            (Some(coulomb), Some(viscous)) => Ok(Self { coulomb, viscous, stribeck }),
+            _ => Err(Unusable::TooLittle("the run does not decide friction: add repeats, or a higher top speed")),
+        }
+    }
+
+    /// Friction at a motor speed above 0.
+    pub fn at(&self, speed_rad_s: f64) -> f64 {
+        let rise =
+            self.stribeck.as_ref().map_or(0.0, |s| s.rise.0 * (-(speed_rad_s / s.speed.0).powf(s.exponent.0)).exp());
+        self.coulomb.0 + self.viscous.0 * speed_rad_s + rise
+    }
+
+    /// What holds the joint at rest.
+    pub fn breakaway(&self) -> Option<Figured> {
+        self.stribeck.as_ref().map(|s| combined(self.coulomb, s.rise, 1.0))
+    }
+}
+
+/// The legs without load and after the warm-up.
+pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
+    let warm_up = run.meta().other.get("warm_up_segments").and_then(serde_json::Value::as_i64).unwrap_or(0);
+    let unloaded = |leg: &Leg| leg.brake_nm == Some(0.0) && leg.direction != 0.0;
+    legs(run).into_iter().filter(|leg| leg.segment >= warm_up && unloaded(leg)).collect()
+}
+
+pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    let free = free(run);
+    let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
+    let both = keep(run, &free)?;
+    let whole = FreeFriction::of(&both)?;
+    let (forward, backward) = (FreeFriction::of(&part(1.0)?)?, FreeFriction::of(&part(-1.0)?)?);
+    let points = plateaus(&both)?;
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+
+    let mut quantities = named("", "", "", &whole, gear);
+    quantities.extend(named("_positive", "⁺", ", positive direction", &forward, gear));
+    quantities.extend(named("_negative", "⁻", ", negative direction", &backward, gear));
+    for (suffix, sign, side) in [("positive", 1.0, &forward), ("negative", -1.0, &backward)] {
+        let r2 = r2(&points, sign, side);
+        quantities.push(quantity(
+            [&format!("r2_{suffix}"), if sign > 0.0 { "r²⁺" } else { "r²⁻" }, "Share of the scatter explained", ""],
+            r2,
+            None,
+        ));
+    }
+    let differences = [
+        quantity_of(
+            ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction, difference of directions", "Nm"],
+            combined(forward.coulomb, backward.coulomb, -1.0),
+        ),
+        quantity_of(
+            ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction, difference of directions", "Nm·s/rad"],
+            combined(forward.viscous, backward.viscous, -1.0),
+        ),
+    ];
+    let differ = differences.iter().any(|d| d.ci95.is_some_and(|[low, high]| low > 0.0 || high < 0.0));
+    quantities.extend(differences);
+
+    let directions = if differ { "differ at 95 %" } else { "do not differ at 95 %" };
+    let figures = vec![over_speed(&points, &whole), near_zero(&points, &whole, gear)];
+    Ok(match &whole.stribeck {
+        Some(stribeck) => Identification {
+            verdict: Verdict::Identified,
+            summary: format!(
+                "Coulomb friction is {:.4} Nm, viscous friction {:.3e} Nm·s/rad, and below {:.3} rad/s at the link friction rises to {:.4} Nm; the directions {directions}.",
+                whole.coulomb.0,
+                whole.viscous.0,
+                stribeck.speed.0 / gear,
+                whole.coulomb.0 + stribeck.rise.0,
+            ),
+            advice: None,
+            quantities,
+            figures,
+        },
+        None => Identification {
+            verdict: Verdict::Inconclusive,
+            summary: format!(
+                "Coulomb friction is {:.4} Nm, viscous friction {:.3e} Nm·s/rad; no rise towards standstill is visible; the directions {directions}.",
+                whole.coulomb.0, whole.viscous.0,
+            ),
+            advice: Some(
+                "To decide the Stribeck part, repeat with more repeats or a lower stribeck_speed_rad_s.".into(),
+            ),
+            quantities,
+            figures,
+        },
+    })
+}
+
+fn named(suffix: &str, mark: &str, words: &str, of: &FreeFriction, gear: f64) -> Vec<Quantity> {
+    let one = |name: &str, symbol: &str, title: &str, unit: &str, figure: Figured| {
+        quantity_of([&format!("{name}{suffix}"), &format!("{symbol}{mark}"), &format!("{title}{words}"), unit], figure)
+    };
+    let mut out = vec![
+        one("tau_c", "τ_c", "Coulomb friction", "Nm", of.coulomb),
+        one("c_v", "c_v", "Viscous friction", "Nm·s/rad", of.viscous),
+    ];
+    if let (Some(stribeck), Some(breakaway)) = (&of.stribeck, of.breakaway()) {
+        let link = |v: f64| v / gear;
+        out.extend([
+            one("tau_h", "τ_h", "Friction towards standstill", "Nm", breakaway),
+            one(
+                "omega_s",
+                "θ̇_s",
+                "Stribeck velocity (link)",
+                "rad/s",
+                (link(stribeck.speed.0), stribeck.speed.1.map(link)),
+            ),
+            one("delta_s", "δ_s", "Stribeck exponent", "", stribeck.exponent),
+        ]);
+    }
+    out
+}
+
+fn quantity_of(words: [&str; 4], figure: Figured) -> Quantity {
+    quantity(words, figure.0, Some(figure.1))
+}
+
+fn friction_nm(point: &Plateau) -> f64 {
+    point.target - point.load_nm
+}
+
+/// Of one direction's points against its own curve.
+fn r2(points: &[Plateau], sign: f64, side: &FreeFriction) -> f64 {
+    let points: Vec<&Plateau> = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0).collect();
+    let mean = points.iter().map(|p| friction_nm(p)).sum::<f64>() / points.len() as f64;
+    let (mut left, mut all) = (0.0, 0.0);
+    for point in points {
+        left += (friction_nm(point) - sign * side.at(point.velocity_rad_s.abs())).powi(2);
+        all += (friction_nm(point) - mean).powi(2);
+    }
+    1.0 - left / all
+}
+
+fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
+    let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
+    let mut series = sides(points, 1.0);
+    series.push(curve("model, positive", [0.0, top], 200, |v| whole.at(v)));
+    series.push(curve("model, negative", [-top, 0.0], 200, |v| -whole.at(-v)));
+    // The line of table 4.5: through the points of each direction above the Stribeck region.
+    let clear = 3.0 * whole.stribeck.as_ref().map_or(0.0, |s| s.speed.0);
+    for sign in [1.0, -1.0] {
+        let fast = points.iter().filter(|p| p.velocity_rad_s * sign > clear);
+        if let Some(line) = Line::through(&fast.map(|p| (p.velocity_rad_s, friction_nm(p))).collect::<Vec<_>>()) {
+            let label = format!("line, r² = {:.4}", line.r2);
+            let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
+            series.push(curve(&label, ends, 1, |v| line.at(v)));
+        }
+    }
+    figure("friction_over_speed", "Friction over motor speed", "motor velocity", series)
+}
+
+/// Figures 4.12 to 4.18 show the slow end over the link's speed.
+fn near_zero(points: &[Plateau], whole: &FreeFriction, gear: f64) -> Figure {
+    let top = 5.0 * whole.stribeck.as_ref().map_or(0.1 * gear, |s| s.speed.0);
+    let near: Vec<Plateau> = points.iter().copied().filter(|p| p.velocity_rad_s.abs() <= top).collect();
+    let mut series = sides(&near, gear);
+    series.push(curve("model, positive", [0.0, top / gear], 200, |v| whole.at(v * gear)));
+    series.push(curve("model, negative", [-top / gear, 0.0], 200, |v| -whole.at(-v * gear)));
+    figure("friction_near_zero", "Friction near standstill", "link velocity", series)
+}
+
+fn sides(points: &[Plateau], gear: f64) -> Vec<Series> {
+    let side = |label, sign: f64| {
+        let own = points.iter().filter(move |p| p.velocity_rad_s * sign > 0.0);
+        scatter(label, own.map(|p| (p.velocity_rad_s / gear, friction_nm(p))))
+    };
+    vec![side("positive", 1.0), side("negative", -1.0)]
+}
+
+fn figure(name: &str, title: &str, over: &str, series: Vec<Series>) -> Figure {
+    Figure {
+        name: name.into(),
+        title: title.into(),
+        form: Form::Cartesian,
+        x: Axis::of(over, "rad/s"),
+        y: Axis::of("friction torque (motor)", "Nm"),
+        series,
+    }
+}

@@ -1,0 +1,151 @@
+//! Friction over load and speed: does it grow with the load, and how (thesis, figure 2.6)?
+//!
+//! The plan is that of `friction` with more loads and fewer speeds. What the brake takes is measured by the torque
+//! sensor; what friction takes more under load is what the motor gives beyond it.
+
+use super::Procedure;
+use super::friction::Friction;
+use crate::findings::{Unusable, interval_of, keep, legs, parameter, plateaus, quantity, scatter, verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::{Fit, ModelSpec, Options, fit};
+
+pub(super) struct FrictionLoad;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::number("top_speed_rad_s", "Highest speed (motor)", "rad/s", 120.0, [5.0, 1000.0]),
+    Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
+    Parameter::count("speeds", "Speeds above the Stribeck velocity", 3, [2, 20]),
+    Parameter::count("load_levels", "Load levels, no load included", 6, [3, 20]),
+    Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
+    Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
+    Parameter::number("warm_up_s", "Longest warm-up", "s", 20.0, [1.0, 3600.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+];
+
+impl Procedure for FrictionLoad {
+    fn id(&self) -> &'static str {
+        "friction_load"
+    }
+
+    fn title(&self) -> &'static str {
+        "Friction under load"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Measures friction on a grid of loads and speeds, and tells whether it grows with the load, in proportion or with its square."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Friction
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let mut given = values.to_json();
+        if let Some(speeds) = given.remove("speeds") {
+            given.insert("fast_speeds".into(), speeds);
+        }
+        let plan = Friction.plan(&given, bench)?;
+        Ok(Plan { procedure: self.id(), parameters: values.to_json(), ..plan })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify(run))
+    }
+}
+
+/// What may make friction grow with the load, alone or together.
+const LAWS: [&[&str]; 4] = [&[], &["load_linear"], &["load_quadratic"], &["load_linear", "load_quadratic"]];
+
+fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    let warm_up = run.meta().other.get("warm_up_segments").and_then(serde_json::Value::as_i64).unwrap_or(0);
+    let legs = legs(run);
+    let held = || legs.iter().filter(|leg| leg.segment >= warm_up && leg.direction != 0.0 && leg.brake_nm.is_some());
+    let table = keep(run, held())?;
+    let (law, fit) = choose(&table)?;
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+    let mut quantities = Vec::new();
+    for (effect, name, words) in [
+        ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction", "Nm"]),
+        ("viscous", "c_v", ["c_v", "c_v", "Viscous friction", "Nm·s/rad"]),
+        ("load_linear", "mu", ["mu", "μ", "Friction for each Nm of load, motor side", ""]),
+        ("load_quadratic", "mu_2", ["mu_2", "μ₂", "Friction for each Nm² of load, motor side", "1/Nm"]),
+    ] {
+        if let Some(found) = parameter(&fit, effect, name) {
+            let (value, ci95) = interval_of(found, 1.0);
+            quantities.push(quantity(words, value, Some(ci95)));
+        }
+    }
+    let heaviest = held().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
+    let more_nm = |effect: &str, name: &str, of: f64| parameter(&fit, effect, name).map_or(0.0, |p| p.value * of);
+    let motor_nm = heaviest / gear;
+    let added_nm = more_nm("load_linear", "mu", motor_nm) + more_nm("load_quadratic", "mu_2", motor_nm * motor_nm);
+    quantities.push(quantity(["added", "Δτ", "Friction that the highest load adds, motor side", "Nm"], added_nm, None));
+    let how = match law {
+        [] => "does not depend on the load",
+        ["load_linear"] => "grows in proportion to the load",
+        ["load_quadratic"] => "grows with the square of the load",
+        _ => "grows with the load, in proportion and with its square",
+    };
+    Ok(Identification {
+        verdict: Verdict::Identified,
+        summary: format!("Friction {how}: {added_nm:.4} Nm more at {heaviest:.1} Nm (commanded)."),
+        advice: None,
+        quantities,
+        figures: vec![over_load(&table, gear)?],
+    })
+}
+
+/// The law that predicts what it has not seen best, of those whose every part is decided.
+fn choose(table: &RunTable) -> Result<(&'static [&'static str], Fit), Unusable> {
+    let of = |law: &[&'static str], stribeck: &[&'static str]| {
+        let effects = ["load_transmission", "coulomb", "viscous"].iter().chain(stribeck).chain(law).copied();
+        ModelSpec::new(table.kind(), effects).and_then(|spec| fit(table, &spec, &Options::default()))
+    };
+    let plain = of(&[], &[])?;
+    let stribeck: &[&str] = match of(&[], &["stribeck"]) {
+        Ok(rich) if rich.validation_rms < plain.validation_rms => &["stribeck"],
+        _ => &[],
+    };
+    let mut best = (LAWS[0], of(LAWS[0], stribeck)?);
+    for law in &LAWS[1..] {
+        let Ok(fit) = of(law, stribeck) else { continue };
+        let decided = fit.parameters.iter().filter(|p| law.contains(&p.effect.as_str())).all(|p| {
+            let [low, high] = p.ci95;
+            low > 0.0 || high < 0.0
+        });
+        if decided && fit.validation_rms < 0.99 * best.1.validation_rms {
+            best = (law, fit);
+        }
+    }
+    Ok(best)
+}
+
+/// Friction over load, one series for each speed, both directions as magnitudes.
+fn over_load(table: &RunTable, gear: f64) -> Result<Figure, Unusable> {
+    let mut points = plateaus(table)?;
+    points.sort_by(|a, b| a.velocity_rad_s.abs().total_cmp(&b.velocity_rad_s.abs()));
+    let alike = |a: &crate::findings::Plateau, b: &crate::findings::Plateau| {
+        (a.velocity_rad_s.abs() / b.velocity_rad_s.abs() - 1.0).abs() < 0.05
+    };
+    let series = points.chunk_by(alike).filter(|same| same.len() >= 4).map(|same| {
+        let label = format!("{:.1} rad/s", same[same.len() / 2].velocity_rad_s.abs());
+        let point = |p: &crate::findings::Plateau| ((p.load_nm * gear).abs(), (p.target - p.load_nm).abs());
+        scatter(&label, same.iter().map(point))
+    });
+    Ok(Figure {
+        name: "friction_over_load".into(),
+        title: "Friction over load".into(),
+        form: Form::Cartesian,
+        x: Axis::of("link torque", "Nm"),
+        y: Axis::of("friction torque (motor)", "Nm"),
+        series: series.collect(),
+    })
+}

@@ -1,0 +1,180 @@
+//! Friction over a warm-up and a cool-down: the lubricant thins as it warms.
+//!
+//! The joint is worked until it is warm, then left to cool with a short bout of legs now and then. Up and down the same
+//! temperatures are passed at different times: what depends on temperature and what merely drifts with time show apart.
+
+use super::Procedure;
+use super::legs::{Legs, friction_meta, turn_s};
+use super::warm_up;
+use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Phase, Plan, PlanFault};
+use crate::profile::Profile;
+use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::{ModelSpec, Options, ResidualKind, fit};
+
+pub(super) struct FrictionTemperature;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::number("top_speed_rad_s", "Speed (motor)", "rad/s", 180.0, [1.0, 1000.0]),
+    Parameter::number("heat_s", "Warm-up", "s", 420.0, [20.0, 14400.0]),
+    Parameter::number("cool_s", "Cool-down", "s", 420.0, [0.0, 14400.0]),
+    Parameter::number("rest_s", "Rest between the bouts of the cool-down", "s", 45.0, [1.0, 3600.0]),
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [50.0, 1000.0]),
+];
+
+/// Below this span nothing can be said about temperature.
+const LEAST_SPAN_K: f64 = 2.0;
+/// The temperature that the coefficients of the models count from.
+const REFERENCE_C: f64 = 25.0;
+
+impl Procedure for FrictionTemperature {
+    fn id(&self) -> &'static str {
+        "friction_temperature"
+    }
+
+    fn title(&self) -> &'static str {
+        "Friction over temperature"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Works the joint until it is warm and watches it cool down: how Coulomb and viscous friction change with temperature."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Friction
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let rate_hz = values.number("sample_rate_hz");
+        let top_rad_s = values.number("top_speed_rad_s");
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        warm_up::work(&mut legs, top_rad_s, values.number("heat_s"), bench);
+        for step in &mut legs.steps {
+            step.phase = Phase::Measure;
+        }
+        legs.repeat = 1;
+        let heated = legs.steps.len();
+        let mut cooled_s = 0.0;
+        while cooled_s < values.number("cool_s") {
+            legs.push("rest".into(), Profile::from(0.0).hold(values.number("rest_s")), Profile::constant(0.0));
+            for speed_rad_s in [top_rad_s, warm_up::SLOW_SHARE * top_rad_s] {
+                let dwell_s = turn_s(0.5, speed_rad_s, bench, 1.0).min(2.0);
+                legs.leg(speed_rad_s, dwell_s, 0.0);
+                legs.leg(-speed_rad_s, dwell_s, 0.0);
+            }
+            cooled_s = legs.steps[heated..].iter().map(crate::plan::Step::duration_s).sum();
+        }
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: friction_meta(bench, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify(run))
+    }
+}
+
+fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    if run.column("temperature_c").is_none() {
+        return Err(Unusable::TooLittle("the joint reports no temperature: connect a thermistor or a thermometer"));
+    }
+    let points = plateaus(run)?;
+    let (low_c, high_c) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+        (p.temperature_c.min(low), p.temperature_c.max(high))
+    });
+    let given = run.column("link_torque_nm").map(|_| "load_transmission");
+    let effects = ["coulomb", "viscous", "temperature_coulomb", "temperature_viscous"];
+    let options = Options { residual: Some(ResidualKind::PlateauMean), ..Options::default() };
+    let fit = fit(run, &ModelSpec::new(run.kind(), given.into_iter().chain(effects))?, &options)?;
+    let mut quantities = vec![
+        quantity(["temperature_low", "T₁", "Lowest temperature", "°C"], low_c, None),
+        quantity(["temperature_high", "T₂", "Highest temperature", "°C"], high_c, None),
+    ];
+    for (effect, name, words) in [
+        ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction at 25 °C", "Nm"]),
+        ("viscous", "c_v", ["c_v", "c_v", "Viscous friction at 25 °C", "Nm·s/rad"]),
+        ("temperature_coulomb", "tau_t", ["tau_t", "τ_T", "Coulomb friction, change with temperature", "Nm/K"]),
+        ("temperature_viscous", "c_t", ["c_t", "c_T", "Viscous friction, change with temperature", "Nm·s/(rad·K)"]),
+    ] {
+        if let Some(found) = parameter(&fit, effect, name) {
+            let (value, ci95) = interval_of(found, 1.0);
+            quantities.push(quantity(words, value, Some(ci95)));
+        }
+    }
+    let figures = vec![over_temperature(run, &points), over_time(&points)];
+    let moves =
+        |effect: &str, name: &str| parameter(&fit, effect, name).is_some_and(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0);
+    let (dry, wet) = (moves("temperature_coulomb", "tau_t"), moves("temperature_viscous", "c_t"));
+    let what = match (dry, wet) {
+        (false, false) => "neither Coulomb nor viscous friction changes".to_owned(),
+        (true, false) => "Coulomb friction changes and viscous friction does not".to_owned(),
+        (_, true) => {
+            let share = parameter(&fit, "temperature_viscous", "c_t").map_or(0.0, |p| p.value)
+                / parameter(&fit, "viscous", "c_v").map_or(f64::NAN, |p| p.value);
+            let coulomb = if dry { "too" } else { "not" };
+            format!(
+                "viscous friction changes by {:.2} % for each K around {REFERENCE_C} °C, Coulomb friction {coulomb}",
+                100.0 * share
+            )
+        }
+    };
+    let enough = high_c - low_c >= LEAST_SPAN_K;
+    Ok(Identification {
+        verdict: if enough { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!("From {low_c:.1} to {high_c:.1} °C {what}."),
+        advice: (!enough).then(|| "The joint hardly warmed up: raise heat_s or top_speed_rad_s.".into()),
+        quantities,
+        figures,
+    })
+}
+
+fn over_temperature(run: &RunTable, points: &[Plateau]) -> Figure {
+    let resting = |p: &&Plateau, cooling: bool| (repeat_of(run, p.segment) > 0.0) == cooling;
+    let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
+    let mut series = Vec::new();
+    for (speed, fast) in [("fast", true), ("slow", false)] {
+        for (way, cooling) in [("warming", false), ("cooling", true)] {
+            let own = points.iter().filter(|p| resting(p, cooling) && (p.velocity_rad_s.abs() > 0.6 * top) == fast);
+            let point = |p: &Plateau| (p.temperature_c, (p.target - p.load_nm).abs());
+            series.push(scatter(&format!("{speed}, {way}"), own.map(point)));
+        }
+    }
+    Figure {
+        name: "friction_over_temperature".into(),
+        title: "Friction over temperature".into(),
+        form: Form::Cartesian,
+        x: Axis::of("temperature", "°C"),
+        y: Axis::of("friction torque (motor)", "Nm"),
+        series,
+    }
+}
+
+fn repeat_of(run: &RunTable, segment: i64) -> f64 {
+    let row = run.column("segment").and_then(|s| s.iter().position(|v| *v as i64 == segment));
+    row.zip(run.column("repeat")).map_or(0.0, |(row, repeat)| repeat[row])
+}
+
+fn over_time(points: &[Plateau]) -> Figure {
+    Figure {
+        name: "temperature".into(),
+        title: "Temperature".into(),
+        form: Form::Cartesian,
+        x: Axis::of("time", "s"),
+        y: Axis::of("temperature", "°C"),
+        series: vec![scatter("legs", points.iter().map(|p| (p.time_s, p.temperature_c)))],
+    }
+}

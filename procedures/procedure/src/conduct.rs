@@ -1,0 +1,81 @@
+//! One run kept in memory: plan, carry out, identify. For campaigns and trials; the server keeps its runs in a store.
+
+use crate::catalogue::Procedure;
+use crate::identification::Identification;
+use crate::parameter::Values;
+use crate::plan::{BenchFacts, PlanFault};
+use crate::recorder::{Commit, Live, Recorder, RecorderFault};
+use crate::state::RunState;
+use crate::{RunEnd, run};
+use jointbench_instrument::{Bench, RunTable, TableFault, Trace};
+use serde_json::{Map, Value};
+use std::sync::mpsc::channel;
+
+/// What a run has brought.
+#[derive(Debug)]
+pub struct Conducted {
+    pub table: RunTable,
+    /// `None` where the procedure is asked for samples only.
+    pub identification: Option<Identification>,
+    pub duration_s: f64,
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum ConductFault {
+    #[error(transparent)]
+    Plan(#[from] PlanFault),
+    #[error("{procedure} would not start: {why}")]
+    NotAllowed { procedure: &'static str, why: String },
+    #[error("{procedure} ended {}: {}", .end.state, .end.reason.as_deref().unwrap_or("no reason given"))]
+    Ended { procedure: &'static str, end: Box<RunEnd> },
+    #[error("the run's table: {0}")]
+    Table(#[from] TableFault),
+}
+
+/// Plans a procedure, carries it out to its end and identifies what it shows.
+pub fn conduct(
+    bench: &mut Bench,
+    procedure: &dyn Procedure,
+    parameters: &Map<String, Value>,
+) -> Result<Conducted, ConductFault> {
+    let facts = BenchFacts::of(bench);
+    let plan = procedure.plan(parameters, &facts)?;
+    let preview = plan.preview(&facts);
+    if let Some(broken) = preview.checks.iter().find(|check| !check.ok) {
+        return Err(ConductFault::NotAllowed { procedure: procedure.id(), why: broken.detail.clone() });
+    }
+    let mut kept = Kept::default();
+    // Held until the end: a dropped sender stops a run.
+    let (_held, controls) = channel();
+    let end = run(bench, &plan, 0, &controls, &mut kept);
+    if end.state != RunState::Completed {
+        return Err(ConductFault::Ended { procedure: procedure.id(), end: Box::new(end) });
+    }
+    let table = RunTable::new(plan.meta, kept.rows.unwrap_or_default())?;
+    let values = Values::parse(procedure.schema(), parameters).map_err(PlanFault::from)?;
+    let identification = procedure.identify(&values, &table);
+    Ok(Conducted { table, identification, duration_s: end.duration_s })
+}
+
+#[derive(Default)]
+struct Kept {
+    rows: Option<Trace>,
+}
+
+impl Recorder for Kept {
+    fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
+        Ok(None)
+    }
+
+    fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
+        if !commit.rows.channels().is_empty() {
+            match &mut self.rows {
+                Some(rows) => rows.append(commit.rows),
+                None => self.rows = Some(commit.rows),
+            }
+        }
+        Ok(())
+    }
+
+    fn live(&mut self, _: Live<'_>) {}
+}

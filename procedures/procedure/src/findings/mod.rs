@@ -1,0 +1,13 @@
+//! What identifications share: parts of a run, means of its settled stretches, straight lines, parameters as quantities.
+
+mod holds;
+mod line;
+mod part;
+mod plateaus;
+mod say;
+
+pub(crate) use holds::{Hold, holds};
+pub(crate) use line::{Line, Mean};
+pub(crate) use part::{Leg, keep, legs};
+pub(crate) use plateaus::{Plateau, plateaus};
+pub(crate) use say::{Unusable, combined, curve, interval_of, parameter, quantity, scatter, verdict};

@@ -1,0 +1,59 @@
+//! Parameters of a fit as quantities, points as series.
+
+use crate::identification::{Identification, Mark, Quantity, Series};
+use jointbench_instrument::TableFault;
+use jointbench_model::{Fit, ModelError, Parameter, ParameterState};
+
+/// A parameter that the run decides.
+pub(crate) fn parameter<'f>(fit: &'f Fit, effect: &str, name: &str) -> Option<&'f Parameter> {
+    fit.parameters.iter().find(|p| p.effect == effect && p.name == name && p.state != ParameterState::Unidentified)
+}
+
+/// A figure with its interval, in the unit times `scale`.
+pub(crate) fn interval_of(parameter: &Parameter, scale: f64) -> (f64, [f64; 2]) {
+    let ends = parameter.ci95.map(|end| end * scale);
+    (parameter.value * scale, [ends[0].min(ends[1]), ends[0].max(ends[1])])
+}
+
+/// The sum of two figures. Their estimates share the noise of the same points, of which one gains what the other loses:
+/// taken as independent, the interval of the sum is rather too wide than too narrow.
+pub(crate) fn combined(a: (f64, [f64; 2]), b: (f64, [f64; 2]), sign: f64) -> (f64, [f64; 2]) {
+    let value = a.0 + sign * b.0;
+    let reach = (0.5 * (a.1[1] - a.1[0])).hypot(0.5 * (b.1[1] - b.1[0]));
+    (value, [value - reach, value + reach])
+}
+
+/// Named figure: `[name, symbol, title, unit]`.
+pub(crate) fn quantity([name, symbol, title, unit]: [&str; 4], value: f64, ci95: Option<[f64; 2]>) -> Quantity {
+    Quantity { name: name.into(), symbol: symbol.into(), title: title.into(), unit: unit.into(), value, ci95 }
+}
+
+pub(crate) fn scatter(label: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Series {
+    let (x, y) = points.into_iter().unzip();
+    Series::new(label, Mark::Points, x, y)
+}
+
+/// A line through `steps` + 1 places from one end to the other.
+pub(crate) fn curve(label: &str, [from, to]: [f64; 2], steps: u32, y: impl Fn(f64) -> f64) -> Series {
+    let x: Vec<f64> = (0..=steps).map(|i| from + (to - from) * f64::from(i) / f64::from(steps)).collect();
+    let y = x.iter().map(|x| y(*x)).collect();
+    Series::new(label, Mark::Line, x, y)
+}
+
+/// Why a run says nothing, with what to do about it.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Unusable {
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    #[error(transparent)]
+    Table(#[from] TableFault),
+    #[error("{0}")]
+    TooLittle(&'static str),
+}
+
+/// A run that says nothing gets its verdict too.
+pub(crate) fn verdict(found: Result<Identification, Unusable>) -> Option<Identification> {
+    let failed =
+        |fault: Unusable| Identification::failed("Nothing can be identified from this run.", fault.to_string());
+    Some(found.unwrap_or_else(failed))
+}

@@ -1,0 +1,4 @@
+//! What procedures identify: from tables that are written down here, and on the mock bench.
+
+mod mock;
+mod tables;

@@ -1,0 +1,42 @@
+//! Short runs on the mock bench. Its truth is read only to be compared with.
+
+use jointbench_devices::{Joint, MockBench, MockSettings};
+use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::identification::{Identification, Verdict};
+use jointbench_procedure::procedure;
+use serde_json::{Value, json};
+
+fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Identification) {
+    let mock = MockBench::start(settings).unwrap();
+    let mut bench = mock.open_bench("mock").unwrap();
+    let done = conduct(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
+    (mock, done.identification.unwrap())
+}
+
+#[test]
+fn a_demagnetised_brake_is_clean() {
+    let given = json!({"turns": 1.0, "speed_rad_s": 3.0, "sample_rate_hz": 100.0});
+    let (_, found) = found(MockSettings::new(Joint::JointB, 3), "demagnetise", given);
+    assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
+}
+
+#[test]
+fn the_inverse_of_the_hysteresis_holds_on_a_history_that_it_has_not_seen() {
+    let given = json!({"levels": 5, "loops": 1, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0});
+    let (_, found) = found(MockSettings::new(Joint::JointB, 3), "brake_hysteresis", given);
+    // Five levels are coarse: a straight line in their place errs three times as much at least.
+    let [error, line] = ["error_max", "error_line"].map(|name| found.quantity(name).unwrap().value);
+    assert!(error < 0.04 && 3.0 * error < line, "{error} {line}");
+    assert!(found.quantity("width").unwrap().value > 0.2, "{}", found.summary);
+}
+
+#[test]
+fn strokes_on_the_mock_bench_bracket_its_friction() {
+    let given = json!({"repeats": 2, "dwell_s": 1.0, "speeds": 3, "sample_rate_hz": 100.0});
+    let (mock, found) = found(MockSettings::new(Joint::JointA, 4), "strokes", given);
+    let truth = mock.truth();
+    for (name, value) in [("offset_positive", truth.coulomb_nm), ("slope_negative", truth.viscous_nm_s)] {
+        let quantity = found.quantity(name).unwrap();
+        assert!((quantity.value / value - 1.0).abs() < 0.05, "{name}: {} for {value}", quantity.value);
+    }
+}
