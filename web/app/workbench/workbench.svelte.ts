@@ -129,6 +129,23 @@ export function openWorkbench(id: number) {
 		return said?.good ? null : said;
 	});
 
+	/** The same model on one run more. */
+	async function join(more: number): Promise<void> {
+		const from = model;
+		if (!from || busy !== null) return;
+		busy = `Fitting run #${more} with the others`;
+		refused = null;
+		try {
+			const made = await api.fit(id, from.effects, { id: from.id, more_runs: [...from.more_runs, more] });
+			models.put([...versions.filter((one) => one.id !== made.id), made]);
+			busy = null;
+			show(made, from);
+		} catch (failure) {
+			refused = asRefusal(failure);
+			busy = null;
+		}
+	}
+
 	const add = (effect: string) => model && refit([...model.effects, effect], model, `Refitting with ${words(effect)}`);
 	/** Adds a user's effect. Its formula may be new under a name that the model holds already: then all is fitted again. */
 	const addOwn = async (effect: string) =>
@@ -173,6 +190,7 @@ export function openWorkbench(id: number) {
 		keep: () => other && model && show(other, model),
 		remove,
 		begin,
+		join,
 		undo,
 		redo,
 		get versions() {
