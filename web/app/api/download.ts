@@ -13,9 +13,14 @@ export async function download(href: string, name: string): Promise<void> {
 		const problem = (await answer.json().catch(() => ({}))) as object;
 		throw new Refusal({ title: answer.statusText || 'Refused', ...problem, status: answer.status });
 	}
+	save(await answer.blob(), /filename="([^"]+)"/.exec(answer.headers.get('content-disposition') ?? '')?.[1] ?? name);
+}
+
+/** Hands a file to the person. */
+export function save(file: Blob, name: string): void {
 	const link = document.createElement('a');
-	link.href = URL.createObjectURL(await answer.blob());
-	link.download = /filename="([^"]+)"/.exec(answer.headers.get('content-disposition') ?? '')?.[1] ?? name;
+	link.href = URL.createObjectURL(file);
+	link.download = name;
 	link.click();
 	URL.revokeObjectURL(link.href);
 }

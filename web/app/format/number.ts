@@ -29,13 +29,17 @@ export interface Scale {
 	unit: string;
 }
 
-const SCALABLE = new Set(['Nm', 'rad', 'N', 'm', 'A', 'rad/s', 'm/s']);
+/** Units that take a prefix on what they begin with: `mNm·s/rad`, `µrad`. Large ones are stiffnesses and rates only: nobody says `krad/s`. */
+const SMALL = /^(Nm|rad|N|A|V|W|m|s)([·/].*)?$/;
+const LARGE = /^(Nm?\/.*|Hz)$/;
 
 /** One prefix for everything that is shown together, chosen by its largest magnitude. */
 export function scaleFor(unit: string, largest: number): Scale {
 	const size = Math.abs(largest);
-	if (!SCALABLE.has(unit) || size === 0 || size >= 0.1) return { factor: 1, unit };
-	return size >= 1e-4 ? { factor: 1e3, unit: `m${unit}` } : { factor: 1e6, unit: `µ${unit}` };
+	if (LARGE.test(unit) && size >= 1e4) return size >= 1e7 ? { factor: 1e-6, unit: `M${unit}` } : { factor: 1e-3, unit: `k${unit}` };
+	if (!SMALL.test(unit) || size === 0 || size >= 0.1) return { factor: 1, unit };
+	if (size >= 1e-4) return { factor: 1e3, unit: `m${unit}` };
+	return size >= 1e-7 ? { factor: 1e6, unit: `µ${unit}` } : { factor: 1e9, unit: `n${unit}` };
 }
 
 export function quantity(value: number | null | undefined, unit: string, digits = 3): string {

@@ -1,0 +1,90 @@
+import { describe, expect, it } from 'vitest';
+import { cartesian } from './cartesian';
+import { type Figure, type Series, csvOf, reachOf, styles } from './figure';
+import { glyphs, line, ribbon } from './ink';
+import { flow } from './legend';
+import { polar } from './polar';
+
+const series = (label: string, mark: Series['mark'], x: number[], y: number[], band?: number[][]): Series => ({ label, mark, x, y, band });
+const figure = (more: Partial<Figure>): Figure => ({
+	name: 'f',
+	title: 'Friction',
+	form: 'cartesian',
+	x: { label: 'velocity', unit: 'rad/s' },
+	y: { label: 'torque', unit: 'Nm' },
+	series: [],
+	...more,
+});
+
+describe('telling series apart', () => {
+	it('draws a model in the colour of its points, and no two series alike', () => {
+		const looks = styles(['positive', 'negative', 'model, positive', 'model, negative', 'line'].map((label, i) => series(label, i < 2 ? 'points' : 'line', [], [])));
+		expect(looks[2]!.stroke).toBe(looks[0]!.stroke);
+		expect(looks[3]!.stroke).toBe(looks[1]!.stroke);
+		expect(new Set(looks.map((look) => look.stroke)).size).toBe(3);
+		expect(new Set(looks.slice(2).map((look) => look.dash)).size).toBe(3);
+		expect(looks[0]!.glyph).not.toBe(looks[1]!.glyph);
+	});
+
+	it('never comes back to the same colour and dash within thirty lines', () => {
+		const looks = styles(Array.from({ length: 30 }, (_, i) => series(`line ${i}`, 'line', [], [])));
+		expect(new Set(looks.map((look) => look.stroke + look.dash)).size).toBe(30);
+	});
+});
+
+describe('a cartesian figure', () => {
+	const drawn = figure({ series: [series('a', 'points', [0, 10], [0.01, 0.04], [[0, 0.02], [0.03, 0.05]])] });
+
+	it('shows points with their bands, ticks with the prefix', () => {
+		const frame = cartesian(drawn, 400, 300, { x: 1, y: 1000 });
+		for (const y of [0, 0.05]) expect(frame.y(y) > frame.top && frame.y(y) < frame.bottom).toBe(true);
+		expect(frame.yTicks.map((tick) => tick.text)).toEqual(['0', '10', '20', '30', '40', '50']);
+		expect(frame.yTicks[1]!.at).toBeCloseTo(frame.y(0.01), 9);
+	});
+
+	it('stands bars on zero, each in its slot', () => {
+		const bars = figure({ x: { label: '', unit: '', names: ['one', 'two'] }, series: [series('a', 'bars', [0, 1], [3, 4]), series('b', 'bars', [0, 1], [5, 2])] });
+		expect(reachOf(bars.series)).toEqual([0, 5]);
+		const frame = cartesian(bars, 400, 300, { x: 1, y: 1 });
+		expect(frame.y(0)).toBe(frame.bottom);
+		expect(frame.xTicks.map((tick) => tick.text)).toEqual(['one', 'two']);
+		expect(2 * frame.bar).toBeLessThan(frame.x(1) - frame.x(0));
+		expect(frame.slanted).toBe(false);
+	});
+
+	it('survives what has no extent', () => {
+		for (const one of [[], [series('a', 'line', [3], [7])], [series('a', 'points', [Number.NaN], [Number.NaN])]]) {
+			const frame = cartesian(figure({ series: one }), 300, 200, { x: 1, y: 1 });
+			for (const value of [frame.x(3), frame.y(7)]) expect(Number.isFinite(value)).toBe(true);
+		}
+	});
+});
+
+it('keeps the centre free where a polar figure has two signs, and starts there where it has one', () => {
+	const round = (y: number[]) => polar(figure({ form: 'polar', series: [series('a', 'line', [0, 1, 2], y)] }), 300, 300, 1);
+	const signed = round([-1, 0, 1]);
+	expect(signed.radius(-1)).toBeGreaterThan(signed.outer * 0.2);
+	expect(signed.radius(1)).toBeLessThan(signed.outer);
+	expect(signed.zero).toBeCloseTo(signed.radius(0), 9);
+	const plain = round([1, 2, 3]);
+	expect([plain.radius(0), plain.zero]).toEqual([0, null]);
+	const [x, y] = plain.at(Math.PI / 2, 3);
+	expect([x, y < plain.centre.y]).toEqual([plain.centre.x, true]);
+});
+
+it('gives exactly what is drawn, with all digits and names', () => {
+	const drawn = figure({ x: { label: 'of what', unit: '', names: ['eccentricity, first'] }, series: [series('a', 'bars', [0], [0.0311234567], [[0.03, 0.032]])] });
+	expect(csvOf(drawn)).toBe('series,of what,torque [Nm],"torque [Nm], lower","torque [Nm], upper"\na,"eccentricity, first",0.0311234567,0.03,0.032\n');
+});
+
+it('breaks a line where a value is missing', () => {
+	expect(line([[0, 0], [1, 1], [2, Number.NaN], [3, 3]])).toBe('M0.0 0.0L1.0 1.0M3.0 3.0');
+	expect(ribbon([], [])).toBe('');
+	expect(glyphs([[Number.NaN, 1]], 'dot')).toBe('');
+});
+
+it('puts entries of a legend below each other where they do not fit', () => {
+	const { entries, height } = flow(['positive', 'negative', 'model'], 170);
+	expect(entries.map((one) => one.y > 0)).toEqual([false, false, true]);
+	expect(height).toBe(34);
+});

@@ -1,0 +1,117 @@
+/** A plot as the daemon describes it, in SI units: what it holds, and how it is told apart. Where it lies on paper is `cartesian` and `polar`. */
+export interface Axis {
+	label: string;
+	unit: string;
+	/** Where the axis counts things that have names: 0 is the first. */
+	names?: string[];
+}
+
+export interface Series {
+	label: string;
+	mark: 'points' | 'line' | 'bars';
+	x: number[];
+	y: number[];
+	/** Lower and upper end at each point, or empty. */
+	band?: number[][];
+}
+
+export interface Figure {
+	name: string;
+	title: string;
+	form: 'cartesian' | 'polar';
+	x: Axis;
+	y: Axis;
+	series: Series[];
+}
+
+export interface Style {
+	/** Custom property of the colour. */
+	stroke: string;
+	/** Of a line. */
+	dash: string;
+	/** Of points. */
+	glyph: Glyph;
+	/** Among the bars of the figure. */
+	bar: number;
+}
+
+export type Glyph = 'dot' | 'ring' | 'square' | 'cross' | 'triangle';
+
+/** Okabe & Ito's seven; five dashes and five glyphs, so that a colour that comes again comes with another. */
+const STROKES = ['--oi-blue', '--oi-vermillion', '--oi-green', '--oi-purple', '--oi-orange', '--oi-sky', '--oi-black'];
+const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
+const GLYPHS: Glyph[] = ['dot', 'ring', 'square', 'cross', 'triangle'];
+
+/** `model, positive` is drawn in the colour of `positive`: a model and its points belong together. */
+const family = (label: string) => label.split(', ').at(-1)!;
+
+export function styles(series: readonly Series[]): Style[] {
+	const families = [...new Set(series.map((one) => family(one.label)))];
+	const before = (i: number) => series.slice(0, i).filter((one) => one.mark === series[i]!.mark).length;
+	return series.map((one, i) => ({
+		stroke: STROKES[families.indexOf(family(one.label)) % STROKES.length]!,
+		dash: DASHES[before(i) % DASHES.length]!,
+		glyph: GLYPHS[before(i) % GLYPHS.length]!,
+		bar: before(i),
+	}));
+}
+
+export type Span = readonly [low: number, high: number];
+
+/** From the smallest to the largest number; `[0, 1]` where there is none. */
+export function spanOf(values: Iterable<number>): Span {
+	let [low, high] = [Infinity, -Infinity];
+	for (const value of values) {
+		if (!Number.isFinite(value)) continue;
+		low = Math.min(low, value);
+		high = Math.max(high, value);
+	}
+	return low <= high ? [low, high] : [0, 1];
+}
+
+/** Everything that the y axis must show: bars stand on zero. */
+export function reachOf(series: readonly Series[]): Span {
+	const ends = series.flatMap((one) => [...one.y, ...(one.band ?? []).flat()]);
+	return spanOf(series.some((one) => one.mark === 'bars') ? [0, ...ends] : ends);
+}
+
+export interface Row {
+	series: string;
+	x: number | string;
+	y: number;
+	low: number | null;
+	high: number | null;
+}
+
+/** Exactly what is drawn, one row for each point. */
+export function rowsOf(figure: Figure): Row[] {
+	return figure.series.flatMap((one) =>
+		one.x.map((x, i) => ({
+			series: one.label,
+			x: figure.x.names?.[x] ?? x,
+			y: one.y[i]!,
+			low: one.band?.[i]?.[0] ?? null,
+			high: one.band?.[i]?.[1] ?? null,
+		})),
+	);
+}
+
+const titled = (label: string, unit: string) => (unit ? `${label} [${unit}]` : label);
+export const axisName = (axis: Axis) => titled(axis.label, axis.unit);
+
+export function csvOf(figure: Figure): string {
+	const y = axisName(figure.y);
+	return csv(
+		['series', axisName(figure.x), y, `${y}, lower`, `${y}, upper`],
+		rowsOf(figure).map((row) => [row.series, row.x, row.y, row.low, row.high]),
+	);
+}
+
+/** Numbers with all their digits; texts quoted where they must be (RFC 4180). */
+export function csv(head: readonly string[], rows: readonly (readonly (string | number | null)[])[]): string {
+	const cell = (value: string | number | null) => {
+		const text = value === null ? '' : String(value);
+		return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+	};
+	return [head, ...rows].map((row) => row.map(cell).join(',')).join('\n') + '\n';
+}

@@ -1,0 +1,136 @@
+/** A figure on the screen as a file. The page's policy lets no picture be loaded from memory, so the shapes are read and drawn once more. */
+
+interface Ink {
+	/** Path data, or none for a text. */
+	d: string;
+	text: string;
+	matrix: DOMMatrix;
+	fill: string;
+	stroke: string;
+	width: number;
+	dash: number[];
+	font: string;
+	anchor: CanvasTextAlign;
+}
+
+const TITLE = 24;
+const MARGIN = 8;
+
+function dataOf(shape: Element): string {
+	const at = (name: string) => Number(shape.getAttribute(name) ?? 0);
+	switch (shape.tagName) {
+		case 'path':
+			return shape.getAttribute('d') ?? '';
+		case 'line':
+			return `M${at('x1')} ${at('y1')}L${at('x2')} ${at('y2')}`;
+		case 'rect':
+			return `M${at('x')} ${at('y')}h${at('width')}v${at('height')}h${-at('width')}Z`;
+		case 'circle': {
+			const r = at('r');
+			return `M${at('cx') - r} ${at('cy')}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+		}
+		default:
+			return '';
+	}
+}
+
+/** `rgb(…)` with the opacity that stands beside it. */
+const faded = (colour: string, opacity: string) =>
+	colour === 'none' || opacity === '1' ? colour : colour.replace(/^rgb\((.+)\)$/, (_all, parts: string) => `rgba(${parts}, ${opacity})`);
+
+function inkOf(svg: SVGSVGElement): Ink[] {
+	return [...svg.querySelectorAll<SVGGraphicsElement>('path, line, rect, circle, text')].map((shape) => {
+		const style = getComputedStyle(shape);
+		const { a = 1, b = 0, c = 0, d = 1, e = 0, f = 0 } = shape.transform.baseVal.consolidate()?.matrix ?? {};
+		const group = (shape.parentNode as SVGGraphicsElement).transform?.baseVal.consolidate()?.matrix;
+		const own = new DOMMatrix([a, b, c, d, e, f]);
+		const isText = shape.tagName === 'text';
+		const place = isText ? own.translate(Number(shape.getAttribute('x') ?? 0), Number(shape.getAttribute('y') ?? 0)) : own;
+		return {
+			d: dataOf(shape),
+			text: isText ? (shape.textContent ?? '') : '',
+			matrix: group ? new DOMMatrix([group.a, group.b, group.c, group.d, group.e, group.f]).multiply(place) : place,
+			fill: faded(style.fill, style.fillOpacity),
+			stroke: faded(style.stroke, style.strokeOpacity),
+			width: Number.parseFloat(style.strokeWidth),
+			dash: style.strokeDasharray === 'none' ? [] : style.strokeDasharray.split(/[ ,]+/).map(Number.parseFloat),
+			font: `${style.fontSize} ${style.fontFamily}`,
+			anchor: style.textAnchor === 'middle' ? 'center' : style.textAnchor === 'end' ? 'right' : 'left',
+		};
+	});
+}
+
+interface Sheet {
+	width: number;
+	height: number;
+	paper: string;
+	inks: Ink[];
+}
+
+/** The figure with its title above it and a margin around it. */
+function sheetOf(svg: SVGSVGElement, title: string): Sheet {
+	const root = getComputedStyle(document.documentElement);
+	const inks = inkOf(svg).map((ink) => ({ ...ink, matrix: new DOMMatrix().translate(MARGIN, TITLE + MARGIN).multiply(ink.matrix) }));
+	const head: Ink = {
+		d: '',
+		text: title,
+		matrix: new DOMMatrix().translate(MARGIN, MARGIN + 12),
+		fill: root.getPropertyValue('--ink').trim(),
+		stroke: 'none',
+		width: 0,
+		dash: [],
+		font: `bold 13px ${root.getPropertyValue('--sans').trim()}`,
+		anchor: 'left',
+	};
+	return {
+		width: svg.clientWidth + 2 * MARGIN,
+		height: svg.clientHeight + TITLE + 2 * MARGIN,
+		paper: root.getPropertyValue('--panel').trim(),
+		inks: [head, ...inks],
+	};
+}
+
+const escaped = (text: string) => text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
+
+export function svgFile(svg: SVGSVGElement, title: string): Blob {
+	const { width, height, paper, inks } = sheetOf(svg, title);
+	const anchors: Partial<Record<CanvasTextAlign, string>> = { center: 'middle', right: 'end' };
+	const body = inks.map((ink) => {
+		const common = `transform="${ink.matrix.toString()}" fill="${ink.fill}" stroke="${ink.stroke}" stroke-width="${ink.width}"`;
+		if (!ink.text) return `<path d="${ink.d}" ${common}${ink.dash.length ? ` stroke-dasharray="${ink.dash.join(' ')}"` : ''}/>`;
+		return `<text ${common} paint-order="stroke" style="font:${escaped(ink.font)}" text-anchor="${anchors[ink.anchor] ?? 'start'}">${escaped(ink.text)}</text>`;
+	});
+	const head = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">`;
+	return new Blob([`${head}\n<title>${escaped(title)}</title>\n<path d="M0 0h${width}v${height}H0Z" fill="${paper}"/>\n${body.join('\n')}\n</svg>\n`], { type: 'image/svg+xml' });
+}
+
+/** Twice as fine as the screen: for slides and papers. */
+const FINE = 2;
+
+export async function pngFile(svg: SVGSVGElement, title: string): Promise<Blob> {
+	const { width, height, paper, inks } = sheetOf(svg, title);
+	const canvas = new OffscreenCanvas(width * FINE, height * FINE);
+	const ctx = canvas.getContext('2d')!;
+	ctx.scale(FINE, FINE);
+	ctx.fillStyle = paper;
+	ctx.fillRect(0, 0, width, height);
+	for (const ink of inks) {
+		ctx.setTransform(new DOMMatrix().scale(FINE).multiply(ink.matrix));
+		ctx.lineWidth = ink.width;
+		ctx.setLineDash(ink.dash);
+		ctx.font = ink.font;
+		ctx.textAlign = ink.anchor;
+		ctx.lineJoin = 'round';
+		ctx.strokeStyle = ink.stroke;
+		ctx.fillStyle = ink.fill;
+		if (ink.text) {
+			if (ink.stroke !== 'none') ctx.strokeText(ink.text, 0, 0);
+			ctx.fillText(ink.text, 0, 0);
+			continue;
+		}
+		const path = new Path2D(ink.d);
+		if (ink.fill !== 'none') ctx.fill(path);
+		if (ink.stroke !== 'none') ctx.stroke(path);
+	}
+	return canvas.convertToBlob({ type: 'image/png' });
+}

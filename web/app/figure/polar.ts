@@ -1,0 +1,42 @@
+import { tickText, ticks } from '../plot/ticks';
+import { type Figure, reachOf } from './figure';
+import type { Tick } from './cartesian';
+
+/** A figure about a centre: angle from the right, anticlockwise, as the maths has it. */
+export interface Disc {
+	centre: { x: number; y: number };
+	outer: number;
+	/** Radius [px] of a value. */
+	radius: (value: number) => number;
+	at: (angle: number, value: number) => readonly [x: number, y: number];
+	rings: Tick[];
+	/** The circle of zero, where values lie on both sides of it. */
+	zero: number | null;
+}
+
+/** Below the disc: what its radius is. */
+const TITLE = 16;
+
+export const SPOKES = Array.from({ length: 12 }, (_, i) => i * 30);
+
+export function polar(figure: Figure, width: number, height: number, factor: number): Disc {
+	const outer = Math.max(20, Math.min(width - 70, height - 44 - TITLE) / 2);
+	const centre = { x: width / 2, y: (height - TITLE) / 2 };
+	const [least, most] = reachOf(figure.series);
+	const span = most - Math.min(0, least) || Math.abs(most) || 1;
+	// An error lies on both sides of its circle: the centre is left free, or everything below zero would crowd there.
+	const low = least < 0 ? least - 0.6 * span : 0;
+	const high = most + 0.06 * span;
+	const radius = (value: number) => Math.max(0, ((value - low) / (high - low)) * outer);
+	const begin = least < 0 ? least - 0.05 * span : 0;
+	return {
+		centre,
+		outer,
+		radius,
+		at: (angle, value) => [centre.x + radius(value) * Math.cos(angle), centre.y - radius(value) * Math.sin(angle)],
+		rings: ticks(begin * factor, high * factor, least < 0 ? 6 : 4)
+			.filter((tick) => radius(tick / factor) > 12)
+			.map((tick) => ({ at: radius(tick / factor), text: tickText(tick) })),
+		zero: least < 0 ? radius(0) : null,
+	};
+}
