@@ -10,6 +10,7 @@ use jointbench_instrument::roles::{
     AlignmentStage, CurrentSource, Identity, Instrument, JointController, PositionCounter, Thermometer, TorqueSensor,
 };
 use jointbench_instrument::{Bench, Clock, Fault, Limits};
+use std::path::Path;
 use std::sync::Arc;
 
 /// How each instrument is reached. Absence is an empty slot.
@@ -71,6 +72,27 @@ pub struct Instruments {
 }
 
 impl InstrumentSettings {
+    /// Writes the traffic of every instrument down in `folder`, from its opening on, a file each (`joint.traffic`), which
+    /// [`crate::Replay`] can answer from.
+    pub fn record_in(&mut self, folder: &Path) {
+        let sensor = self.torque_sensor.as_mut().map(|sensor| match sensor {
+            TorqueSensorSettings::Lorenz(settings) => (&settings.name, &mut settings.port),
+            TorqueSensorSettings::Multimeter(settings) => (&settings.name, &mut settings.port),
+        });
+        let all = [
+            Some((&self.joint.name, &mut self.joint.port)),
+            sensor,
+            self.brake.as_mut().map(|brake| (&brake.name, &mut brake.port)),
+            self.reference_encoder.as_mut().map(|counter| (&counter.name, &mut counter.port)),
+            self.test_encoder.as_mut().map(|counter| (&counter.name, &mut counter.port)),
+            self.stage.as_mut().map(|stage| (&stage.name, &mut stage.port)),
+            self.thermometer.as_mut().map(|felt| (&felt.name, &mut felt.port)),
+        ];
+        for (name, port) in all.into_iter().flatten() {
+            port.record = Some(folder.join(format!("{name}.traffic")));
+        }
+    }
+
     /// Opens and identifies every instrument; one that does not answer keeps no other from being asked. Nothing moves.
     pub fn open(&self, clock: &Arc<dyn Clock>) -> Instruments {
         let mut desk = Desk { asked: Vec::new() };

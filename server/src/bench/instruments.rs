@@ -2,9 +2,11 @@
 
 use crate::config::{BenchDescription, Source};
 use crate::view::{Instrument, InstrumentIdentity};
+use jiff::Timestamp;
 use jointbench_devices::{Asked, InstrumentSettings, Instruments, MockBench};
 use jointbench_instrument::roles::Identity;
 use jointbench_instrument::{Bench, Clock, SystemClock};
+use std::path::Path;
 use std::sync::Arc;
 
 /// What opening has brought: the instruments one by one, and the bench where all of them answer.
@@ -35,20 +37,29 @@ pub struct Reached {
     mock: Option<MockBench>,
 }
 
-/// `Err` says why there is no simulated bench.
+/// `Err` says why there is no simulated bench, or no record.
 pub fn reach(description: &BenchDescription) -> Result<Reached, String> {
-    let at = |settings: &InstrumentSettings, clock: Arc<dyn Clock>, mock| Reached {
-        slots: settings.open(&clock),
-        clock,
-        mock,
+    let (mut settings, clock, mock): (_, Arc<dyn Clock>, _) = match &description.source {
+        Source::Hardware(settings) => ((**settings).clone(), Arc::new(SystemClock::start()), None),
+        Source::Mock(settings) => {
+            let mock = MockBench::start(settings.clone()).map_err(|fault| fault.to_string())?;
+            (mock.instruments(), mock.clock(), Some(mock))
+        }
     };
-    match &description.source {
-        Source::Hardware(settings) => Ok(at(settings, Arc::new(SystemClock::start()), None)),
-        Source::Mock(settings) => match MockBench::start(settings.clone()) {
-            Ok(mock) => Ok(at(&mock.instruments(), mock.clock(), Some(mock))),
-            Err(fault) => Err(fault.to_string()),
-        },
+    if let Some(folder) = &description.record {
+        record(&mut settings, folder)?;
     }
+    Ok(Reached { slots: settings.open(&clock), clock, mock })
+}
+
+/// One folder for each opening: what went wrong before a bench was opened anew stays.
+fn record(settings: &mut InstrumentSettings, folder: &Path) -> Result<(), String> {
+    let folder = folder.join(Timestamp::now().strftime("%Y%m%dT%H%M%S%3fZ").to_string());
+    std::fs::create_dir_all(&folder)
+        .map_err(|fault| format!("traffic cannot be recorded in {}: {fault}", folder.display()))?;
+    settings.record_in(&folder);
+    tracing::info!(folder = %folder.display(), "recording the traffic of every instrument");
+    Ok(())
 }
 
 fn described(description: &BenchDescription, asked: &Asked) -> Instrument {
@@ -80,5 +91,30 @@ fn unreached(description: &BenchDescription, fault: String) -> Instrument {
 impl From<Identity> for InstrumentIdentity {
     fn from(identity: Identity) -> Self {
         Self { maker: identity.maker, model: identity.model, serial: identity.serial, firmware: identity.firmware }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{READY_MADE, parse};
+    use jointbench_devices::sim::Transport;
+    use jointbench_devices::transport::Traffic;
+    use jointbench_devices::{GcsSettings, GcsStage, PortSettings, Replay};
+
+    #[test]
+    fn a_recorded_bench_can_be_opened_again_from_its_record() {
+        let folder = tempfile::tempdir().unwrap();
+        let (name, text) = READY_MADE.into_iter().find(|(name, _)| *name == "encoder-bench-mock").unwrap();
+        let mut description = parse(name, text).unwrap().remove(0);
+        description.record = Some(folder.path().join(name));
+        let asked = reach(&description).unwrap().slots.asked;
+        let opening = std::fs::read_dir(folder.path().join(name)).unwrap().next().unwrap().unwrap().path();
+        assert_eq!(std::fs::read_dir(&opening).unwrap().count(), asked.len());
+        let text = std::fs::read_to_string(opening.join("stage.traffic")).unwrap();
+        let replay = Replay::start(Traffic::parse(&text).unwrap(), Transport::Tcp).unwrap();
+        let port = PortSettings::new(replay.address().clone(), 115_200);
+        GcsStage::open(GcsSettings { name: "stage".into(), port, deadline_ms: 1000 }).unwrap();
+        assert!(replay.departure().is_none(), "{:?}", replay.departure());
     }
 }

@@ -2,6 +2,7 @@
 
 use super::log::LogForm;
 use super::own::OwnEffects;
+use super::ports::Ports;
 use crate::lab::FileFormat;
 use clap::{Args, Parser, Subcommand};
 use std::net::SocketAddr;
@@ -33,6 +34,8 @@ pub enum Command {
     Serve(Serve),
     /// Check a bench description and let its instruments identify themselves; moves nothing
     Check(Check),
+    /// List this computer's serial ports: what is behind them, and what may not be opened and why
+    Ports(Ports),
     /// Start a procedure on a running daemon
     Run(Run),
     /// Measure, diagnose and measure again on a running daemon, until nothing is missing
@@ -89,6 +92,9 @@ pub struct Place {
     /// Needed to listen beyond loopback; callers send it as `Authorization: Bearer TOKEN`
     #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
     pub token: Option<String>,
+    /// Write the traffic of every instrument down in this folder, to read and to replay
+    #[arg(long, value_name = "DIR")]
+    pub record: Option<PathBuf>,
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {

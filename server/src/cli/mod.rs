@@ -10,6 +10,7 @@ mod log;
 mod model;
 mod offline;
 mod own;
+mod ports;
 mod print;
 mod progress;
 mod run;
@@ -36,6 +37,7 @@ pub fn main() -> ExitCode {
         Command::Demo(arguments) => demo::demo(arguments),
         Command::Serve(arguments) => serve::serve(arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Ports(arguments) => ports::ports(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
         Command::Diagnose(arguments) => offline::diagnose(&arguments),

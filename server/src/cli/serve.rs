@@ -27,7 +27,10 @@ pub(super) fn describe(config: &str) -> Result<Vec<BenchDescription>, Exit> {
     benches.map_err(|mistakes| Exit::bad_input(mistakes.to_string()))
 }
 
-pub(super) fn settings(place: Place, data: &str, benches: Vec<BenchDescription>) -> DaemonSettings {
+pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescription>) -> DaemonSettings {
+    if let Some(folder) = &place.record {
+        benches.iter_mut().for_each(|bench| bench.record = Some(folder.join(&bench.name)));
+    }
     let data = place.data.unwrap_or_else(|| PathBuf::from(data));
     DaemonSettings { listen: place.listen, data, token: place.token, benches }
 }

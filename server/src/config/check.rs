@@ -71,6 +71,7 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
         limits: limits?,
         constants: constants?,
         calibrated: calibrated?,
+        record: None,
         text: text.to_owned(),
     })
 }

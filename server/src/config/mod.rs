@@ -16,7 +16,7 @@ use jointbench_devices::sim::Load;
 use jointbench_devices::{InstrumentSettings, Joint, MockSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Ready-made descriptions, also to start a new one from.
 pub const READY_MADE: [(&str, &str); 6] = [
@@ -37,6 +37,8 @@ pub struct BenchDescription {
     pub constants: JointConstants,
     /// When which instrument was calibrated, by its role.
     pub calibrated: Vec<(&'static str, Date)>,
+    /// Every opening of its instruments writes their traffic down in a new folder in this one.
+    pub record: Option<PathBuf>,
     /// As written, for the provenance of its runs.
     pub text: String,
 }
@@ -58,6 +60,7 @@ impl BenchDescription {
             constants: joint.constants(load),
             source: Source::Mock(settings),
             calibrated: Vec::new(),
+            record: None,
             text: String::new(),
         }
     }

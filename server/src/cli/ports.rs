@@ -1,0 +1,76 @@
+//! `jointbench ports`.
+
+use super::exit::{Done, Exit};
+use clap::Args;
+use jointbench_devices::transport::{FoundPort, ports as found_ports};
+
+#[derive(Debug, Args)]
+pub struct Ports {
+    /// One JSON array instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn ports(arguments: &Ports) -> Done {
+    let found = found_ports().map_err(|fault| Exit::failed(format!("the ports cannot be listed: {fault}")))?;
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&found).map_err(|fault| Exit::failed(fault.to_string()))?;
+        println!("{text}");
+    } else if found.is_empty() {
+        println!("no serial port: plug an instrument in; instruments on the network are tcp://host:port in bench.toml");
+    } else {
+        found.iter().for_each(|port| println!("{}", line(port)));
+    }
+    Ok(())
+}
+
+/// One port: where, what, whether it may be opened, and the address that lasts.
+fn line(port: &FoundPort) -> String {
+    let mark = if port.closed.is_some() { "closed" } else { "ok    " };
+    let usb = port.usb.as_ref().map(|usb| {
+        let told = [usb.maker.as_deref(), usb.product.as_deref()].into_iter().flatten().collect::<Vec<_>>().join(" ");
+        format!("{:04X}:{:04X} {told}", usb.vendor_id, usb.product_id)
+    });
+    let mut line = format!("{mark}  {:<16} {}", port.address.to_string(), usb.as_deref().unwrap_or("not a USB device"));
+    if let Some(likely) = port.likely {
+        line.push_str(&format!("\n        likely a {likely}"));
+    }
+    if let Some(lasting) = &port.lasting_address {
+        line.push_str(&format!("\n        in bench.toml: port = \"{lasting}\", wherever it is plugged in"));
+    }
+    if let Some(why) = &port.closed {
+        line.push_str(&format!("\n        {why}"));
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointbench_devices::Address;
+    use jointbench_devices::transport::UsbDevice;
+
+    #[test]
+    fn a_port_that_may_not_be_opened_says_why_and_how_to_name_it() {
+        let usb = UsbDevice {
+            vendor_id: 0x10C4,
+            product_id: 0x8056,
+            serial_number: Some("L7".into()),
+            maker: Some("Lorenz".into()),
+            product: None,
+        };
+        let port = FoundPort {
+            address: Address::from("/dev/ttyUSB1"),
+            lasting_address: Some(Address::Usb("L7".into())),
+            usb: Some(usb),
+            likely: Some("torque sensor (Lorenz)"),
+            closed: Some("in use by screen (process 7); end it first".into()),
+        };
+        let said = line(&port);
+        for part in
+            ["closed  /dev/ttyUSB1", "10C4:8056 Lorenz", "likely a torque", "port = \"usb://L7\"", "end it first"]
+        {
+            assert!(said.contains(part), "{part:?} in {said}");
+        }
+    }
+}
