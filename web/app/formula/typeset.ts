@@ -9,7 +9,8 @@ export type Node =
 
 const FUNCTIONS = new Set(['sgn', 'exp', 'tanh', 'cos', 'sin', 'sqrt', 'abs']);
 const RAISED = new Map([...'⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻'].map((letter, i) => [letter, '0123456789+−'[i]!]));
-const TOKEN = /\s+|\d+(?:\.\d+)?|°?[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω\u0307]*|_[A-Za-z0-9α-ωΑ-Ω]+|[⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻]+|./gu;
+const LOWERED = '₀₁₂₃₄₅₆₇₈₉';
+const TOKEN = /\s+|\d+(?:\.\d+)?|°?[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω\u0307]*|_[A-Za-z0-9α-ωΑ-Ω]+|[⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻]+|[₀₁₂₃₄₅₆₇₈₉]+|./gu;
 const OPENS = new Map([
 	['(', ')'],
 	['[', ']'],
@@ -55,6 +56,7 @@ export function typeset(text: string): Node[] {
 		for (;;) {
 			const text = tokens[at] ?? '';
 			if (text.startsWith('_') && text.length > 1) sub = { is: 'name', text: text.slice(1) };
+			else if (LOWERED.includes(text[0] ?? ' ')) sub = { is: 'number', text: [...text].map((letter) => LOWERED.indexOf(letter)).join('') };
 			else if (RAISED.has(text[0]!)) sup = { is: 'number', text: [...text].map((letter) => RAISED.get(letter)).join('') };
 			else if (text === '^' && at + 1 < tokens.length) {
 				at += 1;

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { ProcedureParameter } from '../api/types';
-import { parse } from './values';
+import { parse, planAddress } from './values';
 
 const speeds: ProcedureParameter = { name: 'speeds', title: 'Speeds', unit: '', default: 8, min: 2, max: 30, type: 'integer' };
 
@@ -16,4 +16,8 @@ it('says what is needed where there is no number', () => {
 	expect(parse(speeds, 'fast').error).toBe('a number');
 	expect(parse(speeds, '').error).toBe('a number');
 	expect(parse({ ...speeds, type: 'number' }, '2,5')).toEqual({ value: 2.5, error: null });
+});
+
+it('plans again what was planned before', () => {
+	expect(planAddress('friction', { top_speed_rad_s: 180, loads: [0, 0.5] })).toBe('/?procedure=friction&p.top_speed_rad_s=180&p.loads=0%2C+0.5');
 });

@@ -26,3 +26,9 @@ export function asText(value: unknown): string {
 	if (value === null || value === undefined) return '';
 	return Array.isArray(value) ? value.join(', ') : String(value);
 }
+
+/** The bench page with a procedure and its settings filled in; nothing starts by itself. */
+export function planAddress(procedure: string, parameters: Record<string, unknown>): string {
+	const settings = Object.entries(parameters).map(([name, value]) => [`p.${name}`, asText(value)]);
+	return `/?${new URLSearchParams([['procedure', procedure], ...settings] as [string, string][]).toString()}`;
+}
