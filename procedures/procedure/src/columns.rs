@@ -1,7 +1,8 @@
 //! The columns of a run table: which ones a bench fills, and one row of them.
 
+use crate::encoder_columns::{self, Encoders};
 use jointbench_instrument::bench::JointConstants;
-use jointbench_instrument::roles::{DriveHealth, JointReading};
+use jointbench_instrument::roles::{DriveHealth, JointReading, Pose};
 use jointbench_instrument::{Bench, Channel, Kind, Trace};
 
 /// Time is kept in whole microseconds: finer than any serial instrument can tell, and exact to store.
@@ -19,6 +20,10 @@ pub(crate) struct Moment {
     /// Measured, and commanded.
     pub brake_a: Option<(f64, f64)>,
     pub velocity_setpoint_rad_s: f64,
+    /// In a run of encoders.
+    pub encoders: Option<Encoders>,
+    /// Where the stage holds the sensor.
+    pub pose: Option<Pose>,
 }
 
 /// The columns that this bench can fill. An instrument that is not there has no column.
@@ -39,7 +44,8 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    pub fn of(kind: Kind, bench: &Bench, reading: &JointReading, health: &DriveHealth) -> Self {
+    /// `placed`: the plan moves the stage.
+    pub fn of(kind: Kind, placed: bool, bench: &Bench, reading: &JointReading, health: &DriveHealth) -> Self {
         let steps = bench.joint.resolution();
         let is_brake = kind == Kind::Brake;
         let mut channels = vec![
@@ -67,8 +73,11 @@ impl Columns {
             channels.push(channel(name, step_a.map(|step| step * brake_nm_per_a)));
         }
         channels.push(channel("velocity_setpoint_rad_s", Some(VELOCITY_STEP_RAD_S)));
-        if is_brake {
+        if is_brake || kind == Kind::Encoder {
             channels.push(channel("velocity_rad_s", None));
+        }
+        if kind == Kind::Encoder {
+            channels.extend(encoder_columns::channels(bench, placed));
         }
         channels.push(channel("segment", Some(1.0)));
         channels.push(channel("repeat", Some(1.0)));
@@ -100,6 +109,11 @@ impl Columns {
         }
         row.push(moment.velocity_setpoint_rad_s);
         row.extend(self.brake.map(|(gear_ratio, _)| moment.joint.motor_velocity.0 / gear_ratio));
+        if let Some(encoders) = &moment.encoders {
+            // Both sit on the motor's shaft.
+            row.push(moment.joint.motor_velocity.0);
+            encoder_columns::row(encoders, moment.pose, row);
+        }
         row.extend([f64::from(segment), f64::from(repeat)]);
         row
     }

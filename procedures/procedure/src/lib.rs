@@ -7,6 +7,7 @@
 pub mod catalogue;
 mod columns;
 pub mod conduct;
+mod encoder_columns;
 pub mod engine;
 pub mod event;
 mod findings;
@@ -14,6 +15,7 @@ pub mod guard;
 pub mod identification;
 mod menu;
 pub mod parameter;
+pub mod place;
 pub mod plan;
 pub mod preview;
 pub mod profile;

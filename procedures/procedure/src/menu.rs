@@ -125,6 +125,8 @@ impl BenchFacts {
             },
             has_torque_sensor: link_nm > 0.0,
             has_brake: brake_a > 0.0,
+            encoder_counts: None,
+            has_stage: false,
         }
     }
 }

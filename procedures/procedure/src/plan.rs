@@ -1,9 +1,12 @@
 //! What a procedure decides: a list of steps with their set-points over time. Pure data; the engine acts on it.
 
+use crate::place::Place;
 use crate::profile::Profile;
 use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::roles::PositionCounter;
 use jointbench_instrument::{Bench, Kind, Limits, Meta};
 use serde_json::{Map, Value};
+use std::f64::consts::TAU;
 
 /// What a procedure may know about a bench before anything moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +17,9 @@ pub struct BenchFacts {
     pub constants: JointConstants,
     pub has_torque_sensor: bool,
     pub has_brake: bool,
+    /// Reference and test: counts of a turn. `None` where one of them is missing.
+    pub encoder_counts: Option<[f64; 2]>,
+    pub has_stage: bool,
 }
 
 impl BenchFacts {
@@ -25,8 +31,16 @@ impl BenchFacts {
             constants: bench.constants,
             has_torque_sensor: bench.torque_sensor.is_some(),
             has_brake: bench.brake.is_some(),
+            encoder_counts: counts(&bench.reference_encoder)
+                .zip(counts(&bench.test_encoder))
+                .map(|(reference, test)| [reference, test]),
+            has_stage: bench.stage.is_some(),
         }
     }
+}
+
+fn counts(encoder: &Option<Box<dyn PositionCounter>>) -> Option<f64> {
+    encoder.as_ref().map(|encoder| TAU / encoder.resolution().0)
 }
 
 /// Which part of a plan a step belongs to.
@@ -61,6 +75,7 @@ pub struct Step {
     pub velocity: Profile,
     /// Brake current [A] over the time of the step.
     pub brake: Profile,
+    pub place: Place,
 }
 
 impl Step {
@@ -154,6 +169,7 @@ pub(crate) mod testing {
             before: Before::AsLeft,
             velocity: Profile::plateau(if index % 2 == 0 { 20.0 } else { -20.0 }, 200.0, duration_s - 0.2),
             brake: Profile::constant(0.0),
+            place: Place::AsLeft,
         };
         Plan {
             procedure: "test",

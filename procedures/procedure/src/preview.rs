@@ -175,5 +175,9 @@ impl Plan {
 /// current), its descending branch up to 8 % higher (bench-physics, section 2); 1.15 covers both.
 fn brake_torque_bound_nm(current_a: f64, facts: &BenchFacts) -> f64 {
     let constants = &facts.constants;
+    if current_a == 0.0 {
+        // A bench without a brake has no rating to divide by.
+        return 0.0;
+    }
     1.15 * constants.brake_rated_torque_nm * current_a / constants.brake_rated_current_a
 }

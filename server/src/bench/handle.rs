@@ -6,7 +6,6 @@ use crate::config::BenchDescription;
 use crate::lab::LabError;
 use crate::live::Hub;
 use crate::store::Store;
-use jointbench_devices::sim::Load;
 use jointbench_procedure::{BenchFacts, Control, Plan, RunId};
 use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -68,19 +67,17 @@ impl BenchHandle {
 
     /// What a procedure may know before anything moves, instruments open or not.
     pub fn facts(&self) -> BenchFacts {
-        use crate::config::Source;
         let description = &self.shared.description;
-        let (has_torque_sensor, has_brake) = match &description.source {
-            Source::Mock(settings) => (settings.load != Load::None, settings.load != Load::None),
-            Source::Hardware(hardware) => (hardware.torque_sensor.is_some(), hardware.brake.is_some()),
-        };
+        let has = description.has();
         BenchFacts {
             name: description.name.clone(),
             simulated: description.is_simulated(),
             limits: description.limits,
             constants: description.constants,
-            has_torque_sensor,
-            has_brake,
+            has_torque_sensor: has.torque_sensor,
+            has_brake: has.brake,
+            encoder_counts: has.encoder_counts,
+            has_stage: has.stage,
         }
     }
 

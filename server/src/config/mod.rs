@@ -12,7 +12,7 @@ mod values;
 pub use mistake::{Mistake, Mistakes};
 
 use jiff::civil::Date;
-use jointbench_devices::sim::Load;
+use jointbench_devices::sim::{ENCODER_COUNTS, Load, MockInstrument};
 use jointbench_devices::{InstrumentSettings, Joint, MockSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
@@ -50,6 +50,16 @@ pub enum Source {
     Hardware(Box<InstrumentSettings>),
 }
 
+/// The roles that decide which procedures a bench can run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Has {
+    pub torque_sensor: bool,
+    pub brake: bool,
+    /// Counts of a turn: reference, and encoder under test.
+    pub encoder_counts: Option<[f64; 2]>,
+    pub stage: bool,
+}
+
 impl BenchDescription {
     /// A mock bench with the constants and limits of its joint's data sheet.
     pub fn mock(name: &str, settings: MockSettings) -> Self {
@@ -67,6 +77,28 @@ impl BenchDescription {
 
     pub fn is_simulated(&self) -> bool {
         matches!(self.source, Source::Mock(_))
+    }
+
+    pub fn has(&self) -> Has {
+        match &self.source {
+            Source::Mock(settings) => Has {
+                torque_sensor: settings.has(MockInstrument::TorqueSensor),
+                brake: settings.has(MockInstrument::Brake),
+                encoder_counts: (settings.has(MockInstrument::CounterS1) && settings.has(MockInstrument::CounterS2))
+                    .then_some(ENCODER_COUNTS.map(f64::from)),
+                stage: settings.has(MockInstrument::Stage),
+            },
+            Source::Hardware(settings) => Has {
+                torque_sensor: settings.torque_sensor.is_some(),
+                brake: settings.brake.is_some(),
+                encoder_counts: settings
+                    .reference_encoder
+                    .as_ref()
+                    .zip(settings.test_encoder.as_ref())
+                    .map(|(reference, test)| [reference, test].map(|counter| f64::from(counter.counts_per_turn))),
+                stage: settings.stage.is_some(),
+            },
+        }
     }
 
     pub fn seed(&self) -> Option<u64> {

@@ -19,6 +19,8 @@ use std::io;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
+/// Counts of a turn of encoders S1 and S2, as their owner knows them.
+pub const ENCODER_COUNTS: [u32; 2] = [1 << 14, 1 << 18];
 /// Generous: other programs share the machine with a simulated instrument.
 const DEADLINE_MS: u64 = 3000;
 
@@ -77,6 +79,10 @@ impl MockSettings {
             Load::GearAndBrakeB => Some((Range::Coarse, 200.0)),
             Load::None => None,
         }
+    }
+
+    pub fn has(&self, instrument: MockInstrument) -> bool {
+        self.instruments().contains(&instrument)
     }
 
     fn instruments(&self) -> Vec<MockInstrument> {
@@ -193,8 +199,8 @@ impl MockBench {
                 port,
                 deadline_ms,
             }),
-            reference_encoder: counter("s1", MockInstrument::CounterS1, 1 << 14, None),
-            test_encoder: counter("s2", MockInstrument::CounterS2, 1 << 18, Some(0)),
+            reference_encoder: counter("s1", MockInstrument::CounterS1, ENCODER_COUNTS[0], None),
+            test_encoder: counter("s2", MockInstrument::CounterS2, ENCODER_COUNTS[1], Some(0)),
             stage: port(MockInstrument::Stage, 115_200).map(|port| GcsSettings {
                 name: "stage".into(),
                 port,

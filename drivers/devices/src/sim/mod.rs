@@ -21,9 +21,9 @@ mod rig;
 mod trouble;
 mod wire;
 
-pub use bench::{MockBench, MockError, MockSettings, Transport};
+pub use bench::{ENCODER_COUNTS, MockBench, MockError, MockSettings, Transport};
 pub use data_sheet::{Joint, Load};
-pub use plant::{HIDDEN_EFFECTS, HiddenEffect, Truth};
+pub use plant::{EncoderTruth, HIDDEN_EFFECTS, HiddenEffect, Truth};
 pub use replay::Replay;
 pub use rig::MockInstrument;
 pub use trouble::{PlannedTrouble, Trouble};

@@ -1,5 +1,6 @@
 //! What the procedures of a joint share: numbered steps, legs of constant speed, the facts of a friction run.
 
+use crate::place::Place;
 use crate::plan::{Before, BenchFacts, Phase, Step};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, Meta};
@@ -91,7 +92,7 @@ impl Legs {
     pub fn push(&mut self, label: String, velocity: Profile, brake: Profile) {
         let segment = self.steps.len() as u32;
         let (phase, repeat, before) = (self.phase, self.repeat, Before::AsLeft);
-        self.steps.push(Step { label, phase, segment, repeat, before, velocity, brake });
+        self.steps.push(Step { label, phase, segment, repeat, before, velocity, brake, place: Place::AsLeft });
     }
 }
 
@@ -150,6 +151,8 @@ pub(super) mod testing {
             },
             has_torque_sensor: true,
             has_brake: true,
+            encoder_counts: None,
+            has_stage: false,
         }
     }
 

@@ -4,6 +4,7 @@ mod brake_hysteresis;
 mod brake_run;
 mod brake_speed_independence;
 mod demagnetise;
+mod encoder;
 mod friction;
 mod friction_load;
 mod friction_temperature;
@@ -54,6 +55,10 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &torque_sensor_zero::TorqueSensorZero,
         &strokes::Strokes,
         &warm_up::WarmUp,
+        &encoder::EncoderOffset,
+        &encoder::EncoderDelay,
+        &encoder::EncoderLinearity,
+        &encoder::EncoderAlignment,
     ]
 }
 

@@ -16,6 +16,7 @@ impl Session<'_> {
         }
         self.check_plan()?;
         self.identify()?;
+        self.meet_encoders()?;
         let health = self.ask_joint(|joint| joint.health())?;
         if !health.errors.is_empty() {
             let what = format!("{}; clear it before the run", health.errors.join(", "));
@@ -37,7 +38,7 @@ impl Session<'_> {
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
 
-        let columns = Columns::of(self.plan.kind, self.bench, &reading, &health);
+        let columns = Columns::of(self.plan.kind, self.pose.is_some(), self.bench, &reading, &health);
         self.journal.set_columns(columns.empty_trace());
         self.columns = Some(columns);
         if health.temperature.is_none() {

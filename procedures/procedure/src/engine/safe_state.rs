@@ -3,7 +3,7 @@
 use super::ask::ask;
 use super::session::panic_text;
 use crate::event::Safe;
-use jointbench_instrument::roles::{CurrentSource, JointController};
+use jointbench_instrument::roles::{AlignmentStage, CurrentSource, JointController};
 use jointbench_instrument::units::Amperes;
 use jointbench_instrument::{Bench, Clock};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -40,6 +40,9 @@ pub fn secure(bench: &mut Bench) -> Secured {
     let unloaded = bench.brake.as_mut().map(|brake| {
         survive(&mut notes, |notes| take_current_away(brake.as_mut(), &*clock, rated_a, notes)).unwrap_or(false)
     });
+    if let Some(stage) = &mut bench.stage {
+        survive(&mut notes, |notes| hold_stage(stage.as_mut(), notes));
+    }
     let mut safe = survive(&mut notes, |notes| verify_joint(bench.joint.as_mut(), &*clock, disarmed, notes))
         .unwrap_or(Safe::UnsafeUnknown);
     if let (Some(brake), Some(unloaded)) = (&mut bench.brake, unloaded) {
@@ -93,6 +96,17 @@ fn take_current_away(brake: &mut dyn CurrentSource, clock: &dyn Clock, rated_a: 
         notes.push(format!("the brake supply could not be switched off: {fault}"));
     }
     off.is_ok()
+}
+
+/// A stage on its way stops where it is.
+fn hold_stage(stage: &mut dyn AlignmentStage, notes: &mut Vec<String>) {
+    let held = match ask(stage, |stage| stage.is_settled(), |_| {}) {
+        Ok(true) => Ok(()),
+        _ => ask(stage, |stage| stage.stop(), |_| {}),
+    };
+    if let Err(fault) = held {
+        notes.push(format!("the stage could not be stopped: {fault}"));
+    }
 }
 
 fn verify_joint(joint: &mut dyn JointController, clock: &dyn Clock, disarmed: bool, notes: &mut Vec<String>) -> Safe {

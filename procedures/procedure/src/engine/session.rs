@@ -11,7 +11,7 @@ use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::Transition;
 use crate::steady::SteadyWatch;
-use jointbench_instrument::roles::{CurrentSource, Instrument, JointController, JointReading, TorqueSensor};
+use jointbench_instrument::roles::{CurrentSource, Instrument, JointController, JointReading, Pose, TorqueSensor};
 use jointbench_instrument::{Bench, Fault};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Receiver;
@@ -38,6 +38,10 @@ pub(super) struct Session<'a> {
     pub row_s: f64,
     pub next_segment: u32,
     pub lost: Lost,
+    /// Where the stage was told to hold the sensor, in a plan that moves it.
+    pub pose: Option<Pose>,
+    /// The encoder under test has not been seen inconsistent since this was last set.
+    pub consistent: bool,
     /// Replies that were missed and asked for again in this step.
     pub recoveries: u32,
 }
@@ -108,6 +112,8 @@ impl<'a> Session<'a> {
             row_s: f64::NEG_INFINITY,
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
             lost: Lost::default(),
+            pose: None,
+            consistent: true,
             recoveries: 0,
             bench,
         }
@@ -166,7 +172,7 @@ impl<'a> Session<'a> {
     }
 }
 
-fn tell(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, trouble: Trouble) {
+pub(super) fn tell(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, trouble: Trouble) {
     *recoveries += u32::from(trouble.recovered);
     journal.tell(now_s, EventKind::Fault { fault: trouble.fault, recovered: trouble.recovered });
 }

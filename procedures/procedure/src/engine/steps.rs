@@ -3,10 +3,11 @@
 use super::ending::Ending;
 use super::session::{Session, Wish};
 use crate::event::EventKind;
+use crate::place::Place;
 use crate::plan::{Phase, Step};
 
 /// How a step was left.
-enum Left {
+pub(super) enum Left {
     Done,
     Paused,
 }
@@ -43,12 +44,21 @@ impl Session<'_> {
     }
 
     fn attempt(&mut self, index: usize, step: &Step, segment: u32, mut least_brake_a: f64) -> Result<Left, Ending> {
+        if let Place::At(pose) = step.place {
+            self.place(pose)?;
+        }
         let start_s = self.beat.next_s.max(self.bench.clock.now_s());
         (self.beat.late, self.recoveries) = (0, 0);
         let rows_before = self.journal.rows();
         self.pace.step_started(index, &step.label, start_s);
         let label = step.label.clone();
         self.journal.tell(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
+        if let Place::Edge(edge) = &step.place {
+            return match self.hunt(step, segment, edge)? {
+                Left::Done => self.checkpoint(index, segment, rows_before),
+                paused => Ok(paused),
+            };
+        }
         let (duration_s, plateau_rad_s) = (step.duration_s(), step.velocity.largest());
         loop {
             let now_s = self.wait();
@@ -72,6 +82,10 @@ impl Session<'_> {
         }
         // The tick that was waited for belongs to the next step.
         self.beat.next_s -= self.beat.period_s;
+        self.checkpoint(index, segment, rows_before)
+    }
+
+    fn checkpoint(&mut self, index: usize, segment: u32, rows_before: u64) -> Result<Left, Ending> {
         let now_s = self.bench.clock.now_s();
         self.pace.step_done(now_s);
         let (rows, late_ticks) = (self.journal.rows() - rows_before, self.beat.late);

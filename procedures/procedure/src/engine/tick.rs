@@ -54,7 +54,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn obey(&mut self, now_s: f64) -> Result<(), Ending> {
+    pub(super) fn obey(&mut self, now_s: f64) -> Result<(), Ending> {
         loop {
             let control = match self.controls.try_recv() {
                 Ok(control) => control,
@@ -123,6 +123,7 @@ impl Session<'_> {
         } else {
             self.ask_torque_sensor(|sensor| sensor.read())?.map(|torque| torque.0)
         };
+        let encoders = self.feel_encoders()?;
         if now_s >= self.held.next_s {
             self.held.next_s = now_s + SLOW_EVERY_S;
             self.check_drive()?;
@@ -131,12 +132,14 @@ impl Session<'_> {
             }
         }
         Ok(Moment {
-            time_s: to_time_step(joint.at_s - self.journal.started_s),
+            time_s: to_time_step(encoders.map_or(joint.at_s, |both| both.test.at_s) - self.journal.started_s),
             joint,
             link_torque_nm,
             temperature_c: self.held.temperature_c,
             brake_a: self.held.brake_a.map(|measured_a| (measured_a, self.commanded.brake_a)),
             velocity_setpoint_rad_s: self.commanded.velocity_rad_s,
+            encoders,
+            pose: self.pose,
         })
     }
 

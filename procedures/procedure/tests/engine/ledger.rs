@@ -2,6 +2,7 @@
 
 use crate::fakes::{Fakes, World};
 use jointbench_instrument::{Bench, Kind, Meta, RunTable, Trace};
+use jointbench_procedure::place::Place;
 use jointbench_procedure::plan::{Before, Phase, Step};
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
@@ -100,6 +101,7 @@ pub fn loaded_plan() -> Plan {
         segment,
         repeat: 0,
         before: Before::AsLeft,
+        place: Place::AsLeft,
         velocity: Profile::plateau(speed, 400.0, dwell_s),
         brake,
     };

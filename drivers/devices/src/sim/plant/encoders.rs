@@ -1,6 +1,7 @@
 //! The two encoders of the encoder bench on the motor's shaft: S1 optical, S2 a magnetic ring whose sensor sits on the stage.
 
 use super::{Noise, Signal};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Counts for each turn, after the quadrature's factor of four.
@@ -37,6 +38,28 @@ const TILT_RAD: f64 = 1.5 * TAU / 360.0;
 pub struct Pose {
     pub shift_m: [f64; 3],
     pub rotation_rad: [f64; 3],
+}
+
+/// What encoder S2 really does, at the sensor's ordinary place.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EncoderTruth {
+    pub delay_s: f64,
+    /// Off by this since power-up.
+    pub startup_rad: f64,
+    /// Half the width between both directions.
+    pub hysteresis_rad: f64,
+    /// Once a turn, twice a turn, and inside each of so many pole pairs.
+    pub eccentricity_rad: f64,
+    pub tilt_rad: f64,
+    pub pole_rad: f64,
+    pub pole_pairs: f64,
+    /// Radial shift without eccentricity.
+    pub best_radial_m: f64,
+    /// Where the periods are lost: radial shift to either side, axial shift away, rotation and tilt to either side.
+    pub radial_m: [f64; 2],
+    pub axial_m: f64,
+    pub rotation_rad: f64,
+    pub lost_tilt_rad: f64,
 }
 
 pub struct Encoders {
@@ -91,6 +114,24 @@ impl Encoders {
         eccentric * (angle_rad + self.phase_rad).sin()
             + tilt * (2.0 * angle_rad - self.phase_rad).cos()
             + POLE_POINTS * (POLE_PAIRS * angle_rad).sin()
+    }
+
+    pub fn truth(&self) -> EncoderTruth {
+        let rad = |points: f64| points / S2_COUNTS * TAU;
+        EncoderTruth {
+            delay_s: self.delay_s(),
+            startup_rad: rad(self.startup_points),
+            hysteresis_rad: rad(HYSTERESIS_POINTS),
+            eccentricity_rad: rad(ECCENTRIC_POINTS),
+            tilt_rad: rad(TILT_POINTS),
+            pole_rad: rad(POLE_POINTS),
+            pole_pairs: POLE_PAIRS,
+            best_radial_m: -ECCENTRIC_POINTS / ECCENTRIC_POINTS_PER_M,
+            radial_m: RADIAL_M,
+            axial_m: AXIAL_M,
+            rotation_rad: ROTATION_RAD,
+            lost_tilt_rad: TILT_RAD,
+        }
     }
 
     /// The period consistency that S2 watches itself.

@@ -1,5 +1,6 @@
 //! What a mock bench may hide: each effect by its name, its size drawn from the seed.
 
+use super::encoders::EncoderTruth;
 use super::friction::Friction;
 use super::{Noise, Signal};
 use crate::sim::data_sheet::{Joint, brake};
@@ -45,6 +46,7 @@ pub struct Truth {
     pub stiffness_nm_rad: f64,
     pub torque_constant_nm_per_a: f64,
     pub gear_ratio: f64,
+    pub encoders: EncoderTruth,
 }
 
 #[derive(Debug, Clone, Copy)]

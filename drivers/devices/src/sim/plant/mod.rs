@@ -13,6 +13,7 @@ mod line;
 mod noise;
 mod thermal;
 
+pub use encoders::EncoderTruth;
 pub use hidden::{HIDDEN_EFFECTS, HiddenEffect, Truth};
 
 use super::data_sheet::{DataSheet, Joint, Load};
@@ -220,6 +221,7 @@ impl Plant {
             stiffness_nm_rad: self.sheet.stiffness_nm_rad,
             torque_constant_nm_per_a: self.torque_constant_nm_per_a,
             gear_ratio: self.sheet.ratio,
+            encoders: self.encoders.truth(),
         }
     }
 }

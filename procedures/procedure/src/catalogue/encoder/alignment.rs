@@ -1,0 +1,227 @@
+//! How far the sensor may sit from its place (table 4.4 of the thesis), and where it sits best.
+
+use super::edges::{Found, WAYS, Way, found};
+use super::say::{quantity, too_little};
+use super::solve::solve;
+use super::sweeps::sweeps;
+use super::{ACCELERATION, both_ways, counts, meta, radial, rate, stage};
+use crate::catalogue::Procedure;
+use crate::catalogue::legs::Legs;
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::place::{Edge, Place};
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::profile::Profile;
+use jointbench_instrument::roles::Pose;
+use jointbench_instrument::{Kind, RunTable};
+use std::f64::consts::TAU;
+
+pub struct EncoderAlignment;
+
+/// Strides of a hunt before the halving begins.
+const STRIDES: u32 = 8;
+/// Every try sees a whole turn, with something to spare.
+const TURNS_WATCHED: f64 = 1.2;
+/// What a move of the stage takes, at most, in the duration that is told beforehand.
+const MOVE_S: f64 = 1.5;
+
+impl Procedure for EncoderAlignment {
+    fn id(&self) -> &'static str {
+        "encoder_alignment"
+    }
+
+    fn title(&self) -> &'static str {
+        "Encoder alignment"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Moves the sensor along each axis of the stage until the encoder reports inconsistent periods, by halving and always from \
+         the consistent side; then maps the error over the radial shift and finds where it is smallest. Align the stage's zero \
+         with the sensor's place first."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Encoder
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::number("radial_reach_m", "Furthest radial shift", "m", 0.42e-3, [1e-5, 5e-3]),
+                Parameter::number(
+                    "axial_reach_m",
+                    "Furthest axial shift, away from the ring",
+                    "m",
+                    0.9e-3,
+                    [1e-5, 5e-3],
+                ),
+                Parameter::number("vertical_reach_m", "Furthest vertical shift", "m", 1e-3, [1e-5, 5e-3]),
+                Parameter::number("rotation_reach_rad", "Furthest rotation", "rad", 0.028, [1e-3, 0.2]),
+                Parameter::number("tilt_reach_rad", "Furthest tilt", "rad", 0.035, [1e-3, 0.2]),
+                Parameter::count("halvings", "Halvings of an eighth of the reach", 4, [0, 12]),
+                Parameter::number("speed_rad_s", "Speed", "rad/s", 20.0, [1.0, 200.0]),
+                Parameter::number("map_reach_m", "Furthest radial shift of the map", "m", 0.2e-3, [1e-5, 5e-3]),
+                Parameter::count("map_positions", "Positions of the map", 5, [3, 50]),
+                Parameter::number("map_turns", "Turns each way at a position", "", 4.0, [1.0, 100.0]),
+                ACCELERATION,
+                rate(250.0),
+            ]
+        }
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let counts = counts(bench)?;
+        stage(bench)?;
+        let (rate_hz, speed_rad_s) = (values.number("sample_rate_hz"), values.number("speed_rad_s"));
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        for way in &WAYS {
+            let edge = Edge {
+                from: Pose::default(),
+                to: way.pose(values.number(way.reach)),
+                strides: STRIDES,
+                halvings: values.count("halvings"),
+                dwell_s: TURNS_WATCHED * TAU / speed_rad_s,
+            };
+            let longest_s = f64::from(edge.tries()) * (edge.dwell_s + MOVE_S);
+            let velocity = Profile::plateau(speed_rad_s, legs.acceleration_rad_s2, longest_s);
+            legs.push(way.title.into(), velocity, Profile::constant(0.0));
+            if let Some(step) = legs.steps.last_mut() {
+                step.place = Place::Edge(edge);
+            }
+        }
+        let (reach_m, positions) = (values.number("map_reach_m"), values.count("map_positions"));
+        legs.repeat = 1;
+        for position in 0..positions {
+            let shift_m = reach_m * (2.0 * f64::from(position) / f64::from(positions - 1) - 1.0);
+            both_ways(&mut legs, speed_rad_s, values.number("map_turns"), Place::At(radial(shift_m)));
+        }
+        // Nobody should find the sensor where the map has ended.
+        both_ways(&mut legs, speed_rad_s, 1.0, Place::At(Pose::default()));
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: meta(counts, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        let found: Vec<(&Way, Found)> = WAYS.iter().filter_map(|way| Some((way, found(run, way)?))).collect();
+        if found.is_empty() {
+            let what = "The stage has not left its zero with the periods consistent.";
+            return too_little(
+                what,
+                "Align the stage's zero with the sensor's place, and let the run come to its end.",
+            );
+        }
+        let mut quantities: Vec<Quantity> = found.iter().filter_map(|(way, found)| way.quantity(found)).collect();
+        let map = Map::of(run);
+        let mut summary = told(&found);
+        if let Some(best) = map.as_ref().and_then(Map::best) {
+            summary.push_str(&format!(
+                " The error once a turn is smallest, {:.0} µrad, at a radial shift of {:.3} mm.",
+                1e6 * best.once_rad,
+                1e3 * best.shift_m
+            ));
+            let name = ["best_radial_shift", "", "Radial shift with the smallest error once a turn", "m"];
+            quantities.push(quantity(name, best.shift_m, Some(best.ci95)));
+            let name = ["best_harmonic_1", "", "Error once a turn there", "rad"];
+            quantities.push(quantity(name, best.once_rad, None));
+        }
+        let mut figures = vec![tolerances(&found)];
+        figures.extend(map.map(|map| map.figure()));
+        let advice = "Run encoder_linearity with radial_shift_m at the best shift.";
+        Some(Identification { verdict: Verdict::Identified, summary, advice: Some(advice.into()), quantities, figures })
+    }
+}
+
+fn told(found: &[(&Way, Found)]) -> String {
+    let (lost, kept): (Vec<_>, Vec<_>) = found.iter().partition(|(_, found)| found.bad.is_some());
+    let names = |ways: &[&(&Way, Found)]| ways.iter().map(|(way, _)| way.title).collect::<Vec<_>>().join(", ");
+    match (lost.len(), kept.len()) {
+        (0, _) => "Nowhere within reach does the encoder lose its periods.".into(),
+        (edges, 0) => format!("The encoder loses its periods on all {edges} ways."),
+        (edges, _) => {
+            format!("The encoder loses its periods on {edges} ways, and within reach not on: {}.", names(&kept))
+        }
+    }
+}
+
+/// Each way's last consistent place as a share of the manufacturing tolerance.
+fn tolerances(found: &[(&Way, Found)]) -> Figure {
+    let share = |(way, found): &(&Way, Found)| found.good.abs() / way.manufacturing;
+    let places = (0..found.len()).map(|i| i as f64).collect();
+    Figure {
+        name: "tolerance".into(),
+        title: "Last consistent place over the manufacturing tolerance".into(),
+        form: Form::Cartesian,
+        x: Axis::names("Way", found.iter().map(|(way, _)| way.title)),
+        y: Axis::of("Share of the manufacturing tolerance", ""),
+        series: vec![Series::new("measured", Mark::Bars, places, found.iter().map(share).collect())],
+    }
+}
+
+/// The error's harmonics over the radial shift.
+struct Map {
+    shift_m: Vec<f64>,
+    once_rad: Vec<[f64; 2]>,
+    twice_rad: Vec<f64>,
+}
+
+struct Best {
+    shift_m: f64,
+    ci95: [f64; 2],
+    once_rad: f64,
+}
+
+impl Map {
+    fn of(run: &RunTable) -> Option<Self> {
+        let mut map = Self { shift_m: Vec::new(), once_rad: Vec::new(), twice_rad: Vec::new() };
+        for sweep in sweeps(run).iter().filter(|sweep| sweep.repeat == 1) {
+            let Some(shape) = sweep.shape() else { continue };
+            map.shift_m.push(sweep.radial_m);
+            map.once_rad.push(shape.once_rad);
+            map.twice_rad.push(shape.twice_rad[0].hypot(shape.twice_rad[1]));
+        }
+        (map.shift_m.len() >= 4).then_some(map)
+    }
+
+    /// Eccentricity adds to the error once a turn as a vector in proportion to the shift; where the sum is shortest is the
+    /// best place.
+    fn best(&self) -> Option<Best> {
+        let rows: Vec<[f64; 2]> = self.shift_m.iter().map(|shift| [1.0, *shift]).collect();
+        let part = |i: usize| solve(&rows, &self.once_rad.iter().map(|once| once[i]).collect::<Vec<_>>());
+        let (cos, sin) = (part(0)?, part(1)?);
+        let slope = cos.values[1].hypot(sin.values[1]);
+        let along = |once: [f64; 2]| (once[0] * cos.values[1] + once[1] * sin.values[1]) / slope;
+        let shift_m = -along([cos.values[0], sin.values[0]]) / slope;
+        // What the vectors along the shift scatter, over the slope: the interval of the place where their line meets zero.
+        let line = solve(&rows, &self.once_rad.iter().map(|once| along(*once)).collect::<Vec<_>>())?;
+        let n = self.shift_m.len() as f64;
+        let mean_m = self.shift_m.iter().sum::<f64>() / n;
+        let spread = self.shift_m.iter().map(|shift| (shift - mean_m).powi(2)).sum::<f64>();
+        let share = (1.0 / n + (shift_m - mean_m).powi(2) / spread).sqrt();
+        let reach_m = line.reach[1] * spread.sqrt() * share / slope;
+        let once = [cos.values[0] + cos.values[1] * shift_m, sin.values[0] + sin.values[1] * shift_m];
+        Some(Best { shift_m, ci95: [shift_m - reach_m, shift_m + reach_m], once_rad: once[0].hypot(once[1]) })
+    }
+
+    fn figure(self) -> Figure {
+        let once = self.once_rad.iter().map(|once| once[0].hypot(once[1])).collect();
+        Figure {
+            name: "map".into(),
+            title: "Harmonics of the error over the radial shift".into(),
+            form: Form::Cartesian,
+            x: Axis::of("Radial shift", "m"),
+            y: Axis::of("Amplitude", "rad"),
+            series: vec![
+                Series::new("once a turn", Mark::Points, self.shift_m.clone(), once),
+                Series::new("twice a turn", Mark::Points, self.shift_m, self.twice_rad),
+            ],
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! How late the encoder under test tells: its disparity over the speed (eq. 4.4 and 4.5, tables 4.2 and 4.3 of the thesis).
+
+use super::say::{quantity, too_little};
+use super::solve::solve;
+use super::sweeps::sweeps;
+use super::{ACCELERATION, both_ways, counts, meta, rate};
+use crate::catalogue::Procedure;
+use crate::catalogue::legs::Legs;
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::place::Place;
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use jointbench_instrument::{Kind, RunTable};
+
+pub struct EncoderDelay;
+
+impl Procedure for EncoderDelay {
+    fn id(&self) -> &'static str {
+        "encoder_delay"
+    }
+
+    fn title(&self) -> &'static str {
+        "Encoder delay"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Turns at several speeds both ways: what the difference of both encoders gains with speed is the delay. With the \
+         encoder's filter switched on, a second run shows what the filter adds."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Encoder
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::number("top_speed_rad_s", "Highest speed", "rad/s", 157.0, [5.0, 1256.0]),
+                Parameter::count("speeds", "Speeds", 3, [2, 20]),
+                Parameter::number("dwell_s", "Shortest time at each speed", "s", 1.5, [0.2, 60.0]),
+                Parameter::count("repeats", "Repeats", 2, [1, 20]),
+                Parameter::number("delay_without_filter_s", "Delay without filter, 0: unknown", "s", 0.0, [0.0, 1e-2]),
+                ACCELERATION,
+                rate(250.0),
+            ]
+        }
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let counts = counts(bench)?;
+        let rate_hz = values.number("sample_rate_hz");
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        let speeds = values.count("speeds");
+        for repeat in 0..values.count("repeats") {
+            legs.repeat = repeat;
+            for speed in 1..=speeds {
+                let speed_rad_s = values.number("top_speed_rad_s") * f64::from(speed) / f64::from(speeds);
+                let turns = (values.number("dwell_s") * speed_rad_s / std::f64::consts::TAU).max(2.0);
+                both_ways(&mut legs, speed_rad_s, turns, Place::AsLeft);
+            }
+        }
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: meta(counts, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        let points: Vec<(f64, f64)> =
+            sweeps(run).iter().filter_map(|sweep| Some((sweep.speed_rad_s, sweep.shape()?.mean_rad))).collect();
+        // Offset, half the hysteresis against the motion, delay.
+        let rows: Vec<[f64; 3]> = points.iter().map(|(v, _)| [1.0, -v.signum(), -v]).collect();
+        let means: Vec<f64> = points.iter().map(|(_, mean)| *mean).collect();
+        let Some(solved) = solve(&rows, &means) else {
+            let what = "Fewer than two speeds in both directions were measured: a delay cannot be told from an offset.";
+            return too_little(what, "Let the run come to its end, with two speeds or more.");
+        };
+        let [offset_rad, hysteresis_rad, delay_s] = solved.values;
+        let mut quantities = vec![
+            quantity(["delay", "t_d", "Delay of the encoder under test", "s"], delay_s, Some(solved.ci95(2))),
+            quantity(["offset", "ξ", "Offset at rest", "rad"], offset_rad, Some(solved.ci95(0))),
+            quantity(["hysteresis", "h", "Half the hysteresis", "rad"], hysteresis_rad, Some(solved.ci95(1))),
+        ];
+        let without_s = values.number("delay_without_filter_s");
+        let mut summary = format!("The encoder under test tells its position {:.2} µs late.", 1e6 * delay_s);
+        if without_s > 0.0 {
+            let [low, high] = solved.ci95(2).map(|end| end - without_s);
+            let filter_s = delay_s - without_s;
+            let name = ["filter_delay", "t_f", "Delay of the filter", "s"];
+            quantities.push(quantity(name, filter_s, Some([low, high])));
+            summary.push_str(&format!(" Its filter adds {:.2} µs.", 1e6 * filter_s));
+        }
+        let speeds: Vec<f64> = points.iter().map(|(v, _)| *v).collect();
+        let top = speeds.iter().fold(0.0, |top: f64, v| top.max(v.abs()));
+        let line: Vec<f64> = [-top, -1e-9, 1e-9, top].to_vec();
+        let fitted = line.iter().map(|v| offset_rad - hysteresis_rad * v.signum() - delay_s * v).collect();
+        Some(Identification {
+            verdict: Verdict::Identified,
+            summary,
+            advice: None,
+            quantities,
+            figures: vec![Figure {
+                name: "disparity".into(),
+                title: "Disparity over speed".into(),
+                form: Form::Cartesian,
+                x: Axis::of("Speed", "rad/s"),
+                y: Axis::of("Test − reference", "rad"),
+                series: vec![
+                    Series::new("mean over whole turns", Mark::Points, speeds, means),
+                    Series::new("delay, offset and hysteresis", Mark::Line, line, fitted),
+                ],
+            }],
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! The ways along the axes of the stage, and where on them the periods were lost.
+
+use super::say::quantity;
+use crate::encoder_columns::POSE;
+use crate::identification::Quantity;
+use jointbench_instrument::RunTable;
+use jointbench_instrument::roles::Pose;
+
+/// One axis of the stage in one direction.
+#[derive(Debug)]
+pub struct Way {
+    /// Of shifts, then rotations.
+    axis: usize,
+    sign: f64,
+    /// The parameter that holds how far to go.
+    pub reach: &'static str,
+    name: &'static str,
+    pub title: &'static str,
+    /// From table 4.4, in the axis' unit.
+    pub manufacturing: f64,
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+const fn way(
+    axis: usize,
+    sign: f64,
+    reach: &'static str,
+    name: &'static str,
+    title: &'static str,
+    manufacturing: f64,
+) -> Way {
+    Way { axis, sign, reach, name, title, manufacturing }
+}
+
+/// The axial shift towards the ring is left out: there is the ring.
+pub const WAYS: [Way; 9] = [
+    way(0, -1.0, "radial_reach_m", "radial_negative", "Radial shift −", 0.15e-3),
+    way(0, 1.0, "radial_reach_m", "radial_positive", "Radial shift +", 0.15e-3),
+    way(2, 1.0, "axial_reach_m", "axial_positive", "Axial shift +", 0.15e-3),
+    way(5, -1.0, "rotation_reach_rad", "rotation_negative", "Rotation −", 0.5 * DEGREE),
+    way(5, 1.0, "rotation_reach_rad", "rotation_positive", "Rotation +", 0.5 * DEGREE),
+    way(3, -1.0, "tilt_reach_rad", "tilt_negative", "Tilt −", 0.5 * DEGREE),
+    way(3, 1.0, "tilt_reach_rad", "tilt_positive", "Tilt +", 0.5 * DEGREE),
+    way(1, -1.0, "vertical_reach_m", "vertical_negative", "Vertical shift −", 0.5e-3),
+    way(1, 1.0, "vertical_reach_m", "vertical_positive", "Vertical shift +", 0.5e-3),
+];
+
+/// The furthest consistent place, and the nearest that was not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Found {
+    pub good: f64,
+    pub bad: Option<f64>,
+}
+
+impl Way {
+    pub fn pose(&self, reach: f64) -> Pose {
+        let mut pose = Pose::default();
+        let axes = pose.shift_m.iter_mut().chain(&mut pose.rotation_rad);
+        if let Some(axis) = axes.into_iter().nth(self.axis) {
+            *axis = self.sign * reach;
+        }
+        pose
+    }
+
+    /// Half-way between consistent and not; the interval are both places. `None` where the periods were never lost.
+    pub fn quantity(&self, found: &Found) -> Option<Quantity> {
+        let (good, bad) = (found.good, found.bad?);
+        let unit = if self.axis < 3 { "m" } else { "rad" };
+        let title = format!("{}: the periods are lost", self.title);
+        let ends = [good.min(bad), good.max(bad)];
+        Some(quantity([self.name, "", &title, unit], 0.5 * (good + bad), Some(ends)))
+    }
+}
+
+/// `None` where the run has not gone this way, or was inconsistent from its start.
+pub fn found(run: &RunTable, way: &Way) -> Option<Found> {
+    let consistent = run.column("encoder_consistent")?;
+    let poses: Vec<&[f64]> = POSE.iter().map(|name| run.column(name)).collect::<Option<_>>()?;
+    let repeat = run.column("repeat")?;
+    let mut found: Option<Found> = None;
+    for row in (0..run.len()).filter(|row| repeat[*row] == 0.0) {
+        let on_the_way = poses
+            .iter()
+            .enumerate()
+            .all(|(axis, pose)| if axis == way.axis { way.sign * pose[row] > 0.0 } else { pose[row] == 0.0 });
+        if !on_the_way {
+            continue;
+        }
+        let at = way.sign * poses[way.axis][row];
+        let Found { good, bad } = found.get_or_insert(Found { good: 0.0, bad: None });
+        if consistent[row] == 0.0 {
+            *bad = Some(bad.map_or(at, |bad: f64| bad.min(at)));
+        } else {
+            *good = good.max(at);
+        }
+    }
+    // A place that lost its periods for a part of the turn only counts as lost.
+    let found = found?;
+    let good =
+        found.bad.map_or(found.good, |bad| if found.good < bad { found.good } else { last_before(run, way, bad) });
+    Some(Found { good: way.sign * good, bad: found.bad.map(|bad| way.sign * bad) })
+}
+
+/// The furthest place on the way short of `bad`.
+fn last_before(run: &RunTable, way: &Way, bad: f64) -> f64 {
+    let axis = run.column(POSE[way.axis]).unwrap_or_default();
+    axis.iter().map(|at| way.sign * at).filter(|at| *at < bad).fold(0.0, f64::max)
+}

@@ -1,0 +1,201 @@
+//! The shape of the error over the turn, the look-up table against it, and what precision is left (figs 4.4 to 4.11).
+
+use super::say::{histogram, quantity, scatter, too_little};
+use super::solve::solve;
+use super::sweeps::{Sweep, sweeps};
+use super::table::{Class, Table, Terms};
+use super::{ACCELERATION, both_ways, counts, meta, radial, rate, stage};
+use crate::catalogue::Procedure;
+use crate::catalogue::legs::Legs;
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::place::Place;
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use jointbench_instrument::{Kind, RunTable};
+use std::f64::consts::TAU;
+
+pub struct EncoderLinearity;
+
+/// Harmonics that the spectrum shows, and the first that can be a pole pair's.
+const HARMONICS: u32 = 160;
+const FIRST_POLE_PAIR: u32 = 8;
+
+impl Procedure for EncoderLinearity {
+    fn id(&self) -> &'static str {
+        "encoder_linearity"
+    }
+
+    fn title(&self) -> &'static str {
+        "Encoder linearity"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Turns slowly and faster both ways: the error's shape over the turn, a look-up table against it, and the bits that are \
+         usable before and after, judged on turns that the table has not seen."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Encoder
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::number("speed_rad_s", "Slow speed", "rad/s", 5.0, [0.5, 50.0]),
+                Parameter::number("fast_rad_s", "Fast speed, for the velocity term", "rad/s", 50.0, [1.0, 1256.0]),
+                Parameter::number("turns", "Turns each way", "", 8.0, [1.0, 200.0]),
+                Parameter::count("repeats", "Repeats; every other one judges", 2, [2, 20]),
+                Parameter::count("table_size", "Entries of the look-up table", 1024, [16, 16_384]),
+                Parameter::number("radial_shift_m", "Radial shift of the stage", "m", 0.0, [-5e-4, 5e-4]),
+                ACCELERATION,
+                rate(1000.0),
+            ]
+        }
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let counts = counts(bench)?;
+        let rate_hz = values.number("sample_rate_hz");
+        let place = match values.number("radial_shift_m") {
+            0.0 => Place::AsLeft,
+            shift_m => {
+                stage(bench)?;
+                Place::At(radial(shift_m))
+            }
+        };
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        for repeat in 0..values.count("repeats") {
+            legs.repeat = repeat;
+            for speed in ["speed_rad_s", "fast_rad_s"] {
+                both_ways(&mut legs, values.number(speed), values.number("turns"), place);
+            }
+        }
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: meta(counts, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        let (known, unseen): (Vec<Sweep>, Vec<Sweep>) =
+            sweeps(run).into_iter().partition(|sweep| sweep.repeat % 2 == 0);
+        if known.len() < 4 || unseen.len() < 2 {
+            let what =
+                "The run has not two speeds in both directions to learn from, and turns beside them to judge by.";
+            return too_little(what, "Let the run come to its end, with two repeats or more.");
+        }
+        let Some(terms) = Terms::of(&known) else {
+            return too_little("Offset, hysteresis and delay cannot be told apart.", "Choose two different speeds.");
+        };
+        let Some(table) = Table::of(&known, &terms, values.count("table_size") as usize) else {
+            let what = "More than a tenth of the table's entries were never met.";
+            return too_little(what, "Choose more turns, a higher sample rate or a smaller table.");
+        };
+        let classes: Vec<Class> = unseen.iter().map(Class::of).collect();
+        let peak =
+            |left: &dyn Fn(&Sweep, usize) -> f64| classes.iter().map(|class| class.peak(left)).fold(0.0, f64::max);
+        let before = |sweep: &Sweep, i: usize| sweep.error_rad[i] - terms.offset_rad;
+        let direct = |sweep: &Sweep, i: usize| before(sweep, i) - table.at(sweep.angle_rad[i] + sweep.error_rad[i]);
+        let delayed = |sweep: &Sweep, i: usize| direct(sweep, i) + terms.delay_s * sweep.speed_rad_s;
+        let full = |sweep: &Sweep, i: usize| delayed(sweep, i) + terms.hysteresis_rad * sweep.speed_rad_s.signum();
+        let stages: [(&str, &str, f64); 4] = [
+            ("before", "before compensation", peak(&before)),
+            ("table", "with the look-up table", peak(&direct)),
+            ("velocity", "with table and velocity term", peak(&delayed)),
+            ("direction", "with table, velocity and direction term", peak(&full)),
+        ];
+        let bits = |peak_rad: f64| (TAU / peak_rad).log2();
+        let mut quantities: Vec<Quantity> = Vec::new();
+        for (name, title, peak_rad) in stages {
+            let (bits_name, peak_name) = (format!("bits_{name}"), format!("peak_{name}"));
+            quantities.push(quantity([&bits_name, "", &format!("Usable bits {title}"), ""], bits(peak_rad), None));
+            quantities.push(quantity([&peak_name, "", &format!("Largest error {title}"), "rad"], peak_rad, None));
+        }
+        quantities.extend(harmonics(&known, &terms));
+        let spectrum: Vec<f64> = (1..=HARMONICS).map(|order| table.harmonic(order)).collect();
+        let poles = (FIRST_POLE_PAIR..=HARMONICS).max_by(|a, b| table.harmonic(*a).total_cmp(&table.harmonic(*b)))?;
+        let name = ["pole_period", "", "Largest error inside a pole pair", "rad"];
+        quantities.push(quantity(name, table.harmonic(poles), None));
+        quantities.push(quantity(["pole_period_order", "", "Its periods on a turn", ""], f64::from(poles), None));
+        let errors = |left: &dyn Fn(&Sweep, usize) -> f64| -> Vec<f64> {
+            unseen.iter().flat_map(|sweep| (0..sweep.error_rad.len()).map(|i| left(sweep, i))).collect()
+        };
+        let (errors_before, errors_after) = (errors(&before), errors(&full));
+        let angle: Vec<f64> =
+            unseen.iter().flat_map(|sweep| &sweep.angle_rad).map(|angle| angle.rem_euclid(TAU)).collect();
+        let figure = |name: &str, title: &str, x: Axis, y: Axis, series: Vec<Series>| Figure {
+            name: name.into(),
+            title: title.into(),
+            form: Form::Cartesian,
+            x,
+            y,
+            series,
+        };
+        let error = || Axis::of("Test − reference", "rad");
+        let figures = vec![
+            figure(
+                "shape",
+                "Error over the turn, on turns that the table has not seen",
+                Axis::of("Angle", "rad"),
+                error(),
+                vec![
+                    scatter("before", &angle, &errors_before),
+                    scatter("after", &angle, &errors_after),
+                    table.series("look-up table"),
+                ],
+            ),
+            figure(
+                "histogram",
+                "Histogram of the error",
+                error(),
+                Axis::of("Share", ""),
+                vec![histogram("before", &errors_before, 60), histogram("after", &errors_after, 60)],
+            ),
+            figure(
+                "spectrum",
+                "Harmonics of the error",
+                Axis::of("Periods on a turn", ""),
+                Axis::of("Amplitude", "rad"),
+                vec![Series::new("look-up table", Mark::Bars, (1..=HARMONICS).map(f64::from).collect(), spectrum)],
+            ),
+        ];
+        let summary = format!(
+            "Of its bits {:.1} are usable as it is, {:.1} with a look-up table of {} entries, {:.1} with the velocity term \
+             too, and {:.1} with the direction of motion.",
+            bits(stages[0].2),
+            bits(stages[1].2),
+            table.len(),
+            bits(stages[2].2),
+            bits(stages[3].2)
+        );
+        Some(Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures })
+    }
+}
+
+/// Amplitudes of the two lowest harmonics with their intervals.
+fn harmonics(known: &[Sweep], terms: &Terms) -> Vec<Quantity> {
+    let mut rows = Vec::new();
+    let mut errors = Vec::new();
+    for sweep in known {
+        for (angle, error) in sweep.angle_rad.iter().zip(&sweep.error_rad) {
+            rows.push([1.0, angle.cos(), angle.sin(), (2.0 * angle).cos(), (2.0 * angle).sin()]);
+            errors.push(error - terms.at(sweep.speed_rad_s));
+        }
+    }
+    let Some(solved) = solve(&rows, &errors) else { return Vec::new() };
+    let amplitude = |first: usize, name: [&str; 4]| {
+        let value = solved.values[first].hypot(solved.values[first + 1]);
+        let reach = solved.reach[first].max(solved.reach[first + 1]);
+        quantity(name, value, Some([value - reach, value + reach]))
+    };
+    vec![
+        amplitude(1, ["harmonic_1", "", "Error once a turn (eccentricity)", "rad"]),
+        amplitude(3, ["harmonic_2", "", "Error twice a turn (tilt, ellipticity)", "rad"]),
+    ]
+}

@@ -1,0 +1,81 @@
+//! Procedures of the encoder bench: a motor turns a reference encoder and the encoder under test.
+
+mod alignment;
+mod delay;
+mod edges;
+mod linearity;
+mod offset;
+mod say;
+mod solve;
+mod sweeps;
+mod table;
+
+pub(super) use alignment::EncoderAlignment;
+pub(super) use delay::EncoderDelay;
+pub(super) use linearity::EncoderLinearity;
+pub(super) use offset::EncoderOffset;
+
+use super::legs::Legs;
+use crate::parameter::Parameter;
+use crate::place::Place;
+use crate::plan::{BenchFacts, PlanFault};
+use crate::profile::Profile;
+use jointbench_instrument::roles::Pose;
+use jointbench_instrument::{Kind, Meta};
+use std::f64::consts::TAU;
+
+/// The velocity loop has settled after this.
+const SETTLE_S: f64 = 0.4;
+
+const ACCELERATION: Parameter =
+    Parameter::number("acceleration_rad_s2", "Acceleration", "rad/s²", 400.0, [10.0, 5000.0]);
+
+const fn rate(default_hz: f64) -> Parameter {
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", default_hz, [50.0, 1000.0])
+}
+
+/// Counts of a turn of reference and test encoder.
+fn counts(bench: &BenchFacts) -> Result<[f64; 2], PlanFault> {
+    bench.encoder_counts.ok_or_else(|| PlanFault::MissingInstrument {
+        bench: bench.name.clone(),
+        role: "pair of encoders",
+        cure: "describe [bench.reference_encoder] and [bench.test_encoder]",
+    })
+}
+
+fn stage(bench: &BenchFacts) -> Result<(), PlanFault> {
+    if bench.has_stage {
+        return Ok(());
+    }
+    let (role, cure) = ("stage", "describe [bench.stage], or leave the radial shift at 0");
+    Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure })
+}
+
+fn meta(counts: [f64; 2], rate_hz: f64) -> Meta {
+    let bits = |counts: f64| Some(counts.log2().round() as u32);
+    Meta {
+        kind: Some(Kind::Encoder),
+        baseline: ["offset", "delay"].map(String::from).to_vec(),
+        sample_rate_hz: Some(rate_hz),
+        reference_bits: bits(counts[0]),
+        test_bits: bits(counts[1]),
+        ..Meta::default()
+    }
+}
+
+/// One speed, forwards and back, for whole turns each.
+fn both_ways(legs: &mut Legs, speed_rad_s: f64, turns: f64, place: Place) {
+    for speed_rad_s in [speed_rad_s, -speed_rad_s] {
+        let dwell_s = SETTLE_S + turns * TAU / speed_rad_s.abs();
+        let velocity = Profile::plateau(speed_rad_s, legs.acceleration_rad_s2, dwell_s);
+        legs.push(format!("{speed_rad_s:+.1} rad/s"), velocity, Profile::constant(0.0));
+        if let Some(step) = legs.steps.last_mut() {
+            step.place = place;
+        }
+    }
+}
+
+/// x of the stage.
+fn radial(shift_m: f64) -> Pose {
+    Pose { shift_m: [shift_m, 0.0, 0.0], ..Pose::default() }
+}

@@ -1,0 +1,158 @@
+//! How the zero of the encoder under test lies to that of the reference (eq. 4.1 to 4.3 of the thesis).
+
+use super::say::{histogram, quantity, scatter, too_little};
+use super::solve::t95;
+use super::sweeps::{Sweep, sweeps};
+use super::{ACCELERATION, both_ways, counts, meta, rate};
+use crate::catalogue::Procedure;
+use crate::catalogue::legs::Legs;
+use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::place::Place;
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use jointbench_instrument::{Kind, RunTable};
+use std::f64::consts::TAU;
+
+pub struct EncoderOffset;
+
+impl Procedure for EncoderOffset {
+    fn id(&self) -> &'static str {
+        "encoder_offset"
+    }
+
+    fn title(&self) -> &'static str {
+        "Encoder offset"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Turns slowly both ways and takes the mean difference of both encoders by the wrap rule. Repeat it after a power-up: the \
+         offset is not always the same."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Encoder
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::number("speed_rad_s", "Speed", "rad/s", 4.0, [0.5, 50.0]),
+                Parameter::number("turns", "Turns each way", "", 2.0, [1.0, 100.0]),
+                Parameter::count("repeats", "Repeats", 4, [2, 50]),
+                ACCELERATION,
+                rate(250.0),
+            ]
+        }
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let counts = counts(bench)?;
+        let rate_hz = values.number("sample_rate_hz");
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        for repeat in 0..values.count("repeats") {
+            legs.repeat = repeat;
+            both_ways(&mut legs, values.number("speed_rad_s"), values.number("turns"), Place::AsLeft);
+        }
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: meta(counts, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        let sweeps = sweeps(run);
+        let way = |sign: f64| sweeps.iter().filter(move |sweep| sweep.speed_rad_s * sign > 0.0);
+        // Forwards and back together: delay and hysteresis fall out of their mean.
+        let pairs: Vec<[f64; 2]> = way(1.0)
+            .zip(way(-1.0))
+            .filter_map(|(up, down)| Some([up.shape()?.mean_rad, down.shape()?.mean_rad]))
+            .collect();
+        if pairs.len() < 2 {
+            let what = "Fewer than two turns forwards and back were measured: their scatter is not known.";
+            return too_little(what, "Let the run come to its end, with two repeats or more.");
+        }
+        let (offset_rad, offset_reach) = mean(pairs.iter().map(|[up, down]| 0.5 * (up + down)));
+        let (apart_rad, apart_reach) = mean(pairs.iter().map(|[up, down]| up - down));
+        let positions: usize = sweeps.iter().map(|sweep| sweep.error_rad.len()).sum();
+        let around = |value: f64, reach: f64| Some([value - reach, value + reach]);
+        let step_rad = step_rad(run);
+        let points = offset_rad / step_rad;
+        Some(Identification {
+            verdict: Verdict::Identified,
+            summary: format!(
+                "The encoder under test reads {:.3} mrad ({points:.1} of its points) more than the reference, over \
+                 {positions} positions in both directions.",
+                1e3 * offset_rad
+            ),
+            advice: Some("After the next power-up measure it again: the start-up error changes it.".into()),
+            quantities: vec![
+                quantity(
+                    ["offset", "ξ", "Offset, test − reference", "rad"],
+                    offset_rad,
+                    around(offset_rad, offset_reach),
+                ),
+                quantity(
+                    ["offset_points", "ξ", "Offset in points of the encoder under test", ""],
+                    points,
+                    around(points, offset_reach / step_rad),
+                ),
+                quantity(
+                    ["direction_difference", "Δξ", "Forwards − backwards, delay and hysteresis", "rad"],
+                    apart_rad,
+                    around(apart_rad, apart_reach),
+                ),
+                quantity(["positions", "n", "Positions", ""], positions as f64, None),
+            ],
+            figures: figures(&sweeps),
+        })
+    }
+}
+
+/// Mean and half the width of its 95 % interval.
+fn mean(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let values: Vec<f64> = values.collect();
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    (mean, t95(n - 1.0) * (variance / n).sqrt())
+}
+
+/// One point of the encoder under test.
+fn step_rad(run: &RunTable) -> f64 {
+    let channel = run.trace().channels().iter().find(|channel| channel.name == "test_position_rad");
+    channel.and_then(|channel| channel.resolution).unwrap_or(TAU / 262_144.0)
+}
+
+fn figures(sweeps: &[Sweep]) -> Vec<Figure> {
+    let of = |sign: f64, label: &str| {
+        let way = || sweeps.iter().filter(move |sweep| sweep.speed_rad_s * sign > 0.0);
+        let angle: Vec<f64> = way().flat_map(|sweep| &sweep.angle_rad).map(|angle| angle.rem_euclid(TAU)).collect();
+        let error: Vec<f64> = way().flat_map(|sweep| &sweep.error_rad).copied().collect();
+        scatter(label, &angle, &error)
+    };
+    let all: Vec<f64> = sweeps.iter().flat_map(|sweep| &sweep.error_rad).copied().collect();
+    vec![
+        Figure {
+            name: "difference".into(),
+            title: "Difference of both encoders".into(),
+            form: Form::Cartesian,
+            x: Axis::of("Angle", "rad"),
+            y: Axis::of("Test − reference", "rad"),
+            series: vec![of(1.0, "forwards"), of(-1.0, "backwards")],
+        },
+        Figure {
+            name: "histogram".into(),
+            title: "Histogram of the difference".into(),
+            form: Form::Cartesian,
+            x: Axis::of("Test − reference", "rad"),
+            y: Axis::of("Share", ""),
+            series: vec![histogram("all positions", &all, 40)],
+        },
+    ]
+}

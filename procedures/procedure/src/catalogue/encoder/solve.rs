@@ -1,0 +1,60 @@
+//! Least squares with few parameters and the intervals of their figures.
+
+use nalgebra::{SMatrix, SVector};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Parameters with the half widths of their 95 % intervals.
+#[derive(Debug, Clone, Copy)]
+pub struct Solved<const N: usize> {
+    pub values: [f64; N],
+    pub reach: [f64; N],
+}
+
+impl<const N: usize> Solved<N> {
+    pub fn ci95(&self, i: usize) -> [f64; 2] {
+        [self.values[i] - self.reach[i], self.values[i] + self.reach[i]]
+    }
+}
+
+/// `None` with fewer rows than parameters and one to spare, or where the rows do not tell the parameters apart.
+pub fn solve<const N: usize>(rows: &[[f64; N]], y: &[f64]) -> Option<Solved<N>> {
+    if rows.len() <= N || rows.len() != y.len() {
+        return None;
+    }
+    let mut normal = SMatrix::<f64, N, N>::zeros();
+    let mut right = SVector::<f64, N>::zeros();
+    for (row, y) in rows.iter().zip(y) {
+        let row = SVector::<f64, N>::from(*row);
+        normal += row * row.transpose();
+        right += row * *y;
+    }
+    let inverse = normal.cholesky()?.inverse();
+    let values = inverse * right;
+    let left = rows.iter().zip(y).map(|(row, y)| (y - SVector::<f64, N>::from(*row).dot(&values)).powi(2));
+    let freedom = (rows.len() - N) as f64;
+    let variance = left.sum::<f64>() / freedom;
+    let t = t95(freedom);
+    let reach = std::array::from_fn(|i| t * (variance * inverse[(i, i)]).sqrt());
+    Some(Solved { values: values.into(), reach })
+}
+
+/// Half the width of a 95 % interval, in standard errors.
+pub fn t95(freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// y = 1 + 2x with deviations: slope 1.98, offset 1.04, Σ² = 0.036, standard error of the slope √(0.012/10).
+    #[test]
+    fn a_line_is_found_with_its_interval() {
+        let rows: Vec<[f64; 2]> = (0..5).map(|x| [1.0, f64::from(x)]).collect();
+        let solved = solve(&rows, &[1.1, 2.9, 5.1, 6.9, 9.0]).unwrap();
+        assert!((solved.values[0] - 1.04).abs() < 1e-12 && (solved.values[1] - 1.98).abs() < 1e-12, "{solved:?}");
+        assert!((solved.reach[1] - 3.182_446 * (0.012_f64 / 10.0).sqrt()).abs() < 1e-5, "{solved:?}");
+        assert!(solve(&rows[..2], &[1.0, 2.0]).is_none());
+        assert!(solve(&[[1.0, 2.0]; 4], &[1.0; 4]).is_none(), "all at one place");
+    }
+}

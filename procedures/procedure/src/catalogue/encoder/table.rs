@@ -1,0 +1,159 @@
+//! The look-up table over the turn, and what is left of an error where it is averaged over the reference's own steps.
+
+use super::solve::solve;
+use super::sweeps::Sweep;
+use crate::identification::{Mark, Series};
+use std::f64::consts::TAU;
+
+/// What of an error is not shape.
+#[derive(Debug, Clone, Copy)]
+pub struct Terms {
+    pub offset_rad: f64,
+    /// Half its width, against the motion.
+    pub hysteresis_rad: f64,
+    pub delay_s: f64,
+}
+
+impl Terms {
+    /// `None` where the sweeps do not tell them apart: one speed.
+    pub fn of(sweeps: &[Sweep]) -> Option<Self> {
+        let points: Vec<(f64, f64)> =
+            sweeps.iter().filter_map(|sweep| Some((sweep.speed_rad_s, sweep.shape()?.mean_rad))).collect();
+        let rows: Vec<[f64; 3]> = points.iter().map(|(v, _)| [1.0, -v.signum(), -v]).collect();
+        let means: Vec<f64> = points.iter().map(|(_, mean)| *mean).collect();
+        let [offset_rad, hysteresis_rad, delay_s] = solve(&rows, &means)?.values;
+        Some(Self { offset_rad, hysteresis_rad, delay_s })
+    }
+
+    pub fn at(&self, speed_rad_s: f64) -> f64 {
+        self.offset_rad - self.hysteresis_rad * speed_rad_s.signum() - self.delay_s * speed_rad_s
+    }
+}
+
+/// Errors over the reading of the encoder under test, in equal steps of the turn, lines in between.
+#[derive(Debug, Clone)]
+pub struct Table {
+    entries_rad: Vec<f64>,
+}
+
+impl Table {
+    /// Means of what the terms leave. `None` where more than a tenth of the entries has no sample.
+    pub fn of(sweeps: &[Sweep], terms: &Terms, size: usize) -> Option<Self> {
+        let mut sums = vec![(0.0, 0u32); size];
+        for sweep in sweeps {
+            let rest_rad = terms.at(sweep.speed_rad_s);
+            for (angle, error) in sweep.angle_rad.iter().zip(&sweep.error_rad) {
+                let (sum, count) = &mut sums[bin(angle + error, size)];
+                *sum += error - rest_rad;
+                *count += 1;
+            }
+        }
+        let met: Vec<usize> = (0..size).filter(|i| sums[*i].1 > 0).collect();
+        if met.len() < size - size / 10 {
+            return None;
+        }
+        // A few entries that were not met lie on the line between their neighbours.
+        let mean = |i: usize| sums[i].0 / f64::from(sums[i].1);
+        let entry = |i: usize| {
+            if sums[i].1 > 0 {
+                return mean(i);
+            }
+            let after = met.partition_point(|known| *known < i);
+            let (left, right) = (met[(after + met.len() - 1) % met.len()], met[after % met.len()]);
+            let way = |from: usize, to: usize| ((to + size - from) % size) as f64;
+            mean(left) + (mean(right) - mean(left)) * way(left, i) / way(left, right)
+        };
+        Some(Self { entries_rad: (0..size).map(entry).collect() })
+    }
+
+    pub fn len(&self) -> usize {
+        self.entries_rad.len()
+    }
+
+    pub fn at(&self, angle_rad: f64) -> f64 {
+        let size = self.len();
+        // Entries stand for the middles of their steps.
+        let place = angle_rad.rem_euclid(TAU) / TAU * size as f64 - 0.5;
+        let below = place.floor();
+        let (left, right) = (below.rem_euclid(size as f64) as usize, (below + 1.0).rem_euclid(size as f64) as usize);
+        let share = place - below;
+        (1.0 - share) * self.entries_rad[left] + share * self.entries_rad[right]
+    }
+
+    /// Amplitude of the part with so many periods on a turn.
+    pub fn harmonic(&self, order: u32) -> f64 {
+        let step = TAU * f64::from(order) / self.len() as f64;
+        let sum = |wave: fn(f64) -> f64| -> f64 {
+            self.entries_rad.iter().enumerate().map(|(i, entry)| entry * wave(step * i as f64)).sum()
+        };
+        2.0 * sum(f64::cos).hypot(sum(f64::sin)) / self.len() as f64
+    }
+
+    pub fn series(&self, label: &str) -> Series {
+        let angle = (0..self.len()).map(|i| (i as f64 + 0.5) * TAU / self.len() as f64).collect();
+        Series::new(label, Mark::Line, angle, self.entries_rad.clone())
+    }
+}
+
+fn bin(angle_rad: f64, size: usize) -> usize {
+    ((angle_rad.rem_euclid(TAU) / TAU * size as f64) as usize).min(size - 1)
+}
+
+/// So many readings average over the steps of the reference, which are far coarser than what is judged.
+const READINGS_IN_A_BIN: usize = 40;
+const BINS: [usize; 2] = [16, 256];
+
+/// One sweep in bins of the turn.
+pub struct Class<'a> {
+    sweep: &'a Sweep,
+    bins: usize,
+}
+
+impl<'a> Class<'a> {
+    pub fn of(sweep: &'a Sweep) -> Self {
+        Self { sweep, bins: (sweep.error_rad.len() / READINGS_IN_A_BIN).clamp(BINS[0], BINS[1]) }
+    }
+
+    /// The largest mean of any bin.
+    pub fn peak(&self, left: &dyn Fn(&Sweep, usize) -> f64) -> f64 {
+        let mut sums = vec![(0.0, 0u32); self.bins];
+        for (i, angle) in self.sweep.angle_rad.iter().enumerate() {
+            let (sum, count) = &mut sums[bin(*angle, self.bins)];
+            *sum += left(self.sweep, i);
+            *count += 1;
+        }
+        sums.iter()
+            .filter(|(_, count)| *count > 0)
+            .map(|(sum, count)| (sum / f64::from(*count)).abs())
+            .fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sweep(speed_rad_s: f64, turns: f64) -> Sweep {
+        let angle_rad: Vec<f64> = (0..20_000).map(|i| f64::from(i) * turns * TAU / 20_000.0).collect();
+        let error = |a: &f64| {
+            2e-3 * a.sin() + 3e-4 * (64.0 * a).cos() + 1e-3 - 1e-4 * speed_rad_s.signum() - 5e-5 * speed_rad_s
+        };
+        Sweep { repeat: 0, speed_rad_s, error_rad: angle_rad.iter().map(error).collect(), angle_rad, radial_m: 0.0 }
+    }
+
+    #[test]
+    fn a_table_takes_the_shape_and_the_terms_the_rest() {
+        let sweeps = [sweep(5.0, 7.0), sweep(-5.0, 7.0), sweep(50.0, 7.0), sweep(-50.0, 7.0)];
+        let terms = Terms::of(&sweeps).unwrap();
+        assert!((terms.delay_s - 5e-5).abs() < 1e-9 && (terms.hysteresis_rad - 1e-4).abs() < 1e-7, "{terms:?}");
+        let table = Table::of(&sweeps, &terms, 1024).unwrap();
+        assert!((table.harmonic(1) - 2e-3).abs() < 1e-5 && (table.harmonic(64) - 3e-4).abs() < 2e-5);
+        let left = |sweep: &Sweep, i: usize| {
+            sweep.error_rad[i] - terms.at(sweep.speed_rad_s) - table.at(sweep.angle_rad[i] + sweep.error_rad[i])
+        };
+        for sweep in &sweeps {
+            assert!(Class::of(sweep).peak(&left) < 6e-5, "{}", Class::of(sweep).peak(&left));
+        }
+        assert!(Table::of(&sweeps, &terms, 100_000).is_none(), "hardly any entry is met");
+    }
+}

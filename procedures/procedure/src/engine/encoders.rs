@@ -1,0 +1,167 @@
+//! What an encoder bench has beside its motor: two counters to read, and a stage to move.
+
+use super::ask::ask;
+use super::ending::Ending;
+use super::session::{Session, Wish, reported, tell};
+use super::steps::Left;
+use crate::encoder_columns::Encoders;
+use crate::event::EventKind;
+use crate::place::{Edge, Hunt, Place};
+use crate::plan::Step;
+use crate::profile::Profile;
+use jointbench_instrument::roles::{AlignmentStage, Pose, PositionCounter};
+use jointbench_instrument::{Fault, FaultKind, Kind};
+
+/// An accepted move is not under way yet (gcs2-hexapod, timing).
+const SET_OFF_S: f64 = 0.2;
+/// The stage is asked this often whether it has arrived.
+const ARRIVED_EVERY_S: f64 = 0.05;
+/// Longest move, and longest search for the axes' zeros.
+const LONGEST_MOVE_S: f64 = 60.0;
+
+impl Session<'_> {
+    /// Both encoders, in a run of encoders.
+    pub(super) fn feel_encoders(&mut self) -> Result<Option<Encoders>, Ending> {
+        if self.plan.kind != Kind::Encoder || self.lost.sensor {
+            return Ok(None);
+        }
+        let reference = self.ask_encoder(false, |encoder| encoder.read())?;
+        let test = self.ask_encoder(true, |encoder| encoder.read())?;
+        let consistent = self
+            .ask_encoder(true, |encoder| encoder.status().map(|status| status.periods_are_consistent()).transpose())?;
+        self.consistent &= consistent != Some(false);
+        Ok(Some(Encoders { reference, test, consistent }))
+    }
+
+    fn ask_encoder<T>(
+        &mut self,
+        under_test: bool,
+        request: impl FnMut(&mut (dyn PositionCounter + 'static)) -> Result<T, Fault>,
+    ) -> Result<T, Ending> {
+        let now_s = self.bench.clock.now_s();
+        let Self { bench, journal, recoveries, lost, .. } = self;
+        let encoder = if under_test { &mut bench.test_encoder } else { &mut bench.reference_encoder };
+        let Some(encoder) = encoder else { return Err(Ending::NotReady("the bench has not both encoders".into())) };
+        ask(encoder.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map_err(|fault| {
+            lost.sensor = true;
+            Ending::OtherFault(fault)
+        })
+    }
+
+    fn ask_stage<T>(
+        &mut self,
+        request: impl FnMut(&mut (dyn AlignmentStage + 'static)) -> Result<T, Fault>,
+    ) -> Result<T, Ending> {
+        let now_s = self.bench.clock.now_s();
+        let Self { bench, journal, recoveries, .. } = self;
+        let Some(stage) = &mut bench.stage else { return Err(Ending::NotReady("the bench has no stage".into())) };
+        ask(stage.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map_err(Ending::OtherFault)
+    }
+
+    /// Before anything is armed: who is there, and a stage that knows its zeros where the plan needs it.
+    pub(super) fn meet_encoders(&mut self) -> Result<(), Ending> {
+        if self.plan.kind == Kind::Encoder {
+            for under_test in [false, true] {
+                let identity = self.ask_encoder(under_test, |encoder| encoder.identify())?;
+                let encoder = if under_test { &self.bench.test_encoder } else { &self.bench.reference_encoder };
+                if let Some(encoder) = encoder {
+                    let (instrument, port) = (encoder.name().to_owned(), encoder.port().to_owned());
+                    let now_s = self.bench.clock.now_s();
+                    self.journal.tell(now_s, EventKind::Identified { instrument, port, identity });
+                }
+            }
+        }
+        if self.plan.steps.iter().all(|step| step.place == Place::AsLeft) {
+            return Ok(());
+        }
+        self.ask_stage(|stage| stage.identify())?;
+        if !self.ask_stage(|stage| stage.is_referenced())? {
+            self.note("the stage looks for the zeros of its axes");
+            self.ask_stage(|stage| stage.reference())?;
+            self.until_stage(
+                "find the zeros of its axes",
+                |stage| stage.is_referenced(),
+                |session| {
+                    session.bench.clock.sleep_until_s(session.bench.clock.now_s() + ARRIVED_EVERY_S);
+                    session.obey(session.bench.clock.now_s())
+                },
+            )?;
+        }
+        self.pose = Some(self.ask_stage(|stage| stage.pose())?);
+        Ok(())
+    }
+
+    /// Takes a pose while the shaft goes on as it is told, and waits until it is settled.
+    pub(super) fn place(&mut self, pose: Pose) -> Result<(), Ending> {
+        if self.pose == Some(pose) {
+            return Ok(());
+        }
+        self.ask_stage(|stage| stage.move_to(pose))?;
+        // Nothing is kept until it is there.
+        self.pose = Some(pose);
+        let here = Profile::from(self.commanded.velocity_rad_s);
+        let brake = Profile::constant(self.commanded.brake_a);
+        self.drive(&here.clone().hold(SET_OFF_S), &brake)?;
+        self.until_stage(
+            "take its pose",
+            |stage| stage.is_settled(),
+            |session| session.drive(&here.clone().hold(ARRIVED_EVERY_S), &brake),
+        )
+    }
+
+    fn until_stage(
+        &mut self,
+        what: &str,
+        done: impl Fn(&mut (dyn AlignmentStage + 'static)) -> Result<bool, Fault>,
+        mut wait: impl FnMut(&mut Self) -> Result<(), Ending>,
+    ) -> Result<(), Ending> {
+        let give_up_s = self.bench.clock.now_s() + LONGEST_MOVE_S;
+        while !self.ask_stage(&done)? {
+            if self.bench.clock.now_s() > give_up_s {
+                let what = format!("the stage did not {what} within {LONGEST_MOVE_S:.0} s");
+                return Err(Ending::OtherFault(match &self.bench.stage {
+                    Some(stage) => reported(stage.as_ref(), what),
+                    None => FaultKind::Reported { what }.at("stage", ""),
+                }));
+            }
+            wait(self)?;
+        }
+        Ok(())
+    }
+
+    /// One hunt for an edge: the rows of every try are kept, the ways between are not.
+    pub(super) fn hunt(&mut self, step: &Step, segment: u32, edge: &Edge) -> Result<Left, Ending> {
+        self.place(edge.from)?;
+        let speed_rad_s =
+            step.velocity.knots().iter().map(|(_, v)| *v).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        let brake = Profile::constant(self.commanded.brake_a);
+        self.drive(&self.ramp_to(speed_rad_s), &brake)?;
+        let mut hunt = Hunt::new(*edge);
+        loop {
+            self.consistent = true;
+            let start_s = self.beat.next_s.max(self.bench.clock.now_s());
+            loop {
+                let now_s = self.wait();
+                if now_s - start_s >= edge.dwell_s {
+                    break;
+                }
+                self.tick(now_s, speed_rad_s, self.commanded.brake_a, Some((segment, step.repeat)))?;
+            }
+            self.beat.next_s -= self.beat.period_s;
+            if self.wish.take() == Some(Wish::Pause) {
+                return Ok(Left::Paused);
+            }
+            let next = hunt.next(self.consistent);
+            if hunt.is_beyond() || next.is_none() {
+                self.place(edge.pose(hunt.good))?;
+            }
+            match next {
+                Some(next) => self.place(edge.pose(next))?,
+                None => break,
+            }
+        }
+        self.place(edge.from)?;
+        self.drive(&self.ramp_to(0.0), &brake)?;
+        Ok(Left::Done)
+    }
+}

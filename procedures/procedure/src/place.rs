@@ -1,0 +1,127 @@
+//! Where a stage holds the sensor of the encoder under test during a step, and the hunt for where it no longer counts.
+
+use jointbench_instrument::roles::Pose;
+
+/// Where the stage is during a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Place {
+    /// Where it was left.
+    #[default]
+    AsLeft,
+    /// Taken at rest, before the step.
+    At(Pose),
+    /// Looked for while the shaft turns.
+    Edge(Edge),
+}
+
+/// A way out of a pose at which the periods are consistent, to be followed until they are not: in equal strides first, then
+/// by halving the last one. Every try is approached from the consistent side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    pub from: Pose,
+    pub to: Pose,
+    /// Strides from one end to the other.
+    pub strides: u32,
+    /// Each halves what is left between consistent and not.
+    pub halvings: u32,
+    /// Each try is watched for so long, which should be more than a turn.
+    pub dwell_s: f64,
+}
+
+impl Edge {
+    /// Tries of the longest hunt: all strides, then all halvings.
+    pub fn tries(&self) -> u32 {
+        1 + self.strides + self.halvings
+    }
+
+    fn parts(&self) -> u32 {
+        self.strides << self.halvings
+    }
+
+    /// A part of the way.
+    pub(crate) fn pose(&self, part: u32) -> Pose {
+        let share = f64::from(part) / f64::from(self.parts());
+        let between = |from: [f64; 3], to: [f64; 3]| std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
+        Pose {
+            shift_m: between(self.from.shift_m, self.to.shift_m),
+            rotation_rad: between(self.from.rotation_rad, self.to.rotation_rad),
+        }
+    }
+}
+
+/// What is known on the way, in parts of it.
+#[derive(Debug, Clone)]
+pub(crate) struct Hunt {
+    edge: Edge,
+    at: u32,
+    /// The furthest that was consistent.
+    pub good: u32,
+    /// The nearest that was not.
+    bad: Option<u32>,
+}
+
+impl Hunt {
+    pub fn new(edge: Edge) -> Self {
+        Self { edge, at: 0, good: 0, bad: None }
+    }
+
+    /// Where to try next, after what was seen where the stage is. `None`: the edge is found, or the way is at its end.
+    pub fn next(&mut self, consistent: bool) -> Option<u32> {
+        if consistent {
+            self.good = self.at;
+        } else {
+            self.bad = Some(self.at);
+        }
+        let stride = 1 << self.edge.halvings;
+        let next = match self.bad {
+            None if self.good + stride <= self.edge.parts() => self.good + stride,
+            Some(bad) if bad > self.good + 1 => self.good + (bad - self.good) / 2,
+            _ => return None,
+        };
+        self.at = next;
+        Some(next)
+    }
+
+    pub fn is_beyond(&self) -> bool {
+        self.bad == Some(self.at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WAY: Edge = Edge {
+        from: Pose { shift_m: [0.0; 3], rotation_rad: [0.0; 3] },
+        to: Pose { shift_m: [-0.4e-3, 0.0, 0.0], rotation_rad: [0.0; 3] },
+        strides: 5,
+        halvings: 3,
+        dwell_s: 0.1,
+    };
+
+    /// Tries and the last consistent place [m].
+    fn hunt(consistent: impl Fn(f64) -> bool) -> (u32, f64, Option<u32>) {
+        let mut hunt = Hunt::new(WAY);
+        let (mut tries, mut at) = (1, 0);
+        while let Some(next) = hunt.next(consistent(WAY.pose(at).shift_m[0])) {
+            (tries, at) = (tries + 1, next);
+        }
+        (tries, WAY.pose(hunt.good).shift_m[0], hunt.bad)
+    }
+
+    #[test]
+    fn an_edge_is_found_within_one_part_and_in_the_tries_that_were_planned() {
+        for edge_mm in [-0.005, -0.08, -0.25, -0.2501, -0.399] {
+            let (tries, good_m, bad) = hunt(|at_m| at_m >= 1e-3 * edge_mm);
+            assert!(tries <= WAY.tries(), "{tries} tries");
+            assert!((0.0..0.0101).contains(&(1e3 * good_m - edge_mm)), "{good_m} m for {edge_mm} mm");
+            assert!(bad.is_some());
+        }
+    }
+
+    #[test]
+    fn no_edge_is_none_and_a_bad_start_ends_at_once() {
+        assert_eq!(hunt(|_| true), (6, -0.4e-3, None));
+        assert_eq!(hunt(|_| false), (1, 0.0, Some(0)));
+    }
+}

@@ -1,0 +1,124 @@
+//! The encoder bench's procedures on the mock bench, against what it hides.
+
+use jointbench_devices::sim::{EncoderTruth, MockInstrument, PlannedTrouble, Trouble};
+use jointbench_devices::{Joint, MockBench, MockSettings};
+use jointbench_instrument::Bench;
+use jointbench_procedure::conduct::{ConductFault, conduct};
+use jointbench_procedure::identification::{Identification, Verdict};
+use jointbench_procedure::{RunState, Safe, procedure};
+use serde_json::{Value, json};
+
+fn open(seed: u64, filter: bool) -> (EncoderTruth, MockBench, Bench) {
+    let mock = MockBench::start(MockSettings { filter, ..MockSettings::new(Joint::EncoderShaft, seed) }).unwrap();
+    let bench = mock.open_bench("encoder bench").unwrap();
+    (mock.truth().encoders, mock, bench)
+}
+
+fn run(bench: &mut Bench, id: &str, parameters: Value) -> Identification {
+    let conducted = conduct(bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
+    let found = conducted.identification.unwrap();
+    println!("{id}: {} in {:.0} s of the bench", found.summary, conducted.duration_s);
+    for quantity in &found.quantities {
+        println!("  {} = {:.6e} {} {:?}", quantity.name, quantity.value, quantity.unit, quantity.ci95);
+    }
+    assert_eq!(found.verdict, Verdict::Identified);
+    found
+}
+
+/// The interval holds the truth and is no wider than to either side of its value.
+fn check(found: &Identification, name: &str, truth: f64, reach: f64) {
+    let quantity = found.quantity(name).unwrap_or_else(|| panic!("no {name}"));
+    let [low, high] = quantity.ci95.unwrap();
+    assert!((low..=high).contains(&truth), "{name}: {truth:e} is not in {low:e} to {high:e}");
+    assert!(0.5 * (high - low) <= reach, "{name}: {low:e} to {high:e} is wider than ±{reach:e}");
+}
+
+#[test]
+fn an_encoder_that_falls_silent_ends_the_run_and_the_bench_is_safe() {
+    let silent =
+        PlannedTrouble { instrument: MockInstrument::CounterS2, trouble: Trouble::Silent, from_s: 6.0, until_s: None };
+    let settings =
+        MockSettings { troubles: vec![silent], deadline_ms: 200, ..MockSettings::new(Joint::EncoderShaft, 1) };
+    let mock = MockBench::start(settings).unwrap();
+    let mut bench = mock.open_bench("encoder bench").unwrap();
+    let offset = procedure("encoder_offset").unwrap();
+    let Err(ConductFault::Ended { end, .. }) = conduct(&mut bench, offset, json!({}).as_object().unwrap()) else {
+        panic!("the run came to its end without an encoder");
+    };
+    assert_eq!((end.state, end.safe), (RunState::Failed, Safe::SafeVerified), "{:?}", end.reason);
+    assert!(end.reason.as_ref().unwrap().contains("s2"), "{:?}", end.reason);
+    assert!(end.rows > 0);
+}
+
+#[test]
+fn a_stage_that_lost_its_power_ends_the_run_too() {
+    let lost = PlannedTrouble {
+        instrument: MockInstrument::Stage,
+        trouble: Trouble::PowerCycled,
+        from_s: 15.0,
+        until_s: Some(15.5),
+    };
+    let settings = MockSettings { troubles: vec![lost], deadline_ms: 200, ..MockSettings::new(Joint::EncoderShaft, 1) };
+    let mock = MockBench::start(settings).unwrap();
+    let mut bench = mock.open_bench("encoder bench").unwrap();
+    let alignment = procedure("encoder_alignment").unwrap();
+    let Err(ConductFault::Ended { end, .. }) = conduct(&mut bench, alignment, json!({}).as_object().unwrap()) else {
+        panic!("the run came to its end with a stage that knows nothing");
+    };
+    assert_eq!((end.state, end.safe), (RunState::Failed, Safe::SafeVerified), "{:?}", end.reason);
+    assert!(end.reason.as_ref().unwrap().contains("stage"), "{:?}", end.reason);
+}
+
+const POINT_RAD: f64 = std::f64::consts::TAU / 262_144.0;
+
+#[test]
+fn offset_and_delay_are_those_that_the_mock_was_given() {
+    let (truth, _mock, mut bench) = open(3, false);
+    let offset = run(&mut bench, "encoder_offset", json!({}));
+    check(&offset, "offset", truth.startup_rad, POINT_RAD);
+    let delay = run(&mut bench, "encoder_delay", json!({}));
+    check(&delay, "delay", truth.delay_s, 1e-6);
+    check(&delay, "hysteresis", truth.hysteresis_rad, 2.0 * POINT_RAD);
+
+    let without_s = delay.quantity("delay").unwrap().value;
+    let (truth, _mock, mut bench) = open(3, true);
+    let delay = run(&mut bench, "encoder_delay", json!({"delay_without_filter_s": without_s}));
+    check(&delay, "delay", truth.delay_s, 1e-6);
+    assert!((delay.quantity("filter_delay").unwrap().value - 10.99e-6).abs() < 0.3e-6);
+}
+
+#[test]
+fn fifteen_bits_are_usable_behind_the_table() {
+    let (truth, _mock, mut bench) = open(5, false);
+    let found = run(&mut bench, "encoder_linearity", json!({}));
+    let bits = |name: &str| found.quantity(name).unwrap().value;
+    assert!((9.5..10.5).contains(&bits("bits_before")), "the thesis: 10 bits");
+    assert!(bits("bits_velocity") > bits("bits_table"), "the fast turns show the delay");
+    assert!(bits("bits_direction") >= 15.0);
+    check(&found, "harmonic_1", truth.eccentricity_rad, 2.0 * POINT_RAD);
+    check(&found, "harmonic_2", truth.tilt_rad, 2.0 * POINT_RAD);
+    assert_eq!(found.quantity("pole_period_order").unwrap().value, truth.pole_pairs);
+}
+
+#[test]
+fn every_edge_is_within_a_step_of_the_stage_and_the_best_place_is_found() {
+    let (truth, mock, mut bench) = open(7, false);
+    let found = run(&mut bench, "encoder_alignment", json!({}));
+    check(&found, "radial_negative", truth.radial_m[0], 2e-6);
+    check(&found, "radial_positive", truth.radial_m[1], 2e-6);
+    check(&found, "axial_positive", truth.axial_m, 4e-6);
+    check(&found, "rotation_negative", -truth.rotation_rad, 2e-4);
+    check(&found, "rotation_positive", truth.rotation_rad, 2e-4);
+    check(&found, "tilt_negative", -truth.lost_tilt_rad, 2e-4);
+    check(&found, "tilt_positive", truth.lost_tilt_rad, 2e-4);
+    assert!(found.quantity("vertical_negative").is_none() && found.quantity("vertical_positive").is_none());
+    check(&found, "best_radial_shift", truth.best_radial_m, 2e-6);
+
+    // Behind the run the sensor is back in its place, and the best one is better.
+    let at_m = bench.stage.as_mut().unwrap().pose().unwrap().shift_m[0];
+    assert!(at_m.abs() < 1e-6, "{at_m} m");
+    let shift_m = found.quantity("best_radial_shift").unwrap().value;
+    let best = run(&mut bench, "encoder_linearity", json!({"radial_shift_m": shift_m, "turns": 4.0}));
+    assert!(best.quantity("harmonic_1").unwrap().value < 0.05 * truth.eccentricity_rad);
+    drop(mock);
+}
