@@ -3,7 +3,7 @@
 use crate::effect::Stage;
 use crate::prepare::{Prepared, Problem};
 use crate::report::Invisible;
-use crate::select::gain;
+use crate::select::Ground;
 use crate::terms::{Term, Terms, columns, polish};
 use crate::{Effect, ModelError, ModelSpec};
 
@@ -153,17 +153,18 @@ fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
     }
     let basis = terms.tangent();
     let residual = basis.rest(&terms.response());
+    let ground = Ground::new(basis, residual, problem);
     let mut best: Vec<Term<'p>> = Vec::new();
     for form in forms {
         let shapes = form.grid.iter().map(|shape| Term::new(effect, form.clone(), shape.clone(), problem));
-        let shares = shapes.map(|term| (gain(&term.columns, &basis, &residual, 1.0).share, term));
+        let shares = shapes.map(|term| (ground.own(&term.columns).share, term));
         best.extend(shares.max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1));
     }
     best.sort_by_key(Term::size);
     let mut chosen: Option<(f64, Term<'p>)> = None;
     for term in best {
         let mut term = [term];
-        let sse = polish(&mut term, &basis, &residual, problem);
+        let sse = polish(&mut term, &ground.basis, &ground.residual, problem);
         let [term] = term;
         let needed = |(least, simple): &(f64, Term)| {
             least * (1.0 - BETTER_FORM * term.size().saturating_sub(simple.size()) as f64)

@@ -8,8 +8,8 @@
 use crate::Options;
 use crate::assembly::Assembly;
 use crate::effect::Stage;
-use crate::linear::{Basis, dot};
-use crate::select::{Library, Rival, significance};
+use crate::linear::Basis;
+use crate::select::{Ground, Library, Rival, significance};
 use crate::terms::{Terms, polish};
 
 /// An effect with a memory must take this share of the squared error around reversals.
@@ -22,15 +22,14 @@ pub fn memory<'p>(now: &Assembly<'p>, options: &Options) -> Option<Rival<'p>> {
     let mut terms = Terms::new(problem);
     terms.given = now.predict(problem);
     let rest = terms.response();
-    let energy = dot(&rest, &rest);
     let mut library = Library::new(now.spec, problem, &[Stage::Memory]);
     library.candidates.retain(|c| !now.effects.iter().any(|e| e == c.id()));
-    let basis = Basis::default();
-    let shares = library.candidates.iter().map(|c| crate::select::gain(&c.columns, &basis, &rest, energy).share);
+    let ground = Ground::new(Basis::default(), rest, problem);
+    let shares = library.candidates.iter().map(|c| ground.own(&c.columns).share);
     let (best, _) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let mut term = [library.candidates[best].term()];
-    let share = 1.0 - polish(&mut term, &basis, &rest, problem) / energy;
+    let share = 1.0 - polish(&mut term, &ground.basis, &ground.residual, problem) / ground.energy;
     let [term] = term;
-    let p_value = significance(&term, &library, &basis, &rest, problem, options);
+    let p_value = significance(&term, &library, &ground, options);
     (share >= MOST && p_value <= options.alpha).then(|| Rival::alone(term, share, p_value))
 }

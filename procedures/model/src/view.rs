@@ -4,6 +4,7 @@
 //! points and averaged over them.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What a signal means to the models, whatever its column is called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -65,10 +66,10 @@ impl Signal {
     }
 }
 
-/// Signals of equal length. Absent ones are `None`.
+/// Signals of equal length. Absent ones are `None`. A copy shares them.
 #[derive(Debug, Clone, Default)]
 pub struct Signals {
-    columns: [Option<Vec<f64>>; Signal::COUNT],
+    columns: [Option<Arc<Vec<f64>>>; Signal::COUNT],
     len: usize,
 }
 
@@ -87,11 +88,11 @@ impl Signals {
 
     pub fn set(&mut self, signal: Signal, values: Vec<f64>) {
         debug_assert_eq!(values.len(), self.len);
-        self.columns[signal as usize] = Some(values);
+        self.columns[signal as usize] = Some(Arc::new(values));
     }
 
     pub fn find(&self, signal: Signal) -> Option<&[f64]> {
-        self.columns[signal as usize].as_deref()
+        self.columns[signal as usize].as_ref().map(|c| c.as_slice())
     }
 }
 

@@ -3,7 +3,7 @@
 mod common;
 
 use common::bench::{Moment, Staircase};
-use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover, fit};
+use jointbench_model::{Diagnosis, ModelSpec, Options, Verdict, diagnose, discover, fit};
 
 const COULOMB: f64 = 0.030;
 const VISCOUS: f64 = 1.5e-4;
@@ -64,6 +64,22 @@ fn a_hidden_effect_is_named() {
     check_found("direction_offset", 4, |m| dry(m) + 0.004);
     check_found("viscous_asymmetry", 5, |m| dry(m) + 4e-5 * m.velocity.abs());
     check_found("drift", 6, |m| dry(m) + 1e-4 * m.time);
+}
+
+/// Chunks of one sample make so many rows that neighbours are averaged.
+#[test]
+fn a_run_of_many_chunks_says_the_same_in_fewer_rows() {
+    let run = bench(8).run(|m| dry(m) + 0.004 * m.link.cos());
+    let spec = ModelSpec::baseline(&run).unwrap();
+    let told = |chunk_s| diagnose(&run, &spec, &Options { chunk_s, ..Options::default() }).unwrap();
+    let (few, many) = (told(None), told(Some(0.004)));
+    let settled = run.len() * 3 / 4;
+    assert!((2_000..12_000).contains(&many.fit.preparation.rows) && settled > 12_000, "{:?}", many.fit.preparation);
+    for found in [&few, &many] {
+        assert_eq!(found.suggestions[0].effect, "gravity", "{}", found.summary);
+    }
+    let value = |found: &Diagnosis, name: &str| found.fit.parameters.iter().find(|p| p.name == name).unwrap().value;
+    assert!((value(&few, "tau_c") - value(&many, "tau_c")).abs() < 1e-4);
 }
 
 #[test]

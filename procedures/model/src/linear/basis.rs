@@ -31,6 +31,10 @@ impl Basis {
         basis
     }
 
+    pub fn vectors(&self) -> &[Vec<f64>] {
+        &self.vectors
+    }
+
     /// Adds what is new in a column. Returns the share of its square that is new; nothing is added where that is none.
     pub fn push(&mut self, column: &[f64]) -> f64 {
         let before = dot(column, column);

@@ -17,8 +17,11 @@ const PAUSE_S: f64 = 60.0;
 pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly) -> Problem {
     let about = &prepared.about;
     let sample_s = 1.0 / about.sample_rate_hz;
-    let point_s = about.chunk_s.unwrap_or(about.decimation as f64 * sample_s);
-    let each = if about.chunk_s.is_some() { ((point_s / sample_s).round() as usize).max(1) } else { 1 };
+    // Neighbouring chunks of a long run were averaged.
+    let chunks = &prepared.main.view.chunks;
+    let averaged = chunks.iter().map(|c| c.len()).sum::<usize>() / chunks.len().max(1);
+    let each = if about.chunk_s.is_some() { averaged.max(1) } else { 1 };
+    let point_s = if about.chunk_s.is_some() { each } else { about.decimation } as f64 * sample_s;
     let measured = &prepared.main.view.samples;
     let at = |signal, first: bool| {
         let values = measured.find(signal)?;

@@ -49,6 +49,39 @@ impl Source {
         legs.into_iter().flat_map(|leg| self.within_runs(leg)).collect()
     }
 
+    /// The samples of some chunks, with all turning points in between: a way between two of these is one straight step to
+    /// every memory that does not ask how long it took.
+    pub fn around(&self, chunks: Vec<Range<usize>>) -> (Source, Vec<Range<usize>>) {
+        let direction = self.signals.find(Signal::Direction).unwrap_or_default();
+        let mut kept = vec![false; self.time_s.len()];
+        chunks.iter().for_each(|c| kept[c.clone()].fill(true));
+        self.starts.iter().for_each(|s| kept[*s] = true);
+        let turns = (1..direction.len()).filter(|i| direction[*i] != direction[i - 1]);
+        turns.for_each(|i| kept[i - 1..=i].fill(true));
+        let rows: Vec<usize> = (0..kept.len()).filter(|i| kept[*i]).collect();
+        let at = |sample: &usize| rows.partition_point(|r| r < sample);
+        let gather = |values: &[f64]| -> Vec<f64> { rows.iter().map(|i| values[*i]).collect() };
+        let whole = |values: &Option<Vec<i64>>| values.as_ref().map(|v| rows.iter().map(|i| v[*i]).collect());
+        let mut signals = Signals::new(rows.len());
+        for signal in Signal::ALL {
+            if let Some(values) = self.signals.find(signal) {
+                signals.set(signal, gather(values));
+            }
+        }
+        let moved = chunks.iter().map(|c| at(&c.start)..at(&c.start) + c.len()).collect();
+        let source = Source {
+            signals,
+            target: gather(&self.target),
+            time_s: gather(&self.time_s),
+            starts: self.starts.iter().map(at).collect(),
+            runs: self.runs.iter().map(at).collect(),
+            segment: whole(&self.segment),
+            repeat: whole(&self.repeat),
+            ..*self
+        };
+        (source, moved)
+    }
+
     /// No leg goes on in the next run.
     fn within_runs(&self, leg: Range<usize>) -> Vec<Range<usize>> {
         let inside = self.runs.iter().copied().filter(|s| leg.start < *s && *s < leg.end);
@@ -89,4 +122,47 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
     let mut view = View::new(points, samples.signals.clone(), chunks, samples.starts.clone(), samples.step_s);
     view.constants = samples.constants;
     Problem { view, target, reduce: Reduce::Same, block, blocks, fold, folds, twins, segment, repeat, settled }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::memory;
+
+    #[test]
+    fn a_memory_is_the_same_on_the_samples_around_chunks() {
+        // Back and forth, three times, in steps of different length.
+        let way = |i: usize| if (i / 40).is_multiple_of(2) { i % 40 } else { 40 - i % 40 } as f64;
+        let n = 240;
+        let position: Vec<f64> = (0..n).map(|i| way(i) + 0.3 * (way(i) * 0.2).sin()).collect();
+        let direction = (0..n).map(|i| if (i / 40_usize).is_multiple_of(2) { 1.0 } else { -1.0 }).collect();
+        let mut signals = Signals::new(n);
+        signals.set(Signal::Position, position.clone());
+        signals.set(Signal::Direction, direction);
+        let source = Source {
+            signals,
+            target: position.clone(),
+            time_s: (0..n).map(|i| i as f64).collect(),
+            step_s: 1.0,
+            starts: vec![0],
+            runs: vec![0],
+            cutoff_hz: 0.1,
+            segment: None,
+            repeat: Some(vec![0; n]),
+            derived_velocity: true,
+            constants: Constants::default(),
+        };
+        let chunks = vec![84..88, 165..169, 210..214];
+        let (thin, moved) = source.around(chunks.clone());
+        assert!(thin.time_s.len() < 30 && thin.starts == [0], "{:?}", thin.time_s);
+        let few = thin.signals.find(Signal::Position).unwrap_or_default();
+        for state in [memory::dahl, memory::stop, memory::maxwell_slip] {
+            let (whole, part) = (state(&position, 5.0, &[0]), state(few, 5.0, &[0]));
+            for (c, m) in chunks.iter().zip(&moved) {
+                for (a, b) in whole[c.clone()].iter().zip(&part[m.clone()]) {
+                    assert!((a - b).abs() < 1e-12, "{a} {b}");
+                }
+            }
+        }
+    }
 }

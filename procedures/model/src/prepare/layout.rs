@@ -58,6 +58,9 @@ pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, 
     ((0..block.len()).map(|i| i / stretch % n).collect(), n)
 }
 
+/// Pairs of one row at most: a run of hundreds of repeats says no more by pairing each with each.
+const MOST_TWINS: usize = 8;
+
 /// Pairs of rows of the same condition in different repeats whose phases are `apart` rows from each other.
 ///
 /// Neighbours instead of the very same phase where rows are chunks: what changes from chunk to chunk, such as the
@@ -71,7 +74,8 @@ pub fn twins(condition: &[usize], phase: &[usize], repeat: &[i64], apart: usize)
     for row in 0..condition.len() {
         let Some(others) = seen.get(&(condition[row], phase[row] + apart)) else { continue };
         let twin = |r: &&usize| repeat[**r] != repeat[row] && (apart > 0 || **r > row);
-        pairs.extend(others.iter().filter(twin).map(|r| (row, *r)));
+        let (before, after) = others.split_at(others.partition_point(|r| *r <= row));
+        pairs.extend(after.iter().chain(before).filter(twin).take(MOST_TWINS).map(|r| (row, *r)));
     }
     pairs
 }

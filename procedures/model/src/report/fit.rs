@@ -99,6 +99,7 @@ pub struct Preparation {
     /// `None` where nothing was filtered.
     pub cutoff_hz: Option<f64>,
     pub decimation: usize,
+    /// Length of a chunk. A row of a long run in steps is the mean of several neighbours.
     pub chunk_s: Option<f64>,
     pub samples: usize,
     /// Rows of the fit: chunks or decimated samples.

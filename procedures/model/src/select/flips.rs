@@ -15,27 +15,21 @@ pub struct Score {
 }
 
 impl Score {
-    /// `rest` are the candidate's own columns, `residual` what the model leaves.
-    pub fn new(rest: &[Vec<f64>], residual: &[f64], block: &[usize], blocks: usize) -> Self {
-        let k = rest.len();
-        let mut sums = vec![0.0; blocks * k];
-        for (c, column) in rest.iter().enumerate() {
-            for ((x, e), b) in column.iter().zip(residual).zip(block) {
-                sums[b * k + c] += x * e;
-            }
-        }
+    /// `sums[c][g]`: product of what column c has of its own with the residual over group g.
+    pub fn new(sums: &[Vec<f64>]) -> Self {
+        let k = sums.len();
         let mut spread = vec![0.0; k * k];
-        for s in sums.chunks_exact(k.max(1)) {
-            for a in 0..k {
-                for b in 0..k {
-                    spread[a * k + b] += s[a] * s[b];
-                }
+        for a in 0..k {
+            for b in 0..k {
+                spread[a * k + b] = dot(&sums[a], &sums[b]);
             }
         }
         let spd = Spd::new(&spread, k, 1e-9);
-        let mut parts = vec![vec![0.0; blocks]; k];
-        for (g, s) in sums.chunks_exact(k.max(1)).enumerate() {
-            for (c, v) in spd.whiten(s).into_iter().enumerate() {
+        let groups = sums.first().map_or(0, Vec::len);
+        let mut parts = vec![vec![0.0; groups]; k];
+        for g in 0..groups {
+            let of_group: Vec<f64> = sums.iter().map(|s| s[g]).collect();
+            for (c, v) in spd.whiten(&of_group).into_iter().enumerate() {
                 parts[c][g] = v;
             }
         }
@@ -69,9 +63,10 @@ pub struct Null {
 }
 
 impl Null {
-    pub fn new(scores: &[Score], blocks: usize, flips: usize, seed: u64) -> Self {
+    pub fn new(scores: &[Score], flips: usize, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut signs = vec![1.0; blocks];
+        let groups = scores.iter().flat_map(|s| &s.parts).map(Vec::len).max().unwrap_or(0);
+        let mut signs = vec![1.0; groups];
         let mut largest: Vec<f64> = (0..flips)
             .map(|_| {
                 signs.iter_mut().for_each(|s| *s = if random.random::<bool>() { 1.0 } else { -1.0 });

@@ -1,10 +1,12 @@
 //! Which effect is missing.
 
 mod flips;
+mod ground;
 mod library;
 mod rivals;
 mod search;
 
-pub use library::{Library, gain};
+pub use ground::Ground;
+pub use library::Library;
 pub use rivals::{Rival, significance};
 pub use search::{Move, Search, Silence, held_out};

@@ -1,11 +1,10 @@
 //! The candidates of one step: which is best, whether it is more than luck, and what the run cannot tell it from.
 
 use super::flips::{Null, Score};
-use super::library::{Gain, Library, factors, gain};
+use super::ground::{Ground, Own};
+use super::library::Library;
 use super::search::losses;
 use crate::Options;
-use crate::linear::{Basis, dot};
-use crate::prepare::Problem;
 use crate::terms::{Term, Terms, polish};
 
 /// Candidates that are refined and held against each other at each step.
@@ -62,13 +61,12 @@ pub fn step<'p>(
 ) -> Option<(Rival<'p>, Vec<&'p str>)> {
     let options = bar.options;
     let problem = now.problem;
-    let basis = now.tangent();
-    let residual = basis.rest(&now.response());
-    let energy = dot(&residual, &residual);
+    let ground = Ground::of(now);
+    let Ground { basis, residual, energy, .. } = &ground;
+    let energy = *energy;
     let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
     let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
-    let gains: Vec<Gain> =
-        open.iter().map(|i| gain(&library.candidates[*i].columns, &basis, &residual, energy)).collect();
+    let gains: Vec<Own> = open.iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
 
     // The best shape of each form of each effect, the most telling first.
     let mut best: Vec<usize> = Vec::new();
@@ -87,18 +85,18 @@ pub fn step<'p>(
         return None;
     }
 
-    let present: f64 = losses(&now.columns(), &residual, problem).iter().sum();
+    let present: f64 = losses(&now.columns(), residual, problem).iter().sum();
     let mut rivals: Vec<Rival> = best
         .iter()
         .map(|b| {
             let mut term = [library.candidates[open[*b]].term()];
-            let sse = polish(&mut term, &basis, &residual, problem);
+            let sse = polish(&mut term, basis, residual, problem);
             let [term] = term;
-            let possible = term.allows(&factors(&term.columns, &basis, &residual));
+            let possible = term.allows(&ground.own(&term.columns).factors());
             let sse = if possible { sse } else { energy };
             let mut columns = now.columns();
             columns.extend(term.columns.iter().map(Vec::as_slice));
-            let losses = losses(&columns, &residual, problem);
+            let losses = losses(&columns, residual, problem);
             Rival { share: 1.0 - sse / energy, held_out: losses.iter().sum(), p_value: 1.0, losses, term }
         })
         .filter(|r| bar.is_worth(r.share, energy) && r.held_out < present)
@@ -127,41 +125,23 @@ pub fn step<'p>(
 
     let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
     let mut rival = rivals.swap_remove(winner);
-    let scores = gains.iter().map(|g| Score::new(&g.rest, &residual, &problem.block, problem.blocks)).collect();
-    rival.p_value = family_wise(&rival.term, scores, &basis, &residual, problem, options);
+    let scores = open.iter().zip(&gains).map(|(i, own)| ground.score(&library.candidates[*i].columns, own)).collect();
+    rival.p_value = family_wise(&rival.term, scores, &ground, options);
     (rival.p_value <= options.alpha).then_some((rival, ties))
 }
 
 /// How often noise alone would bring any candidate of the library as far as this one: the family-wise p-value.
-pub fn significance(
-    term: &Term,
-    library: &Library,
-    basis: &Basis,
-    residual: &[f64],
-    problem: &Problem,
-    options: &Options,
-) -> f64 {
-    let score = |columns: &[Vec<f64>]| {
-        Score::new(&gain(columns, basis, residual, 1.0).rest, residual, &problem.block, problem.blocks)
-    };
-    let scores = library.candidates.iter().map(|c| score(&c.columns)).collect();
-    family_wise(term, scores, basis, residual, problem, options)
+pub fn significance(term: &Term, library: &Library, ground: &Ground, options: &Options) -> f64 {
+    let score = |columns: &[Vec<f64>]| ground.score(columns, &ground.own(columns));
+    family_wise(term, library.candidates.iter().map(|c| score(&c.columns)).collect(), ground, options)
 }
 
 /// The same from scores that are there already.
-fn family_wise(
-    term: &Term,
-    mut scores: Vec<Score>,
-    basis: &Basis,
-    residual: &[f64],
-    problem: &Problem,
-    options: &Options,
-) -> f64 {
-    let own = gain(&term.columns, basis, residual, 1.0);
-    let own = Score::new(&own.rest, residual, &problem.block, problem.blocks);
+fn family_wise(term: &Term, mut scores: Vec<Score>, ground: &Ground, options: &Options) -> f64 {
+    let own = ground.score(&term.columns, &ground.own(&term.columns));
     let z = own.z();
     scores.push(own);
-    Null::new(&scores, problem.blocks, options.flips, options.seed).p_value(z)
+    Null::new(&scores, options.flips, options.seed).p_value(z)
 }
 
 /// Two effects tie where the difference of their held-out errors is not larger than its own scatter over the folds.
@@ -180,10 +160,8 @@ fn encompasses(now: &Terms, one: &Term, other: &Term, options: &Options) -> bool
         let mut with = now.clone();
         with.terms.push(there.clone());
         with.refine();
-        let basis = with.tangent();
-        let residual = basis.rest(&with.response());
-        let share = gain(&beside.columns, &basis, &residual, dot(&residual, &residual)).share;
-        (share, family_wise(beside, Vec::new(), &basis, &residual, now.problem, options))
+        let ground = Ground::of(&with);
+        (ground.own(&beside.columns).share, family_wise(beside, Vec::new(), &ground, options))
     };
     let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));
     needed >= options.practical_share && p_value <= options.alpha && needless < options.practical_share

@@ -1,6 +1,7 @@
 //! From a model to the model that is left when nothing more can be named.
 
-use super::library::{Library, gain};
+use super::ground::Ground;
+use super::library::Library;
 use super::rivals::{Bar, Rival, significance, step};
 use crate::Options;
 use crate::linear::{BlockGrams, dot};
@@ -157,11 +158,9 @@ const MOST_HARMONICS: usize = 8;
 fn extend(terms: &mut Terms, library: &Library, options: &Options) {
     let harmonic = |t: &Term| t.form.name == crate::effects::SEVERAL_HARMONICS && t.shape.len() < MOST_HARMONICS;
     while let Some(at) = terms.terms.iter().position(harmonic) {
-        let basis = terms.tangent();
-        let residual = basis.rest(&terms.response());
-        let energy = dot(&residual, &residual);
+        let ground = Ground::of(terms);
         let own = terms.terms[at].id();
-        let share = |c: &super::library::Candidate| gain(&c.columns, &basis, &residual, energy).share;
+        let share = |c: &super::library::Candidate| ground.own(&c.columns).share;
         let (mut next, mut other) = ((0.0, None), 0.0f64);
         for candidate in &library.candidates {
             if candidate.id() != own {
@@ -179,7 +178,7 @@ fn extend(terms: &mut Terms, library: &Library, options: &Options) {
         if share < options.practical_share.max(other) {
             return;
         }
-        let p_value = significance(&candidate.term(), library, &basis, &residual, terms.problem, options);
+        let p_value = significance(&candidate.term(), library, &ground, options);
         if p_value > options.alpha {
             return;
         }
@@ -204,9 +203,10 @@ fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
         }
         let basis = others.tangent();
         let rest = basis.rest(&terms.response());
+        let ground = Ground::new(basis, rest, terms.problem);
         let sse = |term: &Term<'p>| {
             let mut one = [term.clone()];
-            let sse = polish(&mut one, &basis, &rest, terms.problem);
+            let sse = polish(&mut one, &ground.basis, &ground.residual, terms.problem);
             let [term] = one;
             (sse, term)
         };
@@ -214,7 +214,7 @@ fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
         let mut forms: Vec<&str> = same.iter().map(|c| c.form.name).filter(|f| *f != term.form.name).collect();
         forms.dedup();
         for form in forms {
-            let share = |c: &&&super::library::Candidate| gain(&c.columns, &basis, &rest, 1.0).share;
+            let share = |c: &&&super::library::Candidate| ground.own(&c.columns).share;
             let of_form = same.iter().filter(|c| c.form.name == form);
             let Some(start) = of_form.max_by(|a, b| share(a).total_cmp(&share(b))) else { continue };
             let trial = sse(&start.term());
@@ -232,27 +232,18 @@ fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
 
 /// For each effect that is not in the model, its best form and shape: what would have been seen.
 fn silences<'p>(end: &Terms<'p>, library: &Library<'p>, withdrawn: &[&'p str], options: &Options) -> Vec<Silence<'p>> {
-    let problem = end.problem;
-    let basis = end.tangent();
-    let residual = basis.rest(&end.response());
-    let n = problem.rows() as f64;
-    let rms = (dot(&residual, &residual) / n).sqrt();
+    let ground = Ground::of(end);
+    let n = end.problem.rows() as f64;
+    let rms = (ground.energy / n).sqrt();
     let mut out: Vec<Silence> = Vec::new();
     let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
     for candidate in library.candidates.iter().filter(|c| is_out(c.id())) {
-        let found = gain(&candidate.columns, &basis, &residual, 1.0);
+        let own = ground.own(&candidate.columns);
+        let sums = ground.sums(&candidate.columns, &own);
         // z₀.₉₇₅ + z₀.₈ standard errors of the amplitude, and never less than the practical share.
-        let noise = found
-            .rest
-            .iter()
-            .map(|r| {
-                let mut sums = vec![0.0; problem.blocks];
-                r.iter().zip(&residual).zip(&problem.block).for_each(|((x, e), b)| sums[*b] += x * e);
-                2.8 * (sums.iter().map(|s| s * s).sum::<f64>() / dot(r, r) / n).sqrt()
-            })
-            .fold(0.0, f64::max);
-        let detectable_rms =
-            if found.rest.is_empty() { f64::MAX } else { noise.max(options.practical_share.sqrt() * rms) };
+        let noise = sums.iter().zip(own.squares()).map(|(s, square)| 2.8 * (dot(s, s) / square / n).sqrt());
+        let noise = noise.fold(0.0, f64::max);
+        let detectable_rms = if sums.is_empty() { f64::MAX } else { noise.max(options.practical_share.sqrt() * rms) };
         match out.iter_mut().find(|s| s.effect == candidate.id()) {
             Some(s) => s.detectable_rms = s.detectable_rms.min(detectable_rms),
             None => out.push(Silence { effect: candidate.id(), detectable_rms }),

@@ -14,6 +14,10 @@ use std::ops::Range;
 
 const CHUNK_S: f64 = 0.04;
 const MOVING_CHUNK_S: f64 = 0.02;
+/// Of a run of more chunks than these neighbours are averaged: what a plateau says, it says in few of them.
+const MOST_ROWS: usize = 12_000;
+/// Around reversals a long run is judged by some of its pairs of segments.
+const MOST_MOVING_ROWS: usize = 8_000;
 /// How far speed and load may be from the plateau's own middle, as a share of their size.
 const SETTLED_SHARE: f64 = 0.04;
 
@@ -70,12 +74,17 @@ pub fn prepare(
     let mut chunks = Vec::new();
     let mut group = Vec::new();
     let mut phase = Vec::new();
+    let merge = plateaus.iter().map(|p| p.len() / n).sum::<usize>().div_ceil(MOST_ROWS);
     for (number, plateau) in plateaus.iter().enumerate() {
-        let leg_start = legs.iter().find(|l| l.contains(&plateau.start)).map_or(plateau.start, |l| l.start);
-        for start in (plateau.start..plateau.end + 1 - n).step_by(n) {
-            chunks.push(start..start + n);
+        let leg = legs.partition_point(|l| l.start <= plateau.start).saturating_sub(1);
+        let before = (plateau.start - legs.get(leg).map_or(plateau.start, |l| l.start)) / n;
+        // At least two, so that neighbours in different repeats can be compared.
+        let parts = (plateau.len() / n).div_ceil(merge).max(2);
+        for part in 0..parts {
+            let edge = |part: usize| plateau.start + plateau.len() / n * part / parts * n;
+            chunks.push(edge(part)..edge(part + 1));
             group.push(number);
-            phase.push((start - leg_start) / n);
+            phase.push(before / merge + part);
         }
     }
     if chunks.len() < 12 {
@@ -146,16 +155,21 @@ fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Pr
     let mut settled = vec![false; samples.time_s.len()];
     plateaus.iter().for_each(|p| settled[p.clone()].fill(true));
     let mut chunks = Vec::new();
-    let mut group = Vec::new();
     for (number, leg) in samples.legs().into_iter().enumerate() {
         for start in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n) {
             let mean = velocity[start..start + n].iter().sum::<f64>() / n as f64;
             if mean.abs() <= fastest && !settled[start..start + n].iter().any(|s| *s) {
-                chunks.push(start..start + n);
-                group.push(number);
+                chunks.push((number, start..start + n));
             }
         }
     }
-    (chunks.len() >= 50)
-        .then(|| problem(samples, Layout { chunks, condition: group.clone(), group, phase: None, settled: false }))
+    // Multiples of the golden ratio are spread evenly whatever the order of the profile.
+    let share = MOST_MOVING_ROWS as f64 / chunks.len() as f64;
+    chunks.retain(|(leg, _)| ((leg / 2) as f64 * 0.618_033_988_749_895).fract() < share);
+    let (group, chunks): (Vec<usize>, Vec<Range<usize>>) = chunks.into_iter().unzip();
+    if chunks.len() < 50 {
+        return None;
+    }
+    let (samples, chunks) = samples.around(chunks);
+    Some(problem(&samples, Layout { chunks, condition: group.clone(), group, phase: None, settled: false }))
 }

@@ -1,0 +1,120 @@
+//! What a model leaves, and what a candidate would take of it: sums of products over the run and over its stretches.
+//! Nothing else is asked of a candidate's columns, so they are read and never copied.
+
+use super::flips::Score;
+use crate::linear::{Basis, Spd, dot};
+use crate::prepare::Problem;
+use crate::terms::Terms;
+use std::ops::Range;
+
+/// A long run is turned over in groups of neighbouring blocks.
+const MOST_GROUPS: usize = 400;
+
+/// Where less than this share of a column is its own, the data cannot tell it from the model.
+const OWN_SHARE: f64 = 1e-5;
+
+/// A residual beside the basis that left it.
+pub struct Ground {
+    pub basis: Basis,
+    pub residual: Vec<f64>,
+    /// Squared residual.
+    pub energy: f64,
+    /// Rows that are turned over together.
+    groups: Vec<Range<usize>>,
+    /// Products of each vector of the basis with the residual, group by group.
+    shared: Vec<Vec<f64>>,
+}
+
+/// What the columns of a candidate are beside a basis (the added-variable step).
+pub struct Own {
+    /// Share of the squared residual that they explain.
+    pub share: f64,
+    /// Columns that have something of their own.
+    kept: Vec<usize>,
+    /// Products with the vectors of the basis, column by column.
+    along: Vec<Vec<f64>>,
+    gram: Vec<f64>,
+    side: Vec<f64>,
+}
+
+impl Ground {
+    pub fn of(terms: &Terms) -> Self {
+        let basis = terms.tangent();
+        let residual = basis.rest(&terms.response());
+        Self::new(basis, residual, terms.problem)
+    }
+
+    pub fn new(basis: Basis, residual: Vec<f64>, problem: &Problem) -> Self {
+        let most = problem.blocks.min(MOST_GROUPS);
+        let group = |block: usize| block * most / problem.blocks.max(1);
+        let mut end = 0;
+        let groups: Vec<Range<usize>> = problem
+            .block
+            .chunk_by(|a, b| group(*a) == group(*b))
+            .map(|rows| {
+                end += rows.len();
+                end - rows.len()..end
+            })
+            .collect();
+        let shared = basis.vectors().iter().map(|q| products(q, &residual, &groups)).collect();
+        Self { energy: dot(&residual, &residual), basis, residual, groups, shared }
+    }
+
+    pub fn own(&self, columns: &[Vec<f64>]) -> Own {
+        let p = columns.len();
+        let along: Vec<Vec<f64>> =
+            columns.iter().map(|c| self.basis.vectors().iter().map(|q| dot(q, c)).collect()).collect();
+        let mut gram = vec![0.0; p * p];
+        let mut largest = 0.0f64;
+        for a in 0..p {
+            for b in 0..=a {
+                let whole = dot(&columns[a], &columns[b]);
+                if a == b {
+                    largest = largest.max(whole);
+                }
+                gram[a * p + b] = whole - dot(&along[a], &along[b]);
+                gram[b * p + a] = gram[a * p + b];
+            }
+        }
+        let side: Vec<f64> = columns.iter().map(|c| dot(c, &self.residual)).collect();
+        let kept: Vec<usize> = (0..p).filter(|a| gram[a * p + a] > OWN_SHARE * largest).collect();
+        let entry = |at: usize| gram[kept[at / kept.len()] * p + kept[at % kept.len()]];
+        let of_kept: Vec<f64> = (0..kept.len().pow(2)).map(entry).collect();
+        let side_of_kept: Vec<f64> = kept.iter().map(|a| side[*a]).collect();
+        let explained: f64 = Spd::new(&of_kept, kept.len(), 0.0).whiten(&side_of_kept).iter().map(|v| v * v).sum();
+        let share = if self.energy > 0.0 { explained / self.energy } else { 0.0 };
+        Own { share, kept, along, gram, side }
+    }
+
+    /// Products of what each kept column has of its own with the residual, group by group.
+    pub fn sums(&self, columns: &[Vec<f64>], own: &Own) -> Vec<Vec<f64>> {
+        let of = |a: &usize| {
+            let mut sums = products(&columns[*a], &self.residual, &self.groups);
+            for (shared, along) in self.shared.iter().zip(&own.along[*a]) {
+                sums.iter_mut().zip(shared).for_each(|(s, q)| *s -= along * q);
+            }
+            sums
+        };
+        own.kept.iter().map(of).collect()
+    }
+
+    pub fn score(&self, columns: &[Vec<f64>], own: &Own) -> Score {
+        Score::new(&self.sums(columns, own))
+    }
+}
+
+impl Own {
+    /// Factors of the columns beside the basis.
+    pub fn factors(&self) -> Vec<f64> {
+        Spd::new(&self.gram, self.side.len(), 0.0).solve(&self.side)
+    }
+
+    /// Squares of what each kept column has of its own.
+    pub fn squares(&self) -> impl Iterator<Item = f64> {
+        self.kept.iter().map(|a| self.gram[a * self.side.len() + a])
+    }
+}
+
+fn products(a: &[f64], b: &[f64], groups: &[Range<usize>]) -> Vec<f64> {
+    groups.iter().map(|rows| dot(&a[rows.clone()], &b[rows.clone()])).collect()
+}
