@@ -1,4 +1,4 @@
-import type { Samples } from '../api/types';
+import type { RunEvent, Samples } from '../api/types';
 
 /** One channel of a run over whatever the runs are aligned by. */
 export interface Course {
@@ -7,14 +7,26 @@ export interface Course {
 	high: (number | null)[];
 }
 
-/** A channel over time, or over another channel of the same samples. */
-export function courseOf(samples: Samples, channel: string, by: string): Course | null {
+/** A channel over time, from a moment of the run on, or over another channel of the same samples. */
+export function courseOf(samples: Samples, channel: string, by: string, zero_s = 0): Course | null {
 	const values = samples.channels.find((one) => one.name === channel);
 	if (!values) return null;
-	if (by === 'time_s') return { x: samples.time_s, low: values.min, high: values.max };
+	if (by === 'time_s') return { x: zero_s === 0 ? samples.time_s : samples.time_s.map((t) => t - zero_s), low: values.min, high: values.max };
 	const along = samples.channels.find((one) => one.name === by);
 	if (!along) return null;
 	return { x: along.min.map((low, i) => ((low ?? Number.NaN) + (along.max[i] ?? Number.NaN)) / 2), low: values.min, high: values.max };
+}
+
+/** What happened in every one of the runs, by its words, and when it first did. */
+export function sharedMoments(runs: readonly (readonly Pick<RunEvent, 'text' | 'at_s'>[])[]): Map<string, number[]> {
+	const first = runs.map((events) => {
+		const times = new Map<string, number>();
+		for (const { text, at_s } of events) if (!times.has(text)) times.set(text, at_s);
+		return times;
+	});
+	const everywhere = [...(first[0]?.keys() ?? [])].filter((text) => first.every((times) => times.has(text)));
+	// What begins every run aligns nothing that time does not.
+	return new Map(everywhere.map((text) => [text, first.map((times) => times.get(text)!)] as const).filter(([, times]) => times.some((at) => at > 0)));
 }
 
 /**

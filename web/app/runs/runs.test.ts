@@ -1,6 +1,7 @@
 import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
-import { alignCourses, courseOf, factTable } from './align';
+import { alignCourses, courseOf, factTable, sharedMoments } from './align';
+import { differ } from './differ';
 import { readMarked, toggleMarked } from './marked';
 
 const samples = {
@@ -25,6 +26,20 @@ it('aligns by another channel, and leaves out what has no place there', () => {
 	expect(alignCourses([course]).columns[0]).toEqual([3, 9, 1, 2]);
 	expect(courseOf(samples, 'torque', 'absent')).toBeNull();
 	expect(alignCourses([null])).toEqual({ x: [], columns: [[]] });
+});
+
+it('aligns by a moment that all runs have', () => {
+	const first = [{ text: 'running', at_s: 0 }, { text: 'step', at_s: 4 }, { text: 'step', at_s: 9 }, { text: 'limit', at_s: 5 }];
+	const second = [{ text: 'running', at_s: 0 }, { text: 'step', at_s: 2.5 }];
+	expect([...sharedMoments([first, second])]).toEqual([['step', [4, 2.5]]]);
+	expect(courseOf(samples, 'torque', 'time_s', 2)!.x).toEqual([-2, -1, 0, 1]);
+});
+
+it('tells figures that differ from those that only look different', () => {
+	const given = (value: number, half: number) => ({ value, ci95: [value - half, value + half] });
+	expect(differ([given(1, 0.3), given(1.4, 0.3)])).toBe(false);
+	expect(differ([given(1, 0.3), given(1.5, 0.3)])).toBe(true);
+	expect(differ([given(1, 0.3), null, { value: 9, ci95: [null, 10] }, { value: 9 }])).toBeNull();
 });
 
 it('shows where settings differ', () => {

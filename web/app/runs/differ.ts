@@ -1,0 +1,23 @@
+/** A figure that several runs give, each with what is known of its interval. */
+export interface Given {
+	value: number;
+	ci95?: readonly (number | null)[] | null;
+}
+
+function half({ ci95 }: Given): number | null {
+	const [low, high] = ci95 ?? [];
+	return low == null || high == null ? null : Math.abs(high - low) / 2;
+}
+
+/**
+ * Whether two of the runs give figures that differ at 95 %: further apart than the two intervals together allow, taken as
+ * independent. `null` where fewer than two have an interval.
+ */
+export function differ(figures: readonly (Given | null)[]): boolean | null {
+	const known = figures.flatMap((one) => {
+		const width = one && half(one);
+		return one && width != null ? [{ value: one.value, width }] : [];
+	});
+	if (known.length < 2) return null;
+	return known.some((a, i) => known.slice(i + 1).some((b) => Math.abs(a.value - b.value) > Math.hypot(a.width, b.width)));
+}
