@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { cartesian } from './cartesian';
-import { type Figure, type Series, csvOf, reachOf, styles } from './figure';
+import { type Figure, type Series, csvOf, inUnits, reachOf, styles } from './figure';
 import { glyphs, line, ribbon } from './ink';
 import { flow } from './legend';
 import { polar } from './polar';
@@ -75,6 +75,13 @@ it('keeps the centre free where a polar figure has two signs, and starts there w
 it('gives exactly what is drawn, with all digits and names', () => {
 	const drawn = figure({ x: { label: 'of what', unit: '', names: ['eccentricity, first'] }, series: [series('a', 'bars', [0], [0.0311234567], [[0.03, 0.032]])] });
 	expect(csvOf(drawn)).toBe('series,of what,torque [Nm],"torque [Nm], lower","torque [Nm], upper"\na,"eccentricity, first",0.0311234567,0.03,0.032\n');
+});
+
+it('is shown in the units that a person reads', () => {
+	const drawn = figure({ series: [series('a', 'line', [1, 2], [3, 4], [[2, 4], [3, 5]])] });
+	const shown = inUnits(drawn, (unit) => (unit === 'rad/s' ? { factor: 10, unit: 'rpm' } : { factor: 1, unit }));
+	expect([shown.x.unit, shown.series[0]!.x, shown.series[0]!.band]).toEqual(['rpm', [10, 20], [[2, 4], [3, 5]]]);
+	expect(inUnits(drawn, (unit) => ({ factor: 1, unit }))).toBe(drawn);
 });
 
 it('breaks a line where a value is missing', () => {

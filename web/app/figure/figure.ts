@@ -56,6 +56,19 @@ export function styles(series: readonly Series[]): Style[] {
 	}));
 }
 
+/** The figure with each axis in the unit that is shown. */
+export function inUnits(figure: Figure, scaleOf: (unit: string) => { factor: number; unit: string }): Figure {
+	const [x, y] = [scaleOf(figure.x.unit), scaleOf(figure.y.unit)];
+	if (x.factor === 1 && y.factor === 1) return figure;
+	const series = figure.series.map((one) => ({
+		...one,
+		x: one.x.map((value) => value * x.factor),
+		y: one.y.map((value) => value * y.factor),
+		band: one.band?.map((ends) => ends.map((end) => end * y.factor)),
+	}));
+	return { ...figure, x: { ...figure.x, unit: x.unit }, y: { ...figure.y, unit: y.unit }, series };
+}
+
 export type Span = readonly [low: number, high: number];
 
 /** From the smallest to the largest number; `[0, 1]` where there is none. */

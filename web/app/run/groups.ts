@@ -1,4 +1,5 @@
 import { label } from '../format/label';
+import { speedScale } from '../format/speed';
 import type { Channel } from '../api/types';
 import type { Curve } from '../plot/chart';
 import { curveStyle } from '../plot/colour';
@@ -22,7 +23,8 @@ const QUANTITIES = new Map([
 ]);
 const ORDER = [...QUANTITIES.keys()];
 
-export function groupsOf(channels: readonly Channel[]): Group[] {
+/** `rpm`: what is read in rad/s is shown in rpm; the group keeps the unit of its channels. */
+export function groupsOf(channels: readonly Channel[], rpm = false): Group[] {
 	const byUnit = new Map<string, string[]>();
 	for (const channel of channels) {
 		if (COUNTERS.has(channel.name)) continue;
@@ -30,12 +32,13 @@ export function groupsOf(channels: readonly Channel[]): Group[] {
 		byUnit.set(unit, [...(byUnit.get(unit) ?? []), channel.name]);
 	}
 	const place = (unit: string) => (ORDER.includes(unit) ? ORDER.indexOf(unit) : ORDER.length);
-	return [...byUnit].map(([unit, names]) => makeGroup(unit, names)).sort((a, b) => place(a.unit) - place(b.unit));
+	return [...byUnit].map(([unit, names]) => makeGroup(unit, names, rpm)).sort((a, b) => place(a.unit) - place(b.unit));
 }
 
-function makeGroup(unit: string, names: string[]): Group {
+function makeGroup(unit: string, names: string[], rpm: boolean): Group {
 	const titles = names.map((name) => label(name).title);
 	const title = QUANTITIES.get(unit) ?? titles.join(', ');
-	const curves = titles.map((title, i) => ({ label: title, unit, mark: 'line' as const, ...curveStyle(i) }));
-	return { unit, title: unit ? `${title} [${unit}]` : title, names, curves };
+	const shown = speedScale(unit, rpm).unit;
+	const curves = titles.map((title, i) => ({ label: title, unit: shown, mark: 'line' as const, ...curveStyle(i) }));
+	return { unit, title: unit ? `${title} [${shown}]` : title, names, curves };
 }

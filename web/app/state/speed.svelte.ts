@@ -1,0 +1,20 @@
+import { speedScale } from '../format/speed';
+import type { Scale } from '../format/number';
+
+const KEPT = 'jointbench.speed';
+
+/** Whether speeds are read in rad/s or in rpm, kept by the browser. What is sent and stored stays in rad/s. */
+class Speed {
+	rpm = $state(localStorage.getItem(KEPT) === 'rpm');
+
+	toggle(): void {
+		this.rpm = !this.rpm;
+		localStorage.setItem(KEPT, this.rpm ? 'rpm' : 'rad/s');
+	}
+
+	scale(unit: string): Scale {
+		return speedScale(unit, this.rpm);
+	}
+}
+
+export const speed = new Speed();
