@@ -9,5 +9,6 @@ pub mod config;
 pub mod daemon;
 pub mod lab;
 pub mod live;
+pub mod report;
 pub mod store;
 pub mod view;

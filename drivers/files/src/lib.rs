@@ -1,4 +1,4 @@
-//! Run tables as files: CSV (also gzipped), Parquet and Arrow in; CSV and Parquet out.
+//! Run tables as files: CSV (also gzipped), Parquet and Arrow in; CSV, Parquet and MATLAB out.
 //!
 //! What goes out comes in again bit by bit. What comes in is checked whole before anything is returned, and refused with
 //! file, line, column and what was expected.
@@ -8,6 +8,7 @@ mod csv_in;
 mod csv_out;
 mod error;
 mod facts;
+mod mat_out;
 mod options;
 mod parquet_out;
 mod raw;
@@ -15,6 +16,7 @@ mod raw;
 pub use csv_out::write_csv;
 pub use error::{FileError, FileFault, Place};
 pub use facts::{meta_json, meta_path_of, parse_meta};
+pub use mat_out::write_mat;
 pub use options::{OptionFault, ReadOptions, parse_map, parse_scale};
 pub use parquet_out::write_parquet;
 

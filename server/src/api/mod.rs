@@ -6,8 +6,10 @@ mod dashboard;
 mod door;
 mod extract;
 mod health;
+mod identifications;
 mod live;
 mod models;
+mod notes;
 mod own_effects;
 mod problem;
 mod procedures;
@@ -88,7 +90,12 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(runs::stop))
         .routes(routes!(runs::abort))
         .routes(routes!(runs::events))
+        .routes(routes!(notes::list, notes::write))
+        .routes(routes!(notes::set_tags))
+        .routes(routes!(notes::tags))
         .routes(routes!(runs::samples))
+        .routes(routes!(identifications::get))
+        .routes(routes!(identifications::report))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))
         .routes(routes!(models::effects, own_effects::define))

@@ -18,7 +18,7 @@ pub struct RunQuery {
     pub limit: Option<u32>,
     /// Leave out so many of the newest.
     pub offset: Option<u32>,
-    /// Part of the bench, procedure, kind, state or reason.
+    /// Words, and terms such as `kind:friction`, `tag:oil`, `-state:failed`, `rows>1000`, `after:2026-01-31`; all must hold.
     pub search: Option<String>,
 }
 

@@ -6,6 +6,7 @@ mod check;
 mod client;
 mod demo;
 mod exit;
+mod identify;
 mod log;
 mod model;
 mod offline;
@@ -13,6 +14,7 @@ mod own;
 mod ports;
 mod print;
 mod progress;
+mod require;
 mod run;
 mod serve;
 mod transfer;
@@ -46,6 +48,8 @@ pub fn main() -> ExitCode {
         Command::Model(arguments) => model::model(&arguments),
         Command::Import(arguments) => transfer::import(&arguments),
         Command::Export(arguments) => transfer::export(&arguments),
+        Command::Identify(arguments) => identify::identify(&arguments),
+        Command::Report(arguments) => identify::report(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

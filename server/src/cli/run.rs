@@ -3,8 +3,10 @@
 use super::arguments::Run as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
+use super::identify;
 use super::progress::RunProgress;
-use crate::view::{Bench, NewRun, Run, RunState};
+use super::require::{Kept, Requirement};
+use crate::view::{Bench, Identification, NewRun, Run, RunState};
 use serde_json::{Map, Value};
 use std::time::Duration;
 
@@ -13,8 +15,14 @@ pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach);
     let ended = start(&client, arguments);
+    let found =
+        ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
+    let demands: Vec<(&Requirement, Kept)> = match &found {
+        Some(found) => arguments.require.iter().map(|demand| (demand, check(demand, found))).collect(),
+        None => Vec::new(),
+    };
     if let Some(path) = &arguments.junit {
-        std::fs::write(path, junit(&arguments.procedure, &ended))
+        std::fs::write(path, junit(&arguments.procedure, &ended, &demands))
             .map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
     }
     let run = ended?;
@@ -24,10 +32,43 @@ pub fn run(arguments: &Arguments) -> Done {
         println!("{text}");
     } else if !said.is_empty() {
         println!("{said}");
+        if let Some(Ok(found)) = &found {
+            identify::print(found);
+        }
     }
     match is_over(run.summary.state) && run.summary.state != RunState::Completed {
         true => Err(Exit::failed(if arguments.json { said } else { String::new() })),
-        false => Ok(()),
+        false => judge(&demands, arguments.json),
+    }
+}
+
+/// What the run shows, where its procedure says so.
+fn shown(client: &Client, run: &Run) -> Result<Identification, Exit> {
+    client.get(&format!("/runs/{}/identification", run.summary.id))
+}
+
+fn check(demand: &Requirement, found: &Result<Identification, Exit>) -> Kept {
+    match found {
+        Ok(found) => demand.check(found),
+        Err(exit) => Kept::Unknown(exit.said.clone()),
+    }
+}
+
+/// Says how each demand was met. What cannot be checked ends with 2; then a broken limit with 1; then an unsure one with 3.
+fn judge(demands: &[(&Requirement, Kept)], quiet: bool) -> Done {
+    let told = demands.iter().map(|(_, kept)| match kept {
+        Kept::Yes(said) => ("kept", said, 0),
+        Kept::No(said) => ("broken", said, 1),
+        Kept::Unsure(said) => ("unsure", said, 3),
+        Kept::Unknown(said) => ("not checked", said, 2),
+    });
+    if !quiet {
+        told.clone().for_each(|(word, said, _)| println!("{word}: {said}"));
+    }
+    let worst = [2, 1, 3].into_iter().find_map(|code| told.clone().find(|(_, _, found)| *found == code));
+    match worst {
+        None => Ok(()),
+        Some((_, said, code)) => Err(Exit { code, said: if quiet { said.clone() } else { String::new() } }),
     }
 }
 
@@ -43,7 +84,7 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     if !arguments.json {
         println!("run {id}: {} on {}  {}", new.procedure, new.bench, client.page(&format!("/runs/{id}")));
     }
-    match arguments.wait || arguments.junit.is_some() {
+    match arguments.wait || arguments.junit.is_some() || !arguments.require.is_empty() {
         // The arguments were good: from here on it is the run that fails.
         true => wait(client, id).map_err(|exit| Exit::failed(format!("run {id} is lost from sight: {}", exit.said))),
         false => Ok(run),
@@ -118,25 +159,50 @@ pub(super) fn ending(run: &Run) -> String {
     }
 }
 
-/// One test case: a failure where the run did not complete, an error where there is no run to tell of.
-fn junit(procedure: &str, ended: &Result<Run, Exit>) -> String {
+/// A test case for the run, a failure where it did not complete, an error where there is no run to tell of; then one for
+/// each demand.
+fn junit(procedure: &str, ended: &Result<Run, Exit>, demands: &[(&Requirement, Kept)]) -> String {
     let (suite, case, time_s) = match ended {
         Ok(Run { summary, .. }) => {
-            let case = format!("{procedure} run {}", summary.id);
-            (escape(&summary.bench), escape(&case), summary.duration_s.unwrap_or(0.0))
+            (summary.bench.clone(), format!("{procedure} run {}", summary.id), summary.duration_s.unwrap_or(0.0))
         }
-        Err(_) => ("jointbench".to_owned(), escape(procedure), 0.0),
+        Err(_) => ("jointbench".to_owned(), procedure.to_owned(), 0.0),
     };
-    let (failures, errors, body) = match ended {
-        Ok(run) if run.summary.state == RunState::Completed => (0, 0, String::new()),
-        Ok(run) => (1, 0, format!("\n      <failure message=\"{}\"/>\n    ", escape(&ending(run)))),
-        Err(exit) => (0, 1, format!("\n      <error message=\"{}\"/>\n    ", escape(&exit.said))),
+    let outcome = match ended {
+        Ok(run) if run.summary.state == RunState::Completed => None,
+        Ok(run) => Some(("failure", ending(run))),
+        Err(exit) => Some(("error", exit.said.clone())),
     };
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"{suite}\" tests=\"1\" \
-         failures=\"{failures}\" errors=\"{errors}\" time=\"{time_s:.3}\">\n    <testcase classname=\"{suite}\" \
-         name=\"{case}\" time=\"{time_s:.3}\">{body}</testcase>\n  </testsuite>\n</testsuites>\n"
-    )
+    let mut cases = vec![(case, time_s, outcome)];
+    cases.extend(demands.iter().map(|(demand, kept)| {
+        let outcome = match kept {
+            Kept::Yes(_) => None,
+            Kept::No(said) | Kept::Unsure(said) => Some(("failure", said.clone())),
+            Kept::Unknown(said) => Some(("error", said.clone())),
+        };
+        (demand.text().to_owned(), 0.0, outcome)
+    }));
+    let count =
+        |kind: &str| cases.iter().filter(|(_, _, outcome)| outcome.as_ref().is_some_and(|o| o.0 == kind)).count();
+    let suite = escape(&suite);
+    let mut report = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"{suite}\" tests=\"{}\" \
+         failures=\"{}\" errors=\"{}\" time=\"{time_s:.3}\">\n",
+        cases.len(),
+        count("failure"),
+        count("error"),
+    );
+    for (name, time_s, outcome) in &cases {
+        let body = match outcome {
+            Some((kind, said)) => format!("\n      <{kind} message=\"{}\"/>\n    ", escape(said)),
+            None => String::new(),
+        };
+        report += &format!(
+            "    <testcase classname=\"{suite}\" name=\"{}\" time=\"{time_s:.3}\">{body}</testcase>\n",
+            escape(name)
+        );
+    }
+    report + "  </testsuite>\n</testsuites>\n"
 }
 
 fn escape(text: &str) -> String {
@@ -158,11 +224,29 @@ mod tests {
 
     #[test]
     fn a_run_that_never_was_is_an_error_in_the_report() {
-        let report = junit("friction", &Err(Exit::bad_input("repeats = 0 < 1")));
+        let report = junit("friction", &Err(Exit::bad_input("repeats = 0 < 1")), &[]);
         assert!(
             report.contains("errors=\"1\"") && report.contains("<error message=\"repeats = 0 &lt; 1\"/>"),
             "{report}"
         );
+    }
+
+    #[test]
+    fn a_broken_limit_weighs_more_than_one_that_is_not_sure() {
+        let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
+        let said = || "said".to_owned();
+        let code = |kept: &[Kept]| {
+            let demands: Vec<_> = kept.iter().map(|kept| (&demand, kept.clone())).collect();
+            judge(&demands, true).err().map_or(0, |exit| exit.code)
+        };
+        assert_eq!(code(&[Kept::Yes(said())]), 0);
+        assert_eq!(code(&[Kept::Yes(said()), Kept::Unsure(said())]), 3);
+        assert_eq!(code(&[Kept::Unsure(said()), Kept::No(said()), Kept::Unsure(said())]), 1);
+        assert_eq!(code(&[Kept::No(said()), Kept::Unknown(said())]), 2);
+        let demands = [(&demand, Kept::No(said()))];
+        let report = junit("friction", &Err(Exit::bad_input("no run")), &demands);
+        assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"1\""), "{report}");
+        assert!(report.contains("name=\"tau_c &lt; 0.03 Nm\""), "{report}");
     }
 
     #[test]

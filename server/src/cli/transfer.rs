@@ -51,7 +51,9 @@ pub fn export(arguments: &Export) -> Done {
 /// What was asked for, or what the file's ending says.
 fn format(arguments: &Export) -> Result<FileFormat, Exit> {
     let ending = arguments.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
-    let said = [FileFormat::Csv, FileFormat::Parquet].into_iter().find(|format| Some(format.extension()) == ending);
+    let said = [FileFormat::Csv, FileFormat::Parquet, FileFormat::Mat]
+        .into_iter()
+        .find(|format| Some(format.extension()) == ending);
     match (arguments.format, said) {
         (Some(asked), Some(said)) if asked != said => Err(Exit::bad_input(format!(
             "--format {} and a file that ends in .{}: leave one of them out",
@@ -62,12 +64,12 @@ fn format(arguments: &Export) -> Result<FileFormat, Exit> {
     }
 }
 
-enum Way {
+pub(super) enum Way {
     Folder(Lab),
     Daemon(Client),
 }
 
-fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Way, Exit> {
+pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Way, Exit> {
     if place.reach.daemon.is_some() {
         return Ok(Way::Daemon(Client::new(&place.reach)));
     }
@@ -133,6 +135,6 @@ fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
     client.post_bytes("/runs/import", &format!("multipart/form-data; boundary={boundary}"), &body)
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Done {
+pub(super) fn write(path: &Path, bytes: &[u8]) -> Done {
     fs::write(path, bytes).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))
 }

@@ -86,6 +86,7 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
         rows: record.rows,
         duration_s: record.duration_s.and_then(view::finite),
         simulated: record.simulated,
+        tags: record.tags.clone(),
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Answer, Lab, LabError};
 use crate::store::NewRun;
 use crate::view::Run;
 use jointbench_files::{
-    ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_parquet,
+    ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_mat, write_parquet,
 };
 use jointbench_instrument::{RunTable, Trace};
 use serde::Deserialize;
@@ -16,6 +16,8 @@ use utoipa::ToSchema;
 pub enum FileFormat {
     Csv,
     Parquet,
+    /// For MATLAB, Octave and SciPy; out only
+    Mat,
 }
 
 impl FileFormat {
@@ -23,6 +25,7 @@ impl FileFormat {
         match self {
             FileFormat::Csv => "csv",
             FileFormat::Parquet => "parquet",
+            FileFormat::Mat => "mat",
         }
     }
 
@@ -30,6 +33,7 @@ impl FileFormat {
         match self {
             FileFormat::Csv => "text/csv; charset=utf-8",
             FileFormat::Parquet => "application/vnd.apache.parquet",
+            FileFormat::Mat => "application/x-matlab-data",
         }
     }
 }
@@ -117,6 +121,7 @@ fn write(meta: &jointbench_instrument::Meta, trace: &Trace, format: FileFormat) 
     match format {
         FileFormat::Csv => write_csv(&mut bytes, trace),
         FileFormat::Parquet => write_parquet(&mut bytes, meta, trace),
+        FileFormat::Mat => write_mat(&mut bytes, meta, trace),
     }
     .map_err(|fault| LabError::Internal(format!("writing the file failed: {fault}")))?;
     Ok(bytes)

@@ -19,6 +19,8 @@ pub enum StoreError {
     DiskFull,
     #[error("there is no run {0}")]
     NoRun(RunId),
+    #[error("search term {term}: {what}")]
+    Search { term: String, what: String },
     #[error("there is no model version {0}")]
     NoModel(i64),
     #[error("there is no diagnosis {0}")]

@@ -10,6 +10,7 @@ mod commit;
 mod error;
 mod migrations;
 mod models;
+mod notes;
 mod open;
 mod own_effects;
 pub mod pyramid;
@@ -17,14 +18,15 @@ mod records;
 mod runs;
 mod safety;
 mod samples;
+mod search;
 #[cfg(test)]
 mod tests;
 mod view;
 
 pub use error::StoreError;
 pub use records::{
-    AutopilotRecord, BenchBlock, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, OwnEffectRecord,
-    RunFilter, RunRecord, View, ViewColumn,
+    AutopilotRecord, BenchBlock, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord,
+    OwnEffectRecord, RunFilter, RunRecord, View, ViewColumn,
 };
 
 use sqlx::SqlitePool;

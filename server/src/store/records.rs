@@ -41,6 +41,7 @@ pub struct RunRecord {
     pub meta: Map<String, Value>,
     /// Empty before the first row.
     pub channels: Vec<Channel>,
+    pub tags: Vec<String>,
 }
 
 /// Which runs to list. Newest first.
@@ -48,8 +49,18 @@ pub struct RunRecord {
 pub struct RunFilter {
     pub limit: u32,
     pub offset: u32,
-    /// Part of the bench, procedure, kind, state or reason; upper and lower case are one.
+    /// In the language of [`super::search`]; upper and lower case are one.
     pub search: Option<String>,
+}
+
+/// What somebody said about a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoteRecord {
+    pub id: i64,
+    /// The moment that it is about, on the run's clock.
+    pub at_s: Option<f64>,
+    pub text: String,
+    pub created_at: String,
 }
 
 /// One entry of a run's journal.

@@ -1,5 +1,6 @@
 //! Runs and their journal.
 
+use super::search::Search;
 use super::{EventRecord, NewRun, RunFilter, RunRecord, Store, StoreError};
 use jiff::Timestamp;
 use jointbench_instrument::Channel;
@@ -7,7 +8,11 @@ use jointbench_procedure::{Event, EventKind, RunId, RunState, Safe};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use sqlx::sqlite::SqliteRow;
-use sqlx::{Row, SqliteConnection};
+use sqlx::{QueryBuilder, Row, SqliteConnection};
+
+/// Runs as they are told, with their tags.
+const TOLD: &str = "SELECT runs_told.*, (SELECT json_group_array(tag) FROM \
+                    (SELECT tag FROM tags WHERE run = runs_told.id ORDER BY tag)) AS tags FROM runs_told";
 
 /// Now, as it is written in the store.
 pub(super) fn now() -> String {
@@ -37,6 +42,7 @@ fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreErr
         parameters: json(row, "parameters")?,
         provenance: json(row, "provenance")?,
         meta: json(row, "meta")?,
+        tags: json(row, "tags")?,
         channels,
     })
 }
@@ -54,26 +60,23 @@ impl Store {
 
     pub async fn run(&self, run: RunId) -> Result<RunRecord, StoreError> {
         let mut reader = self.readers.begin().await?;
-        let row = sqlx::query("SELECT * FROM runs_told WHERE id = ?").bind(run).fetch_optional(&mut *reader).await?;
+        let mut query = QueryBuilder::new(TOLD);
+        query.push(" WHERE id = ").push_bind(run);
+        let row = query.build().fetch_optional(&mut *reader).await?;
         record(&row.ok_or(StoreError::NoRun(run))?, channels(&mut reader, run).await?)
     }
 
     /// A page of the runs that match, and how many match. The page's runs come without their channels.
     pub async fn runs(&self, filter: &RunFilter) -> Result<(u64, Vec<RunRecord>), StoreError> {
-        let search = filter.search.as_deref().unwrap_or_default().to_lowercase();
+        let search = Search::parse(filter.search.as_deref().unwrap_or_default())?;
         let mut reader = self.readers.begin().await?;
-        let total: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM runs_told WHERE ?1 = '' OR instr(words, ?1) > 0")
-            .bind(&search)
-            .fetch_one(&mut *reader)
-            .await?;
-        let rows = sqlx::query(
-            "SELECT * FROM runs_told WHERE ?1 = '' OR instr(words, ?1) > 0 ORDER BY id DESC LIMIT ?2 OFFSET ?3",
-        )
-        .bind(search)
-        .bind(filter.limit)
-        .bind(filter.offset)
-        .fetch_all(&mut *reader)
-        .await?;
+        let mut count = QueryBuilder::new("SELECT COUNT(*) FROM runs_told");
+        search.push(&mut count);
+        let total: i64 = count.build_query_scalar().fetch_one(&mut *reader).await?;
+        let mut page = QueryBuilder::new(TOLD);
+        search.push(&mut page);
+        page.push(" ORDER BY id DESC LIMIT ").push_bind(filter.limit).push(" OFFSET ").push_bind(filter.offset);
+        let rows = page.build().fetch_all(&mut *reader).await?;
         let runs = rows.iter().map(|row| record(row, Vec::new())).collect::<Result<_, _>>()?;
         Ok((total as u64, runs))
     }

@@ -6,6 +6,7 @@
 mod autopilot;
 mod bench;
 mod diagnosis;
+mod identification;
 mod live;
 mod model;
 mod own;
@@ -15,6 +16,7 @@ mod run;
 pub use autopilot::*;
 pub use bench::*;
 pub use diagnosis::*;
+pub use identification::*;
 pub use live::*;
 pub use model::*;
 pub use own::*;

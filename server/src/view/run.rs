@@ -51,6 +51,35 @@ pub struct RunSummary {
     pub rows: u64,
     pub duration_s: Option<f64>,
     pub simulated: bool,
+    pub tags: Vec<String>,
+}
+
+/// What somebody said about a run; only ever appended to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Note {
+    pub id: i64,
+    /// The moment that it is about, as `time_s` of the samples; `null` for the whole run.
+    pub at_s: Option<f64>,
+    pub text: String,
+    #[schema(format = DateTime)]
+    pub created_at: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewNote {
+    #[serde(default)]
+    pub at_s: Option<f64>,
+    /// At most 4000 characters.
+    pub text: String,
+}
+
+/// The tags of a run, all of them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tags {
+    /// At most 20, each a word of at most 40 characters.
+    pub tags: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

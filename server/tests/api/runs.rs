@@ -36,6 +36,9 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     let (_, samples) = daemon.get(&format!("/api/v1/runs/{id}/samples?px=100&channels=time_s,motor_velocity_rad_s"));
     assert_eq!((&samples["rows"], &samples["exact"]), (&rows.into(), &false.into()));
 
+    let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
+    assert!(page.contains("SIMULATED") && page.contains("friction on joint-a-mock"), "{page}");
+
     let body = json!({ "run": id, "effects": ["inertia", "load_transmission", "coulomb", "viscous"] });
     let (status, model) = daemon.post("/api/v1/models", &body.to_string());
     assert_eq!(status, 201, "{model}");
@@ -51,6 +54,12 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     let (_, child) = daemon.post("/api/v1/models", &body.to_string());
     assert_eq!((&child["parent"], &child["added"]), (&model["id"], &json!(["direction_offset"])), "{child}");
     assert_eq!(daemon.get(&format!("/api/v1/models?run={id}")).1.as_array().unwrap().len(), 2);
+    let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
+    assert!(
+        page.contains("+ direction_offset") && page.contains("noise floor"),
+        "the newest version and where it came from"
+    );
+    assert!(!page.contains("<script") && !page.contains("src="), "complete in itself");
 }
 
 #[test]

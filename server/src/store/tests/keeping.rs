@@ -140,6 +140,37 @@ fn runs_are_found_by_their_words() {
     });
 }
 
+#[test]
+fn runs_are_found_by_field_tag_note_and_number() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        for bench in ["joint-a", "joint-b"] {
+            store.create_run(&NewRun { bench: bench.into(), ..new_run() }).await.unwrap();
+        }
+        let imported = store.import(&new_run(), &[], rows(0, 500)).await.unwrap();
+        store.set_tags(1, &["cold".into(), "Oil".into()]).await.unwrap();
+        store.set_tags(1, &["Oil".into()]).await.unwrap();
+        store.save_note(2, Some(1.5), "smells of ozone").await.unwrap();
+        let found = async |search: &str| {
+            let filter = RunFilter { limit: 9, offset: 0, search: Some(search.to_owned()) };
+            store.runs(&filter).await.unwrap().1.into_iter().map(|run| run.id).collect::<Vec<_>>()
+        };
+        assert_eq!(found("tag:oil").await, [1]);
+        assert_eq!(found("oil").await, [1]);
+        assert!(found("tag:cold").await.is_empty(), "tags are replaced");
+        assert_eq!(found("-tag:oil").await, [imported, 2]);
+        assert_eq!(found("ozone bench:joint-b").await, [2]);
+        assert_eq!(found("note:\"of ozone\"").await, [2]);
+        assert_eq!(found("rows>=500 duration>0").await, [imported]);
+        assert_eq!(found("-duration>0").await, [2, 1], "what is not known does not hold");
+        assert_eq!(found("after:2020-01-01 before:2020-01-02").await, [0i64; 0]);
+        assert_eq!(store.run(1).await.unwrap().tags, ["Oil"]);
+        assert_eq!(store.notes(2).await.unwrap()[0].at_s, Some(1.5));
+        assert_eq!(store.tags().await.unwrap(), ["Oil"]);
+        assert!(matches!(store.save_note(99, None, "?").await, Err(StoreError::NoRun(99))));
+    });
+}
+
 fn model(run: RunId, parent: Option<i64>, effects: &[&str]) -> NewModel {
     NewModel {
         run,

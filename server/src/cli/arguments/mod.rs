@@ -1,9 +1,15 @@
 //! What can be written on the command line.
 
+mod kept;
+mod model;
+
+pub use kept::{Export, Identify, Import, Report, StorePlace};
+pub use model::{Model, ModelCommand};
+
 use super::log::LogForm;
 use super::own::OwnEffects;
 use super::ports::Ports;
-use crate::lab::FileFormat;
+use super::require::Requirement;
 use clap::{Args, Parser, Subcommand};
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -53,6 +59,10 @@ pub enum Command {
     Import(Import),
     /// Write a run of the store to a file
     Export(Export),
+    /// Say what a run of the store shows: its procedure's verdict, quantities and intervals
+    Identify(Identify),
+    /// Write a run as one page to send and to print
+    Report(Report),
 }
 
 #[derive(Debug, Args)]
@@ -137,7 +147,11 @@ pub struct Run {
     /// Print the run as JSON
     #[arg(long)]
     pub json: bool,
-    /// Write how the run ended as a JUnit report; waits for the end
+    /// Demand something of the result, such as 'tau_c < 0.035 Nm'; waits for the end; may be given again. The whole
+    /// 95 % interval must keep the limit: exit code 1 where the value breaks it, 3 where only the interval reaches over
+    #[arg(long, value_name = "LIMIT")]
+    pub require: Vec<Requirement>,
+    /// Write how the run ended as a JUnit report, a case for each demand; waits for the end
     #[arg(long, value_name = "REPORT.XML")]
     pub junit: Option<PathBuf>,
     #[command(flatten)]
@@ -272,128 +286,4 @@ pub struct Fit {
     /// Write the complete fit to a file, for `jointbench model`
     #[arg(long, value_name = "MODEL.JSON")]
     pub out: Option<PathBuf>,
-}
-
-const MODEL_EXAMPLES: &str = "\
-  jointbench fit RUN.csv --out model.json                   a model to keep
-  jointbench model evaluate model.json OTHER.csv            its error on another run
-  jointbench model compare old.json model.json RUN.csv      what has changed, and which is better there
-  jointbench model export model.json --format c -o joint.h  for a controller";
-
-#[derive(Debug, Args)]
-#[command(after_help = MODEL_EXAMPLES)]
-pub struct Model {
-    #[command(subcommand)]
-    pub command: ModelCommand,
-}
-
-#[derive(Debug, Subcommand)]
-pub enum ModelCommand {
-    /// Write a model for a controller or a simulator; what the format cannot hold is named in its first comment
-    Export {
-        /// What `fit --out` or the daemon's export has written
-        #[arg(value_name = "MODEL.JSON")]
-        model: PathBuf,
-        #[arg(long, value_enum)]
-        format: ModelFormat,
-        /// File to write [default: standard output]
-        #[arg(short, long, value_name = "FILE")]
-        output: Option<PathBuf>,
-    },
-    /// Tell the error of a model on a run that took no part in its fit
-    Evaluate {
-        #[arg(value_name = "MODEL.JSON")]
-        model: PathBuf,
-        #[arg(value_name = "RUN.CSV")]
-        run: PathBuf,
-        /// Facts about the set-up [default: as for fit]
-        #[arg(long, value_name = "META.JSON")]
-        meta: Option<PathBuf>,
-        #[command(flatten)]
-        columns: Columns,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
-    },
-    /// Compare two models: effects, parameters, and the error of both on one run
-    Compare {
-        #[arg(value_name = "FIRST.JSON")]
-        first: PathBuf,
-        #[arg(value_name = "SECOND.JSON")]
-        second: PathBuf,
-        #[arg(value_name = "RUN.CSV")]
-        run: PathBuf,
-        /// Facts about the set-up [default: as for fit]
-        #[arg(long, value_name = "META.JSON")]
-        meta: Option<PathBuf>,
-        #[command(flatten)]
-        columns: Columns,
-        /// Print JSON
-        #[arg(long)]
-        json: bool,
-    },
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum ModelFormat {
-    /// The complete fit; the only one that can be read again
-    Json,
-    /// C99 header with one function, for a controller
-    C,
-    /// CSV table over velocity and load, or what the model depends on
-    Lut,
-    /// Attributes of a MuJoCo joint
-    Mujoco,
-    /// Attributes of a URDF joint
-    Urdf,
-}
-
-impl From<ModelFormat> for jointbench_model::transfer::Format {
-    fn from(format: ModelFormat) -> Self {
-        match format {
-            ModelFormat::Json => Self::Json,
-            ModelFormat::C => Self::C,
-            ModelFormat::Lut => Self::Table,
-            ModelFormat::Mujoco => Self::Mujoco,
-            ModelFormat::Urdf => Self::Urdf,
-        }
-    }
-}
-
-#[derive(Debug, Args)]
-pub struct Import {
-    /// Run tables: .csv, .csv.gz, .parquet or .arrow
-    #[arg(required = true, value_name = "FILE")]
-    pub files: Vec<PathBuf>,
-    /// Facts about the set-up [default: RUN.meta.json or meta.json beside each file, or what is embedded]
-    #[arg(long, value_name = "META.JSON")]
-    pub meta: Option<PathBuf>,
-    #[command(flatten)]
-    pub columns: Columns,
-    #[command(flatten)]
-    pub store: StorePlace,
-}
-
-#[derive(Debug, Args)]
-pub struct Export {
-    /// Number of the run
-    pub run: i64,
-    /// Kind of file [default: what the ending of --output says, else csv]
-    #[arg(long, value_enum)]
-    pub format: Option<FileFormat>,
-    /// File to write; a CSV gets its facts beside it as NAME.meta.json [default: run-N.csv or run-N.parquet]
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    #[command(flatten)]
-    pub store: StorePlace,
-}
-
-/// The daemon where its address is given; else the folder, or the daemon on the usual address where one has the folder.
-#[derive(Debug, Args)]
-pub struct StorePlace {
-    /// Folder of the store
-    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA", default_value = "jointbench-data")]
-    pub data: PathBuf,
-    #[command(flatten)]
-    pub reach: Reach,
 }

@@ -1,0 +1,66 @@
+//! What is done with runs that are kept.
+
+use super::{Columns, Reach};
+use crate::lab::FileFormat;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct Import {
+    /// Run tables: .csv, .csv.gz, .parquet or .arrow
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Facts about the set-up [default: RUN.meta.json or meta.json beside each file, or what is embedded]
+    #[arg(long, value_name = "META.JSON")]
+    pub meta: Option<PathBuf>,
+    #[command(flatten)]
+    pub columns: Columns,
+    #[command(flatten)]
+    pub store: StorePlace,
+}
+
+#[derive(Debug, Args)]
+pub struct Export {
+    /// Number of the run
+    pub run: i64,
+    /// Kind of file [default: what the ending of --output says, else csv]
+    #[arg(long, value_enum)]
+    pub format: Option<FileFormat>,
+    /// File to write; a CSV gets its facts beside it as NAME.meta.json [default: run-N.csv, run-N.parquet or run-N.mat]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub store: StorePlace,
+}
+
+#[derive(Debug, Args)]
+pub struct Identify {
+    /// Number of the run
+    pub run: i64,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub store: StorePlace,
+}
+
+#[derive(Debug, Args)]
+pub struct Report {
+    /// Number of the run
+    pub run: i64,
+    /// File to write [default: run-N.html]
+    #[arg(short, long, visible_alias = "output", value_name = "REPORT.HTML")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub store: StorePlace,
+}
+
+/// The daemon where its address is given; else the folder, or the daemon on the usual address where one has the folder.
+#[derive(Debug, Args)]
+pub struct StorePlace {
+    /// Folder of the store
+    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA", default_value = "jointbench-data")]
+    pub data: PathBuf,
+    #[command(flatten)]
+    pub reach: Reach,
+}

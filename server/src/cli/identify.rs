@@ -1,0 +1,73 @@
+//! `jointbench identify` and `jointbench report`: what a kept run shows.
+
+use super::arguments::{Identify, Report};
+use super::exit::{Done, Exit};
+use super::serve::runtime;
+use super::transfer::{Way, open, write};
+use crate::report::with_interval;
+use crate::view::{Identification, Identified};
+use std::path::PathBuf;
+
+pub fn identify(arguments: &Identify) -> Done {
+    let runtime = runtime()?;
+    let run = arguments.run;
+    let found = match open(&runtime, &arguments.store, false)? {
+        Way::Folder(lab) => runtime.block_on(lab.identification(run))?,
+        Way::Daemon(client) => client.get(&format!("/runs/{run}/identification"))?,
+    };
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&found).map_err(|fault| Exit::failed(fault.to_string()))?;
+        println!("{text}");
+    } else {
+        print(&found);
+    }
+    match found.result.verdict {
+        Identified::Identified => Ok(()),
+        Identified::Inconclusive => Err(Exit::undecided("")),
+        Identified::Failed => Err(Exit::failed("")),
+    }
+}
+
+pub fn report(arguments: &Report) -> Done {
+    let runtime = runtime()?;
+    let run = arguments.run;
+    let page = match open(&runtime, &arguments.store, false)? {
+        Way::Folder(lab) => runtime.block_on(lab.report(run))?.into_bytes(),
+        Way::Daemon(client) => client.get_bytes(&format!("/runs/{run}/report"))?,
+    };
+    let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("run-{run}.html")));
+    write(&path, &page)?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+pub(super) fn print(found: &Identification) {
+    let result = &found.result;
+    let verdict = match result.verdict {
+        Identified::Identified => "identified",
+        Identified::Inconclusive => "inconclusive",
+        Identified::Failed => "failed",
+    };
+    println!("{} of run {}: {verdict}. {}", found.procedure, found.run, result.summary);
+    if let Some(advice) = &result.advice {
+        println!("next: {advice}");
+    }
+    if result.quantities.is_empty() {
+        return;
+    }
+    println!();
+    let rows: Vec<[String; 4]> = result
+        .quantities
+        .iter()
+        .map(|quantity| {
+            let (value, interval) = with_interval(quantity.value, quantity.ci95, &quantity.unit);
+            let interval = interval.map(|ends| format!("[{ends}]")).unwrap_or_default();
+            [quantity.name.clone(), value, interval, quantity.title.clone()]
+        })
+        .collect();
+    let wide = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let (name, value, interval) = (wide(0), wide(1), wide(2));
+    for row in &rows {
+        println!("{:name$}  {:>value$}  {:interval$}  {}", row[0], row[1], row[2], row[3]);
+    }
+}

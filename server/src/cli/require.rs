@@ -1,0 +1,147 @@
+//! What a script demands of a result: `tau_c < 0.035 Nm`.
+
+use crate::view::{Identification, Quantity};
+use std::str::FromStr;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Below,
+    Above,
+}
+
+/// A limit on one quantity of an identification.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Requirement {
+    text: String,
+    name: String,
+    side: Side,
+    limit: f64,
+    unit: String,
+}
+
+/// What came of a demand.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Kept {
+    Yes(String),
+    /// The value breaks the limit.
+    No(String),
+    /// The value keeps the limit, its interval does not.
+    Unsure(String),
+    /// There is no such quantity, or it has another unit.
+    Unknown(String),
+}
+
+impl FromStr for Requirement {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{text:?}: expected NAME < VALUE UNIT or NAME > VALUE UNIT, such as 'tau_c < 0.035 Nm'");
+        let place = text.find(['<', '>']).ok_or_else(wrong)?;
+        let side = if text[place..].starts_with('<') { Side::Below } else { Side::Above };
+        let rest = text[place + 1..].trim_start_matches('=').trim();
+        let (value, unit) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+        let limit = value.parse::<f64>().ok().filter(|limit| limit.is_finite()).ok_or_else(wrong)?;
+        let name = text[..place].trim();
+        if name.is_empty() {
+            return Err(wrong());
+        }
+        let (text, name, unit) = (text.trim().to_owned(), name.to_owned(), unit.trim().to_owned());
+        Ok(Self { text, name, side, limit, unit })
+    }
+}
+
+impl Requirement {
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    pub fn check(&self, found: &Identification) -> Kept {
+        let quantities = &found.result.quantities;
+        let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {
+            let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
+            let there = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
+            return Kept::Unknown(format!("{} is not in the result: there is {there}", self.name));
+        };
+        let Some(factor) = factor(&self.unit, &quantity.unit) else {
+            let unit = if quantity.unit.is_empty() { "no unit" } else { &quantity.unit };
+            return Kept::Unknown(format!("{} is in {unit}: write the limit so", self.name));
+        };
+        self.judge(quantity, self.limit * factor)
+    }
+
+    fn judge(&self, quantity: &Quantity, limit: f64) -> Kept {
+        let keeps = |value: f64| match self.side {
+            Side::Below => value <= limit,
+            Side::Above => value >= limit,
+        };
+        let (value, interval) = crate::report::with_interval(quantity.value, quantity.ci95, &quantity.unit);
+        let said = match &interval {
+            Some(ends) => format!("{}: {} = {value} [{ends}]", self.text, self.name),
+            None => format!("{}: {} = {value}", self.text, self.name),
+        };
+        if !keeps(quantity.value) {
+            Kept::No(said)
+        } else if quantity.ci95.is_some_and(|ends| !ends.into_iter().all(keeps)) {
+            Kept::Unsure(format!("{said}: the interval reaches over the limit"))
+        } else {
+            Kept::Yes(said)
+        }
+    }
+}
+
+/// From the written unit to the quantity's own: the same, or with a prefix.
+fn factor(written: &str, own: &str) -> Option<f64> {
+    if written == own || (written.is_empty() && own == "1") {
+        return Some(1.0);
+    }
+    [("k", 1e3), ("m", 1e-3), ("µ", 1e-6), ("u", 1e-6), ("n", 1e-9)]
+        .into_iter()
+        .find(|(prefix, _)| written.strip_prefix(prefix) == Some(own) && !own.is_empty())
+        .map(|(_, factor)| factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::{Identified, Shown};
+
+    fn found() -> Identification {
+        let quantity = Quantity {
+            name: "tau_c".to_owned(),
+            symbol: "τ_c".to_owned(),
+            title: "Coulomb friction".to_owned(),
+            unit: "Nm".to_owned(),
+            value: 0.0306,
+            ci95: Some([0.0302, 0.0310]),
+        };
+        let result = Shown {
+            verdict: Identified::Identified,
+            summary: String::new(),
+            advice: None,
+            quantities: vec![quantity],
+            figures: Vec::new(),
+        };
+        Identification { run: 1, procedure: "friction".to_owned(), software: String::new(), result }
+    }
+
+    #[test]
+    fn the_whole_interval_must_keep_the_limit() {
+        let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
+        assert!(matches!(check("tau_c < 0.035 Nm"), Kept::Yes(_)));
+        assert!(matches!(check("tau_c<=35 mNm"), Kept::Yes(_)));
+        assert!(matches!(check("tau_c > 0.02 Nm"), Kept::Yes(_)));
+        assert!(matches!(check("tau_c < 0.030 Nm"), Kept::No(_)));
+        assert!(matches!(check("tau_c < 0.0308 Nm"), Kept::Unsure(said) if said.contains("30.60 mNm [30.20 … 31.00]")));
+    }
+
+    #[test]
+    fn what_cannot_be_checked_says_why() {
+        let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
+        assert_eq!(check("tau_x < 1 Nm"), Kept::Unknown("tau_x is not in the result: there is tau_c".to_owned()));
+        assert_eq!(check("tau_c < 1 A"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
+        assert_eq!(check("tau_c < 1"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
+        for text in ["tau_c", "< 3 Nm", "tau_c < much", "tau_c < NaN Nm"] {
+            assert!(text.parse::<Requirement>().unwrap_err().contains("NAME < VALUE UNIT"), "{text}");
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! What people say about runs: notes and tags.
+
+use super::{Answer, Lab, LabError};
+use crate::store::NoteRecord;
+use crate::view::{NewNote, Note, Run};
+
+const LONGEST_NOTE: usize = 4000;
+const LONGEST_TAG: usize = 40;
+const MOST_TAGS: usize = 20;
+
+impl Lab {
+    pub async fn notes(&self, run: i64) -> Answer<Vec<Note>> {
+        Ok(self.inner.store.notes(run).await?.into_iter().map(view).collect())
+    }
+
+    pub async fn write_note(&self, run: i64, new: &NewNote) -> Answer<Note> {
+        let text = new.text.trim();
+        if text.is_empty() || text.chars().count() > LONGEST_NOTE {
+            return Err(LabError::Invalid(format!("text: write 1 to {LONGEST_NOTE} characters")));
+        }
+        Ok(view(self.inner.store.save_note(run, new.at_s, text).await?))
+    }
+
+    /// The run has these tags from now on, and no others.
+    pub async fn set_tags(&self, run: i64, tags: &[String]) -> Answer<Run> {
+        let tags: Vec<String> = tags.iter().map(|tag| tag.trim().to_owned()).collect();
+        if tags.len() > MOST_TAGS {
+            return Err(LabError::Invalid(format!("tags: at most {MOST_TAGS}, these are {}", tags.len())));
+        }
+        // What the search could not ask for.
+        let odd =
+            |tag: &&String| tag.is_empty() || tag.chars().count() > LONGEST_TAG || tag.contains(['"', ' ', '\t', '\n']);
+        if let Some(tag) = tags.iter().find(odd) {
+            return Err(LabError::Invalid(format!("tag {tag:?}: write one word of at most {LONGEST_TAG} characters")));
+        }
+        self.inner.store.set_tags(run, &tags).await?;
+        self.run(run).await
+    }
+
+    pub async fn tags(&self) -> Answer<Vec<String>> {
+        Ok(self.inner.store.tags().await?)
+    }
+}
+
+fn view(record: NoteRecord) -> Note {
+    Note { id: record.id, at_s: record.at_s, text: record.text, created_at: record.created_at }
+}

@@ -1,0 +1,252 @@
+//! A figure of a result as SVG.
+
+use crate::view::{Figure, FigureForm, FigureSeries, Mark};
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+
+/// Okabe and Ito: told apart by every kind of colour vision, and on paper by their dashes.
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(60, 60, 60),
+];
+/// Length and gap of the dashes [px].
+const DASHES: [(i32, i32); 4] = [(0, 0), (8, 4), (3, 3), (12, 3)];
+const FONT: &str = "sans-serif";
+const WIDTH: u32 = 760;
+const HEIGHT: u32 = 400;
+
+type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Plane<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// `None` where the figure holds no point.
+pub fn svg(figure: &Figure) -> Option<String> {
+    let mut text = String::new();
+    let polar = figure.form == FigureForm::Polar;
+    let turned: Vec<FigureSeries>;
+    let series = if polar {
+        turned = figure.series.iter().map(around).collect();
+        &turned
+    } else {
+        &figure.series
+    };
+    let (x, y) = (range(series.iter().flat_map(|s| s.x.iter().copied()))?, y_range(series)?);
+    {
+        let size = if polar { (HEIGHT + 80, HEIGHT) } else { (WIDTH, HEIGHT) };
+        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        let drawn = match polar {
+            true => {
+                let reach = [x.0, x.1, y.0, y.1].into_iter().map(f64::abs).fold(0.0, f64::max);
+                draw(&area, figure, series, ((-reach, reach), (-reach, reach)))
+            }
+            false => draw(&area, figure, series, (widened(x, figure), y)),
+        };
+        drawn.and_then(|()| area.present()).ok()?;
+    }
+    Some(text)
+}
+
+/// Angle and radius as places in the plane.
+fn around(series: &FigureSeries) -> FigureSeries {
+    let place =
+        |of: fn(f64) -> f64| series.x.iter().zip(&series.y).map(|(angle, radius)| radius * of(*angle)).collect();
+    FigureSeries { x: place(f64::cos), y: place(f64::sin), band: Vec::new(), ..series.clone() }
+}
+
+fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    (low <= high).then_some((low, high))
+}
+
+fn y_range(series: &[FigureSeries]) -> Option<(f64, f64)> {
+    let bars = series.iter().any(|s| s.mark == Mark::Bars).then_some(0.0);
+    let values = series.iter().flat_map(|s| s.y.iter().copied().chain(s.band.iter().flatten().copied())).chain(bars);
+    let (low, high) = range(values)?;
+    let air = match high - low {
+        0.0 => 0.5 * high.abs().max(1.0),
+        span => 0.05 * span,
+    };
+    Some((low - air, high + air))
+}
+
+fn widened((low, high): (f64, f64), figure: &Figure) -> (f64, f64) {
+    match figure.x.names.len() {
+        0 if low == high => (low - 0.5, high + 0.5),
+        0 => (low, high),
+        count => (-0.5, count as f64 - 0.5),
+    }
+}
+
+fn draw(area: &Area, figure: &Figure, series: &[FigureSeries], (x, y): ((f64, f64), (f64, f64))) -> Drawn {
+    area.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(area)
+        .margin(8)
+        .x_label_area_size(44)
+        .y_label_area_size(78)
+        .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
+    let names = &figure.x.names;
+    let name = |at: &f64| match names.is_empty() {
+        true => number(*at),
+        false if (at - at.round()).abs() < 1e-6 => names.get(at.round() as usize).cloned().unwrap_or_default(),
+        false => String::new(),
+    };
+    let mut mesh = chart.configure_mesh();
+    mesh.light_line_style(TRANSPARENT)
+        .x_labels(if names.is_empty() { 8 } else { 2 * names.len() + 1 })
+        .x_label_formatter(&name)
+        .y_label_formatter(&|at| number(*at))
+        .label_style((FONT, 13))
+        .axis_desc_style((FONT, 14));
+    match figure.form {
+        FigureForm::Cartesian => {
+            mesh.x_desc(labelled(&figure.x)).y_desc(labelled(&figure.y)).draw()?;
+        }
+        FigureForm::Polar => {
+            mesh.x_desc(labelled(&figure.y)).draw()?;
+        }
+    }
+    let bars = series.iter().filter(|s| s.mark == Mark::Bars).count();
+    let mut bar = 0;
+    for (i, one) in series.iter().enumerate() {
+        let colour = COLOURS[i % COLOURS.len()];
+        match one.mark {
+            Mark::Line => line(&mut chart, one, colour, DASHES[i % DASHES.len()])?,
+            Mark::Points => points(&mut chart, one, colour)?,
+            Mark::Bars => {
+                columns(&mut chart, one, colour, (bar, bars))?;
+                bar += 1;
+            }
+        }
+    }
+    if series.len() > 1 {
+        chart
+            .configure_series_labels()
+            .label_font((FONT, 13))
+            .background_style(WHITE.mix(0.8))
+            .border_style(BLACK.mix(0.3))
+            .draw()?;
+    }
+    Ok(())
+}
+
+fn labelled(axis: &crate::view::FigureAxis) -> String {
+    if axis.unit.is_empty() { axis.label.clone() } else { format!("{} [{}]", axis.label, axis.unit) }
+}
+
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || (1e-3..1e5).contains(&size) {
+        let text = format!("{value:.4}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+fn line(chart: &mut Plane, series: &FigureSeries, colour: RGBColor, (dash, gap): (i32, i32)) -> Drawn {
+    if series.band.len() == series.x.len() {
+        let low = series.x.iter().zip(&series.band).map(|(x, band)| (*x, band[0]));
+        let high = series.x.iter().zip(&series.band).map(|(x, band)| (*x, band[1]));
+        let edge: Vec<(f64, f64)> = low.chain(high.rev()).collect();
+        chart.draw_series(std::iter::once(Polygon::new(edge, colour.mix(0.15))))?;
+    }
+    let places = series.x.iter().copied().zip(series.y.iter().copied());
+    let style = colour.stroke_width(2);
+    let drawn = match gap {
+        0 => chart.draw_series(LineSeries::new(places, style))?,
+        _ => chart.draw_series(DashedLineSeries::new(places, dash, gap, style))?,
+    };
+    drawn.label(&series.label).legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+    Ok(())
+}
+
+fn points(chart: &mut Plane, series: &FigureSeries, colour: RGBColor) -> Drawn {
+    if series.band.len() == series.x.len() {
+        let bars = series.x.iter().zip(&series.y).zip(&series.band);
+        chart.draw_series(bars.map(|((x, y), band)| ErrorBar::new_vertical(*x, band[0], *y, band[1], colour, 6)))?;
+    }
+    let places = series.x.iter().zip(&series.y);
+    chart
+        .draw_series(places.map(|(x, y)| Circle::new((*x, *y), 3, colour.filled())))?
+        .label(&series.label)
+        .legend(move |(x, y)| Circle::new((x + 9, y), 3, colour.filled()));
+    Ok(())
+}
+
+/// Side by side where there are several series.
+fn columns(chart: &mut Plane, series: &FigureSeries, colour: RGBColor, (place, count): (usize, usize)) -> Drawn {
+    let wide = 0.8 / count as f64;
+    let left = move |x: f64| x - 0.4 + wide * place as f64;
+    let bars = series.x.iter().zip(&series.y);
+    chart
+        .draw_series(
+            bars.map(|(x, y)| Rectangle::new([(left(*x), 0.0), (left(*x) + wide, *y)], colour.mix(0.8).filled())),
+        )?
+        .label(&series.label)
+        .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 18, y + 5)], colour.mix(0.8).filled()));
+    if series.band.len() == series.x.len() {
+        let ends = series.x.iter().zip(&series.y).zip(&series.band);
+        let middle = |x: f64| left(x) + wide / 2.0;
+        chart.draw_series(
+            ends.map(|((x, y), band)| ErrorBar::new_vertical(middle(*x), band[0], *y, band[1], BLACK, 6)),
+        )?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::FigureAxis;
+
+    fn figure(form: FigureForm, mark: Mark, names: &[&str]) -> Figure {
+        let axis = |label: &str, unit: &str, names: &[&str]| FigureAxis {
+            label: label.to_owned(),
+            unit: unit.to_owned(),
+            names: names.iter().map(|name| (*name).to_owned()).collect(),
+        };
+        let series = |label: &str, lift: f64| FigureSeries {
+            label: label.to_owned(),
+            mark,
+            x: vec![0.0, 1.0, 2.0],
+            y: vec![1.0 + lift, 2.0 + lift, 1.5 + lift],
+            band: vec![[0.9, 1.4], [1.8, 2.5], [1.2, 1.9]],
+        };
+        Figure {
+            name: "friction".to_owned(),
+            title: "Friction".to_owned(),
+            form,
+            x: axis("velocity", "rad/s", names),
+            y: axis("torque", "Nm", &[]),
+            series: vec![series("there & back", 0.0), series("model", 0.1)],
+        }
+    }
+
+    #[test]
+    fn every_form_is_drawn_with_its_labels() {
+        for (form, mark, names) in [
+            (FigureForm::Cartesian, Mark::Line, &[][..]),
+            (FigureForm::Cartesian, Mark::Points, &[]),
+            (FigureForm::Cartesian, Mark::Bars, &["none", "Coulomb", "full"]),
+            (FigureForm::Polar, Mark::Line, &[]),
+        ] {
+            let text = svg(&figure(form, mark, names)).unwrap();
+            assert!(text.starts_with("<svg") && text.contains("torque [Nm]"), "{text}");
+            assert!(text.contains("there &amp; back") && !text.contains("NaN"));
+            assert!(names.iter().all(|name| text.contains(name)), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_figure_without_points_is_none() {
+        let mut empty = figure(FigureForm::Cartesian, Mark::Line, &[]);
+        empty.series.clear();
+        assert_eq!(svg(&empty), None);
+    }
+}

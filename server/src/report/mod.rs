@@ -1,0 +1,216 @@
+//! A run as one page that can be sent and printed: what was done, what it shows, how well a model tells it.
+//!
+//! The page holds everything itself: no script, no font, no picture from elsewhere.
+
+mod figure;
+mod number;
+
+use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict};
+use jointbench_model::words;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+pub use number::with_interval;
+use serde_json::{Map, Value};
+
+/// What is told of a run.
+pub struct Report {
+    pub run: Run,
+    /// What its procedure makes of it.
+    pub identification: Option<Identification>,
+    /// The newest model version, with its forebears before it.
+    pub versions: Vec<Model>,
+    /// Of the newest version.
+    pub diagnosis: Option<Diagnosis>,
+}
+
+impl Report {
+    pub fn html(&self) -> String {
+        let summary = &self.run.summary;
+        let title = format!("Run {}: {} on {}", summary.id, summary.procedure, summary.bench);
+        html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    title { (title) }
+                    style { (PreEscaped(include_str!("style.css"))) }
+                }
+                body {
+                    h1 { (title) " " (badge(summary.simulated)) }
+                    (self.course())
+                    @if let Some(found) = &self.identification { (result(found)) }
+                    @if let Some(model) = self.versions.last() { (self.model(model)) }
+                    (self.provenance())
+                }
+            }
+        }
+        .into_string()
+    }
+
+    fn course(&self) -> Markup {
+        let summary = &self.run.summary;
+        html! {
+            p.quiet {
+                (summary.created_at) " · " (word(summary.state)) " · " (summary.rows) " samples"
+                @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of the bench")) }
+                @if let Some(safe) = summary.safe { " · bench " (word(safe)) }
+            }
+            @if let Some(reason) = &summary.reason { p { (reason) } }
+        }
+    }
+
+    fn model(&self, model: &Model) -> Markup {
+        let most = self.versions.iter().map(|version| version.validation_rms).fold(0.0, f64::max);
+        let unit = &model.fit.unit;
+        html! {
+            h2 { "Model" }
+            p { (model.effects.join(" + ")) }
+            table {
+                tr { th { "Version" } th { "Change" } th.figure { "Held-out error" } th { } }
+                @for version in &self.versions {
+                    tr {
+                        td { (version.id) }
+                        td { (change(version)) }
+                        td.figure { (words::figure(version.validation_rms, unit)) }
+                        td width="40%" { span.bar style=(format!("width: {:.1}%", 100.0 * version.validation_rms / most)) {} }
+                    }
+                }
+                @if let Some(floor) = model.noise_floor_rms {
+                    tr {
+                        td { } td { "noise floor, from repeats" } td.figure { (words::figure(floor, unit)) }
+                        td { span.bar style=(format!("width: {:.1}%", 100.0 * floor / most)) {} }
+                    }
+                }
+            }
+            table {
+                tr { th { "Effect" } th { "Parameter" } th.figure { "Value" } th.figure { "95 % interval" } th { } }
+                @for parameter in &model.fit.parameters {
+                    @let ends = parameter.ci95[0].zip(parameter.ci95[1]).map(|(low, high)| [low, high]);
+                    @let (value, interval) = with_interval(parameter.value, ends, &parameter.unit);
+                    tr {
+                        td { (parameter.effect) } td { (parameter.name) }
+                        td.figure { (value) } td.figure { (interval.unwrap_or_default()) }
+                        td { @if parameter.state != ParameterState::Ok { (parameter.note.clone().unwrap_or_default()) } }
+                    }
+                }
+            }
+            @for pair in &model.fit.trade_offs {
+                p.quiet { (format!("{} and {} trade off (correlation {:.2}).", pair.first, pair.second, pair.correlation)) }
+            }
+            @for note in &model.fit.notes { p.quiet { (note) } }
+            @if let Some(diagnosis) = &self.diagnosis { (diagnosed(diagnosis)) }
+        }
+    }
+
+    fn provenance(&self) -> Markup {
+        let text = self.run.provenance.get("bench_description").and_then(Value::as_str);
+        html! {
+            h2 { "Parameters" }
+            (pairs(&self.run.parameters))
+            h2 { "Set-up" }
+            (pairs(&self.run.meta))
+            h2 { "Provenance" }
+            (pairs(&self.run.provenance.iter().filter(|(name, _)| *name != "bench_description")
+                .map(|(name, value)| (name.clone(), value.clone())).collect()))
+            @if let Some(text) = text { p { "Bench description" } pre { (text) } }
+        }
+    }
+}
+
+fn badge(simulated: bool) -> Markup {
+    html! { span.badge { @if simulated { "SIMULATED" } @else { "HARDWARE" } } }
+}
+
+fn result(found: &Identification) -> Markup {
+    let result = &found.result;
+    let verdict = match result.verdict {
+        Identified::Identified => "Identified",
+        Identified::Inconclusive => "Inconclusive",
+        Identified::Failed => "Failed",
+    };
+    html! {
+        h2 { "Result" }
+        p.verdict { strong { (verdict) ". " } (result.summary) }
+        @if let Some(advice) = &result.advice { p { "Next: " (advice) } }
+        @if !result.quantities.is_empty() {
+            table {
+                tr { th { "Quantity" } th { "Symbol" } th.figure { "Value" } th.figure { "95 % interval" } th { "Name" } }
+                @for quantity in &result.quantities {
+                    @let (value, interval) = with_interval(quantity.value, quantity.ci95, &quantity.unit);
+                    tr {
+                        td { (quantity.title) } td { (quantity.symbol) }
+                        td.figure { (value) } td.figure { (interval.unwrap_or_default()) }
+                        td.quiet { code { (quantity.name) } }
+                    }
+                }
+            }
+        }
+        @for one in &result.figures {
+            @if let Some(svg) = figure::svg(one) {
+                figure { figcaption { (one.title) } (PreEscaped(svg)) }
+            }
+        }
+        p.quiet { "Worked out from the samples by " (found.software) "." }
+    }
+}
+
+fn change(version: &Model) -> String {
+    match version.parent {
+        None => "start".to_owned(),
+        Some(_) => {
+            let added = version.added.iter().map(|id| format!("+ {id}"));
+            added.chain(version.removed.iter().map(|id| format!("− {id}"))).collect::<Vec<_>>().join(", ")
+        }
+    }
+}
+
+fn diagnosed(diagnosis: &Diagnosis) -> Markup {
+    let found = &diagnosis.finding;
+    let verdict = match (found.verdict, &found.undecided) {
+        (Verdict::Adequate, Some(_)) => "Cannot be decided",
+        (Verdict::Adequate, None) => "Adequate",
+        (Verdict::MissingEffect, _) => "An effect is missing",
+        (Verdict::UnexplainedStructure, _) => "Unexplained structure",
+    };
+    html! {
+        h2 { "Diagnosis" }
+        p.verdict { strong { (verdict) ". " } (found.summary) }
+        @if !found.regions.is_empty() {
+            p { "Where the model fails:" }
+            ul { @for region in found.regions.iter().take(5) { li { (region.sentence) } } }
+        }
+        @if !found.suggestions.is_empty() {
+            p { "What is missing:" }
+            ul { @for suggestion in found.suggestions.iter().take(5) { li { strong { (suggestion.effect) } ": " (suggestion.why) } } }
+        }
+        @if let Some(experiment) = &found.experiment { p { "What to measure next: " (experiment.why) } }
+    }
+}
+
+fn pairs(values: &Map<String, Value>) -> Markup {
+    html! {
+        table {
+            @for (name, value) in values {
+                tr { td { (name.replace('_', " ")) } td { (plain(value)) } }
+            }
+        }
+    }
+}
+
+fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Null => "–".to_owned(),
+        Value::Array(items) => items.iter().map(plain).collect::<Vec<_>>().join(", "),
+        Value::Object(items) => {
+            items.iter().map(|(name, value)| format!("{name} {}", plain(value))).collect::<Vec<_>>().join(" · ")
+        }
+        other => other.to_string(),
+    }
+}
+
+/// In the words of the API, without their underscores.
+fn word(value: impl serde::Serialize) -> String {
+    let text = serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned));
+    text.unwrap_or_default().replace('_', " ")
+}

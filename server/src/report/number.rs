@@ -1,0 +1,56 @@
+//! Figures for paper: as many digits as the interval carries.
+
+/// Factor and prefix that keep the digits of `size` before the point, where the unit takes a prefix.
+fn prefix(size: f64, unit: &str) -> (f64, &'static str) {
+    let takes = ["Nm", "N", "rad", "m", "A", "s", "V", "kg"].iter().any(|plain| unit == *plain)
+        || unit.starts_with("Nm")
+        || unit.starts_with("rad");
+    match size {
+        s if !takes || unit == "kg" || s == 0.0 || s >= 1.0 => (1.0, ""),
+        s if s >= 1e-3 => (1e3, "m"),
+        s if s >= 1e-6 => (1e6, "µ"),
+        _ => (1e9, "n"),
+    }
+}
+
+/// `32.14 mNm` and `31.90 … 32.38`, in one unit and with two digits of the half-width.
+pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String, Option<String>) {
+    let unit = if unit == "1" { "" } else { unit };
+    let (factor, prefix) = prefix(value.abs(), unit);
+    let spread = ci95.map_or(value.abs() / 50.0, |[low, high]| (high - low) / 2.0) * factor;
+    let text = |value: f64| digits(value * factor, spread);
+    let shown = format!("{} {prefix}{unit}", text(value)).trim_end().to_owned();
+    (shown, ci95.map(|[low, high]| format!("{} … {}", text(low), text(high))))
+}
+
+/// As many digits as `spread` leaves sense in, and two of `spread` itself.
+fn digits(value: f64, spread: f64) -> String {
+    if spread <= 0.0 || !spread.is_finite() {
+        return if value == value.round() && value.abs() < 1e9 { format!("{value:.0}") } else { format!("{value:.4}") };
+    }
+    let places = (1.0 - spread.log10().floor()).clamp(0.0, 12.0) as usize;
+    match value.abs() {
+        size if size >= 1e9 || (size > 0.0 && size < 1e-4) => format!("{value:.3e}"),
+        _ => format!("{value:.places$}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_interval;
+
+    #[test]
+    fn an_interval_decides_the_digits() {
+        for (value, ci95, unit, shown, interval) in [
+            (0.032_141, Some([0.0319, 0.0324]), "Nm", "32.14 mNm", Some("31.90 … 32.40")),
+            (5000.4, Some([4980.0, 5020.0]), "Nm/rad", "5000 Nm/rad", Some("4980 … 5020")),
+            (0.27, None, "", "0.2700", None),
+            (11.0, None, "", "11.00", None),
+            (1.2e-5, Some([1.1e-5, 1.3e-5]), "kg·m²", "1.200e-5 kg·m²", Some("1.100e-5 … 1.300e-5")),
+            (0.0, Some([0.0, 0.0]), "Nm", "0 Nm", Some("0 … 0")),
+        ] {
+            let (text, ends) = with_interval(value, ci95, unit);
+            assert_eq!((text.as_str(), ends.as_deref()), (shown, interval));
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! The query language of the list of runs.
+//!
+//! Terms with blanks between, all of which must hold: a word is looked for in bench, procedure, kind, state, reason, tags and
+//! notes; `key:value` in one field; `rows>1000` compares; `-` before a term means that it must not hold; `"two words"` are one.
+
+use super::StoreError;
+use sqlx::{QueryBuilder, Sqlite};
+
+/// Words that are compared whole, with the column that they are in.
+const FIELDS: [(&str, &str); 5] =
+    [("bench", "bench"), ("procedure", "procedure"), ("kind", "kind"), ("state", "state"), ("safe", "safe")];
+/// Numbers, with their column.
+const NUMBERS: [(&str, &str); 3] = [("id", "id"), ("rows", "rows"), ("duration", "duration_s")];
+const KEYS: &str =
+    "bench: procedure: kind: state: safe: tag: note: simulated:yes after:2026-01-31 before: id> rows> duration>";
+
+#[derive(Debug, Clone, PartialEq)]
+enum Condition {
+    Word(String),
+    Field(&'static str, String),
+    Tag(String),
+    Note(String),
+    Simulated(bool),
+    /// A column, an operator of SQL, and what it is compared with.
+    Number(&'static str, &'static str, f64),
+    Day(&'static str, String),
+}
+
+/// What a search asks for: each condition, and whether it must not hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Search(Vec<(bool, Condition)>);
+
+impl Search {
+    pub fn parse(text: &str) -> Result<Self, StoreError> {
+        let terms = terms(text).into_iter().map(|term| {
+            let (without, rest) = match term.strip_prefix('-') {
+                Some(rest) if !rest.is_empty() => (true, rest),
+                _ => (false, term.as_str()),
+            };
+            condition(rest).map(|condition| (without, condition))
+        });
+        Ok(Self(terms.collect::<Result<_, _>>()?))
+    }
+
+    /// ` WHERE …`, with every value bound.
+    pub fn push(&self, query: &mut QueryBuilder<Sqlite>) {
+        for (i, (without, condition)) in self.0.iter().enumerate() {
+            query.push(if i == 0 { " WHERE " } else { " AND " });
+            query.push(if *without { "NOT COALESCE((" } else { "COALESCE((" });
+            condition.push(query);
+            query.push("), 0)");
+        }
+    }
+}
+
+impl Condition {
+    fn push(&self, query: &mut QueryBuilder<Sqlite>) {
+        match self {
+            Condition::Word(word) => {
+                query.push("instr(words, ").push_bind(word.clone());
+                query.push(") > 0 OR EXISTS (SELECT 1 FROM tags WHERE run = runs_told.id AND instr(lower(tag), ");
+                query.push_bind(word.clone()).push(") > 0) OR ");
+                push_note(query, word);
+            }
+            Condition::Field(column, value) => {
+                query.push("lower(").push(*column).push(") = ").push_bind(value.clone());
+            }
+            Condition::Tag(tag) => {
+                query.push("EXISTS (SELECT 1 FROM tags WHERE run = runs_told.id AND lower(tag) = ");
+                query.push_bind(tag.clone()).push(")");
+            }
+            Condition::Note(word) => push_note(query, word),
+            Condition::Simulated(yes) => {
+                query.push("simulated = ").push_bind(*yes);
+            }
+            Condition::Number(column, operator, value) => {
+                query.push(*column).push(*operator).push_bind(*value);
+            }
+            // Moments are written so that their order is that of their text.
+            Condition::Day(operator, day) => {
+                query.push("created_at").push(*operator).push_bind(day.clone());
+            }
+        }
+    }
+}
+
+fn push_note(query: &mut QueryBuilder<Sqlite>, word: &str) {
+    query.push("EXISTS (SELECT 1 FROM notes WHERE run = runs_told.id AND instr(lower(text), ");
+    query.push_bind(word.to_owned()).push(") > 0)");
+}
+
+fn condition(term: &str) -> Result<Condition, StoreError> {
+    let refuse = |what: String| StoreError::Search { term: term.to_owned(), what };
+    for (name, column) in NUMBERS {
+        let Some(rest) = term.strip_prefix(name) else { continue };
+        let operators = [(">=", " >= "), ("<=", " <= "), (">", " > "), ("<", " < "), ("=", " = "), (":", " = ")];
+        if let Some((value, operator)) = operators.iter().find_map(|(sign, sql)| Some((rest.strip_prefix(sign)?, *sql)))
+        {
+            let number = value.parse::<f64>().ok().filter(|number| number.is_finite());
+            let number = number.ok_or_else(|| refuse(format!("{value:?} is no number")))?;
+            return Ok(Condition::Number(column, operator, number));
+        }
+    }
+    let Some((key, value)) = term.split_once(':') else { return Ok(Condition::Word(term.to_owned())) };
+    if let Some((_, column)) = FIELDS.iter().find(|(name, _)| *name == key) {
+        return Ok(Condition::Field(column, value.to_owned()));
+    }
+    match (key, value) {
+        (_, "") => Err(refuse("a value is missing behind the colon".to_owned())),
+        ("tag", tag) => Ok(Condition::Tag(tag.to_owned())),
+        ("note", word) => Ok(Condition::Note(word.to_owned())),
+        ("simulated", "yes") => Ok(Condition::Simulated(true)),
+        ("simulated", "no") => Ok(Condition::Simulated(false)),
+        ("simulated", _) => Err(refuse("write simulated:yes or simulated:no".to_owned())),
+        ("after" | "before", day) => {
+            let day: jiff::civil::Date = day.parse().map_err(|_| refuse("write the day as 2026-01-31".to_owned()))?;
+            Ok(Condition::Day(if key == "after" { " >= " } else { " < " }, day.to_string()))
+        }
+        _ => Err(refuse(format!("there is no field {key}; there are {KEYS}"))),
+    }
+}
+
+/// Split at blanks outside quotation marks, in lower case.
+fn terms(text: &str) -> Vec<String> {
+    let (mut terms, mut term, mut quoted) = (Vec::new(), String::new(), false);
+    for c in text.to_lowercase().chars() {
+        match c {
+            '"' => quoted = !quoted,
+            c if c.is_whitespace() && !quoted => terms.push(std::mem::take(&mut term)),
+            c => term.push(c),
+        }
+    }
+    terms.push(term);
+    terms.retain(|term| !term.is_empty());
+    terms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terms_are_split_outside_quotation_marks() {
+        assert_eq!(
+            terms("  kind:Friction \"warm oil\" note:\"two words\""),
+            ["kind:friction", "warm oil", "note:two words"]
+        );
+    }
+
+    #[test]
+    fn a_wrong_term_is_named_with_what_there_is() {
+        for (text, said) in [
+            ("colour:red", "there is no field colour; there are bench:"),
+            ("rows>many", "\"many\" is no number"),
+            ("tag:", "a value is missing"),
+            ("after:tomorrow", "2026-01-31"),
+            ("simulated:perhaps", "simulated:yes or simulated:no"),
+        ] {
+            let refused = Search::parse(text).unwrap_err().to_string();
+            assert!(refused.contains(said), "{refused}");
+        }
+    }
+}

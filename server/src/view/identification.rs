@@ -1,0 +1,100 @@
+//! What a procedure makes of its run.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Identified {
+    Identified,
+    /// The run says too little; `advice` tells what to measure.
+    Inconclusive,
+    /// The run cannot be used; `summary` tells why.
+    Failed,
+}
+
+/// Worked out from the stored samples each time it is asked for, by the version that answers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Identification {
+    pub run: i64,
+    pub procedure: String,
+    /// The version of jointbench that worked it out.
+    pub software: String,
+    #[serde(flatten)]
+    pub result: Shown,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Shown {
+    pub verdict: Identified,
+    /// One plain sentence.
+    pub summary: String,
+    /// What to measure or mend next.
+    pub advice: Option<String>,
+    pub quantities: Vec<Quantity>,
+    pub figures: Vec<Figure>,
+}
+
+/// One figure of a result, in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Quantity {
+    /// Stable and unique in its result: what scripts and limits hold on to.
+    pub name: String,
+    /// As in the literature: `τ_c⁺`.
+    pub symbol: String,
+    pub title: String,
+    /// SI symbol; empty for a share or a count.
+    pub unit: String,
+    pub value: f64,
+    /// 95 % interval, where one can be had from the run.
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
+    pub ci95: Option<[f64; 2]>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Figure {
+    pub name: String,
+    pub title: String,
+    pub form: FigureForm,
+    pub x: FigureAxis,
+    pub y: FigureAxis,
+    pub series: Vec<FigureSeries>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FigureForm {
+    Cartesian,
+    /// x is the angle [rad], y the radius.
+    Polar,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FigureAxis {
+    pub label: String,
+    /// SI symbol; empty for a share or a count.
+    pub unit: String,
+    /// Where the axis counts things that have names, instead of a quantity: 0 is the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub names: Vec<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Mark {
+    Points,
+    Line,
+    Bars,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FigureSeries {
+    pub label: String,
+    pub mark: Mark,
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    /// Lower and upper end of the 95 % band at each point; empty where there is none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(value_type = Vec<Vec<f64>>)]
+    pub band: Vec<[f64; 2]>,
+}
