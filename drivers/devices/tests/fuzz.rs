@@ -67,7 +67,7 @@ proptest! {
         walk(&ReadFeedback { axis: 0 }, &noise);
         walk(&ReadNumber { path: "vbus_voltage" }, &noise);
         walk(&ReadInfo, &noise);
-        walk(&SetVelocity { turns_s: 1.5 }, &noise);
+        walk(&SetVelocity { turns_s: 1.5, torque_nm: 0.0 }, &noise);
         for part in Part::ALL {
             walk(&ReadErrors(part), &noise);
         }

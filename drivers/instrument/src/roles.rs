@@ -60,7 +60,13 @@ pub trait JointController: Instrument {
     /// Sets limits and watchdog, zeroes the set-points and closes the velocity loop.
     fn arm(&mut self, speed_limit: RadPerSec, current_limit: Amperes) -> Result<(), Fault>;
     /// Motor-side velocity set-point.
-    fn set_velocity(&mut self, velocity: RadPerSec) -> Result<(), Fault>;
+    fn set_velocity(&mut self, velocity: RadPerSec) -> Result<(), Fault> {
+        self.set_velocity_fed(velocity, Amperes(0.0))
+    }
+    /// The same with a motor current fed forward: added to what the velocity loop asks for.
+    fn set_velocity_fed(&mut self, velocity: RadPerSec, current: Amperes) -> Result<(), Fault>;
+    /// Motor current set-point, without a velocity loop: the joint goes where load and friction let it.
+    fn set_motor_current(&mut self, current: Amperes) -> Result<(), Fault>;
     fn read(&mut self) -> Result<JointReading, Fault>;
     fn health(&mut self) -> Result<DriveHealth, Fault>;
     /// Drive torque off. Returns when the command is on the wire; [`JointController::health`] tells whether it took effect.

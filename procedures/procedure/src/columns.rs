@@ -1,6 +1,7 @@
 //! The columns of a run table: which ones a bench fills, and one row of them.
 
 use crate::encoder_columns::{self, Encoders};
+use crate::plan::Plan;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{DriveHealth, JointReading, Pose};
 use jointbench_instrument::{Bench, Channel, Kind, Trace};
@@ -24,6 +25,8 @@ pub(crate) struct Moment {
     pub encoders: Option<Encoders>,
     /// Where the stage holds the sensor.
     pub pose: Option<Pose>,
+    /// Commanded as such, or fed forward.
+    pub motor_current_setpoint_a: f64,
 }
 
 /// The columns that this bench can fill. An instrument that is not there has no column.
@@ -38,16 +41,21 @@ pub(crate) struct Moment {
 pub(crate) struct Columns {
     channels: Vec<Channel>,
     brake_nm_per_a: f64,
-    /// Set for a run of a brake: the gear ratio, and the way in which the shaft was last told to turn.
-    brake: Option<(f64, f64)>,
+    /// Set for a run of a brake: the way in which the shaft was last told to turn.
+    braked_way: Option<f64>,
+    /// Turns of the motor for each of the shaft whose velocity is told, too.
+    told_gear_ratio: Option<f64>,
+    /// The plan commands motor current: motor_current_setpoint_a tells it.
+    commands_current: bool,
     row: Vec<f64>,
 }
 
 impl Columns {
     /// `placed`: the plan moves the stage.
-    pub fn of(kind: Kind, placed: bool, bench: &Bench, reading: &JointReading, health: &DriveHealth) -> Self {
+    pub fn of(plan: &Plan, placed: bool, bench: &Bench, reading: &JointReading, health: &DriveHealth) -> Self {
         let steps = bench.joint.resolution();
-        let is_brake = kind == Kind::Brake;
+        let is_brake = plan.kind == Kind::Brake;
+        let commands_current = plan.commands_current();
         let mut channels = vec![
             channel("time_s", Some(TIME_STEP_S)),
             channel("motor_position_rad", steps.motor_position.map(|step| step.0)),
@@ -73,16 +81,30 @@ impl Columns {
             channels.push(channel(name, step_a.map(|step| step * brake_nm_per_a)));
         }
         channels.push(channel("velocity_setpoint_rad_s", Some(VELOCITY_STEP_RAD_S)));
-        if is_brake || kind == Kind::Encoder {
-            channels.push(channel("velocity_rad_s", None));
+        if commands_current {
+            channels.push(channel("motor_current_setpoint_a", None));
         }
-        if kind == Kind::Encoder {
+        let told = match plan.kind {
+            Kind::Brake => Some("velocity_rad_s"),
+            Kind::Stiffness => Some("link_velocity_rad_s"),
+            Kind::Encoder => Some("velocity_rad_s"),
+            Kind::Friction => None,
+        };
+        channels.extend(told.map(|name| channel(name, None)));
+        if plan.kind == Kind::Encoder {
             channels.extend(encoder_columns::channels(bench, placed));
         }
         channels.push(channel("segment", Some(1.0)));
         channels.push(channel("repeat", Some(1.0)));
-        let brake = is_brake.then_some((bench.constants.gear_ratio, 1.0));
-        Self { row: Vec::with_capacity(channels.len()), channels, brake_nm_per_a, brake }
+        Self {
+            row: Vec::with_capacity(channels.len()),
+            channels,
+            brake_nm_per_a,
+            braked_way: is_brake.then_some(1.0),
+            // An encoder bench's encoders sit on the motor's shaft.
+            told_gear_ratio: told.map(|_| if plan.kind == Kind::Encoder { 1.0 } else { bench.constants.gear_ratio }),
+            commands_current,
+        }
     }
 
     pub fn empty_trace(&self) -> Trace {
@@ -91,12 +113,12 @@ impl Columns {
 
     /// The row of a moment, in the order of the channels.
     pub fn row(&mut self, moment: &Moment, segment: u32, repeat: u32) -> &[f64] {
-        if let Some((_, way)) = &mut self.brake
+        if let Some(way) = &mut self.braked_way
             && moment.velocity_setpoint_rad_s != 0.0
         {
             *way = moment.velocity_setpoint_rad_s.signum();
         }
-        let way = self.brake.map_or(1.0, |(_, way)| way);
+        let way = self.braked_way.unwrap_or(1.0);
         let row = &mut self.row;
         row.clear();
         row.extend([moment.time_s, moment.joint.motor_position.0, moment.joint.motor_velocity.0]);
@@ -108,10 +130,9 @@ impl Columns {
             row.extend([measured_a, commanded_a * self.brake_nm_per_a]);
         }
         row.push(moment.velocity_setpoint_rad_s);
-        row.extend(self.brake.map(|(gear_ratio, _)| moment.joint.motor_velocity.0 / gear_ratio));
+        row.extend(self.commands_current.then_some(moment.motor_current_setpoint_a));
+        row.extend(self.told_gear_ratio.map(|gear_ratio| moment.joint.motor_velocity.0 / gear_ratio));
         if let Some(encoders) = &moment.encoders {
-            // Both sit on the motor's shaft.
-            row.push(moment.joint.motor_velocity.0);
             encoder_columns::row(encoders, moment.pose, row);
         }
         row.extend([f64::from(segment), f64::from(repeat)]);

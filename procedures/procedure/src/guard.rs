@@ -69,6 +69,11 @@ impl Guard {
         Ok(self.limits.check(Limited::MotorVelocity, motor_velocity_rad_s)?)
     }
 
+    /// Asked before a motor current is sent, alone or fed forward.
+    pub fn check_motor_current(&self, current_a: f64) -> Result<(), Refusal> {
+        Ok(self.limits.check(Limited::MotorCurrent, current_a)?)
+    }
+
     /// Asked before a brake current is sent.
     pub fn check_brake(&mut self, to_a: f64) -> Result<(), Refusal> {
         self.limits.check(Limited::BrakeCurrent, to_a)?;

@@ -61,6 +61,37 @@ pub enum Before {
     Demagnetised,
 }
 
+/// What the drive holds beside or instead of the velocity of a step.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Drive {
+    /// The velocity, by its own loop.
+    #[default]
+    Velocity,
+    /// The velocity, with motor current fed forward.
+    Fed(Feed),
+    /// The velocity up to `from_s`, then motor current alone until its profile ends or `until` comes true.
+    Current { from_s: f64, current_a: Profile, until: Until },
+}
+
+/// Where a current that is fed forward comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Feed {
+    /// Over the time of the step [A].
+    Planned(Profile),
+    /// A share of the friction that is felt, motor torque less link torque, low-passed; with the sign of the velocity
+    /// set-point, and linear in it below `ramp_rad_s` (motor).
+    Observed { share: f64, corner_hz: f64, ramp_rad_s: f64 },
+}
+
+/// Ends a stretch of current alone: a joint that has broken away is caught by the velocity loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Until {
+    /// Samples in a row in which the motor has moved on in the current's direction.
+    pub increases: u32,
+    /// Motor-side speed that is never waited beyond.
+    pub speed_rad_s: f64,
+}
+
 /// One step: a checkpoint at its end, repeated from its beginning after a pause.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
@@ -76,11 +107,26 @@ pub struct Step {
     /// Brake current [A] over the time of the step.
     pub brake: Profile,
     pub place: Place,
+    pub drive: Drive,
 }
 
 impl Step {
     pub fn duration_s(&self) -> f64 {
-        self.velocity.duration_s().max(self.brake.duration_s())
+        let drive_s = match &self.drive {
+            Drive::Velocity => 0.0,
+            Drive::Fed(Feed::Planned(current_a)) => current_a.duration_s(),
+            Drive::Fed(Feed::Observed { .. }) => 0.0,
+            Drive::Current { from_s, current_a, .. } => from_s + current_a.duration_s(),
+        };
+        self.velocity.duration_s().max(self.brake.duration_s()).max(drive_s)
+    }
+
+    /// The largest motor current that is commanded as such [A].
+    pub fn top_motor_current_a(&self) -> f64 {
+        match &self.drive {
+            Drive::Fed(Feed::Planned(current_a)) | Drive::Current { current_a, .. } => current_a.largest(),
+            Drive::Velocity | Drive::Fed(Feed::Observed { .. }) => 0.0,
+        }
     }
 }
 
@@ -123,6 +169,15 @@ impl Plan {
     /// Highest motor-side speed [rad/s].
     pub fn top_speed_rad_s(&self) -> f64 {
         self.steps.iter().map(|step| step.velocity.largest()).fold(0.0, f64::max)
+    }
+
+    pub fn top_motor_current_a(&self) -> f64 {
+        self.steps.iter().map(Step::top_motor_current_a).fold(0.0, f64::max)
+    }
+
+    /// Whether any step commands motor current.
+    pub fn commands_current(&self) -> bool {
+        self.steps.iter().any(|step| step.drive != Drive::Velocity)
     }
 
     pub fn top_brake_current_a(&self) -> f64 {
@@ -170,6 +225,7 @@ pub(crate) mod testing {
             velocity: Profile::plateau(if index % 2 == 0 { 20.0 } else { -20.0 }, 200.0, duration_s - 0.2),
             brake: Profile::constant(0.0),
             place: Place::AsLeft,
+            drive: Drive::Velocity,
         };
         Plan {
             procedure: "test",

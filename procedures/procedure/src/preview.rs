@@ -104,6 +104,9 @@ impl Plan {
                 ..limited(Limited::MotorCurrent, motor_nm / constants.torque_constant_nm_per_a)
             },
         ];
+        if self.commands_current() {
+            extremes.push(limited(Limited::MotorCurrent, self.top_motor_current_a()));
+        }
         extremes.push(Extreme {
             quantity: "link travel",
             unit: "rad",

@@ -3,7 +3,7 @@
 use super::{Recovers, same};
 use crate::protocol::odrive::{
     CLOSED_LOOP, ClearErrors, FeedWatchdog, Feedback, IDLE, Part, ReadErrors, ReadFeedback, ReadInfo, ReadNumber,
-    RequestState, Set, SetVelocity, StandDown,
+    RequestState, Set, SetTorque, SetVelocity, StandDown,
 };
 use crate::transport::{Link, PortSettings};
 use jointbench_instrument::roles::{DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution};
@@ -45,13 +45,22 @@ pub struct OdriveSettings {
     pub thermistor: Option<Thermistor>,
 }
 
+/// In the drive's units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum SetPoint {
+    Velocity { turns_s: f64, torque_nm: f64 },
+    Torque(f64),
+}
+
 pub struct OdriveJoint {
     settings: OdriveSettings,
     link: Link,
     clock: Arc<dyn Clock>,
     identity: Option<Identity>,
     /// The set-point that the drive is known to hold, and since when on the bench's clock.
-    held: Option<(f64, f64)>,
+    held: Option<(SetPoint, f64)>,
+    /// Torque for each ampere as the drive counts it, read when it is armed.
+    torque_constant_nm_per_a: f64,
     armed: bool,
 }
 
@@ -59,13 +68,38 @@ impl OdriveJoint {
     /// Opens the port and identifies the drive. Nothing is commanded.
     pub fn open(settings: OdriveSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
-        let mut joint = Self { settings, link, clock, identity: None, held: None, armed: false };
+        let mut joint =
+            Self { settings, link, clock, identity: None, held: None, torque_constant_nm_per_a: 0.0, armed: false };
         joint.identify()?;
         Ok(joint)
     }
 
     fn set(&mut self, path: &'static str, value: f64) -> Result<(), Fault> {
         self.link.request(&Set { path, value }).map(|_| ())
+    }
+
+    /// Every set is read back. An unchanged set-point goes out again only as often as the watchdog needs it.
+    fn hold(&mut self, wanted: SetPoint) -> Result<(), Fault> {
+        let (first, second) = match wanted {
+            SetPoint::Velocity { turns_s, torque_nm } => (turns_s, torque_nm),
+            SetPoint::Torque(torque_nm) => (torque_nm, 0.0),
+        };
+        if !(first.is_finite() && second.is_finite()) {
+            let what = format!("set-point {wanted:?}: expected finite numbers");
+            return Err(self.link.fault(FaultKind::Refused { what }));
+        }
+        let now_s = self.clock.now_s();
+        self.ready()?;
+        if self.held.is_some_and(|(held, since_s)| held == wanted && now_s - since_s < WATCHDOG_S / 4.0) {
+            return Ok(());
+        }
+        self.held = None;
+        match wanted {
+            SetPoint::Velocity { turns_s, torque_nm } => self.link.request(&SetVelocity { turns_s, torque_nm })?,
+            SetPoint::Torque(torque_nm) => self.link.request(&SetTorque { torque_nm })?,
+        };
+        self.held = Some((wanted, now_s));
+        Ok(())
     }
 
     fn errors(&mut self) -> Result<Vec<String>, Fault> {
@@ -155,6 +189,8 @@ impl JointController for OdriveJoint {
         self.set("axis0.controller.config.input_mode", PASSTHROUGH)?;
         self.set("axis0.controller.config.vel_limit", speed_limit.0 / TAU)?;
         self.set("axis0.motor.config.current_lim", current_limit.0)?;
+        self.torque_constant_nm_per_a =
+            self.link.request(&ReadNumber { path: "axis0.motor.config.torque_constant" })?;
         // Set-points survive a disarm: an old one would move the joint at once.
         self.set("axis0.controller.input_torque", 0.0)?;
         self.set_velocity(RadPerSec(0.0))?;
@@ -172,22 +208,13 @@ impl JointController for OdriveJoint {
         Ok(())
     }
 
-    /// Every set is read back. An unchanged set-point goes out again only as often as the watchdog needs it.
-    fn set_velocity(&mut self, velocity: RadPerSec) -> Result<(), Fault> {
-        if !velocity.0.is_finite() {
-            let what = format!("velocity set-point {velocity}: expected a finite number");
-            return Err(self.link.fault(FaultKind::Refused { what }));
-        }
-        let turns_s = velocity.0 / TAU;
-        let now_s = self.clock.now_s();
-        self.ready()?;
-        if self.held.is_some_and(|(held, since_s)| held == turns_s && now_s - since_s < WATCHDOG_S / 4.0) {
-            return Ok(());
-        }
-        self.held = None;
-        self.link.request(&SetVelocity { turns_s })?;
-        self.held = Some((turns_s, now_s));
-        Ok(())
+    fn set_velocity_fed(&mut self, velocity: RadPerSec, current: Amperes) -> Result<(), Fault> {
+        let torque_nm = current.0 * self.torque_constant_nm_per_a;
+        self.hold(SetPoint::Velocity { turns_s: velocity.0 / TAU, torque_nm })
+    }
+
+    fn set_motor_current(&mut self, current: Amperes) -> Result<(), Fault> {
+        self.hold(SetPoint::Torque(current.0 * self.torque_constant_nm_per_a))
     }
 
     fn read(&mut self) -> Result<JointReading, Fault> {

@@ -44,6 +44,10 @@ pub(super) struct DataSheet {
     pub stribeck_velocity_rad_s: f64,
     pub stribeck_exponent: f64,
     pub stiffness_nm_rad: f64,
+    /// Between the joint's two encoders there is more than the joint: the bearing that carries it, in series.
+    pub bearing_nm_rad: f64,
+    /// What the link lags behind by its way of turning, without load to either side: β₀ of the table.
+    pub lost_rad: f64,
     /// What the link turns further than a linear gear would let it, under load. Zero: a linear gear.
     pub soft_rad: f64,
     /// Flange, coupling and sensor shaft on the joint's side of the torque sensor, or what the shaft carries (assumed).
@@ -85,6 +89,8 @@ impl Joint {
                 stribeck_velocity_rad_s: 0.06,
                 stribeck_exponent: 0.8,
                 stiffness_nm_rad: 5722.5,
+                bearing_nm_rad: 155.0e3,
+                lost_rad: 0.5871e-3,
                 soft_rad: 0.0,
                 link_inertia_kg_m2: 0.011,
                 tuned_inertia_kg_m2: 0.017,
@@ -103,6 +109,8 @@ impl Joint {
                 stribeck_velocity_rad_s: 0.08,
                 stribeck_exponent: 1.9,
                 stiffness_nm_rad: 684.3,
+                bearing_nm_rad: 75.0e3,
+                lost_rad: 0.0,
                 soft_rad: 0.9588e-3,
                 link_inertia_kg_m2: 0.011,
                 tuned_inertia_kg_m2: 0.017,
@@ -122,6 +130,8 @@ impl Joint {
                 stribeck_velocity_rad_s: 1.0,
                 stribeck_exponent: 1.0,
                 stiffness_nm_rad: 20.0,
+                bearing_nm_rad: f64::INFINITY,
+                lost_rad: 0.0,
                 soft_rad: 0.0,
                 link_inertia_kg_m2: 1e-5,
                 tuned_inertia_kg_m2: 1e-5,

@@ -73,7 +73,7 @@ impl Procedure for BrakeSpeedIndependence {
         for level in 1..=levels {
             let current_a = values.number("top_current") * bench.constants.brake_rated_current_a * f64::from(level)
                 / f64::from(levels);
-            legs.raise(turning_rad_s, before_a, current_a);
+            legs.change(turning_rad_s, before_a, current_a);
             legs.repeat = level;
             let mut order = speeds.clone();
             order.shuffle(&mut rng);

@@ -81,7 +81,7 @@ impl Procedure for Friction {
             let mut before_a = 0.0;
             for (level, brake_a) in loads_a.iter().copied().enumerate() {
                 if brake_a > before_a {
-                    legs.raise(speeds.middle_rad_s(), before_a, brake_a);
+                    legs.change(speeds.middle_rad_s(), before_a, brake_a);
                 }
                 let outwards = if (repeat as usize + level).is_multiple_of(2) { 1.0 } else { -1.0 };
                 tour(&mut legs, &speeds, brake_a, outwards, &mut rng);

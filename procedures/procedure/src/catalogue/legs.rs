@@ -1,7 +1,7 @@
 //! What the procedures of a joint share: numbered steps, legs of constant speed, the facts of a friction run.
 
 use crate::place::Place;
-use crate::plan::{Before, BenchFacts, Phase, Step};
+use crate::plan::{Before, BenchFacts, Drive, Phase, Step};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
@@ -39,8 +39,8 @@ impl Legs {
         self.push(label, Profile::plateau(speed_rad_s, self.acceleration_rad_s2, dwell_s), Profile::constant(brake_a));
     }
 
-    /// More brake current while the shaft turns, out and back.
-    pub fn raise(&mut self, speed_rad_s: f64, from_a: f64, to_a: f64) {
+    /// Another brake current while the shaft turns, out and back.
+    pub fn change(&mut self, speed_rad_s: f64, from_a: f64, to_a: f64) {
         let velocity = |sign: f64| Profile::plateau(sign * speed_rad_s, self.acceleration_rad_s2, RAISE_S + LAG_S);
         let (out, back) = (velocity(1.0), velocity(-1.0));
         let turning_s = speed_rad_s / self.acceleration_rad_s2;
@@ -84,6 +84,12 @@ impl Legs {
         self.leg(-speed_rad_s, ramp_s + LAG_S, 0.0);
     }
 
+    pub fn drive_of_last(&mut self, drive: Drive) {
+        if let Some(step) = self.steps.last_mut() {
+            step.drive = drive;
+        }
+    }
+
     /// How far the last step turns the motor [rad].
     pub fn way_of_last(&self) -> f64 {
         self.steps.last().and_then(|step| step.velocity.integral().last().copied()).unwrap_or(0.0)
@@ -92,7 +98,17 @@ impl Legs {
     pub fn push(&mut self, label: String, velocity: Profile, brake: Profile) {
         let segment = self.steps.len() as u32;
         let (phase, repeat, before) = (self.phase, self.repeat, Before::AsLeft);
-        self.steps.push(Step { label, phase, segment, repeat, before, velocity, brake, place: Place::AsLeft });
+        self.steps.push(Step {
+            label,
+            phase,
+            segment,
+            repeat,
+            before,
+            velocity,
+            brake,
+            drive: Drive::Velocity,
+            place: Place::AsLeft,
+        });
     }
 }
 

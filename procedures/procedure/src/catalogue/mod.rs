@@ -3,12 +3,14 @@
 mod brake_hysteresis;
 mod brake_run;
 mod brake_speed_independence;
+mod breakaway;
 mod demagnetise;
 mod encoder;
 mod friction;
 mod friction_load;
 mod friction_temperature;
 mod legs;
+mod stiffness;
 mod strokes;
 mod torque_sensor_zero;
 mod warm_up;
@@ -53,6 +55,8 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &brake_hysteresis::BrakeHysteresis,
         &demagnetise::Demagnetise,
         &torque_sensor_zero::TorqueSensorZero,
+        &stiffness::Stiffness,
+        &breakaway::Breakaway,
         &strokes::Strokes,
         &warm_up::WarmUp,
         &encoder::EncoderOffset,

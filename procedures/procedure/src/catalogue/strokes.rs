@@ -70,7 +70,7 @@ impl Procedure for Strokes {
         for repeat in 0..values.count("repeats") {
             legs.repeat = repeat;
             if brake_a > 0.0 {
-                legs.raise(turning_rad_s, 0.0, brake_a);
+                legs.change(turning_rad_s, 0.0, brake_a);
             }
             let mut order = speeds.clone();
             order.shuffle(&mut rng);

@@ -38,7 +38,7 @@ impl Session<'_> {
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
 
-        let columns = Columns::of(self.plan.kind, self.pose.is_some(), self.bench, &reading, &health);
+        let columns = Columns::of(self.plan, self.pose.is_some(), self.bench, &reading, &health);
         self.journal.set_columns(columns.empty_trace());
         self.columns = Some(columns);
         if health.temperature.is_none() {

@@ -2,7 +2,7 @@
 
 use super::ask::ask;
 use super::ending::Ending;
-use super::session::{Session, Wish, reported, tell};
+use super::session::{Asked, Session, Wish, reported, tell};
 use super::steps::Left;
 use crate::encoder_columns::Encoders;
 use crate::event::EventKind;
@@ -145,7 +145,8 @@ impl Session<'_> {
                 if now_s - start_s >= edge.dwell_s {
                     break;
                 }
-                self.tick(now_s, speed_rad_s, self.commanded.brake_a, Some((segment, step.repeat)))?;
+                let asked = Asked::Velocity { rad_s: speed_rad_s, fed_a: 0.0 };
+                self.tick_asking(now_s, asked, self.commanded.brake_a, Some((segment, step.repeat)))?;
             }
             self.beat.next_s -= self.beat.period_s;
             if self.wish.take() == Some(Wish::Pause) {

@@ -2,6 +2,7 @@
 
 mod arm;
 mod ask;
+mod drive;
 mod encoders;
 mod ending;
 mod journal;

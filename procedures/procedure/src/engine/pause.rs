@@ -23,7 +23,7 @@ impl Session<'_> {
             self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))?;
             while self.wish.take() != Some(Wish::Resume) {
                 let now_s = self.wait();
-                self.tick(now_s, 0.0, brake_a, None)?;
+                self.tick(now_s, 0.0, brake_a)?;
             }
             self.enter(Transition::Resume)?;
             if step.before == Before::Demagnetised {
@@ -46,7 +46,7 @@ impl Session<'_> {
         loop {
             let now_s = self.wait();
             let t_s = now_s - start_s;
-            self.tick(now_s, velocity.at(t_s), brake.at(t_s), None)?;
+            self.tick(now_s, velocity.at(t_s), brake.at(t_s))?;
             if t_s >= duration_s {
                 return Ok(());
             }
@@ -78,7 +78,7 @@ impl Session<'_> {
             let wanted_rad_s = (RETURN_PER_S * away_rad(self)).clamp(-speed_rad_s, speed_rad_s);
             let before_rad_s = self.commanded.velocity_rad_s;
             let velocity_rad_s = wanted_rad_s.clamp(before_rad_s - change_rad_s, before_rad_s + change_rad_s);
-            self.tick(now_s, velocity_rad_s, brake_a, None)?;
+            self.tick(now_s, velocity_rad_s, brake_a)?;
         }
         self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))
     }

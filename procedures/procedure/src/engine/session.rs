@@ -34,6 +34,8 @@ pub(super) struct Session<'a> {
     pub armed: bool,
     /// The latest reading of the joint.
     pub joint: Option<JointReading>,
+    /// The latest reading of the torque sensor.
+    pub link_torque_nm: Option<f64>,
     /// Time of the newest row, which the next one has to exceed.
     pub row_s: f64,
     pub next_segment: u32,
@@ -49,9 +51,21 @@ pub(super) struct Session<'a> {
 /// What the instruments were told last.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Commanded {
+    /// The set-point of the velocity loop; while there is none, the speed that it would have to start from.
     pub velocity_rad_s: f64,
+    /// Of the motor, alone or fed forward.
+    pub motor_current_a: f64,
     pub brake_a: f64,
     pub brake_at_s: f64,
+}
+
+/// What the drive is to hold in one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Asked {
+    /// A velocity with a motor current fed forward.
+    Velocity { rad_s: f64, fed_a: f64 },
+    /// A motor current alone.
+    Current { a: f64 },
 }
 
 /// Readings that are taken seldom and held.
@@ -109,6 +123,7 @@ impl<'a> Session<'a> {
             wish: None,
             armed: false,
             joint: None,
+            link_torque_nm: None,
             row_s: f64::NEG_INFINITY,
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
             lost: Lost::default(),

@@ -1,10 +1,11 @@
 //! The steps of a plan, one after the other. A step's end is a checkpoint.
 
+use super::drive::{FeltFriction, Moved};
 use super::ending::Ending;
-use super::session::{Session, Wish};
+use super::session::{Asked, Session, Wish};
 use crate::event::EventKind;
 use crate::place::Place;
-use crate::plan::{Phase, Step};
+use crate::plan::{Drive, Phase, Step};
 
 /// How a step was left.
 pub(super) enum Left {
@@ -60,6 +61,7 @@ impl Session<'_> {
             };
         }
         let (duration_s, plateau_rad_s) = (step.duration_s(), step.velocity.largest());
+        let (mut friction, mut moved) = (FeltFriction::default(), Moved::default());
         loop {
             let now_s = self.wait();
             let t_s = now_s - start_s;
@@ -69,7 +71,13 @@ impl Session<'_> {
             let planned_a = step.brake.at(t_s);
             least_brake_a = if planned_a >= least_brake_a { 0.0 } else { least_brake_a };
             let velocity_rad_s = step.velocity.at(t_s);
-            self.tick(now_s, velocity_rad_s, planned_a.max(least_brake_a), Some((segment, step.repeat)))?;
+            let asked = self.asked(step, t_s, &mut friction);
+            self.tick_asking(now_s, asked, planned_a.max(least_brake_a), Some((segment, step.repeat)))?;
+            if let (Drive::Current { until, .. }, Asked::Current { a }) = (&step.drive, asked)
+                && moved.is_enough(*until, a, self.joint)
+            {
+                break;
+            }
             if let (Some(watch), Some(joint)) = (&mut self.warm, self.joint)
                 && step.phase == Phase::WarmUp
                 && velocity_rad_s.abs() >= plateau_rad_s

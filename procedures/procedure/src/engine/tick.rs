@@ -2,7 +2,7 @@
 
 use super::arm::link_position_rad;
 use super::ending::Ending;
-use super::session::{Session, Wish, reported};
+use super::session::{Asked, Session, Wish, reported};
 use crate::columns::{Moment, VELOCITY_STEP_RAD_S, to_time_step};
 use crate::event::{Control, EventKind};
 use crate::guard::Sample;
@@ -34,17 +34,25 @@ impl Session<'_> {
         now_s
     }
 
+    /// A tick at a velocity whose row is shown and forgotten.
+    pub(super) fn tick(&mut self, now_s: f64, velocity_rad_s: f64, brake_a: f64) -> Result<(), Ending> {
+        self.tick_asking(now_s, Asked::Velocity { rad_s: velocity_rad_s, fed_a: 0.0 }, brake_a, None)
+    }
+
     /// `keep` names segment and repeat of the row; without it the row is shown and forgotten.
-    pub(super) fn tick(
+    pub(super) fn tick_asking(
         &mut self,
         now_s: f64,
-        velocity_rad_s: f64,
+        asked: Asked,
         brake_a: f64,
         keep: Option<(u32, u32)>,
     ) -> Result<(), Ending> {
         self.obey(now_s)?;
         self.command_brake(now_s, brake_a)?;
-        self.command_velocity(velocity_rad_s)?;
+        match asked {
+            Asked::Velocity { rad_s, fed_a } => self.command_velocity(rad_s, fed_a)?,
+            Asked::Current { a } => self.command_motor_current(a)?,
+        }
         let moment = self.feel(now_s)?;
         self.check(now_s, &moment)?;
         self.keep(now_s, &moment, keep);
@@ -86,13 +94,24 @@ impl Session<'_> {
         }
     }
 
-    fn command_velocity(&mut self, velocity_rad_s: f64) -> Result<(), Ending> {
+    fn command_velocity(&mut self, velocity_rad_s: f64, fed_a: f64) -> Result<(), Ending> {
         let velocity_rad_s = (velocity_rad_s / VELOCITY_STEP_RAD_S).round() * VELOCITY_STEP_RAD_S;
         self.guard.check_velocity(velocity_rad_s).map_err(Ending::CommandRefused)?;
+        self.guard.check_motor_current(fed_a).map_err(Ending::CommandRefused)?;
         let recovered_before = self.recoveries;
         // Sent on every tick: it feeds the drive's own watchdog.
-        self.ask_joint(|joint| joint.set_velocity(RadPerSec(velocity_rad_s)))?;
+        self.ask_joint(|joint| joint.set_velocity_fed(RadPerSec(velocity_rad_s), Amperes(fed_a)))?;
         self.commanded.velocity_rad_s = velocity_rad_s;
+        self.commanded.motor_current_a = fed_a;
+        self.trust_joint(recovered_before)
+    }
+
+    fn command_motor_current(&mut self, current_a: f64) -> Result<(), Ending> {
+        self.guard.check_motor_current(current_a).map_err(Ending::CommandRefused)?;
+        let recovered_before = self.recoveries;
+        self.ask_joint(|joint| joint.set_motor_current(Amperes(current_a)))?;
+        self.commanded.velocity_rad_s = self.joint.map_or(0.0, |reading| reading.motor_velocity.0);
+        self.commanded.motor_current_a = current_a;
         self.trust_joint(recovered_before)
     }
 
@@ -124,6 +143,7 @@ impl Session<'_> {
             self.ask_torque_sensor(|sensor| sensor.read())?.map(|torque| torque.0)
         };
         let encoders = self.feel_encoders()?;
+        self.link_torque_nm = link_torque_nm;
         if now_s >= self.held.next_s {
             self.held.next_s = now_s + SLOW_EVERY_S;
             self.check_drive()?;
@@ -140,6 +160,7 @@ impl Session<'_> {
             velocity_setpoint_rad_s: self.commanded.velocity_rad_s,
             encoders,
             pose: self.pose,
+            motor_current_setpoint_a: self.commanded.motor_current_a,
         })
     }
 

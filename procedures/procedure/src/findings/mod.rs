@@ -8,6 +8,6 @@ mod say;
 
 pub(crate) use holds::{Hold, holds};
 pub(crate) use line::{Line, Mean};
-pub(crate) use part::{Leg, keep, legs};
+pub(crate) use part::{Leg, keep, keep_rows, legs};
 pub(crate) use plateaus::{Plateau, plateaus};
 pub(crate) use say::{Unusable, combined, curve, interval_of, parameter, quantity, scatter, verdict};

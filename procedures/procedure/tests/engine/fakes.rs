@@ -16,6 +16,7 @@ pub enum Call {
     Recover(Role),
     Arm,
     SetVelocity(f64),
+    SetMotorCurrent(f64),
     ReadJoint,
     Health,
     Disarm,
@@ -79,6 +80,7 @@ pub struct Stage {
 pub struct Fakes(Arc<Mutex<Stage>>);
 
 pub const RATIO: f64 = 50.0;
+pub const FRICTION_A: f64 = 0.6;
 
 impl Fakes {
     /// The script is asked before every call; a fault that it gives is what the caller gets.
@@ -248,8 +250,16 @@ impl JointController for FakeJoint {
         self.0.call(Call::Arm, |world| (world.armed, world.setpoint_rad_s) = (true, 0.0))
     }
 
-    fn set_velocity(&mut self, velocity: RadPerSec) -> Result<(), Fault> {
+    fn set_velocity_fed(&mut self, velocity: RadPerSec, _: Amperes) -> Result<(), Fault> {
         self.0.call(Call::SetVelocity(velocity.0), |world| world.setpoint_rad_s = velocity.0)
+    }
+
+    /// This joint turns in proportion to what is beyond its friction.
+    fn set_motor_current(&mut self, current: Amperes) -> Result<(), Fault> {
+        self.0.call(Call::SetMotorCurrent(current.0), |world| {
+            let beyond_a = (current.0.abs() - FRICTION_A).max(0.0);
+            world.setpoint_rad_s = (50.0 * beyond_a).copysign(current.0);
+        })
     }
 
     fn read(&mut self) -> Result<JointReading, Fault> {

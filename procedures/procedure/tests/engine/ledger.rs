@@ -3,7 +3,7 @@
 use crate::fakes::{Fakes, World};
 use jointbench_instrument::{Bench, Kind, Meta, RunTable, Trace};
 use jointbench_procedure::place::Place;
-use jointbench_procedure::plan::{Before, Phase, Step};
+use jointbench_procedure::plan::{Before, Drive, Phase, Step};
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -104,6 +104,7 @@ pub fn loaded_plan() -> Plan {
         place: Place::AsLeft,
         velocity: Profile::plateau(speed, 400.0, dwell_s),
         brake,
+        drive: Drive::Velocity,
     };
     Plan {
         procedure: "test",

@@ -40,3 +40,25 @@ fn strokes_on_the_mock_bench_bracket_its_friction() {
         assert!((quantity.value / value - 1.0).abs() < 0.05, "{name}: {} for {value}", quantity.value);
     }
 }
+
+#[test]
+fn a_joint_breaks_away_where_its_friction_at_rest_lies() {
+    let given = json!({"positions": 3, "sample_rate_hz": 250.0, "ramp_nm_s": 0.04});
+    let (mock, found) = found(MockSettings::new(Joint::JointA, 1), "breakaway", given);
+    // Without a Stribeck part the joint holds what Coulomb friction holds.
+    let quantity = found.quantity("tau_b").unwrap();
+    assert!((quantity.value / mock.truth().coulomb_nm - 1.0).abs() < 0.02, "{}", found.summary);
+}
+
+#[test]
+fn stiffness_takes_the_bearing_off() {
+    let given = json!({"load_levels": 4, "repeats": 2, "dwell_s": 0.8, "bearing_stiffness_nm_rad": 155e3,
+        "sample_rate_hz": 100.0});
+    let (mock, found) = found(MockSettings::new(Joint::JointA, 1), "stiffness", given);
+    for (name, truth, share) in
+        [("k", mock.truth().stiffness_nm_rad, 0.01), ("beta_0", mock.truth().directional_offset_rad, 0.03)]
+    {
+        let quantity = found.quantity(name).unwrap();
+        assert!((quantity.value / truth - 1.0).abs() < share, "{name}: {} for {truth}", quantity.value);
+    }
+}

@@ -11,7 +11,8 @@ mod requests;
 
 pub use errors::{ErrorWord, Part, ReadErrors};
 pub use requests::{
-    ClearErrors, FeedWatchdog, Feedback, ReadFeedback, ReadInfo, ReadNumber, RequestState, Set, SetVelocity, StandDown,
+    ClearErrors, FeedWatchdog, Feedback, ReadFeedback, ReadInfo, ReadNumber, RequestState, Set, SetTorque, SetVelocity,
+    StandDown,
 };
 
 /// Axis states (`axis0.current_state`).

@@ -103,22 +103,24 @@ impl Request for Set {
     }
 }
 
-/// Velocity set-point of the joint's axis, read back. Feeds the watchdog. Leaves the drive in velocity mode.
+/// Velocity set-point of the joint's axis with a torque fed forward, read back. Feeds the watchdog. Leaves the drive in
+/// velocity mode.
 #[derive(Debug, Clone, Copy)]
 pub struct SetVelocity {
     pub turns_s: f64,
+    pub torque_nm: f64,
 }
 
 const INPUT_VELOCITY: &str = "axis0.controller.input_vel";
 
 impl Command for SetVelocity {
     fn encode(&self, out: &mut Vec<u8>) {
-        push(out, format_args!("v 0 {:.6} 0", self.turns_s));
+        push(out, format_args!("v 0 {:.6} {:.6}", self.turns_s, self.torque_nm));
         push(out, format_args!("r {INPUT_VELOCITY}"));
     }
 
     fn name(&self) -> String {
-        format!("v 0 {:.6} 0", self.turns_s)
+        format!("v 0 {:.6} {:.6}", self.turns_s, self.torque_nm)
     }
 }
 
@@ -131,6 +133,38 @@ impl Request for SetVelocity {
 
     fn decode(&self, packet: &[u8]) -> Result<f64, FaultKind> {
         taken(text(packet)?, self.turns_s, INPUT_VELOCITY)
+    }
+}
+
+/// Torque set-point of the joint's axis, read back. Feeds the watchdog. Leaves the drive in torque mode: no loop holds its
+/// speed.
+#[derive(Debug, Clone, Copy)]
+pub struct SetTorque {
+    pub torque_nm: f64,
+}
+
+const INPUT_TORQUE: &str = "axis0.controller.input_torque";
+
+impl Command for SetTorque {
+    fn encode(&self, out: &mut Vec<u8>) {
+        push(out, format_args!("c 0 {:.6}", self.torque_nm));
+        push(out, format_args!("r {INPUT_TORQUE}"));
+    }
+
+    fn name(&self) -> String {
+        format!("c 0 {:.6}", self.torque_nm)
+    }
+}
+
+impl Request for SetTorque {
+    type Reply = f64;
+
+    fn scan(&self, received: &[u8]) -> Scan {
+        scan_line(received, LINE_LIMIT)
+    }
+
+    fn decode(&self, packet: &[u8]) -> Result<f64, FaultKind> {
+        taken(text(packet)?, self.torque_nm, INPUT_TORQUE)
     }
 }
 
@@ -265,7 +299,10 @@ mod tests {
 
     #[test]
     fn a_set_travels_with_its_read() {
-        assert_eq!(encoded(&SetVelocity { turns_s: -1.5 }), "v 0 -1.500000 0*97\nr axis0.controller.input_vel*43\n");
+        assert_eq!(
+            encoded(&SetVelocity { turns_s: -1.5, torque_nm: 0.0 }),
+            "v 0 -1.500000 0.000000*79\nr axis0.controller.input_vel*43\n"
+        );
         for line in encoded(&Set { path: "axis0.motor.config.current_lim", value: 10.0 }).lines() {
             assert!(line.contains('*') && !line.contains('\r'));
         }

@@ -44,6 +44,8 @@ pub struct Truth {
     pub inertia_kg_m2: f64,
     /// Link side.
     pub stiffness_nm_rad: f64,
+    /// Half of what the link lags under load between both ways of turning.
+    pub directional_offset_rad: f64,
     pub torque_constant_nm_per_a: f64,
     pub gear_ratio: f64,
     pub encoders: EncoderTruth,

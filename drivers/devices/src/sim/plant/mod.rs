@@ -145,6 +145,7 @@ impl Plant {
         let link_acceleration = (gear_nm - outside_nm - brake_nm) / self.gear.link_inertia_kg_m2();
         self.link_velocity_rad_s += link_acceleration * STEP_S;
         self.link_angle_rad += self.link_velocity_rad_s * STEP_S;
+        self.gear.advance(self.link_velocity_rad_s * STEP_S);
 
         let felt_nm = brake_nm + self.line_inertia_kg_m2 * link_acceleration;
         self.sensor_torque_nm += self.sensor_gain * (felt_nm - self.sensor_torque_nm);
@@ -219,6 +220,7 @@ impl Plant {
             viscous_nm_s: self.friction.viscous_nm_s,
             inertia_kg_m2: self.sheet.rotor_inertia_kg_m2 + reflected_kg_m2,
             stiffness_nm_rad: self.sheet.stiffness_nm_rad,
+            directional_offset_rad: self.sheet.lost_rad + self.sheet.soft_rad,
             torque_constant_nm_per_a: self.torque_constant_nm_per_a,
             gear_ratio: self.sheet.ratio,
             encoders: self.encoders.truth(),

@@ -1,0 +1,202 @@
+//! Stiction: the motor current rises until the joint breaks away, at many positions and in both directions.
+//!
+//! Document 000 raises the current until five samples in a row show the encoder increasing. Each position is one step,
+//! the approach included: the joint always arrives in the direction in which it will break away.
+
+use super::Procedure;
+use super::legs::{Legs, friction_meta};
+use crate::findings::{Mean, Unusable, quantity, scatter, verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Drive, Plan, PlanFault, Until};
+use crate::profile::Profile;
+use jointbench_instrument::{Kind, RunTable};
+use std::f64::consts::TAU;
+
+pub(super) struct Breakaway;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::count("positions", "Positions on a link turn", 12, [2, 200]),
+    Parameter::number("top_torque_nm", "Torque at which the ramp ends (motor)", "Nm", 0.12, [1e-3, 100.0]),
+    Parameter::number("ramp_nm_s", "Rise of the torque (motor)", "Nm/s", 0.02, [1e-4, 10.0]),
+    Parameter::count("increases", "Encoder increases in a row", 5, [2, 50]),
+    Parameter::number("speed_rad_s", "Speed of the approach (motor)", "rad/s", 60.0, [1.0, 1000.0]),
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+];
+
+/// Between the approach and the ramp the joint rests under no torque for so long.
+const REST_S: f64 = 0.4;
+/// A joint that has broken away is caught at this speed at the latest (motor).
+const RUNAWAY_RAD_S: f64 = 10.0;
+
+impl Procedure for Breakaway {
+    fn id(&self) -> &'static str {
+        "breakaway"
+    }
+
+    fn title(&self) -> &'static str {
+        "Breakaway"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Raises the motor current until the joint breaks away, at many positions and in both directions. The velocity loop catches it at once."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Friction
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let rate_hz = values.number("sample_rate_hz");
+        let top_a = values.number("top_torque_nm") / bench.constants.torque_constant_nm_per_a;
+        let ramp_s = values.number("top_torque_nm") / values.number("ramp_nm_s");
+        let positions = values.count("positions");
+        let stretch_rad = TAU * bench.constants.gear_ratio / f64::from(positions);
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        for (repeat, sign) in [(0, 1.0), (1, -1.0)] {
+            legs.repeat = repeat;
+            for position in 1..=positions {
+                let velocity = approach(sign * stretch_rad, values.number("speed_rad_s"), legs.acceleration_rad_s2);
+                let from_s = velocity.duration_s() + REST_S;
+                let current_a = Profile::from(0.0).hold(REST_S).to(sign * top_a, ramp_s);
+                let way = if sign > 0.0 { "forward" } else { "backward" };
+                legs.push(format!("breakaway {way}, {position} of {positions}"), velocity, Profile::constant(0.0));
+                let until = Until { increases: values.count("increases"), speed_rad_s: RUNAWAY_RAD_S };
+                legs.drive_of_last(Drive::Current { from_s, current_a, until });
+            }
+        }
+        // The last of them is caught before the run ends.
+        legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: friction_meta(bench, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify(values, run))
+    }
+}
+
+/// A stroke of a given way, as fast as it may be within its acceleration.
+fn approach(way_rad: f64, top_rad_s: f64, acceleration_rad_s2: f64) -> Profile {
+    let speed_rad_s = top_rad_s.min((0.5 * way_rad.abs() * acceleration_rad_s2).sqrt());
+    let dwell_s = way_rad.abs() / speed_rad_s - speed_rad_s / acceleration_rad_s2;
+    Profile::plateau(speed_rad_s.copysign(way_rad), acceleration_rad_s2, dwell_s.max(0.0))
+}
+
+/// Where and at which torque a joint broke away.
+struct Broke {
+    link_rad: f64,
+    torque_nm: f64,
+    sign: f64,
+}
+
+fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
+    let Some(setpoint) = run.column("motor_current_setpoint_a") else {
+        return Err(Unusable::TooLittle("the run holds no motor current set-point: it is of another procedure"));
+    };
+    let km = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
+    let link = run.column("link_position_rad");
+    let segment = run.column("segment").unwrap_or_default();
+    let repeat = run.column("repeat").unwrap_or_default();
+    let increases = values.count("increases") as usize;
+    let top_a = values.number("top_torque_nm") / km;
+    let (mut broke, mut held) = (Vec::new(), 0);
+    let mut start = 0;
+    for rows in segment.chunk_by(|a, b| a == b) {
+        let end = start + rows.len();
+        let ramp = &setpoint[start..end];
+        if let Some(last_a) = ramp.last().filter(|a| **a != 0.0) {
+            // The torque at the first of the increases.
+            let onset = rows.len().saturating_sub(increases);
+            if last_a.abs() > 0.999 * top_a {
+                held += 1;
+            } else {
+                let link_rad = link.map_or(0.0, |link| link[end - 1].rem_euclid(TAU));
+                let sign = if repeat[start] == 0.0 { 1.0 } else { -1.0 };
+                broke.push(Broke { link_rad, torque_nm: km * ramp[onset].abs(), sign });
+            }
+        }
+        start = end;
+    }
+    let of = |sign: f64| -> Vec<f64> { broke.iter().filter(|b| b.sign == sign).map(|b| b.torque_nm).collect() };
+    let all: Vec<f64> = broke.iter().map(|b| b.torque_nm).collect();
+    let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {
+        return Err(Unusable::TooLittle("the joint broke away too seldom: raise top_torque_nm"));
+    };
+    let deviation = (all.iter().map(|t| (t - mean.value).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
+    let differ = forward.ci95[0] > backward.ci95[1] || backward.ci95[0] > forward.ci95[1];
+    let words = |name, symbol, title| [name, symbol, title, "Nm"];
+    Ok(Identification {
+        verdict: if held == 0 { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!(
+            "The joint breaks away at {:.4} Nm (motor) on the mean of {} positions, with a standard deviation of {:.4} Nm; the directions {}.",
+            mean.value,
+            all.len(),
+            deviation,
+            if differ { "differ at 95 %" } else { "do not differ at 95 %" }
+        ),
+        advice: (held > 0).then(|| format!("At {held} positions it did not break away: raise top_torque_nm.")),
+        quantities: vec![
+            quantity(words("tau_b", "τ_b", "Breakaway torque, mean"), mean.value, Some(mean.ci95)),
+            quantity(
+                words("tau_b_positive", "τ_b⁺", "Breakaway torque, positive direction"),
+                forward.value,
+                Some(forward.ci95),
+            ),
+            quantity(
+                words("tau_b_negative", "τ_b⁻", "Breakaway torque, negative direction"),
+                backward.value,
+                Some(backward.ci95),
+            ),
+            quantity(words("deviation", "s", "Standard deviation over the positions"), deviation, None),
+        ],
+        figures: vec![over_angle(&broke), distribution(&all)],
+    })
+}
+
+fn over_angle(broke: &[Broke]) -> Figure {
+    let side = |label, sign: f64| {
+        scatter(label, broke.iter().filter(move |b| b.sign == sign).map(|b| (b.link_rad, b.torque_nm)))
+    };
+    Figure {
+        name: "breakaway_over_angle".into(),
+        title: "Breakaway torque over the link's angle".into(),
+        form: Form::Polar,
+        x: Axis::of("link angle", "rad"),
+        y: Axis::of("breakaway torque (motor)", "Nm"),
+        series: vec![side("positive", 1.0), side("negative", -1.0)],
+    }
+}
+
+fn distribution(all: &[f64]) -> Figure {
+    let (low, high) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (v.min(l), v.max(h)));
+    // Sturges' rule.
+    let bins = (all.len() as f64).log2().ceil() as usize + 1;
+    let width = ((high - low) / bins as f64).max(f64::MIN_POSITIVE);
+    let mut counts = vec![0.0; bins];
+    for value in all {
+        counts[(((value - low) / width) as usize).min(bins - 1)] += 1.0;
+    }
+    let centres = (0..bins).map(|i| low + (i as f64 + 0.5) * width).collect();
+    Figure {
+        name: "distribution".into(),
+        title: "Distribution of the breakaway torque".into(),
+        form: Form::Cartesian,
+        x: Axis::of("breakaway torque (motor)", "Nm"),
+        y: Axis::of("positions", ""),
+        series: vec![Series::new("positions", Mark::Bars, centres, counts)],
+    }
+}

@@ -1,0 +1,101 @@
+//! The joint's flexibility (thesis, section 4.3, table 4.8): load steps at constant speed in alternating direction.
+//!
+//! Loads rise from none to the highest and fall again. What the bearing behind the joint gives is taken off:
+//! 1/k_joint = 1/k_measured − 1/k_bearing.
+
+mod identify;
+
+use super::Procedure;
+use super::legs::Legs;
+use crate::findings::verdict;
+use crate::identification::Identification;
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use jointbench_instrument::{Kind, Meta, RunTable};
+
+pub(super) struct Stiffness;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::count("load_levels", "Load levels, no load included", 8, [3, 40]),
+    Parameter::number("top_load", "Highest brake current, share of rated", "", 1.0, [0.05, 1.0]),
+    Parameter::number("bearing_stiffness_nm_rad", "Stiffness of the bearing, 0: none known", "Nm/rad", 0.0, [0.0, 1e9]),
+    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.5, [0.11, 20.0]),
+    Parameter::number("dwell_s", "Constant speed each way", "s", 1.5, [0.5, 60.0]),
+    Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+];
+
+impl Procedure for Stiffness {
+    fn id(&self) -> &'static str {
+        "stiffness"
+    }
+
+    fn title(&self) -> &'static str {
+        "Stiffness"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Loads the joint step by step in both directions and compares its two encoders: stiffness, directional offset, and whether a line is enough."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Stiffness
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        for (there, role) in [(bench.has_brake, "brake"), (bench.has_torque_sensor, "torque sensor")] {
+            if !there {
+                let cure = "connect it: stiffness is torsion over torque";
+                return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure });
+            }
+        }
+        let rate_hz = values.number("sample_rate_hz");
+        let speed_rad_s = values.number("speed_rad_s") * bench.constants.gear_ratio;
+        let top_a = values.number("top_load") * bench.constants.brake_rated_current_a;
+        let levels = values.count("load_levels");
+        let level_a = |level: u32| top_a * f64::from(level) / f64::from(levels - 1);
+        let dwell_s = values.number("dwell_s");
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        for repeat in 0..values.count("repeats") {
+            legs.repeat = repeat;
+            let mut before_a = 0.0;
+            for level in (0..levels).chain((0..levels - 1).rev()) {
+                let current_a = level_a(level);
+                if current_a != before_a {
+                    legs.change(speed_rad_s, before_a, current_a);
+                }
+                legs.leg(speed_rad_s, dwell_s, current_a);
+                legs.leg(-speed_rad_s, dwell_s, current_a);
+                before_a = current_a;
+            }
+        }
+        let bearing = values.number("bearing_stiffness_nm_rad");
+        let meta = Meta {
+            kind: Some(Kind::Stiffness),
+            baseline: ["offset", "compliance", "directional_offset"].map(str::to_owned).into(),
+            sample_rate_hz: Some(rate_hz),
+            gear_ratio: Some(bench.constants.gear_ratio),
+            bearing_stiffness_nm_per_rad: (bearing > 0.0).then_some(bearing),
+            ..Meta::default()
+        };
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta,
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify::identify(run))
+    }
+}

@@ -1,0 +1,146 @@
+//! A line of torsion over torque with an offset by direction, and whether the joint asks for more than a line.
+
+use crate::findings::{Unusable, curve, holds, interval_of, keep_rows, parameter, quantity, scatter};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use jointbench_instrument::RunTable;
+use jointbench_model::{Fit, ModelSpec, Options, fit};
+
+/// The settled end of a hold: joint and brake wind up first.
+const SETTLED: f64 = 0.5;
+/// A curve is worth more than the line where it predicts what it has not seen this much better.
+const BETTER: f64 = 0.85;
+
+/// Means of one hold: torque and torsion.
+type Point = (f64, f64);
+
+pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    let held: Vec<_> = holds(run, 0.4).into_iter().filter(|hold| hold.velocity_rad_s != 0.0).collect();
+    let rows: Vec<_> = held.iter().map(|hold| hold.tail(SETTLED)).collect();
+    if rows.len() < 6 {
+        return Err(Unusable::TooLittle("the run holds too few loads: make it again to its end"));
+    }
+    let settled = keep_rows(run, &rows)?;
+    let with = |more: &[&'static str]| {
+        let effects = ["offset", "compliance"].iter().chain(more).copied();
+        ModelSpec::new(run.kind(), effects).and_then(|spec| fit(&settled, &spec, &Options::default()))
+    };
+    let line = with(&["directional_offset"])?;
+    let curved = with(&["hardening"]).ok().filter(|curved| curved.validation_rms < BETTER * line.validation_rms);
+    let best = curved.as_ref().unwrap_or(&line);
+
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+    let points: Vec<Point> = rows
+        .iter()
+        .map(|rows| {
+            let mean = |name: &str| {
+                let column = &run.column(name).unwrap_or_default()[rows.clone()];
+                column.iter().sum::<f64>() / column.len() as f64
+            };
+            (mean("link_torque_nm"), mean("motor_position_rad") / gear - mean("link_position_rad"))
+        })
+        .collect();
+    let Some(compliance) = parameter(best, "compliance", "inverse_k") else {
+        return Err(Unusable::TooLittle("the loads do not decide the stiffness: raise top_load or load_levels"));
+    };
+    let (inverse, inverse_ci95) = interval_of(compliance, 1.0);
+    let bearing = run.meta().bearing_stiffness_nm_per_rad.map_or(0.0, f64::recip);
+    let stiffness = |inverse: f64| 1.0 / (inverse - bearing);
+    let area = loop_area(run, &held, gear);
+    let mut quantities = vec![
+        quantity(["inverse_k", "k'⁻¹", "Compliance as measured", "rad/Nm"], inverse, Some(inverse_ci95)),
+        quantity(
+            ["k", "k", "Stiffness of the joint, bearing taken off", "Nm/rad"],
+            stiffness(inverse),
+            Some([stiffness(inverse_ci95[1]), stiffness(inverse_ci95[0])]),
+        ),
+    ];
+    let offset = if curved.is_some() { ("hardening", "phi_h") } else { ("directional_offset", "beta_0") };
+    if let Some(found) = parameter(best, offset.0, offset.1) {
+        let (value, ci95) = interval_of(found, 1.0);
+        quantities.push(quantity(["beta_0", "β₀", "Directional offset", "rad"], value, Some(ci95)));
+    }
+    if let Some(found) = parameter(best, "offset", "xi") {
+        let (value, ci95) = interval_of(found, 1.0);
+        quantities.push(quantity(["xi", "ξ", "Offset of the encoders", "rad"], value, Some(ci95)));
+    }
+    quantities.extend([
+        quantity(["line_rms", "e_line", "What a line leaves on loads not seen", "rad"], line.validation_rms, None),
+        quantity(["rms", "e", "What the chosen curve leaves on loads not seen", "rad"], best.validation_rms, None),
+        quantity(["loop_area", "A", "Area of the loop at the highest load", "J"], area, None),
+    ]);
+    let shape = if curved.is_some() {
+        "softer at low torque: use the curve or a look-up table"
+    } else {
+        "linear: a line with an offset by direction is enough"
+    };
+    Ok(Identification {
+        verdict: Verdict::Identified,
+        summary: format!("The joint's stiffness is {:.1} Nm/rad; it is {shape}.", stiffness(inverse)),
+        advice: (bearing == 0.0)
+            .then(|| "Give bearing_stiffness_nm_rad where it is known: the figure contains the bearing.".into()),
+        quantities,
+        figures: vec![torsion_over_torque(&points, best), table(&points)],
+    })
+}
+
+/// Work that one reversal and back takes at the highest load: the area between torsion and torque.
+fn loop_area(run: &RunTable, held: &[crate::findings::Hold], gear: f64) -> f64 {
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let (motor, link, torque) = (column("motor_position_rad"), column("link_position_rad"), column("link_torque_nm"));
+    let top = held.iter().map(|hold| hold.brake).fold(0.0, f64::max);
+    let mut at_top = held.windows(2).filter(|pair| pair[0].brake == top && pair[1].brake == top);
+    let Some(pair) = at_top.next() else { return 0.0 };
+    // From the middle of one hold through the reversal to the middle of the next is half of the loop.
+    let middle = |hold: &crate::findings::Hold| hold.rows.start + hold.rows.len() / 2;
+    let rows = middle(&pair[0])..middle(&pair[1]);
+    let twist = |i: usize| motor[i] / gear - link[i];
+    let way: f64 = rows.clone().skip(1).map(|i| 0.5 * (torque[i] + torque[i - 1]) * (twist(i) - twist(i - 1))).sum();
+    // What a straight spring between the same ends would take is given back; the rest is lost, in both halves.
+    let (first, last) = (rows.start, rows.end - 1);
+    let spring = 0.5 * (torque[first] + torque[last]) * (twist(last) - twist(first));
+    2.0 * (way - spring).abs()
+}
+
+fn torsion_over_torque(points: &[Point], best: &Fit) -> Figure {
+    let top = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+    let value = |effect: &str, name: &str| parameter(best, effect, name).map_or(0.0, |p| p.value);
+    let (xi, inverse, beta) =
+        (value("offset", "xi"), value("compliance", "inverse_k"), value("directional_offset", "beta_0"));
+    let mut series = vec![
+        scatter("positive", points.iter().copied().filter(|p| p.0 > 0.0)),
+        scatter("negative", points.iter().copied().filter(|p| p.0 <= 0.0)),
+    ];
+    if beta != 0.0 {
+        series.push(curve("line, positive", [0.0, top], 1, |t| xi + inverse * t + beta));
+        series.push(curve("line, negative", [-top, 0.0], 1, |t| xi + inverse * t - beta));
+    }
+    Figure {
+        name: "torsion_over_torque".into(),
+        title: "Torsion over torque".into(),
+        form: Form::Cartesian,
+        x: Axis::of("link torque", "Nm"),
+        y: Axis::of("torsion", "rad"),
+        series,
+    }
+}
+
+/// The look-up table: mean torsion at each torque, both sides.
+fn table(points: &[Point]) -> Figure {
+    let top = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let groups = sorted.chunk_by(|a, b| b.0 - a.0 < 0.02 * top);
+    let mean = |group: &[Point]| {
+        let n = group.len() as f64;
+        (group.iter().map(|p| p.0).sum::<f64>() / n, group.iter().map(|p| p.1).sum::<f64>() / n)
+    };
+    let (x, y) = groups.map(mean).unzip();
+    Figure {
+        name: "look_up_table".into(),
+        title: "Look-up table of the torsion".into(),
+        form: Form::Cartesian,
+        x: Axis::of("link torque", "Nm"),
+        y: Axis::of("torsion", "rad"),
+        series: vec![Series::new("table", Mark::Line, x, y)],
+    }
+}

@@ -1,0 +1,57 @@
+//! What the drive is asked for in a tick: a velocity, with what is fed forward, or a motor current alone.
+
+use super::session::{Asked, Session};
+use crate::plan::{Drive, Feed, Step, Until};
+use jointbench_instrument::roles::JointReading;
+use std::f64::consts::TAU;
+
+/// Friction as it is felt, low-passed, while a step lasts.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct FeltFriction {
+    current_a: f64,
+}
+
+/// How often in a row the motor has moved on.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Moved {
+    at_rad: Option<f64>,
+    times: u32,
+}
+
+impl Moved {
+    /// Whether the joint has broken away in the direction of the current.
+    pub fn is_enough(&mut self, until: Until, current_a: f64, joint: Option<JointReading>) -> bool {
+        let Some(joint) = joint else { return false };
+        let position_rad = joint.motor_position.0;
+        let before_rad = self.at_rad.replace(position_rad).unwrap_or(position_rad);
+        self.times = if (position_rad - before_rad) * current_a > 0.0 { self.times + 1 } else { 0 };
+        self.times >= until.increases || joint.motor_velocity.0.abs() > until.speed_rad_s
+    }
+}
+
+impl Session<'_> {
+    pub(super) fn asked(&self, step: &Step, t_s: f64, friction: &mut FeltFriction) -> Asked {
+        let rad_s = step.velocity.at(t_s);
+        match &step.drive {
+            Drive::Current { from_s, current_a, .. } if t_s >= *from_s => {
+                Asked::Current { a: current_a.at(t_s - from_s) }
+            }
+            Drive::Velocity | Drive::Current { .. } => Asked::Velocity { rad_s, fed_a: 0.0 },
+            Drive::Fed(Feed::Planned(current_a)) => Asked::Velocity { rad_s, fed_a: current_a.at(t_s) },
+            Drive::Fed(Feed::Observed { share, corner_hz, ramp_rad_s }) => {
+                let gain = 1.0 - (-TAU * corner_hz * self.beat.period_s).exp();
+                friction.current_a += gain * (self.friction_a() - friction.current_a);
+                let side = (rad_s / ramp_rad_s).clamp(-1.0, 1.0);
+                Asked::Velocity { rad_s, fed_a: share * friction.current_a * side }
+            }
+        }
+    }
+
+    /// The motor current that friction takes, by the latest readings: in the direction of motion, never less than none.
+    fn friction_a(&self) -> f64 {
+        let Some(joint) = self.joint else { return 0.0 };
+        let constants = &self.bench.constants;
+        let load_a = self.link_torque_nm.unwrap_or(0.0) / constants.gear_ratio / constants.torque_constant_nm_per_a;
+        ((joint.motor_current.0 - load_a) * joint.motor_velocity.0.signum()).max(0.0)
+    }
+}
