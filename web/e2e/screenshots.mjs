@@ -4,7 +4,7 @@
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, open, settings, tell } from './browser.mjs';
-import { BARE, flyAndStop, measureNext, readVersion, startRun, toAnotherVersion, watchRun } from './steps.mjs';
+import { BARE, flyAndStop, makeRun, measureNext, readVersion, startRun, toAnotherVersion, watchRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/screenshots.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const folder = process.env.JB_SCREENS ?? fileURLToPath(new URL('../../docs/screens', import.meta.url));
@@ -12,6 +12,13 @@ mkdirSync(folder, { recursive: true });
 
 const NARROW = { width: 768, height: 1024 };
 const WIDE = { width: 1440, height: 900 };
+
+/** Results that look unlike each other, each from a run that is short and still says something. */
+const GALLERY = {
+	friction_load: {},
+	brake_hysteresis: {},
+	demagnetise: {},
+};
 
 async function shoot(page, name) {
 	for (const theme of ['light', 'dark']) {
@@ -33,6 +40,13 @@ await tell(`screens in ${folder}`, async () => {
 	await shoot(page, 'live');
 	const toWorkbench = await watchRun(page);
 	await shoot(page, 'run');
+
+	await page.locator('[data-result] [data-figure]').first().waitFor({ timeout: 60_000 });
+	await shoot(page, 'result-friction');
+	await page.setViewportSize(NARROW);
+	await shoot(page, 'result-narrow');
+	await page.setViewportSize(WIDE);
+	await page.locator('header:has(h1)').last().scrollIntoViewIfNeeded();
 
 	await toWorkbench.click();
 	const first = await readVersion(page);
@@ -65,6 +79,14 @@ await tell(`screens in ${folder}`, async () => {
 	await page.goto(`${where.base}/runs`);
 	await page.getByRole('link', { name: `#${run}` }).waitFor();
 	await shoot(page, 'runs');
+
+	for (const [procedure, parameters] of Object.entries(GALLERY)) {
+		const made = await makeRun(where.base, procedure, parameters);
+		if (made === null) continue;
+		await page.goto(`${where.base}/runs/${made}`);
+		await page.locator('[data-result] [data-figure]').first().waitFor({ timeout: 60_000 });
+		await shoot(page, `result-${procedure}`);
+	}
 	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
 	await browser.close();
 });

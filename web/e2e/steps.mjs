@@ -22,6 +22,31 @@ export async function startRun(page, base, settings = '') {
 	return Number(/runs\/(\d+)/.exec(page.url())[1]);
 }
 
+/** Makes a run through REST and waits for its end; `null` where no bench of the daemon can make it. */
+export async function makeRun(base, procedure, parameters) {
+	const rest = async (path, body) => {
+		const answer = await fetch(`${base}/api/v1${path}`, body && { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) });
+		return { ok: answer.ok, said: await answer.json() };
+	};
+	const { said: benches } = await rest('/bench');
+	for (const { name } of benches) {
+		const { ok, said: run } = await rest('/runs', { bench: name, procedure, parameters });
+		if (!ok) {
+			console.log(`no ${procedure} on ${name}: ${run.detail}`);
+			continue;
+		}
+		const until = Date.now() + RUN_MS;
+		while (Date.now() < until) {
+			const { said } = await rest(`/runs/${run.id}`);
+			if (said.state === 'completed') return run.id;
+			expect(!/stopped|aborted|failed|interrupted/.test(said.state), `${procedure} on ${name} ended ${said.state}: ${said.reason}`);
+			await new Promise((resolve) => setTimeout(resolve, 500));
+		}
+		expect(false, `${procedure} on ${name} did not end in ${RUN_MS / 1000} s`);
+	}
+	return null;
+}
+
 /** Waits on the live page until the run has completed. */
 export async function watchRun(page) {
 	const open = page.getByRole('link', { name: 'Open in the workbench' });
@@ -32,6 +57,26 @@ export async function watchRun(page) {
 	const head = await page.locator('header:has(h1)').last().innerText();
 	expect(head.includes('DONE'), `the run did not complete: ${head.replaceAll('\n', ' ')}`);
 	return open;
+}
+
+/** Reads the result on a run's page, by keyboard alone: its first figure as a table, and back. Says the verdict and how many numbers the table has. */
+export async function readResult(page) {
+	const card = page.locator('[data-result]');
+	await card.locator('[data-figure]').first().waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the run has no result'));
+	const choose = async (item) => {
+		await card.locator('[data-figure] summary').first().focus();
+		await page.keyboard.press('Enter');
+		for (let i = 0; i < 6; i++) {
+			await page.keyboard.press('Tab');
+			if ((await page.evaluate(() => document.activeElement.textContent)) === item) return page.keyboard.press('Enter');
+		}
+		expect(false, `no ${item} in the menu of a figure can be reached by keyboard`);
+	};
+	await choose('View as table');
+	const rows = await card.locator('[data-figure] tbody tr').count();
+	await choose('View as figure');
+	await card.locator('[data-figure] svg').first().waitFor();
+	return { verdict: await card.getAttribute('data-result'), quantities: await card.locator('[data-quantity]').count(), rows };
 }
 
 /** Waits until the version on the screen is fitted and diagnosed; says what the screen shows of it. */

@@ -1,11 +1,11 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Start the procedure, watch it finish, open the workbench, have the run made that would tell more, see where the model fails on
+// Start the procedure, watch it finish, read its result by keyboard, open the workbench, have the run made that would tell more, see where the model fails on
 // both, add the first suggestion, see the error fall, undo, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { BARE, brush, flyAndStop, importForeign, measureNext, observe, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
+import { BARE, brush, flyAndStop, importForeign, measureNext, observe, readResult, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const rest = async (path) => {
@@ -21,6 +21,8 @@ await tell('walk', async () => {
 	const run = await startRun(page, where.base, BARE);
 	await watcher.getByText('RUNNING').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the observer does not see the run'));
 	const toWorkbench = await watchRun(page);
+	const result = await readResult(page);
+	expect(result.verdict !== 'failed' && result.quantities > 2 && result.rows > 10, `the result says too little: ${JSON.stringify(result)}`);
 	await audit(page, 'the run');
 	console.log(`run ${run} is done`);
 

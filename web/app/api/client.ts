@@ -46,6 +46,8 @@ export const api = {
 	runs: (query: { limit?: number; offset?: number; search?: string }, signal?: Signal) =>
 		body(client.GET('/api/v1/runs', { params: { query }, signal })),
 	run: (id: number, signal?: Signal) => body(client.GET('/api/v1/runs/{id}', { params: { path: { id } }, signal })),
+	identification: (id: number, signal?: Signal) =>
+		body(client.GET('/api/v1/runs/{id}/identification', { params: { path: { id } }, signal })),
 	start: (bench: string, procedure: string, parameters: Values) =>
 		body(client.POST('/api/v1/runs', { body: { bench, procedure, parameters } })),
 	control: (id: number, what: 'pause' | 'resume' | 'stop' | 'abort') =>

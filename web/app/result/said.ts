@@ -1,0 +1,39 @@
+import type { Identification, IdentifiedQuantity } from '../api/types';
+import { csv } from '../figure/figure';
+import { type Scale, bounds, estimate, figure, scaleFor } from '../format/number';
+import type { Mood } from '../ui/states';
+
+const VERDICTS: Record<Identification['verdict'], { word: string; icon: string; mood: Mood }> = {
+	identified: { word: 'IDENTIFIED', icon: '✓', mood: 'good' },
+	inconclusive: { word: 'INCONCLUSIVE', icon: '◔', mood: 'warn' },
+	failed: { word: 'FAILED', icon: '✕', mood: 'bad' },
+};
+
+export const sayVerdict = (verdict: Identification['verdict']) => VERDICTS[verdict];
+
+/** A quantity with one prefix for value and interval: `32.1 ± 0.4 µNm·s/rad`; an uneven interval is said by its ends. */
+export function sayQuantity(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci95'>, shown: Scale = { factor: 1, unit: of.unit }): { value: string; interval: string; unit: string } {
+	const [value, unit] = [of.value * shown.factor, shown.unit];
+	const [low, high] = (of.ci95 ?? []).map((end) => end * shown.factor);
+	if (low === undefined || high === undefined) {
+		const scale = scaleFor(unit, value);
+		return { value: unit === '' && Number.isInteger(value) ? String(value) : estimate(value * scale.factor, []), interval: '', unit: scale.unit };
+	}
+	const scale = scaleFor(unit, Math.max(Math.abs(value), Math.abs(low), Math.abs(high)));
+	const scaled = [low * scale.factor, high * scale.factor] as const;
+	const [below, above] = [value - low, high - value];
+	const even = Math.abs(above - below) <= 0.02 * (above + below);
+	const half = ((above + below) / 2) * scale.factor;
+	return {
+		value: estimate(value * scale.factor, scaled),
+		interval: even && half > 0 ? `± ${figure(half, 2)}` : bounds(scaled),
+		unit: scale.unit,
+	};
+}
+
+export function quantitiesCsv(quantities: readonly IdentifiedQuantity[]): string {
+	return csv(
+		['name', 'symbol', 'quantity', 'unit', 'value', 'ci95 lower', 'ci95 upper'],
+		quantities.map(({ name, symbol, title, unit, value, ci95 }) => [name, symbol, title, unit, value, ci95?.[0] ?? null, ci95?.[1] ?? null]),
+	);
+}
