@@ -54,6 +54,11 @@ export const api = {
 		body(client.POST(`/api/v1/runs/{id}/${what}`, { params: { path: { id } } })),
 	events: (id: number, after?: number, signal?: Signal) =>
 		body(client.GET('/api/v1/runs/{id}/events', { params: { path: { id }, query: { after } }, signal })),
+	notes: (id: number, signal?: Signal) => body(client.GET('/api/v1/runs/{id}/notes', { params: { path: { id } }, signal })),
+	addNote: (id: number, text: string, at_s: number | null) =>
+		body(client.POST('/api/v1/runs/{id}/notes', { params: { path: { id } }, body: { text, at_s } })),
+	tags: (signal?: Signal) => body(client.GET('/api/v1/tags', { signal })),
+	setTags: (id: number, tags: string[]) => body(client.PUT('/api/v1/runs/{id}/tags', { params: { path: { id } }, body: { tags } })),
 	samples: (id: number, query: { channels?: string; from_s?: number; to_s?: number; px?: number }, signal?: Signal) =>
 		body(client.GET('/api/v1/runs/{id}/samples', { params: { path: { id }, query }, signal })),
 
@@ -83,6 +88,8 @@ export const api = {
 };
 
 export const modelHref = (id: number, format: 'json' | 'c' | 'lut' | 'mujoco' | 'urdf') => `${BASE}/models/${id}/export?format=${format}`;
+
+export const reportHref = (run: number) => `${BASE}/runs/${run}/report`;
 
 export function exportHref(run: number, format: 'csv' | 'parquet'): string {
 	return `${BASE}/runs/${run}/export?format=${format}`;

@@ -15,4 +15,5 @@ it('trusts a unit that is given', () => {
 
 it('says ids of a sentence as words', () => {
 	expect(prose('it would show load_linear and stribeck_load, at 5 mNm')).toBe('It would show load linear and stribeck load, at 5 mNm');
+	expect(prose('repeat with a lower stribeck_speed_rad_s, for tau_c')).toBe('Repeat with a lower stribeck speed, for tau c');
 });

@@ -50,8 +50,11 @@ export function words(id: string): string {
 	return WORDS[id] ?? id.replaceAll('_', ' ');
 }
 
-/** A sentence of the daemon as people write it: ids as words, a capital at its start. */
+/** A unit that can be nothing else; `tau_c` is no temperature. */
+const SPELT_UNIT = /_(rad_s2?|rad|nm|hz)$/;
+
+/** A sentence of the daemon as people write it: ids as words, without the unit at their end; a capital at its start. */
 export function prose(sentence: string): string {
-	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, words);
+	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, (id) => words(id.replace(SPELT_UNIT, '')));
 	return spoken.charAt(0).toUpperCase() + spoken.slice(1);
 }

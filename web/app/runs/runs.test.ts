@@ -1,6 +1,7 @@
 import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
 import { alignCourses, courseOf, factTable, sharedMoments } from './align';
+import { completions } from './complete';
 import { differ } from './differ';
 import { readMarked, toggleMarked } from './marked';
 
@@ -58,4 +59,12 @@ it('compares at most six runs', () => {
 	expect(readMarked('3,1,x,3')).toEqual([3, 1]);
 	expect(toggleMarked([3, 1], 1)).toEqual([3]);
 	expect(toggleMarked([1, 2, 3, 4, 5, 6], 7)).toEqual([1, 2, 3, 4, 5, 6]);
+});
+
+it('completes the last term of a search', () => {
+	const values = { tag: ['oil', 'warm oil'], state: ['failed', 'completed'] };
+	expect(completions('joint ta', values)).toEqual(['joint tag:']);
+	expect(completions('-state:f', values)).toEqual(['-state:failed']);
+	expect(completions('tag:', values)).toEqual(['tag:oil', 'tag:"warm oil"']);
+	expect(completions('tag:oil', values)).toEqual([]);
 });
