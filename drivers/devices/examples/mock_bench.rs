@@ -1,8 +1,8 @@
 //! A mock bench for other programs: prints where the instruments answer, and lets time pass until Enter is pressed.
 //!
-//! `cargo run -p jointbench-devices --example mock_bench -- [joint_a|joint_b|encoder_bench] [seed] [tcp] [effect …]`
+//! `cargo run -p jointbench-devices --example mock_bench -- [joint_a|joint_b|encoder_bench] [seed] [tcp] [hmp4040] [effect …]`
 
-use jointbench_devices::sim::Transport;
+use jointbench_devices::sim::{Supply, Transport};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use std::error::Error;
 use std::io::Read;
@@ -18,6 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let bench = MockSettings::new(Joint::EncoderShaft, settings.seed);
                 (settings.joint, settings.load, settings.others) = (bench.joint, bench.load, bench.others);
             }
+            "hmp4040" => settings.supply = Supply::Hmp4040,
             "tcp" => settings.transport = Transport::Tcp,
             other => match other.parse() {
                 Ok(seed) => settings.seed = seed,

@@ -1,6 +1,7 @@
 //! The encoder bench: a shaft with two encoders, and nothing that brakes it.
 
 use jointbench_devices::sim::{MockInstrument, Trouble};
+use jointbench_devices::transport::{Event, Traffic};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::units::{Amperes, RadPerSec};
 
@@ -44,4 +45,55 @@ fn half_an_encoder_bench_is_none() {
     let failed: Vec<_> = opened.asked.iter().filter(|asked| asked.identity.is_err()).map(|asked| asked.role).collect();
     assert_eq!((failed, opened.asked.len()), (vec!["stage"], 5));
     assert!(mock.open_bench("mock").is_err());
+}
+
+/// What every instrument said in the same conversation, byte for byte.
+fn said(seed: u64) -> Vec<(String, Vec<u8>)> {
+    let folder = tempfile::tempdir().unwrap();
+    let mock = MockBench::start(MockSettings::new(Joint::EncoderShaft, seed)).unwrap();
+    let mut settings = mock.instruments();
+    settings.record_in(folder.path());
+    let mut bench = settings.open(&mock.clock());
+    let clock = mock.clock();
+    let wait = |seconds: f64| clock.sleep_until_s(clock.now_s() + seconds);
+    let (joint, stage) = (bench.joint.as_mut().unwrap(), bench.stage.as_mut().unwrap());
+    stage.reference().unwrap();
+    joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
+    for reading in 0..200 {
+        joint.set_velocity(RadPerSec(f64::from(reading))).unwrap();
+        wait(0.03);
+        joint.read().unwrap();
+        for encoder in [&mut bench.reference_encoder, &mut bench.test_encoder] {
+            encoder.as_mut().unwrap().read().unwrap();
+        }
+        stage.pose().unwrap();
+        bench.thermometer.as_mut().unwrap().read().unwrap();
+    }
+    drop(bench);
+    let bytes = |file: &std::path::Path| -> Vec<u8> {
+        let traffic = Traffic::parse(&std::fs::read_to_string(file).unwrap()).unwrap();
+        let said = traffic.events.into_iter().filter_map(|(_, event)| match event {
+            Event::Received(bytes) => Some(bytes),
+            _ => None,
+        });
+        said.flatten().collect()
+    };
+    let mut files: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().path()).collect();
+    files.sort();
+    files.iter().map(|file| (file.file_stem().unwrap().to_str().unwrap().to_owned(), bytes(file))).collect()
+}
+
+#[test]
+fn the_same_seed_says_the_same_bytes_and_another_one_does_not() {
+    let (once, again, other) = (said(11), said(11), said(12));
+    assert_eq!(
+        once.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+        ["joint", "s1", "s2", "stage", "thermometer"]
+    );
+    for ((name, once), (_, again)) in once.iter().zip(&again) {
+        assert!(once == again && !once.is_empty(), "{name}");
+    }
+    for ((name, once), (_, other)) in once.iter().zip(&other).filter(|((name, _), _)| name != "s1") {
+        assert_ne!(once, other, "{name}");
+    }
 }

@@ -8,7 +8,7 @@ use jointbench_devices::protocol::modbus::ReadRegisters;
 use jointbench_devices::protocol::odrive::{Part, ReadErrors, ReadFeedback, ReadInfo, ReadNumber, SetVelocity};
 use jointbench_devices::protocol::qsb::{ReadRegister, Register, WriteRegister};
 use jointbench_devices::protocol::scpi::{
-    Identify, QueryError, QueryNumber, QueryOutput, ReadCondition, ReadMeasured, ReadVoltage, Set, Terminator,
+    Dialect, Identify, QueryError, QueryFlag, QueryNumber, ReadCondition, ReadMeasured, ReadVoltage, Set, Terminator,
 };
 use jointbench_devices::transport::{Request, Scan, Traffic};
 use proptest::collection::vec;
@@ -75,9 +75,9 @@ proptest! {
         walk(&Identify(lf), &noise);
         walk(&QueryError(lf), &noise);
         walk(&QueryNumber(lf, ":SOUR1:CURR?"), &noise);
-        walk(&QueryOutput(lf), &noise);
-        walk(&ReadMeasured(lf), &noise);
-        walk(&ReadCondition(lf), &noise);
+        walk(&QueryFlag(lf, ":OUTP? CH1"), &noise);
+        walk(&ReadMeasured(lf, Dialect::Dp800), &noise);
+        walk(&ReadCondition(lf, Dialect::Hmp), &noise);
         walk(&Set(lf, ":OUTP CH1,ON".into()), &noise);
         walk(&ReadVoltage(lf), &noise);
         walk(&ReadRegister(Register::Encoder), &noise);
@@ -97,7 +97,7 @@ proptest! {
     fn lines_are_found_behind_a_line_of_noise(noise in bytes()) {
         let noise: Vec<u8> = noise.into_iter().filter(|byte| *byte != b'\n').collect();
         check_back_in_step(&ReadNumber { path: "vbus_voltage" }, &noise, b"\n", b"24.087744*32\r\n");
-        check_back_in_step(&ReadMeasured(Terminator::Lf), &noise, b"\n", b"12.9870,0.2498,3.2441\n");
+        check_back_in_step(&ReadMeasured(Terminator::Lf, Dialect::Dp800), &noise, b"\n", b"12.9870,0.2498,3.2441\n");
         check_back_in_step(&QueryError(Terminator::Lf), &noise, b"\n", b"-222,\"Data out of range\"\n");
         check_back_in_step(&ReadRegister(Register::Encoder), &noise, b"\n", b"r 0E 000012F3 0000ABD0 !\r\n");
         // A line that ends with a blank is not the last one of its reply.

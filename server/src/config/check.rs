@@ -6,7 +6,7 @@ use super::mistake::{Collector, Mistakes};
 use super::raw::{RawBench, RawFile, RawMock};
 use super::values::{choice, positive};
 use super::{BenchDescription, Source};
-use jointbench_devices::sim::{HIDDEN_EFFECTS, Load};
+use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, Supply};
 use jointbench_devices::{Joint, MockSettings};
 
 pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
@@ -88,10 +88,13 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     if let (Some(given), Some(Joint::EncoderShaft)) = (&raw.load, joint) {
         wrong.add(given.span(), "an encoder shaft has no load: leave load out");
     }
+    let supplies = [("dp821a", Supply::Dp821a), ("hmp4040", Supply::Hmp4040)];
+    let supply =
+        raw.supply.as_ref().map_or(Some(Supply::default()), |supply| choice(supply, "supply", &supplies, wrong));
     let pace = raw.pace.as_ref().and_then(|pace| positive(pace, "pace", wrong));
     let effects = raw.effects.iter().map(|effect| effect.get_ref().clone()).collect();
     let settings = MockSettings::new(joint?, raw.seed.unwrap_or(1));
     let load = load.unwrap_or(Some(settings.load))?;
-    let (filter, troubles) = (raw.filter, raw.troubles.clone());
-    Some(MockSettings { load, effects, pace, filter, troubles, ..settings })
+    let (filter, supply, troubles) = (raw.filter, supply?, raw.troubles.clone());
+    Some(MockSettings { load, effects, pace, filter, supply, troubles, ..settings })
 }

@@ -46,6 +46,7 @@ impl RawBench {
 pub struct RawMock {
     pub joint: Spanned<String>,
     pub load: Option<Spanned<String>>,
+    pub supply: Option<Spanned<String>>,
     pub seed: Option<u64>,
     #[serde(default)]
     pub effects: Vec<Spanned<String>>,

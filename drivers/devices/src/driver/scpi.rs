@@ -1,9 +1,9 @@
-//! A DP800 supply as the current source of a brake's coil: channel 1, current regulated.
+//! A Rigol DP800 or an R&S HMP supply as the current source of a brake's coil: channel 1, current regulated.
 
 use super::{Recovers, same};
 use crate::protocol::scpi::{
-    ClearStatus, ERROR_QUEUE_DEPTH, Identify, QueryError, QueryNumber, QueryOutput, ReadCondition, ReadMeasured, Set,
-    SwitchOff, Terminator,
+    ClearStatus, Dialect, ERROR_QUEUE_DEPTH, Identify, QueryError, QueryFlag, QueryNumber, ReadCondition, ReadMeasured,
+    Set, SwitchOff, Terminator,
 };
 use crate::transport::{Command, Link, PortSettings};
 use jointbench_instrument::roles::{CurrentSource, Identity, Instrument, Regulation, SupplyReading};
@@ -13,8 +13,6 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
 
-/// Channel 1 of a DP821A is programmed in steps of this.
-const CURRENT_STEP_A: f64 = 1e-4;
 const VOLTAGE_STEP_V: f64 = 1e-3;
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,6 +27,8 @@ pub struct ScpiSource {
     settings: ScpiSettings,
     link: Link,
     line_end: Terminator,
+    /// Told by its identity.
+    dialect: Dialect,
     identity: Option<Identity>,
     /// The output was switched on, and not off again.
     on: bool,
@@ -39,7 +39,7 @@ impl ScpiSource {
     pub fn open(settings: ScpiSettings) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
         let line_end = Terminator::for_address(&settings.port.address);
-        let mut source = Self { settings, link, line_end, identity: None, on: false };
+        let mut source = Self { settings, link, line_end, dialect: Dialect::Dp800, identity: None, on: false };
         source.ready()?;
         Ok(source)
     }
@@ -60,13 +60,7 @@ impl ScpiSource {
         Err(fault)
     }
 
-    fn set_and_read_back(
-        &mut self,
-        header: &'static str,
-        query: &'static str,
-        value: f64,
-        step: f64,
-    ) -> Result<(), Fault> {
+    fn set_and_read_back(&mut self, [header, query]: [&'static str; 2], value: f64, step: f64) -> Result<(), Fault> {
         if !value.is_finite() || value < 0.0 {
             let what = format!("{header} {value}: expected a finite number from 0 upwards");
             return Err(self.link.fault(FaultKind::Refused { what }));
@@ -90,13 +84,21 @@ impl ScpiSource {
     }
 
     fn output(&mut self, on: bool) -> Result<(), Fault> {
-        let word = if on { "ON" } else { "OFF" };
-        self.set(format!(":OUTP CH1,{word}"))?;
-        if self.link.request(&QueryOutput(self.line_end))? != on {
-            let what = format!("the output does not go {word}");
+        self.set(self.dialect.output(on).into())?;
+        if self.is_on()? != on {
+            let what = format!("the output does not go {}", if on { "on" } else { "off" });
             return Err(self.link.fault(FaultKind::Reported { what }));
         }
         Ok(())
+    }
+
+    fn is_on(&mut self) -> Result<bool, Fault> {
+        for query in self.dialect.output_queries() {
+            if !self.link.probe(&QueryFlag(self.line_end, query))? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 }
 
@@ -111,12 +113,13 @@ impl Recovers for ScpiSource {
         ClearStatus(self.line_end).encode(&mut clear);
         self.link.drain(&clear, false)?;
         let found = self.link.probe(&Identify(self.line_end))?;
-        if !found.maker.to_ascii_uppercase().contains("RIGOL") || !found.model.starts_with("DP8") {
-            let found = format!("{} {}", found.maker, found.model);
-            return Err(self.link.fault(FaultKind::WrongInstrument { expected: "RIGOL DP8xx".into(), found }));
-        }
+        let Some(dialect) = Dialect::of(&found) else {
+            let (expected, found) = ("Rigol DP8xx or R&S HMP".into(), format!("{} {}", found.maker, found.model));
+            return Err(self.link.fault(FaultKind::WrongInstrument { expected, found }));
+        };
+        self.dialect = dialect;
         let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
-        let on = self.on && self.link.probe(&QueryOutput(self.line_end))?;
+        let on = self.on && self.is_on()?;
         self.still_on(on)?;
         Ok(identity)
     }
@@ -150,22 +153,22 @@ impl CurrentSource for ScpiSource {
         self.on = false;
         self.set(":SYST:REM".into())?;
         self.output(false)?;
-        self.set_and_read_back(":SOUR1:CURR", ":SOUR1:CURR?", 0.0, CURRENT_STEP_A)?;
-        self.set_and_read_back(":SOUR1:VOLT", ":SOUR1:VOLT?", compliance.0, VOLTAGE_STEP_V)?;
+        self.set_current(Amperes(0.0))?;
+        self.set_and_read_back(self.dialect.voltage(), compliance.0, VOLTAGE_STEP_V)?;
         self.output(true)?;
         self.on = true;
         Ok(())
     }
 
     fn set_current(&mut self, current: Amperes) -> Result<(), Fault> {
-        self.set_and_read_back(":SOUR1:CURR", ":SOUR1:CURR?", current.0, CURRENT_STEP_A)
+        self.set_and_read_back(self.dialect.current(), current.0, self.dialect.current_step_a())
     }
 
     fn read(&mut self) -> Result<SupplyReading, Fault> {
-        let line_end = self.line_end;
+        let (line_end, dialect) = (self.line_end, self.dialect);
         let link = self.ready()?;
-        let measured = link.request(&ReadMeasured(line_end))?;
-        let condition = link.request(&ReadCondition(line_end))?;
+        let measured = link.request(&ReadMeasured(line_end, dialect))?;
+        let condition = link.request(&ReadCondition(line_end, dialect))?;
         if condition.over_voltage_trip || condition.over_current_trip {
             let what = if condition.over_voltage_trip { "over-voltage" } else { "over-current" };
             return Err(link.fault(FaultKind::Reported { what: format!("{what} protection has tripped") }));
@@ -176,7 +179,7 @@ impl CurrentSource for ScpiSource {
             (true, true) => Regulation::Unregulated,
             (false, false) => Regulation::Off,
         };
-        let on = regulation != Regulation::Off || link.request(&QueryOutput(line_end))?;
+        let on = regulation != Regulation::Off || self.is_on()?;
         self.still_on(self.on && on)?;
         Ok(SupplyReading { current: Amperes(measured.current_a), voltage: Volts(measured.voltage_v), regulation })
     }
@@ -184,11 +187,11 @@ impl CurrentSource for ScpiSource {
     fn output_off(&mut self) -> Result<(), Fault> {
         self.on = false;
         // Out first, whatever the state of the link; then the question whether it was taken.
-        self.link.send(&SwitchOff(self.line_end))?;
+        self.link.send(&SwitchOff(self.line_end, self.dialect))?;
         self.output(false)
     }
 
     fn resolution(&self) -> Option<Amperes> {
-        Some(Amperes(CURRENT_STEP_A))
+        Some(Amperes(self.dialect.current_step_a()))
     }
 }

@@ -7,7 +7,7 @@ use super::plant::{HIDDEN_EFFECTS, Hidden, Plant, Truth};
 #[cfg(unix)]
 use super::port::serve_terminal;
 use super::port::{Port, lock, serve_tcp};
-use super::rig::{MockInstrument, Rig};
+use super::rig::{MockInstrument, Rig, Supply};
 use super::trouble::{PlannedTrouble, Trouble};
 use crate::driver::{
     AdamSettings, GcsSettings, LorenzSettings, OdriveSettings, QsbSettings, Range, ScpiSettings, Thermistor,
@@ -36,6 +36,7 @@ pub enum Transport {
 pub struct MockSettings {
     pub joint: Joint,
     pub load: Load,
+    pub supply: Supply,
     pub seed: u64,
     /// Whether the filter of the encoder under test is on.
     pub filter: bool,
@@ -61,6 +62,7 @@ impl MockSettings {
         Self {
             joint,
             load,
+            supply: Supply::default(),
             seed,
             filter: false,
             effects: Vec::new(),
@@ -133,8 +135,13 @@ impl MockBench {
         let mut plant = Plant::new(settings.joint, settings.load, settings.seed, hidden);
         plant.filter_s2(settings.filter);
         let truth = plant.truth(settings.joint, settings.seed);
-        let rig =
-            Arc::new(Mutex::new(Rig::new(plant, Odrive::new(settings.joint), &settings.others, &settings.troubles)));
+        let rig = Arc::new(Mutex::new(Rig::new(
+            plant,
+            Odrive::new(settings.joint),
+            settings.supply,
+            &settings.others,
+            &settings.troubles,
+        )));
         let clock = Arc::new(SteppedClock::new(Arc::clone(&rig), settings.pace));
         let mut bench = Self { settings, truth, rig, clock, ports: Vec::new(), threads: Vec::new() };
         for instrument in bench.settings.instruments() {

@@ -25,7 +25,7 @@ pub use bench::{ENCODER_COUNTS, MockBench, MockError, MockSettings, Transport};
 pub use data_sheet::{Joint, Load};
 pub use plant::{EncoderTruth, HIDDEN_EFFECTS, HiddenEffect, Truth};
 pub use replay::Replay;
-pub use rig::MockInstrument;
+pub use rig::{MockInstrument, Supply};
 pub use trouble::{PlannedTrouble, Trouble};
 
 #[cfg(doc)]

@@ -1,6 +1,6 @@
 //! Everything behind the wires: the plant and the instruments' firmware, advanced together.
 
-use super::firmware::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Lorenz, Odrive, Qsb};
+use super::firmware::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Odrive, Qsb};
 use super::plant::{Plant, STEP_S};
 use super::trouble::{PlannedTrouble, Trouble};
 use serde::{Deserialize, Serialize};
@@ -61,6 +61,16 @@ impl MockInstrument {
     }
 }
 
+/// What feeds the brake's coil.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Supply {
+    #[default]
+    Dp821a,
+    /// Ends at 32 V, which does not hold the rated current in a warm coil.
+    Hmp4040,
+}
+
 /// Beyond 131 % of the small range, where the converter ends, and well within the large one.
 const SENSOR_SHIFT_NM: f64 = 27.0;
 const LOOSE_CONTACT_OHM: f64 = 250.0;
@@ -70,7 +80,7 @@ pub(super) struct Rig {
     pub plant: Plant,
     joint: Odrive,
     torque_sensor: Lorenz,
-    brake: Dp800,
+    brake: Box<dyn Firmware + Send>,
     others: Vec<(MockInstrument, Box<dyn Firmware + Send>)>,
     troubles: [Trouble; MockInstrument::COUNT],
     /// What begins, or ends, at which moment. The next one last.
@@ -78,7 +88,13 @@ pub(super) struct Rig {
 }
 
 impl Rig {
-    pub fn new(plant: Plant, joint: Odrive, others: &[MockInstrument], planned: &[PlannedTrouble]) -> Self {
+    pub fn new(
+        plant: Plant,
+        joint: Odrive,
+        supply: Supply,
+        others: &[MockInstrument],
+        planned: &[PlannedTrouble],
+    ) -> Self {
         let others = others.iter().filter_map(|other| Some((*other, other.other()?))).collect();
         let mut moments = Vec::new();
         for plan in planned {
@@ -86,7 +102,11 @@ impl Rig {
             moments.extend(plan.until_s.map(|until_s| (until_s, plan.instrument, Trouble::None)));
         }
         moments.sort_by(|(a_s, ..), (b_s, ..)| b_s.total_cmp(a_s));
-        let (torque_sensor, brake) = (Lorenz::new(), Dp800::new());
+        let torque_sensor = Lorenz::new();
+        let brake: Box<dyn Firmware + Send> = match supply {
+            Supply::Dp821a => Box::new(Dp800::new()),
+            Supply::Hmp4040 => Box::new(Hmp::new()),
+        };
         Self { plant, joint, torque_sensor, brake, others, troubles: Default::default(), planned: moments }
     }
 
@@ -155,7 +175,7 @@ impl Rig {
         let firmware: &mut dyn Firmware = match instrument {
             MockInstrument::Joint => &mut self.joint,
             MockInstrument::TorqueSensor => &mut self.torque_sensor,
-            MockInstrument::Brake => &mut self.brake,
+            MockInstrument::Brake => self.brake.as_mut(),
             other => self.others.iter_mut().find(|(known, _)| *known == other).map(|(_, firmware)| firmware)?.as_mut(),
         };
         Some((firmware, &mut self.plant))

@@ -1,5 +1,6 @@
 //! One type for each command.
 
+use super::dialect::Dialect;
 use crate::protocol::scan_line;
 use crate::transport::{Address, Command, Request, Scan, shown};
 use jointbench_instrument::FaultKind;
@@ -24,12 +25,15 @@ impl Terminator {
         }
     }
 
+    /// Every line of the text.
     fn push(self, out: &mut Vec<u8>, text: &str) {
-        out.extend_from_slice(text.as_bytes());
-        out.extend_from_slice(match self {
-            Terminator::Lf => b"\n",
-            Terminator::CrLf => b"\r\n",
-        });
+        for line in text.split('\n') {
+            out.extend_from_slice(line.as_bytes());
+            out.extend_from_slice(match self {
+                Terminator::Lf => b"\n",
+                Terminator::CrLf => b"\r\n",
+            });
+        }
     }
 }
 
@@ -58,6 +62,9 @@ fn error_entry(text: &str) -> Result<Option<String>, FaultKind> {
 
 macro_rules! query {
     ($request:ty, |$this:ident| $query:expr, $reply:ty, |$text:ident| $decode:expr) => {
+        query!($request, |$this| $query, $reply, |_this, $text| $decode);
+    };
+    ($request:ty, |$this:ident| $query:expr, $reply:ty, |$asked:ident, $text:ident| $decode:expr) => {
         impl Command for $request {
             fn encode(&self, out: &mut Vec<u8>) {
                 self.0.push(out, &self.name());
@@ -77,7 +84,7 @@ macro_rules! query {
             }
 
             fn decode(&self, packet: &[u8]) -> Result<$reply, FaultKind> {
-                let $text = text(packet)?;
+                let ($asked, $text) = (self, text(packet)?);
                 $decode
             }
         }
@@ -108,11 +115,11 @@ pub struct QueryNumber(pub Terminator, pub &'static str);
 
 query!(QueryNumber, |this| this.1, f64, |text| number(text));
 
-/// Whether the output is on.
+/// Whether something is on (`:OUTP? CH1`).
 #[derive(Debug, Clone, Copy)]
-pub struct QueryOutput(pub Terminator);
+pub struct QueryFlag(pub Terminator, pub &'static str);
 
-query!(QueryOutput, |_this| ":OUTP? CH1", bool, |text| match text {
+query!(QueryFlag, |this| this.1, bool, |text| match text {
     "ON" | "1" => Ok(true),
     "OFF" | "0" => Ok(false),
     _ => Err(FaultKind::Garbled { what: format!("`{text}`: expected ON or OFF") }),
@@ -120,7 +127,7 @@ query!(QueryOutput, |_this| ":OUTP? CH1", bool, |text| match text {
 
 /// What the supply measures at its output.
 #[derive(Debug, Clone, Copy)]
-pub struct ReadMeasured(pub Terminator);
+pub struct ReadMeasured(pub Terminator, pub Dialect);
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
@@ -128,17 +135,18 @@ pub struct Measured {
     pub current_a: f64,
 }
 
-query!(ReadMeasured, |_this| ":MEAS:ALL? CH1", Measured, |text| {
-    let values = text.split(',').map(|field| number(field.trim())).collect::<Result<Vec<f64>, FaultKind>>()?;
-    let [voltage_v, current_a, _power_w] = values[..] else {
-        return Err(FaultKind::Garbled { what: format!("`{text}`: expected voltage, current, power") });
+query!(ReadMeasured, |this| this.1.measured(), Measured, |_this, text| {
+    let values = text.split([',', ';']).map(|field| number(field.trim())).collect::<Result<Vec<f64>, FaultKind>>()?;
+    // Some makers add the power.
+    let ([voltage_v, current_a] | [voltage_v, current_a, _]) = values[..] else {
+        return Err(FaultKind::Garbled { what: format!("`{text}`: expected voltage and current") });
     };
     Ok(Measured { voltage_v, current_a })
 });
 
 /// Questionable condition of channel 1: how the output is held, and what has tripped.
 #[derive(Debug, Clone, Copy)]
-pub struct ReadCondition(pub Terminator);
+pub struct ReadCondition(pub Terminator, pub Dialect);
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition {
@@ -148,13 +156,14 @@ pub struct Condition {
     pub over_current_trip: bool,
 }
 
-query!(ReadCondition, |_this| ":STAT:QUES:INST:ISUM1:COND?", Condition, |text| {
+query!(ReadCondition, |_this| ":STAT:QUES:INST:ISUM1:COND?", Condition, |this, text| {
     let bits = number(text)? as u32;
+    let [over_voltage, over_current] = this.1.trips();
     Ok(Condition {
         constant_current: bits & 1 != 0,
         constant_voltage: bits & 2 != 0,
-        over_voltage_trip: bits & 4 != 0,
-        over_current_trip: bits & 8 != 0,
+        over_voltage_trip: bits & over_voltage != 0,
+        over_current_trip: bits & over_current != 0,
     })
 });
 
@@ -200,16 +209,17 @@ impl Request for Set {
 
 /// Current zero and output off, waiting for nothing. No reply.
 #[derive(Debug, Clone, Copy)]
-pub struct SwitchOff(pub Terminator);
+pub struct SwitchOff(pub Terminator, pub Dialect);
 
 impl Command for SwitchOff {
     fn encode(&self, out: &mut Vec<u8>) {
-        self.0.push(out, ":OUTP CH1,OFF");
-        self.0.push(out, ":SOUR1:CURR 0");
+        let [current, _] = self.1.current();
+        self.0.push(out, self.1.output(false));
+        self.0.push(out, &format!("{current} 0"));
     }
 
     fn name(&self) -> String {
-        ":OUTP CH1,OFF".into()
+        self.1.output(false).into()
     }
 }
 
@@ -239,10 +249,12 @@ mod tests {
         assert_eq!(QueryError(lf).decode(b"0,\"No error\"\n"), Ok(None));
         assert_eq!(QueryError(lf).decode(b"+0,\"No error\"\r\n"), Ok(None));
         assert_eq!(QueryNumber(lf, ":SOUR1:VOLT?").decode(b"45.000\n"), Ok(45.0));
-        assert_eq!(QueryOutput(lf).decode(b"ON\n"), Ok(true));
-        let measured = ReadMeasured(lf).decode(b"12.9870,0.2498,3.2441\n").unwrap();
-        assert_eq!(measured, Measured { voltage_v: 12.987, current_a: 0.2498 });
-        assert!(ReadCondition(lf).decode(b"1\n").unwrap().constant_current);
+        assert_eq!(QueryFlag(lf, ":OUTP? CH1").decode(b"ON\n"), Ok(true));
+        let measured = Ok(Measured { voltage_v: 12.987, current_a: 0.2498 });
+        assert_eq!(ReadMeasured(lf, Dialect::Dp800).decode(b"12.9870,0.2498,3.2441\n"), measured);
+        assert_eq!(ReadMeasured(lf, Dialect::Hmp).decode(b"12.987;0.2498\n"), measured);
+        assert!(ReadCondition(lf, Dialect::Dp800).decode(b"1\n").unwrap().constant_current);
+        assert!(ReadCondition(lf, Dialect::Hmp).decode(b"513\n").unwrap().over_voltage_trip);
     }
 
     #[test]

@@ -4,23 +4,18 @@ use super::Firmware;
 use super::dp800_channel::{Channel, Protection};
 use super::dp800_commands::{COMMANDS, Command, Quantity};
 use super::scpi::{Error, Status, Unit, number, units};
-use crate::sim::plant::{CoilSupply, Plant, Signal};
+use super::supply_output::{self, CoilOutput, held, measured};
+use crate::sim::plant::Plant;
 use crate::sim::trouble::Trouble;
-use std::collections::VecDeque;
 
-/// From a command to a change at the output.
-const LATENCY_S: f64 = 0.118;
 /// A longer line than any client sends.
 const LONGEST_LINE: usize = 1024;
-const READBACK_NOISE_A: f64 = 2e-4;
-const READBACK_NOISE_V: f64 = 1e-3;
 
 pub struct Dp800 {
     channels: [Channel; 2],
     selected: usize,
     status: Status,
-    /// Changes on their way to the output.
-    underway: VecDeque<(f64, Option<CoilSupply>)>,
+    output: CoilOutput,
     trouble: Trouble,
 }
 
@@ -30,7 +25,7 @@ impl Dp800 {
             channels: [Channel::new("CH1:60V/1A", 63.0, 1.05), Channel::new("CH2:8V/10A", 8.4, 10.5)],
             selected: 0,
             status: Status::power_on(),
-            underway: VecDeque::new(),
+            output: CoilOutput::default(),
             trouble: Trouble::None,
         }
     }
@@ -65,46 +60,26 @@ impl Dp800 {
         } else {
             self.set(command, unit, &numbers).map(|()| None)
         };
-        self.pass_on(before, plant);
+        self.output.pass_on(before, self.channels[0].wanted(), plant);
         reply
     }
 
     fn common(&mut self, command: &str, unit: &Unit, plant: &Plant) -> Result<Option<String>, Error> {
         let text = |text: &str| Ok(Some(text.to_owned()));
-        let mask = || unit.parameters.first().ok_or(Error::Missing)?.parse().map_err(|_| Error::DataType);
         match (command, unit.query) {
             ("*IDN", true) if self.trouble == Trouble::Exchanged => {
                 text("RIGOL TECHNOLOGIES,DP821A,DP8E204500999,00.01.16")
             }
             ("*IDN", true) => text("RIGOL TECHNOLOGIES,DP821A,DP8E204500123,00.01.16"),
             ("*OPT", true) => text("0,0,0,0,0"),
-            ("*OPC", true) => text("1"),
-            ("*TST", true) => text("0"),
-            ("*ESR", true) => text(&std::mem::take(&mut self.status.events).to_string()),
-            ("*ESE", true) => text(&self.status.event_enable.to_string()),
-            ("*SRE", true) => text(&self.status.service_enable.to_string()),
-            ("*STB", true) => text(&self.status.byte().to_string()),
-            ("*ESE", false) => {
-                self.status.event_enable = mask()?;
-                Ok(None)
-            }
-            ("*SRE", false) => {
-                self.status.service_enable = mask()?;
-                Ok(None)
-            }
-            ("*CLS", false) => {
-                self.status.clear();
-                Ok(None)
-            }
             ("*RST", false) => {
                 let before = self.channels[0].wanted();
                 self.channels = Self::new().channels;
                 self.selected = 0;
-                self.pass_on(before, plant);
+                self.output.pass_on(before, None, plant);
                 Ok(None)
             }
-            ("*OPC" | "*WAI" | "*TRG", false) => Ok(None),
-            _ => Err(Error::UndefinedHeader),
+            _ => self.status.common(command, unit),
         }
     }
 
@@ -167,7 +142,7 @@ impl Dp800 {
 
     fn query(&mut self, command: Command, unit: &Unit, numbers: &[u32], plant: &Plant) -> Result<String, Error> {
         let (index, parameters) = self.channel(unit, numbers)?;
-        let measured = self.measured(index, plant);
+        let measured = measured(self.free_v(index), plant);
         let tripped = |protection: Protection| if protection.tripped { "YES" } else { "NO" }.to_owned();
         let on_off = |on| if on { "ON" } else { "OFF" }.to_owned();
         let selected = self.selected;
@@ -187,7 +162,7 @@ impl Dp800 {
             Command::Current => format!("{:.4}", limit(channel.current_a, channel.most_a)?),
             Command::Apply => format!("{},{:.3},{:.4}", channel.label, channel.voltage_v, channel.current_a),
             Command::Output => on_off(channel.on),
-            Command::Mode => match held(channel, index, plant) {
+            Command::Mode => match held(channel.on, index == 0, plant) {
                 1 => "CC".into(),
                 2 => "CV".into(),
                 _ => "UR".into(),
@@ -202,49 +177,20 @@ impl Dp800 {
             Command::Condition => {
                 // Here the suffix of ISUMmary names the channel.
                 let trips = u32::from(channel.over_voltage.tripped) << 2 | u32::from(channel.over_current.tripped) << 3;
-                (held(channel, index, plant) | trips).to_string()
+                (held(channel.on, index == 0, plant) | trips).to_string()
             }
             _ => return Err(Error::UndefinedHeader),
         })
     }
 
-    /// Voltage and current at the terminals, with the read-back's noise. Nothing is wired to channel 2.
-    fn measured(&self, index: usize, plant: &Plant) -> (f64, f64) {
-        let volts_noise = READBACK_NOISE_V * plant.noise_of(Signal::SupplyVoltage);
-        let amperes_noise = READBACK_NOISE_A * plant.noise_of(Signal::SupplyCurrent);
-        let (volts, amperes) = match (index, plant.inputs.coil) {
-            (0, Some(supply)) => (plant.brake.settled_a(Some(supply)) * plant.brake.coil_ohm(), plant.brake.coil_a()),
-            (1, _) if self.channels[1].on => (self.channels[1].voltage_v, 0.0),
-            _ => return (0.0, 0.0),
-        };
-        ((volts + volts_noise).max(0.0), (amperes + amperes_noise).max(0.0))
-    }
-
-    /// A changed output takes effect after the supply's latency.
-    fn pass_on(&mut self, before: Option<CoilSupply>, plant: &Plant) {
-        let wanted = self.channels[0].wanted();
-        if wanted != before {
-            self.underway.push_back((plant.now_s() + LATENCY_S, wanted));
-        }
-    }
-}
-
-/// 1: current regulated, 2: voltage regulated, 0: off.
-fn held(channel: &Channel, index: usize, plant: &Plant) -> u32 {
-    match plant.inputs.coil {
-        _ if !channel.on => 0,
-        Some(supply) if index == 0 && supply.current_a * plant.brake.coil_ohm() > supply.voltage_v => 2,
-        _ if index == 0 => 1,
-        _ => 2,
+    /// Nothing is wired to channel 2.
+    fn free_v(&self, index: usize) -> Option<f64> {
+        (index > 0).then(|| if self.channels[index].on { self.channels[index].voltage_v } else { 0.0 })
     }
 }
 
 fn switch(text: &str) -> Result<bool, Error> {
-    match text.to_ascii_uppercase().as_str() {
-        "ON" | "1" => Ok(true),
-        "OFF" | "0" => Ok(false),
-        _ => Err(Error::IllegalValue),
-    }
+    supply_output::switch(text).ok_or(Error::IllegalValue)
 }
 
 impl Firmware for Dp800 {
@@ -260,20 +206,7 @@ impl Firmware for Dp800 {
     }
 
     fn step(&mut self, plant: &mut Plant) {
-        while self.underway.front().is_some_and(|(due_s, _)| plant.now_s() >= *due_s) {
-            plant.inputs.coil = self.underway.pop_front().and_then(|(_, supply)| supply);
-        }
-        let channel = &mut self.channels[0];
-        let Some(supply) = plant.inputs.coil.filter(|_| channel.on) else { return };
-        let volts = plant.brake.settled_a(Some(supply)) * plant.brake.coil_ohm();
-        let (over_v, over_a) = (&mut channel.over_voltage, &mut channel.over_current);
-        over_v.tripped |= over_v.enabled && volts > over_v.value;
-        over_a.tripped |= over_a.enabled && plant.brake.coil_a() > over_a.value;
-        if over_v.tripped || over_a.tripped {
-            channel.on = false;
-            self.underway.clear();
-            plant.inputs.coil = None;
-        }
+        self.output.step(&mut self.channels[0], plant);
     }
 
     fn afflict(&mut self, trouble: Trouble) {

@@ -7,6 +7,7 @@ mod dp800_channel;
 mod dp800_commands;
 mod gcs;
 mod gcs_motion;
+mod hmp;
 mod lorenz;
 mod odrive;
 mod odrive_lines;
@@ -15,6 +16,7 @@ mod qsb;
 mod qsb_registers;
 mod scan;
 mod scpi;
+mod supply_output;
 #[cfg(test)]
 mod tests;
 
@@ -22,6 +24,7 @@ pub use adam::Adam;
 pub use dmm::Dmm;
 pub use dp800::Dp800;
 pub use gcs::Gcs;
+pub use hmp::Hmp;
 pub use lorenz::Lorenz;
 pub use odrive::Odrive;
 pub use qsb::{Encoder, Qsb};

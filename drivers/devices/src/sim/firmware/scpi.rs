@@ -166,6 +166,26 @@ impl Status {
         format!("{code},\"{text}\"")
     }
 
+    /// The commands of IEEE 488.2 that every instrument has.
+    pub fn common(&mut self, command: &str, unit: &Unit) -> Result<Option<String>, Error> {
+        let text = |text: String| Ok(Some(text));
+        let mask = || unit.parameters.first().ok_or(Error::Missing)?.parse().map_err(|_| Error::DataType);
+        match (command, unit.query) {
+            ("*OPC", true) => return text("1".into()),
+            ("*TST", true) => return text("0".into()),
+            ("*ESR", true) => return text(std::mem::take(&mut self.events).to_string()),
+            ("*ESE", true) => return text(self.event_enable.to_string()),
+            ("*SRE", true) => return text(self.service_enable.to_string()),
+            ("*STB", true) => return text(self.byte().to_string()),
+            ("*ESE", false) => self.event_enable = mask()?,
+            ("*SRE", false) => self.service_enable = mask()?,
+            ("*CLS", false) => self.clear(),
+            ("*OPC" | "*WAI" | "*TRG", false) => {}
+            _ => return Err(Error::UndefinedHeader),
+        }
+        Ok(None)
+    }
+
     pub fn clear(&mut self) {
         self.queue.clear();
         self.events = 0;

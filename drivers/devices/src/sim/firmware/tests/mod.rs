@@ -5,6 +5,7 @@ mod dmm;
 mod dp800;
 mod fuzz;
 mod gcs;
+mod hmp;
 mod lorenz;
 mod odrive;
 mod qsb;

@@ -1,0 +1,81 @@
+//! What two makers' supplies call the same things. A line of a command that selects the channel goes before every use: the
+//! selection belongs to the instrument, and whoever else talks to it may have changed it.
+
+use jointbench_instrument::roles::Identity;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dialect {
+    /// Rigol DP800 (programming guide PGH03109-1110).
+    Dp800,
+    /// Rohde & Schwarz HMP. Its conditions are assumed where the public client does not use them.
+    Hmp,
+}
+
+impl Dialect {
+    /// `None`: a supply that this driver does not know.
+    pub fn of(identity: &Identity) -> Option<Self> {
+        let maker = identity.maker.to_ascii_uppercase();
+        match &identity.model {
+            model if maker.contains("RIGOL") && model.starts_with("DP8") => Some(Dialect::Dp800),
+            model if (maker.contains("ROHDE") || maker == "HAMEG") && model.starts_with("HMP") => Some(Dialect::Hmp),
+            _ => None,
+        }
+    }
+
+    /// Header and query of the current, then of the voltage.
+    pub fn current(self) -> [&'static str; 2] {
+        match self {
+            Dialect::Dp800 => [":SOUR1:CURR", ":SOUR1:CURR?"],
+            Dialect::Hmp => ["INST:NSEL 1\nCURR", "INST:NSEL 1\nCURR?"],
+        }
+    }
+
+    pub fn voltage(self) -> [&'static str; 2] {
+        match self {
+            Dialect::Dp800 => [":SOUR1:VOLT", ":SOUR1:VOLT?"],
+            Dialect::Hmp => ["INST:NSEL 1\nVOLT", "INST:NSEL 1\nVOLT?"],
+        }
+    }
+
+    /// The channel is programmed in steps of this.
+    pub fn current_step_a(self) -> f64 {
+        match self {
+            Dialect::Dp800 => 1e-4,
+            Dialect::Hmp => 2e-4,
+        }
+    }
+
+    /// An HMP has a switch for the channel and a relay for all: on takes both, off only the channel's own.
+    pub fn output(self, on: bool) -> &'static str {
+        match (self, on) {
+            (Dialect::Dp800, true) => ":OUTP CH1,ON",
+            (Dialect::Dp800, false) => ":OUTP CH1,OFF",
+            (Dialect::Hmp, true) => "INST:NSEL 1\nOUTP:SEL 1\nOUTP:GEN 1",
+            (Dialect::Hmp, false) => "INST:NSEL 1\nOUTP:SEL 0",
+        }
+    }
+
+    /// The output is on where every one of them says so.
+    pub fn output_queries(self) -> &'static [&'static str] {
+        match self {
+            Dialect::Dp800 => &[":OUTP? CH1"],
+            Dialect::Hmp => &["INST:NSEL 1\nOUTP:SEL?", "OUTP:GEN?"],
+        }
+    }
+
+    /// Voltage, then current, in one reply.
+    pub fn measured(self) -> &'static str {
+        match self {
+            Dialect::Dp800 => ":MEAS:ALL? CH1",
+            Dialect::Hmp => "INST:NSEL 1\nMEAS:VOLT?;:MEAS:CURR?",
+        }
+    }
+
+    /// Bits of an over-voltage and an over-current (a fuse) that have tripped.
+    pub fn trips(self) -> [u32; 2] {
+        match self {
+            Dialect::Dp800 => [1 << 2, 1 << 3],
+            Dialect::Hmp => [1 << 9, 1 << 10],
+        }
+    }
+}
