@@ -2,7 +2,7 @@
 
 /// Factor and prefix that keep the digits of `size` before the point, where the unit takes a prefix.
 fn prefix(size: f64, unit: &str) -> (f64, &'static str) {
-    let takes = ["Nm", "N", "rad", "m", "A", "s", "V", "kg"].iter().any(|plain| unit == *plain)
+    let takes = ["Nm", "N", "rad", "m", "A", "s", "V", "kg"].contains(&unit)
         || unit.starts_with("Nm")
         || unit.starts_with("rad");
     match size {
