@@ -20,6 +20,7 @@ pub mod plan;
 pub mod preview;
 pub mod profile;
 pub mod recorder;
+pub mod reproduce;
 pub mod state;
 mod steady;
 

@@ -4,6 +4,7 @@ mod brake_hysteresis;
 mod brake_run;
 mod brake_speed_independence;
 mod breakaway;
+mod compensation;
 mod demagnetise;
 mod encoder;
 mod friction;
@@ -57,6 +58,7 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &torque_sensor_zero::TorqueSensorZero,
         &stiffness::Stiffness,
         &breakaway::Breakaway,
+        &compensation::Compensation,
         &strokes::Strokes,
         &warm_up::WarmUp,
         &encoder::EncoderOffset,

@@ -62,3 +62,22 @@ fn stiffness_takes_the_bearing_off() {
         assert!((quantity.value / truth - 1.0).abs() < share, "{name}: {} for {truth}", quantity.value);
     }
 }
+
+#[test]
+fn the_full_model_halves_the_error_without_over_compensating() {
+    let mock = MockBench::start(MockSettings::new(Joint::JointA, 1).hiding(&["stribeck"])).unwrap();
+    let truth = mock.truth();
+    let rise_nm = truth.hidden[0].parameters["rise_nm"];
+    let given = json!({
+        "tau_c_nm": truth.coulomb_nm, "c_v_nm_s": truth.viscous_nm_s, "tau_h_nm": truth.coulomb_nm + rise_nm,
+        "stribeck_speed_rad_s": truth.hidden[0].parameters["velocity_rad_s"] / truth.gear_ratio,
+        "stribeck_exponent": 0.8, "periods": 2, "period_s": 4.0,
+    });
+    let mut bench = mock.open_bench("mock").unwrap();
+    let procedure = procedure("compensation").unwrap();
+    let found = conduct(&mut bench, procedure, given.as_object().unwrap()).unwrap().identification.unwrap();
+    assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
+    let ratio = |way: &str| found.quantity(&format!("ratio_{way}")).unwrap().value;
+    assert!(ratio("full") < 0.5 && ratio("full") < ratio("interpolated"), "{}", found.summary);
+    assert!(ratio("observer") < 1.0);
+}

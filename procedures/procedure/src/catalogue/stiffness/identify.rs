@@ -56,11 +56,11 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     ];
     let offset = if curved.is_some() { ("hardening", "phi_h") } else { ("directional_offset", "beta_0") };
     if let Some(found) = parameter(best, offset.0, offset.1) {
-        let (value, ci95) = interval_of(found, 1.0);
+        let (value, ci95) = with_steps(interval_of(found, 1.0), run, gear);
         quantities.push(quantity(["beta_0", "β₀", "Directional offset", "rad"], value, Some(ci95)));
     }
     if let Some(found) = parameter(best, "offset", "xi") {
-        let (value, ci95) = interval_of(found, 1.0);
+        let (value, ci95) = with_steps(interval_of(found, 1.0), run, gear);
         quantities.push(quantity(["xi", "ξ", "Offset of the encoders", "rad"], value, Some(ci95)));
     }
     quantities.extend([
@@ -81,6 +81,19 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         quantities,
         figures: vec![torsion_over_torque(&points, best), table(&points)],
     })
+}
+
+/// An offset is no surer than the encoders' steps, however many samples are averaged: a uniform error of one step each
+/// (GUM, 4.3.7).
+fn with_steps((value, ci95): (f64, [f64; 2]), run: &RunTable, gear: f64) -> (f64, [f64; 2]) {
+    let step = |name: &str| {
+        let channel = run.trace().channels().iter().find(|channel| channel.name == name);
+        channel.and_then(|channel| channel.resolution).unwrap_or(0.0)
+    };
+    let steps =
+        1.96 * (step("link_position_rad") / 12f64.sqrt()).hypot(step("motor_position_rad") / gear / 12f64.sqrt());
+    let reach = (0.5 * (ci95[1] - ci95[0])).hypot(steps);
+    (value, [value - reach, value + reach])
 }
 
 /// Work that one reversal and back takes at the highest load: the area between torsion and torque.

@@ -1,0 +1,224 @@
+//! Friction compensation fed forward into the motor current, judged on a reference trajectory (thesis, sections 4.2.2 to
+//! 4.2.6, table 4.7).
+//!
+//! The same oscillation is followed with each way of compensating. What is fed forward is planned from the friction that
+//! the parameters state, and never exceeds it: over-compensation makes the controller active.
+
+mod identify;
+
+use super::Procedure;
+use super::legs::{Legs, friction_meta};
+use crate::findings::verdict;
+use crate::identification::Identification;
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Drive, Feed, Plan, PlanFault};
+use crate::profile::Profile;
+use jointbench_instrument::{Kind, RunTable};
+use std::f64::consts::TAU;
+
+pub(super) struct Compensation;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::number("tau_c_nm", "Coulomb friction (motor)", "Nm", 0.030, [0.0, 100.0]),
+    Parameter::number("c_v_nm_s", "Viscous friction (motor)", "Nm·s/rad", 1.512e-4, [0.0, 10.0]),
+    Parameter::number("tau_h_nm", "Friction towards standstill (motor)", "Nm", 0.039, [0.0, 100.0]),
+    Parameter::number("stribeck_speed_rad_s", "Stribeck velocity (link)", "rad/s", 0.06, [0.001, 10.0]),
+    Parameter::number("stribeck_exponent", "Stribeck exponent", "", 0.8, [0.1, 4.0]),
+    Parameter::number("share", "Share of the friction that is compensated", "", 0.95, [0.1, 1.0]),
+    Parameter::number("amplitude_rad_s", "Amplitude of the reference (link)", "rad/s", 0.15, [0.01, 20.0]),
+    Parameter::number("period_s", "Period of the reference", "s", 6.0, [0.5, 120.0]),
+    Parameter::count("periods", "Periods with each way of compensating", 3, [2, 100]),
+    Parameter::number("acceleration_rad_s2", "Acceleration between them (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+];
+
+/// Around standstill the jump of Coulomb friction is left out, or made a line (thesis, section 4.2.3; link side).
+const RAMP_RAD_S: f64 = 0.05;
+/// The full model knows what happens there: its line is as steep as the velocity set-point is sure.
+const STEEP_RAD_S: f64 = 0.002;
+/// Of the observer.
+const CORNER_HZ: f64 = 10.0;
+/// Points of a planned current in one period.
+const POINTS: u32 = 1000;
+
+/// The ways of compensating, in the order of table 4.7; the column `repeat` numbers them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    None,
+    ZeroArea,
+    Interpolated,
+    CoulombViscous,
+    Full,
+    Observer,
+}
+
+impl Way {
+    const ALL: [Way; 6] = [Way::None, Way::ZeroArea, Way::Interpolated, Way::CoulombViscous, Way::Full, Way::Observer];
+
+    fn words(self) -> [&'static str; 2] {
+        match self {
+            Way::None => ["none", "no compensation"],
+            Way::ZeroArea => ["zero_area", "Coulomb with zero area"],
+            Way::Interpolated => ["interpolated", "Coulomb, interpolated"],
+            Way::CoulombViscous => ["coulomb_viscous", "Coulomb and viscous"],
+            Way::Full => ["full", "full model"],
+            Way::Observer => ["observer", "observer"],
+        }
+    }
+}
+
+/// The friction that the parameters state, over the link's velocity; motor torque.
+struct Stated {
+    coulomb_nm: f64,
+    viscous_nm_s: f64,
+    rise_nm: f64,
+    stribeck_rad_s: f64,
+    exponent: f64,
+    gear_ratio: f64,
+}
+
+impl Stated {
+    fn new(values: &Values, gear_ratio: f64) -> Self {
+        let coulomb_nm = values.number("tau_c_nm");
+        Self {
+            coulomb_nm,
+            viscous_nm_s: values.number("c_v_nm_s"),
+            rise_nm: (values.number("tau_h_nm") - coulomb_nm).max(0.0),
+            stribeck_rad_s: values.number("stribeck_speed_rad_s"),
+            exponent: values.number("stribeck_exponent"),
+            gear_ratio,
+        }
+    }
+
+    fn friction_nm(&self, link_rad_s: f64) -> f64 {
+        let fading = (-(link_rad_s.abs() / self.stribeck_rad_s).powf(self.exponent)).exp();
+        let speed_nm = self.viscous_nm_s * self.gear_ratio * link_rad_s.abs();
+        (self.coulomb_nm + self.rise_nm * fading + speed_nm).copysign(link_rad_s)
+    }
+
+    /// What is fed forward, before the share. `None`: nothing that could be planned.
+    fn fed_nm(&self, way: Way, link_rad_s: f64) -> Option<f64> {
+        let line = |over: f64| (link_rad_s / over).clamp(-1.0, 1.0);
+        let viscous_nm = self.viscous_nm_s * self.gear_ratio * link_rad_s;
+        match way {
+            Way::None | Way::Observer => None,
+            Way::ZeroArea if link_rad_s.abs() < RAMP_RAD_S => Some(0.0),
+            Way::ZeroArea => Some(self.coulomb_nm.copysign(link_rad_s)),
+            Way::Interpolated => Some(self.coulomb_nm * line(RAMP_RAD_S)),
+            Way::CoulombViscous => Some(self.coulomb_nm * line(RAMP_RAD_S) + viscous_nm),
+            Way::Full => Some(self.friction_nm(link_rad_s).abs() * line(STEEP_RAD_S)),
+        }
+    }
+}
+
+impl Procedure for Compensation {
+    fn id(&self) -> &'static str {
+        "compensation"
+    }
+
+    fn title(&self) -> &'static str {
+        "Friction compensation"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Follows a reference with six ways of compensating friction, from none to the full model and an observer, and tells what each of them gains."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Friction
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        if values.number("tau_h_nm") < values.number("tau_c_nm") {
+            return Err(PlanFault::Contradiction {
+                what: "tau_h_nm is below tau_c_nm: friction would fall towards standstill".into(),
+                cure: "exchange them, or make them equal",
+            });
+        }
+        let constants = &bench.constants;
+        let rate_hz = values.number("sample_rate_hz");
+        let stated = Stated::new(values, constants.gear_ratio);
+        let period_s = values.number("period_s");
+        let points = POINTS * values.count("periods");
+        let step_s = period_s / f64::from(POINTS);
+        let link_rad_s = |i: u32| values.number("amplitude_rad_s") * (TAU * f64::from(i) / f64::from(POINTS)).sin();
+        let profile = |value: &dyn Fn(f64) -> f64| {
+            (1..=points).fold(Profile::from(0.0), |profile, i| profile.to(value(link_rad_s(i)), step_s))
+        };
+        // The last point of a sine is rest but for rounding.
+        let velocity = profile(&|v| constants.gear_ratio * v).to(0.0, 0.0);
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        for way in Way::ALL {
+            legs.repeat = way as u32;
+            legs.push(way.words()[1].into(), velocity.clone(), Profile::constant(0.0));
+            let share = values.number("share");
+            let fed_a = |v: f64| share * stated.fed_nm(way, v).unwrap_or(0.0) / constants.torque_constant_nm_per_a;
+            match way {
+                Way::None => {}
+                Way::Observer => {
+                    let ramp_rad_s = RAMP_RAD_S * constants.gear_ratio;
+                    legs.drive_of_last(Drive::Fed(Feed::Observed { share, corner_hz: CORNER_HZ, ramp_rad_s }));
+                }
+                _ => legs.drive_of_last(Drive::Fed(Feed::Planned(profile(&fed_a)))),
+            }
+            over_compensates(&stated, way, share, values.number("amplitude_rad_s"))?;
+        }
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: friction_meta(bench, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify::identify(values.number("period_s"), run))
+    }
+}
+
+/// Refused where more would be fed forward than the stated friction at any speed of the reference.
+fn over_compensates(stated: &Stated, way: Way, share: f64, top_rad_s: f64) -> Result<(), PlanFault> {
+    let over = (1..=POINTS)
+        .map(|i| top_rad_s * f64::from(i) / f64::from(POINTS))
+        .find(|v| stated.fed_nm(way, *v).is_some_and(|fed_nm| share * fed_nm > stated.friction_nm(*v) * (1.0 + 1e-9)));
+    match over {
+        None => Ok(()),
+        Some(v) => Err(PlanFault::Contradiction {
+            what: format!("{} would over-compensate at {v:.3} rad/s (link)", way.words()[1]),
+            cure: "lower share",
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::legs::testing::joint_a;
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn every_way_follows_the_same_reference_and_none_exceeds_friction() {
+        let plan = Compensation.plan(json!({}).as_object().unwrap(), &joint_a()).unwrap();
+        assert!(plan.preview(&joint_a()).is_allowed(), "{:?}", plan.preview(&joint_a()).checks);
+        assert_eq!(plan.steps.len(), Way::ALL.len());
+        assert!(plan.steps.iter().all(|step| step.velocity == plan.steps[0].velocity));
+        // At most the stated friction at the top speed of the reference.
+        let most_a = (0.039 + 1.512e-4 * 0.15 * 177.8) / 0.0406;
+        assert!(plan.top_motor_current_a() < most_a, "{} A", plan.top_motor_current_a());
+        assert!(plan.top_motor_current_a() > 0.9 * 0.95 * (0.030 + 1.512e-4 * 0.15 * 177.8) / 0.0406);
+    }
+
+    #[test]
+    fn friction_that_falls_towards_standstill_is_refused() {
+        let fault = Compensation.plan(json!({"tau_h_nm": 0.02}).as_object().unwrap(), &joint_a()).unwrap_err();
+        assert!(fault.to_string().contains("tau_h_nm is below"), "{fault}");
+    }
+}

@@ -1,0 +1,136 @@
+//! How far each way of compensating stays behind the reference: ρ₁ = Σ|θ_d − θ|, ρ₂ = Σ(θ_d − θ)², ρ_max (eq. 4.9, 4.10).
+//!
+//! A velocity loop does not know where it began: what its integrator held before shifts the whole course. So the first
+//! period is left out, and the reference begins where it is closest to the rest, at the mean of the error.
+
+use super::Way;
+use crate::findings::{Unusable, quantity};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use jointbench_instrument::RunTable;
+
+/// What the drive gives is averaged over this time before it is compared with what was fed forward.
+const WINDOW_S: f64 = 0.1;
+/// A figure does not need every sample.
+const SHOWN: usize = 1500;
+
+/// One way of compensating, as it was measured.
+struct Followed {
+    way: Way,
+    time_s: Vec<f64>,
+    /// θ_d − θ at the link [rad].
+    error_rad: Vec<f64>,
+    /// The largest that was fed forward beyond what the drive gave in all; 0 or less: never active (motor) [Nm].
+    over_nm: f64,
+}
+
+impl Followed {
+    fn rho(&self) -> [f64; 3] {
+        let sum = |f: fn(f64) -> f64| self.error_rad.iter().map(|e| f(*e)).sum::<f64>();
+        [sum(f64::abs), sum(|e| e * e), self.error_rad.iter().fold(0.0, |m: f64, e| m.max(e.abs()))]
+    }
+}
+
+pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
+    let followed: Vec<Followed> = Way::ALL.into_iter().filter_map(|way| follow(period_s, run, way)).collect();
+    if followed.len() < Way::ALL.len() {
+        return Err(Unusable::TooLittle("not every way of compensating was followed to its end: make the run again"));
+    }
+    let none = followed[0].rho()[0];
+    let mut quantities = Vec::new();
+    for one in &followed {
+        let [name, title] = one.way.words();
+        let [rho_1, rho_2, rho_max] = one.rho();
+        let mut say = |key: &str, symbol: &str, what: &str, unit: &str, value: f64| {
+            let words = [&format!("{key}_{name}"), symbol, &format!("{what}, {title}"), unit];
+            quantities.push(quantity(words, value, None));
+        };
+        say("rho_1", "ρ₁", "Sum of the errors", "rad", rho_1);
+        say("rho_2", "ρ₂", "Sum of the squared errors", "rad²", rho_2);
+        say("rho_max", "ρ_max", "Largest error", "rad", rho_max);
+        say("ratio", "ρ₁/ρ₁₀", "Sum of the errors, share of none", "", rho_1 / none);
+        say("over", "Δτ", "Fed forward beyond what the drive gave", "Nm", one.over_nm);
+    }
+    let best = followed.iter().min_by(|a, b| a.rho()[0].total_cmp(&b.rho()[0]));
+    let active: Vec<&str> = followed.iter().filter(|f| f.over_nm > 0.0).map(|f| f.way.words()[1]).collect();
+    let (title, gain) = best.map_or(("none", 0.0), |b| (b.way.words()[1], 100.0 * (1.0 - b.rho()[0] / none)));
+    let summary = match &active[..] {
+        [] => format!("Best is {title}: it lowers ρ₁ by {gain:.0} %. No way over-compensates."),
+        ways => format!("Best is {title}: it lowers ρ₁ by {gain:.0} %. These over-compensate: {}.", ways.join(", ")),
+    };
+    Ok(Identification {
+        verdict: if active.is_empty() { Verdict::Identified } else { Verdict::Inconclusive },
+        summary,
+        advice: (!active.is_empty())
+            .then(|| "Lower share, or identify friction again: the joint may be warmer.".into()),
+        quantities,
+        figures: vec![errors(&followed), bars(&followed, none)],
+    })
+}
+
+/// The reference is what the drive was told: each set-point holds until the next.
+fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
+    let column = |name: &str| run.column(name);
+    let (time, setpoint) = (column("time_s")?, column("velocity_setpoint_rad_s")?);
+    let (repeat, segment, motor) = (column("repeat")?, column("segment")?, column("motor_position_rad")?);
+    let (current, fed) = (column("motor_current_a")?, column("motor_current_setpoint_a")?);
+    let gear = run.meta().gear_ratio?;
+    let km = run.meta().torque_constant_nm_per_a?;
+    // The last attempt at it, where a pause has made it be repeated.
+    let last = (0..run.len()).rev().find(|i| repeat[*i] == way as u32 as f64)?;
+    let first = (0..=last).rev().take_while(|i| segment[*i] == segment[last]).last()?;
+    let first = (first..last).find(|i| time[*i] - time[first] >= period_s)?;
+    let rows = first..last + 1;
+    let mut reference = motor[first];
+    let mut error_rad = Vec::with_capacity(rows.len());
+    for i in rows.clone() {
+        if i > first {
+            reference += setpoint[i - 1] * (time[i] - time[i - 1]);
+        }
+        error_rad.push((reference - motor[i]) / gear);
+    }
+    let mean = error_rad.iter().sum::<f64>() / error_rad.len() as f64;
+    error_rad.iter_mut().for_each(|e| *e -= mean);
+    let window = ((WINDOW_S * rows.len() as f64 / (time[last] - time[first])) as usize).max(1);
+    // A window across a reversal says nothing: there the friction changes its side.
+    let one_way = |chunk: &&[usize]| chunk.iter().all(|i| setpoint[*i] * setpoint[chunk[0]] > 0.0);
+    let over = |chunk: &[usize]| {
+        let side = setpoint[chunk[0]].signum();
+        chunk.iter().map(|i| side * (fed[*i] - current[*i])).sum::<f64>() / chunk.len() as f64
+    };
+    let all: Vec<usize> = rows.clone().collect();
+    let over_a = all.chunks_exact(window).filter(one_way).map(over).fold(f64::NEG_INFINITY, f64::max);
+    Some(Followed {
+        way,
+        time_s: rows.map(|i| time[i] - time[first]).collect(),
+        error_rad,
+        over_nm: if way == Way::None || over_a.is_infinite() { 0.0 } else { km * over_a },
+    })
+}
+
+fn errors(followed: &[Followed]) -> Figure {
+    let series = followed.iter().map(|one| {
+        let every = one.time_s.len().div_ceil(SHOWN);
+        let pick = |values: &[f64]| values.iter().copied().step_by(every).collect();
+        Series::new(one.way.words()[1], Mark::Line, pick(&one.time_s), pick(&one.error_rad))
+    });
+    Figure {
+        name: "error_over_time".into(),
+        title: "Error against the reference".into(),
+        form: Form::Cartesian,
+        x: Axis::of("time", "s"),
+        y: Axis::of("error (link)", "rad"),
+        series: series.collect(),
+    }
+}
+
+fn bars(followed: &[Followed], none: f64) -> Figure {
+    let ratios: Vec<f64> = followed.iter().map(|one| one.rho()[0] / none).collect();
+    Figure {
+        name: "ratio".into(),
+        title: "Sum of the errors as a share of none".into(),
+        form: Form::Cartesian,
+        x: Axis::names("compensation", followed.iter().map(|one| one.way.words()[1])),
+        y: Axis::of("ρ₁ / ρ₁ of none", ""),
+        series: vec![Series::new("ρ₁", Mark::Bars, (0..ratios.len()).map(|i| i as f64).collect(), ratios)],
+    }
+}
