@@ -15,9 +15,9 @@ const WIDE = { width: 1440, height: 900 };
 
 /** Results that look unlike each other, each from a run that is short and still says something. */
 const GALLERY = {
-	friction_load: {},
-	brake_hysteresis: {},
 	demagnetise: {},
+	brake_speed_independence: {},
+	brake_hysteresis: { levels: 8, loops: 1, random_turns: 8 },
 };
 
 async function shoot(page, name) {

@@ -26,6 +26,17 @@ describe('telling series apart', () => {
 		expect(looks[0]!.glyph).not.toBe(looks[1]!.glyph);
 	});
 
+	it('knows the points of a line by their name at its end', () => {
+		const looks = styles(['0.2 A', '0.4 A', 'line at 0.4 A', 'line at 0.2 A'].map((label) => series(label, 'line', [], [])));
+		expect([looks[3]!.stroke, looks[2]!.stroke]).toEqual([looks[0]!.stroke, looks[1]!.stroke]);
+	});
+
+	it('draws alike what has one name', () => {
+		const looks = styles(['major', 'reversal', 'reversal', 'minor'].map((label) => series(label, 'line', [], [])));
+		expect(looks[1]).toEqual(looks[2]);
+		expect(looks[3]!.dash).not.toBe(looks[2]!.dash);
+	});
+
 	it('never comes back to the same colour and dash within thirty lines', () => {
 		const looks = styles(Array.from({ length: 30 }, (_, i) => series(`line ${i}`, 'line', [], [])));
 		expect(new Set(looks.map((look) => look.stroke + look.dash)).size).toBe(30);

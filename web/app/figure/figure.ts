@@ -42,14 +42,21 @@ const STROKES = ['--oi-blue', '--oi-vermillion', '--oi-green', '--oi-purple', '-
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
 const GLYPHS: Glyph[] = ['dot', 'ring', 'square', 'cross', 'triangle'];
 
-/** `model, positive` is drawn in the colour of `positive`: a model and its points belong together. */
-const family = (label: string) => label.split(', ').at(-1)!;
+/** `model, positive` and `line at 0.2 A` are drawn in the colours of `positive` and `0.2 A`: a model and its points belong together. */
+function family(labels: readonly string[], i: number): string {
+	const label = labels[i]!;
+	const kin = labels.find((one) => one !== label && (label.endsWith(` ${one}`) || label.split(', ').at(-1) === one));
+	return kin ?? label.split(', ').at(-1)!;
+}
 
 export function styles(series: readonly Series[]): Style[] {
-	const families = [...new Set(series.map((one) => family(one.label)))];
-	const before = (i: number) => series.slice(0, i).filter((one) => one.mark === series[i]!.mark).length;
-	return series.map((one, i) => ({
-		stroke: STROKES[families.indexOf(family(one.label)) % STROKES.length]!,
+	const labels = series.map((one) => one.label);
+	const kin = labels.map((_, i) => family(labels, i));
+	const families = [...new Set(kin)];
+	/** Its place among the series of its mark; what has one name is one thing, drawn alike. */
+	const before = (i: number) => [...new Set(series.filter((one) => one.mark === series[i]!.mark).map((one) => one.label))].indexOf(labels[i]!);
+	return series.map((_, i) => ({
+		stroke: STROKES[families.indexOf(kin[i]!) % STROKES.length]!,
 		dash: DASHES[before(i) % DASHES.length]!,
 		glyph: GLYPHS[before(i) % GLYPHS.length]!,
 		bar: before(i),

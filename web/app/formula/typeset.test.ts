@@ -24,6 +24,7 @@ it.each([
 	['μ·|τ_link/N|·ω', 'μ·|τ_{link}/N|·ω'],
 	['c_T·(T − 25 °C)·ω', 'c_{T}·(T−25°C)·ω'],
 	['θ̇_s', 'θ̇_{s}'],
+	['dT/dω', 'dT/dω'],
 	['β₀·sgn ω', 'β_{0}·\\sgn ω'],
 	['k_m·|−x|', 'k_{m}·|−x|'],
 ])('%s', (text, said) => expect(say(typeset(text))).toBe(said));

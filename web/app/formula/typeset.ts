@@ -26,7 +26,7 @@ function tokensOf(text: string): string[] {
 }
 
 /** Two Latin letters or more, but not `dz`. */
-const isWord = (text: string) => /^[A-Za-z]{2,}$/.test(text) && !/^d[a-z]$/.test(text);
+const isWord = (text: string) => /^[A-Za-z]{2,}$/.test(text) && !/^d[A-Za-z]$/.test(text);
 
 export function typeset(text: string): Node[] {
 	const tokens = tokensOf(text);
