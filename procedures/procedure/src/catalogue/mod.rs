@@ -10,6 +10,7 @@ mod encoder;
 mod friction;
 mod friction_load;
 mod friction_temperature;
+mod identify_joint;
 mod legs;
 mod stiffness;
 mod strokes;
@@ -49,6 +50,7 @@ pub trait Procedure: Sync {
 /// Every procedure, in the order in which a list shows them.
 pub fn catalogue() -> &'static [&'static dyn Procedure] {
     &[
+        &identify_joint::IdentifyJoint,
         &friction::Friction,
         &friction_load::FrictionLoad,
         &friction_temperature::FrictionTemperature,

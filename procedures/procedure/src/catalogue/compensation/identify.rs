@@ -19,7 +19,8 @@ struct Followed {
     time_s: Vec<f64>,
     /// θ_d − θ at the link [rad].
     error_rad: Vec<f64>,
-    /// The largest that was fed forward beyond what the drive gave in all; 0 or less: never active (motor) [Nm].
+    /// The largest that was fed forward beyond what the drive gave in all and its noise; 0 or less: never active (motor)
+    /// [Nm].
     over_nm: f64,
 }
 
@@ -98,12 +99,16 @@ fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
         chunk.iter().map(|i| side * (fed[*i] - current[*i])).sum::<f64>() / chunk.len() as f64
     };
     let all: Vec<usize> = rows.clone().collect();
+    // The largest of hundreds of means of noise lies four of their standard deviations out.
+    let steps = rows.clone().skip(1).map(|i| (current[i] - current[i - 1]).powi(2));
+    let noise_a = (steps.sum::<f64>() / (2.0 * rows.len() as f64)).sqrt();
+    let doubt_a = 4.0 * noise_a / (window as f64).sqrt();
     let over_a = all.chunks_exact(window).filter(one_way).map(over).fold(f64::NEG_INFINITY, f64::max);
     Some(Followed {
         way,
         time_s: rows.map(|i| time[i] - time[first]).collect(),
         error_rad,
-        over_nm: if way == Way::None || over_a.is_infinite() { 0.0 } else { km * over_a },
+        over_nm: if way == Way::None || over_a.is_infinite() { 0.0 } else { km * (over_a - doubt_a) },
     })
 }
 

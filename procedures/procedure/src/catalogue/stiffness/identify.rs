@@ -3,12 +3,42 @@
 use crate::findings::{Unusable, curve, holds, interval_of, keep_rows, parameter, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
-use jointbench_model::{Fit, ModelSpec, Options, fit};
+use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit};
 
 /// The settled end of a hold: joint and brake wind up first.
 const SETTLED: f64 = 0.5;
 /// A curve is worth more than the line where it predicts what it has not seen this much better.
 const BETTER: f64 = 0.85;
+
+/// A joint that is soft until its teeth and belts carry: what it gives more than a spring ends at φ, and how sharply it
+/// gets there is left open. φ is then what β₀ is for a line through high loads.
+const SOFT: &str = "soft_start";
+
+/// `None`: there is no load to speak of.
+fn softening(run: &RunTable) -> Option<OwnEffect> {
+    let top = run.column("link_torque_nm")?.iter().fold(0.0f64, |m, t| m.max(t.abs()));
+    let parameter = |name: &str, unit: &str, min: Option<f64>, max: Option<f64>| OwnParameter {
+        name: name.into(),
+        unit: unit.into(),
+        min,
+        max,
+        start: None,
+        whole: false,
+    };
+    let definition = Definition {
+        id: SOFT.into(),
+        kind: run.kind(),
+        formula: "torsion = phi * load / (t_h^p + abs(load)^p)^(1/p)".into(),
+        parameters: vec![
+            parameter("phi", "rad", None, None),
+            parameter("t_h", "Nm", Some(0.01 * top), Some(top)),
+            parameter("p", "1", Some(0.7), Some(6.0)),
+        ],
+        title: "Soft start".into(),
+        sentence: "The joint gives more at low torque, until all its teeth carry.".into(),
+    };
+    OwnEffect::try_from(definition).ok()
+}
 
 /// Means of one hold: torque and torsion.
 type Point = (f64, f64);
@@ -20,12 +50,13 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         return Err(Unusable::TooLittle("the run holds too few loads: make it again to its end"));
     }
     let settled = keep_rows(run, &rows)?;
-    let with = |more: &[&'static str]| {
-        let effects = ["offset", "compliance"].iter().chain(more).copied();
-        ModelSpec::new(run.kind(), effects).and_then(|spec| fit(&settled, &spec, &Options::default()))
+    let with = |more: &'static str| {
+        let own = if more == SOFT { softening(&settled).into_iter().collect() } else { Vec::new() };
+        let spec = ModelSpec::with_own(run.kind(), ["offset", "compliance", more], own)?;
+        fit(&settled, &spec, &Options::default())
     };
-    let line = with(&["directional_offset"])?;
-    let curved = with(&["hardening"]).ok().filter(|curved| curved.validation_rms < BETTER * line.validation_rms);
+    let line = with("directional_offset")?;
+    let curved = with(SOFT).ok().filter(|curved| curved.validation_rms < BETTER * line.validation_rms);
     let best = curved.as_ref().unwrap_or(&line);
 
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
@@ -54,7 +85,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             Some([stiffness(inverse_ci95[1]), stiffness(inverse_ci95[0])]),
         ),
     ];
-    let offset = if curved.is_some() { ("hardening", "phi_h") } else { ("directional_offset", "beta_0") };
+    let offset = if curved.is_some() { (SOFT, "phi") } else { ("directional_offset", "beta_0") };
     if let Some(found) = parameter(best, offset.0, offset.1) {
         let (value, ci95) = with_steps(interval_of(found, 1.0), run, gear);
         quantities.push(quantity(["beta_0", "β₀", "Directional offset", "rad"], value, Some(ci95)));
