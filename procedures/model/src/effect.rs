@@ -125,6 +125,12 @@ pub trait Effect: Sync {
     /// The columns of one form at the points of the view.
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns;
 
+    /// The form with one more part and one more shape parameter, and the form that finds this part alone. `None` for a
+    /// form that is not a sum of like parts, or is long enough.
+    fn extended(&self, _form: &Form) -> Option<(&'static str, Form<'static>)> {
+        None
+    }
+
     fn stage(&self) -> Stage {
         Stage::Settled
     }

@@ -100,18 +100,15 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
 /// Name of the form of an effect that may have several harmonics.
 pub(crate) const SEVERAL_HARMONICS: &str = "harmonics";
 
-/// The form with a number of harmonics, each with two factors.
-pub(crate) fn several_harmonics(count: usize) -> Form<'static> {
+/// A form of harmonics with one more, each with two factors.
+pub(crate) fn one_more_harmonic(form: &Form) -> Option<(&'static str, Form<'static>)> {
     const LINEAR: [&str; 16] =
         ["a", "b", "a_2", "b_2", "a_3", "b_3", "a_4", "b_4", "a_5", "b_5", "a_6", "b_6", "a_7", "b_7", "a_8", "b_8"];
     const SHAPE: [&str; 8] =
         ["harmonic", "harmonic_2", "harmonic_3", "harmonic_4", "harmonic_5", "harmonic_6", "harmonic_7", "harmonic_8"];
-    let count = count.min(SHAPE.len());
+    let count = form.shape.len() + 1;
     let shape = |name: &&'static str| Shape { name, min: 1.0, max: f64::INFINITY, search: Search::Whole };
-    Form {
-        name: SEVERAL_HARMONICS,
-        linear: LINEAR[..2 * count].to_vec(),
-        shape: SHAPE[..count].iter().map(shape).collect(),
-        grid: Vec::new(),
-    }
+    let shape = SHAPE.get(..count)?.iter().map(shape).collect();
+    let form = Form { name: SEVERAL_HARMONICS, linear: LINEAR[..2 * count].to_vec(), shape, grid: Vec::new() };
+    Some((SEVERAL_HARMONICS, form))
 }

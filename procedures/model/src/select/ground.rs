@@ -5,6 +5,7 @@ use super::flips::Score;
 use crate::linear::{Basis, Spd, dot};
 use crate::prepare::Problem;
 use crate::terms::Terms;
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::ops::Range;
 
 /// A long run is turned over in groups of neighbouring blocks.
@@ -96,6 +97,27 @@ impl Ground {
             sums
         };
         own.kept.iter().map(of).collect()
+    }
+
+    /// The factor of a single column in standard errors of a jackknife over the groups, on the scale of a standard normal:
+    /// Student's t at the number of equal groups that would decide it as well as these do. `None` for several columns.
+    ///
+    /// A score's own scatter holds the effect itself. One that only few stretches can show would never get past it,
+    /// however clearly they do.
+    pub fn jackknife_z(&self, columns: &[Vec<f64>]) -> Option<f64> {
+        let [column] = columns else { return None };
+        let rest = self.basis.rest(column);
+        let sums = products(&rest, &self.residual, &self.groups);
+        let squares = products(&rest, &rest, &self.groups);
+        let (sum, square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
+        let factor = sum / square;
+        let without = |(s, h): (&f64, &f64)| ((sum - s) / (square - h) - factor).powi(2);
+        let n = sums.len() as f64;
+        let error = ((n - 1.0) / n * sums.iter().zip(&squares).map(without).sum::<f64>()).sqrt();
+        let deciding = square * square / dot(&squares, &squares);
+        let t = StudentsT::new(0.0, 1.0, deciding - 1.0).ok()?;
+        let chance = 2.0 * t.sf((factor / error).abs());
+        Some(Normal::standard().inverse_cdf(1.0 - chance.max(1e-15))).filter(|z| z.is_finite())
     }
 
     pub fn score(&self, columns: &[Vec<f64>], own: &Own) -> Score {

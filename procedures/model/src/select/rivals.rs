@@ -139,7 +139,7 @@ pub fn significance(term: &Term, library: &Library, ground: &Ground, options: &O
 /// The same from scores that are there already.
 fn family_wise(term: &Term, mut scores: Vec<Score>, ground: &Ground, options: &Options) -> f64 {
     let own = ground.score(&term.columns, &ground.own(&term.columns));
-    let z = own.z();
+    let z = own.z().max(ground.jackknife_z(&term.columns).unwrap_or(f64::NEG_INFINITY));
     scores.push(own);
     Null::new(&scores, options.flips, options.seed).p_value(z)
 }

@@ -39,7 +39,7 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
     let rule = if term.form == "stop" { Rule::Stop } else { Rule::Dahl };
     match (kind, term.effect.as_str(), term.form.as_str()) {
         // States of several elements, or of two signals: more than one rule can follow.
-        (_, _, "maxwell_slip" | "lugre") => None,
+        (_, _, "maxwell_slip" | "lugre" | "stops" | "dahl_and_stops" | "maxwell_slip_and_stops") => None,
         (Kind::Friction, id, form) => match (id, form) {
             ("inertia", _) => formula("acceleration"),
             ("coulomb", _) => formula("direction"),

@@ -36,4 +36,7 @@ impl Effect for Cogging {
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         shape.iter().flat_map(|h| view.harmonic(Signal::Position, *h)).collect()
     }
+    fn extended(&self, form: &Form) -> Option<(&'static str, Form<'static>)> {
+        crate::effects::one_more_harmonic(form)
+    }
 }

@@ -7,15 +7,24 @@ use jointbench_instrument::Kind;
 
 pub struct TorsionalHysteresis;
 
+/// Parameters of the parts of a sum.
+const SIZES: [&str; 3] = ["eta", "eta_2", "eta_3"];
+const REACHES: [&str; 3] = ["tau_eta", "tau_eta_2", "tau_eta_3"];
+
 static INFO: EffectInfo = EffectInfo {
     id: "torsional_hysteresis",
     kind: Kind::Stiffness,
     title: "Torsional hysteresis",
     sentence: "The twist depends on how the torque came about: on the way up it lags, on the way down too.",
-    formula: "η·z, dz = (1 − z·sgn dτ)·dτ/τ_η (Dahl), or a stop dz = dτ/τ_η within ±1, or the mean of four stops with reaches up to τ_η (Maxwell slip)",
-    source: "Dahl 1968; Ruderman, Bertram, Iwasaki 2014",
+    formula: "η·z, dz = (1 − z·sgn dτ)·dτ/τ_η (Dahl), or a stop dz = dτ/τ_η within ±1, or the mean of four stops with reaches up to τ_η (Maxwell slip); or one of these with one or two more stops",
+    source: "Dahl 1968; Al-Bender, Lampaert, Swevers 2005; Ruderman, Bertram, Iwasaki 2014",
     looks: "loops over torque",
-    parameters: &[parameter("eta", "rad", 0.0, f64::INFINITY), parameter("tau_eta", "Nm", 0.0, f64::INFINITY)],
+    parameters: &[
+        parameter("eta", "rad", 0.0, f64::INFINITY),
+        parameter("tau_eta", "Nm", 0.0, f64::INFINITY),
+        parameter("eta_2", "rad", 0.0, f64::INFINITY),
+        parameter("eta_3", "rad", 0.0, f64::INFINITY),
+    ],
     needs: &[],
 };
 
@@ -35,11 +44,28 @@ impl Effect for TorsionalHysteresis {
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let torque = view.samples.find(Signal::Load).unwrap_or_default();
-        let state = match form {
-            "dahl" => memory::dahl(torque, shape[0], &view.starts),
-            "maxwell_slip" => memory::maxwell_slip(torque, shape[0], &view.starts),
-            _ => memory::stop(torque, shape[0], &view.starts),
+        let column = |(part, reach): (usize, &f64)| {
+            view.average(match form {
+                "dahl" | "dahl_and_stops" if part == 0 => memory::dahl(torque, *reach, &view.starts),
+                "maxwell_slip" | "maxwell_slip_and_stops" if part == 0 => {
+                    memory::maxwell_slip(torque, *reach, &view.starts)
+                }
+                _ => memory::stop(torque, *reach, &view.starts),
+            })
         };
-        vec![view.average(state)]
+        shape.iter().enumerate().map(column).collect()
+    }
+
+    /// Dry contacts that slip one after the other, each with a strength of its own.
+    fn extended(&self, form: &Form) -> Option<(&'static str, Form<'static>)> {
+        let name = match form.name {
+            "dahl" | "dahl_and_stops" => "dahl_and_stops",
+            "maxwell_slip" | "maxwell_slip_and_stops" => "maxwell_slip_and_stops",
+            _ => "stops",
+        };
+        let parts = form.shape.len() + 1;
+        let shape = |name: &&'static str| Shape { name, ..form.shape[0] };
+        let shape = REACHES.get(..parts)?.iter().map(shape).collect();
+        Some(("stop", Form { name, linear: SIZES[..parts].to_vec(), shape, grid: Vec::new() }))
     }
 }
