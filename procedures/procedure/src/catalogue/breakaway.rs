@@ -1,7 +1,9 @@
 //! Stiction: the motor current rises until the joint breaks away, at many positions and in both directions.
 //!
 //! Document 000 raises the current until five samples in a row show the encoder increasing. Each position is one step,
-//! the approach included: the joint always arrives in the direction in which it will break away.
+//! the approach included: the joint always arrives in the direction in which it will break away. A joint whose friction
+//! falls with speed creeps before it breaks away, and the faster the torque rises the lower it does (Canudas de Wit,
+//! Olsson, Åström, Lischinsky 1995): only a slow ramp comes near the friction at rest.
 
 use super::Procedure;
 use super::legs::{Legs, friction_meta};
@@ -17,8 +19,8 @@ pub(super) struct Breakaway;
 
 const SCHEMA: &[Parameter] = &[
     Parameter::count("positions", "Positions on a link turn", 12, [2, 200]),
-    Parameter::number("top_torque_nm", "Torque at which the ramp ends (motor)", "Nm", 0.12, [1e-3, 100.0]),
-    Parameter::number("ramp_nm_s", "Rise of the torque (motor)", "Nm/s", 0.02, [1e-4, 10.0]),
+    Parameter::number("top_torque_nm", "Torque at which the ramp ends (motor)", "Nm", 0.08, [1e-3, 100.0]),
+    Parameter::number("ramp_nm_s", "Rise of the torque (motor)", "Nm/s", 0.005, [1e-4, 10.0]),
     Parameter::count("increases", "Encoder increases in a row", 5, [2, 50]),
     Parameter::number("speed_rad_s", "Speed of the approach (motor)", "rad/s", 60.0, [1.0, 1000.0]),
     Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),

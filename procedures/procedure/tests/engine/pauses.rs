@@ -1,8 +1,11 @@
 //! Pause and resume at every step.
 
-use crate::fakes::{Call, RATIO};
-use crate::ledger::{loaded_plan, middles_s, play_controlled};
+use crate::fakes::{Call, Fakes, RATIO};
+use crate::ledger::{loaded_plan, middles_s, play_controlled, play_with};
+use jointbench_procedure::plan::Before;
+use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
+use std::sync::mpsc::channel;
 
 #[test]
 fn every_step_survives_a_pause() {
@@ -92,4 +95,35 @@ fn a_resume_takes_back_a_pause_that_was_not_yet_granted() {
     done.check_safe(RunState::Completed);
     assert!(!done.ledger.states().contains(&RunState::Paused));
     assert!(done.end.duration_s < loaded_plan().duration_s() + 0.5, "{} s", done.end.duration_s);
+}
+
+/// A sweep counts on a brake without history: resuming takes the poles out before it begins again from no current.
+#[test]
+fn a_sweep_begins_again_with_a_demagnetised_brake() {
+    let mut plan = loaded_plan();
+    plan.steps.truncate(1);
+    plan.steps[0].before = Before::Demagnetised;
+    plan.steps[0].velocity = Profile::plateau(100.0, 400.0, 5.0);
+    plan.steps[0].brake = Profile::from(0.0).hold(0.3).to(0.5, 0.0).hold(1.5).to(0.2, 0.0).hold(1.5).to(0.0, 0.0);
+    let (sender, controls) = channel();
+    let held = sender.clone();
+    let mut due = vec![(3.0, Control::Resume), (1.2, Control::Pause)];
+    let (fakes, mut bench) = Fakes::new(move |_, world| {
+        while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
+            // A run that has ended listens no more.
+            let _ = sender.send(control);
+        }
+        Ok(())
+    });
+    let done = play_with(&fakes, &mut bench, &plan, &controls, |_| {});
+    drop(held);
+    done.check_safe(RunState::Completed).check_no_cogging();
+    let table = done.ledger.table();
+    let column = |name: &str| table.column(name).unwrap();
+    let (segment, command) = (column("segment"), column("brake_torque_command_nm"));
+    let second = segment.iter().position(|s| *s != segment[0]).unwrap();
+    assert!(command[second - 1] > 1.0 && command[second] == 0.0, "{} {}", command[second - 1], command[second]);
+    // On the way there the current fell in many small steps, not at once.
+    let falls = done.world.commands(|call| matches!(call, Call::SetCurrent(a) if *a > 0.0 && *a < 0.5 && *a != 0.2));
+    assert!(falls.len() >= 5, "{falls:?}");
 }
