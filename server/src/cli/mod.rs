@@ -14,6 +14,7 @@ mod own;
 mod ports;
 mod print;
 mod progress;
+mod reproduce;
 mod require;
 mod run;
 mod serve;
@@ -50,6 +51,7 @@ pub fn main() -> ExitCode {
         Command::Export(arguments) => transfer::export(&arguments),
         Command::Identify(arguments) => identify::identify(&arguments),
         Command::Report(arguments) => identify::report(&arguments),
+        Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

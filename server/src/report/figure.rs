@@ -31,7 +31,8 @@ pub fn svg(figure: &Figure) -> Option<String> {
     let polar = figure.form == FigureForm::Polar;
     let turned: Vec<FigureSeries>;
     let series = if polar {
-        turned = figure.series.iter().map(around).collect();
+        let lowest = figure.series.iter().flat_map(|s| &s.y).fold(0.0_f64, |low, y| low.min(*y));
+        turned = figure.series.iter().map(|series| around(series, lowest)).collect();
         &turned
     } else {
         &figure.series
@@ -52,10 +53,11 @@ pub fn svg(figure: &Figure) -> Option<String> {
     Some(text)
 }
 
-/// Angle and radius as places in the plane.
-fn around(series: &FigureSeries) -> FigureSeries {
-    let place =
-        |of: fn(f64) -> f64| series.x.iter().zip(&series.y).map(|(angle, radius)| radius * of(*angle)).collect();
+/// Angle and radius as places in the plane. The middle is the lowest radius twice as low, so that what is negative stays
+/// where it is seen.
+fn around(series: &FigureSeries, lowest: f64) -> FigureSeries {
+    let radii = series.y.iter().map(|radius| radius - 2.0 * lowest);
+    let place = |of: fn(f64) -> f64| series.x.iter().zip(radii.clone()).map(|(angle, r)| r * of(*angle)).collect();
     FigureSeries { x: place(f64::cos), y: place(f64::sin), band: Vec::new(), ..series.clone() }
 }
 
@@ -92,15 +94,16 @@ fn draw(area: &Area, figure: &Figure, series: &[FigureSeries], (x, y): ((f64, f6
         .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
     let names = &figure.x.names;
     let name = |at: &f64| match names.is_empty() {
-        true => number(*at),
+        true => number(*at, x.1 - x.0),
         false if (at - at.round()).abs() < 1e-6 => names.get(at.round() as usize).cloned().unwrap_or_default(),
         false => String::new(),
     };
+    let height = |at: &f64| number(*at, y.1 - y.0);
     let mut mesh = chart.configure_mesh();
     mesh.light_line_style(TRANSPARENT)
         .x_labels(if names.is_empty() { 8 } else { 2 * names.len() + 1 })
         .x_label_formatter(&name)
-        .y_label_formatter(&|at| number(*at))
+        .y_label_formatter(&height)
         .label_style((FONT, 13))
         .axis_desc_style((FONT, 14));
     match figure.form {
@@ -108,7 +111,11 @@ fn draw(area: &Area, figure: &Figure, series: &[FigureSeries], (x, y): ((f64, f6
             mesh.x_desc(labelled(&figure.x)).y_desc(labelled(&figure.y)).draw()?;
         }
         FigureForm::Polar => {
-            mesh.x_desc(labelled(&figure.y)).draw()?;
+            // Places in the plane are no radii: the ring at radius 0 is what can be read off.
+            mesh.x_desc(format!("{}, ring: 0", labelled(&figure.y))).x_labels(0).y_labels(0).draw()?;
+            let zero = 2.0 * figure.series.iter().flat_map(|s| &s.y).fold(0.0_f64, |low, y| low.min(*y)).abs();
+            let ring = (0..=180).map(|step| f64::from(step) * std::f64::consts::PI / 90.0);
+            chart.draw_series(LineSeries::new(ring.map(|a| (zero * a.cos(), zero * a.sin())), BLACK.mix(0.4)))?;
         }
     }
     let bars = series.iter().filter(|s| s.mark == Mark::Bars).count();
@@ -139,9 +146,12 @@ fn labelled(axis: &crate::view::FigureAxis) -> String {
     if axis.unit.is_empty() { axis.label.clone() } else { format!("{} [{}]", axis.label, axis.unit) }
 }
 
-fn number(value: f64) -> String {
+/// A tick of an axis of that length; what is nothing beside it is 0.
+fn number(value: f64, span: f64) -> String {
     let size = value.abs();
-    if value == 0.0 || (1e-3..1e5).contains(&size) {
+    if size < 1e-9 * span {
+        "0".to_owned()
+    } else if (1e-3..1e5).contains(&size) {
         let text = format!("{value:.4}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {

@@ -6,6 +6,7 @@ mod figure;
 mod number;
 
 use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict};
+pub use figure::svg;
 use jointbench_model::words;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use number::with_interval;

@@ -55,6 +55,16 @@ pub struct Report {
     pub store: StorePlace,
 }
 
+#[derive(Debug, Args)]
+pub struct Reproduce {
+    /// What the simulated joints are drawn from
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Write tables and figures to a page, such as docs/reproduction.md, and a folder of its name
+    #[arg(short, long, visible_alias = "output", value_name = "PAGE.MD")]
+    pub out: Option<PathBuf>,
+}
+
 /// The daemon where its address is given; else the folder, or the daemon on the usual address where one has the folder.
 #[derive(Debug, Args)]
 pub struct StorePlace {

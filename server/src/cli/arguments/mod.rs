@@ -3,7 +3,7 @@
 mod kept;
 mod model;
 
-pub use kept::{Export, Identify, Import, Report, StorePlace};
+pub use kept::{Export, Identify, Import, Report, Reproduce, StorePlace};
 pub use model::{Model, ModelCommand};
 
 use super::log::LogForm;
@@ -63,6 +63,8 @@ pub enum Command {
     Identify(Identify),
     /// Write a run as one page to send and to print
     Report(Report),
+    /// Make the source documents' campaigns again on the mock bench, each table beside the document's
+    Reproduce(Reproduce),
 }
 
 #[derive(Debug, Args)]

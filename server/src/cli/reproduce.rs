@@ -1,0 +1,126 @@
+//! `jointbench reproduce`: the documents' campaigns again on the mock bench, each table beside the document's.
+
+use super::arguments::Reproduce;
+use super::exit::{Done, Exit};
+use crate::lab::reread;
+use crate::report::{svg, with_interval};
+use crate::view;
+use jointbench_devices::sim::Truth;
+use jointbench_devices::{Joint, MockBench, MockSettings};
+use jointbench_procedure::reproduce::{Chapter, Comparison, Subject, reproduce as campaign};
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+pub fn reproduce(arguments: &Reproduce) -> Done {
+    let subjects = [("Joint A", Joint::JointA, Subject::JointA), ("Joint B", Joint::JointB, Subject::JointB)];
+    let mut page = format!(
+        "# The documents' tables, measured again\n\n\
+         Written by `jointbench reproduce --seed {} --out …`, version {}. The bench is simulated: *given* is the constant that it was \
+         built with, read only for this comparison; *inside* tells whether the 95 % interval holds it, *narrow* whether the interval \
+         is as narrow as asked for.\n",
+        arguments.seed,
+        env!("CARGO_PKG_VERSION")
+    );
+    let mut broken = Vec::new();
+    for (title, joint, subject) in subjects {
+        println!("{title}");
+        page += &format!("\n## {title}\n");
+        for chapter in measure(joint, subject, arguments.seed)? {
+            broken.extend(
+                chapter
+                    .comparisons
+                    .iter()
+                    .filter(|one| is_broken(one))
+                    .map(|one| format!("{title}: {}", one.found.name)),
+            );
+            page += &told(&chapter, title, arguments.out.as_deref())?;
+        }
+    }
+    if let Some(path) = &arguments.out {
+        fs::write(path, page).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
+        println!("{}", path.display());
+    }
+    match broken.is_empty() {
+        true => Ok(()),
+        false => Err(Exit::failed(format!(
+            "not as the bench was built, or not as narrow as asked for: {}",
+            broken.join(", ")
+        ))),
+    }
+}
+
+fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<Chapter>, Exit> {
+    // The documents' joints have a Stribeck rise.
+    let mock = MockBench::start(MockSettings::new(joint, seed).hiding(&["stribeck"]))
+        .map_err(|fault| Exit::failed(fault.to_string()))?;
+    let mut bench = mock.open_bench("mock").map_err(|fault| Exit::failed(fault.to_string()))?;
+    let truth = mock.truth();
+    campaign(&mut bench, subject, &|name| given(truth, name), &mut |chapter| {
+        println!("  {} ({:.0} s of the bench): {}", chapter.title, chapter.duration_s, chapter.identification.summary);
+        for one in &chapter.comparisons {
+            let (value, interval) = with_interval(one.found.value, one.found.ci95, &one.found.unit);
+            let interval = interval.map(|ends| format!(" [{ends}]")).unwrap_or_default();
+            println!("    {:24} {value}{interval}{}", one.found.name, if is_broken(one) { "  BROKEN" } else { "" });
+        }
+    })
+    .map_err(|fault| Exit::failed(fault.to_string()))
+}
+
+/// What the bench was built with, by the names of the quantities.
+fn given(truth: &Truth, name: &str) -> Option<f64> {
+    let stribeck = |figure: &str| truth.hidden.iter().find(|h| h.effect == "stribeck")?.parameters.get(figure).copied();
+    match name {
+        "tau_c" => Some(truth.coulomb_nm),
+        "c_v" => Some(truth.viscous_nm_s),
+        "tau_h" => Some(truth.coulomb_nm + stribeck("rise_nm")?),
+        "omega_s" => Some(stribeck("velocity_rad_s")? / truth.gear_ratio),
+        "delta_s" => stribeck("exponent"),
+        "k" => Some(truth.stiffness_nm_rad),
+        "beta_0" => Some(truth.directional_offset_rad),
+        _ => None,
+    }
+}
+
+fn is_broken(one: &Comparison) -> bool {
+    one.is_inside() == Some(false) || one.is_narrow() == Some(false)
+}
+
+/// A chapter of the page; its figures go into a folder of the page's name.
+fn told(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, Exit> {
+    let mut text = format!("\n### {}\n\n{}\n", chapter.title, chapter.identification.summary);
+    if !chapter.comparisons.is_empty() {
+        text += "\n| table | quantity | document | measured | 95 % interval | given | inside | narrow |\n|---|---|---|---|---|---|---|---|\n";
+    }
+    for one in &chapter.comparisons {
+        let (value, interval) = with_interval(one.found.value, one.found.ci95, &one.found.unit);
+        let number = |value: f64| with_interval(value, one.found.ci95, &one.found.unit).0;
+        let yes = |answer: Option<bool>| answer.map_or("", |yes| if yes { "yes" } else { "**no**" });
+        let _ = writeln!(
+            text,
+            "| {} | {} ({}) | {} | {value} | {} | {} | {} | {} |",
+            one.table,
+            one.found.title,
+            one.found.symbol,
+            number(one.document),
+            interval.unwrap_or_default(),
+            one.given.map(number).unwrap_or_default(),
+            yes(one.is_inside()),
+            yes(one.is_narrow()),
+        );
+    }
+    let Some(page) = page else { return Ok(text) };
+    let folder = page.with_extension("");
+    let unwritable = |path: &Path, fault: std::io::Error| Exit::bad_input(format!("{}: {fault}", path.display()));
+    fs::create_dir_all(&folder).map_err(|fault| unwritable(&folder, fault))?;
+    let found: view::Shown = reread(&chapter.identification)?;
+    for figure in &found.figures {
+        let Some(drawn) = svg(figure) else { continue };
+        let name = format!("{}-{}-{}.svg", title.to_lowercase().replace(' ', "-"), chapter.procedure, figure.name);
+        let path = folder.join(&name);
+        fs::write(&path, drawn).map_err(|fault| unwritable(&path, fault))?;
+        let folder = folder.file_name().unwrap_or_default().to_string_lossy();
+        let _ = writeln!(text, "\n![{}]({folder}/{name})", figure.title);
+    }
+    Ok(text)
+}
