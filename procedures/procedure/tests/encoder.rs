@@ -2,11 +2,13 @@
 
 use jointbench_devices::sim::{EncoderTruth, MockInstrument, PlannedTrouble, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
-use jointbench_instrument::Bench;
+use jointbench_instrument::{Bench, RunTable, Trace};
 use jointbench_procedure::conduct::{ConductFault, conduct};
 use jointbench_procedure::identification::{Identification, Verdict};
-use jointbench_procedure::{RunState, Safe, procedure};
+use jointbench_procedure::parameter::Values;
+use jointbench_procedure::{BenchFacts, Commit, Control, Live, Recorder, RecorderFault, RunState, Safe, procedure};
 use serde_json::{Value, json};
+use std::sync::mpsc::{Sender, channel};
 
 fn open(seed: u64, filter: bool) -> (EncoderTruth, MockBench, Bench) {
     let mock = MockBench::start(MockSettings { filter, ..MockSettings::new(Joint::EncoderShaft, seed) }).unwrap();
@@ -31,6 +33,65 @@ fn check(found: &Identification, name: &str, truth: f64, reach: f64) {
     let [low, high] = quantity.ci95.unwrap();
     assert!((low..=high).contains(&truth), "{name}: {truth:e} is not in {low:e} to {high:e}");
     assert!(0.5 * (high - low) <= reach, "{name}: {low:e} to {high:e} is wider than ±{reach:e}");
+}
+
+/// Pauses with every third commit of a running run, and resumes soon after.
+struct Pauser {
+    controls: Sender<Control>,
+    commits: u32,
+    pauses: u32,
+    shown: u32,
+    rows: Option<Trace>,
+}
+
+impl Recorder for Pauser {
+    fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
+        Ok(None)
+    }
+
+    fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
+        if commit.state == RunState::Running {
+            self.commits += 1;
+            if self.commits.is_multiple_of(3) && self.pauses < 4 {
+                self.pauses += 1;
+                self.controls.send(Control::Pause).unwrap();
+            }
+        }
+        if !commit.rows.channels().is_empty() {
+            match &mut self.rows {
+                Some(rows) => rows.append(commit.rows),
+                None => self.rows = Some(commit.rows),
+            }
+        }
+        Ok(())
+    }
+
+    fn live(&mut self, live: Live<'_>) {
+        self.shown += u32::from(live.state == RunState::Paused);
+        if self.shown == 10 {
+            self.shown = 0;
+            self.controls.send(Control::Resume).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_hunt_that_is_paused_finds_the_same_edges() {
+    let (truth, _mock, mut bench) = open(9, false);
+    let alignment = procedure("encoder_alignment").unwrap();
+    let given = json!({"halvings": 3, "map_positions": 3});
+    let plan = alignment.plan(given.as_object().unwrap(), &BenchFacts::of(&bench)).unwrap();
+    let (controls, heard) = channel();
+    let mut pauser = Pauser { controls, commits: 0, pauses: 0, shown: 0, rows: None };
+    let end = jointbench_procedure::run(&mut bench, &plan, 1, &heard, &mut pauser);
+    assert_eq!((end.state, end.safe, pauser.pauses), (RunState::Completed, Safe::SafeVerified, 4), "{:?}", end.reason);
+    let table = RunTable::new(plan.meta.clone(), pauser.rows.unwrap()).unwrap();
+    let values = Values::parse(alignment.schema(), given.as_object().unwrap()).unwrap();
+    let found = alignment.identify(&values, &table).unwrap();
+    check(&found, "radial_negative", truth.radial_m[0], 4e-6);
+    check(&found, "radial_positive", truth.radial_m[1], 4e-6);
+    check(&found, "axial_positive", truth.axial_m, 8e-6);
+    check(&found, "best_radial_shift", truth.best_radial_m, 3e-6);
 }
 
 #[test]

@@ -50,7 +50,6 @@ pub trait Procedure: Sync {
 /// Every procedure, in the order in which a list shows them.
 pub fn catalogue() -> &'static [&'static dyn Procedure] {
     &[
-        &identify_joint::IdentifyJoint,
         &friction::Friction,
         &friction_load::FrictionLoad,
         &friction_temperature::FrictionTemperature,
@@ -63,6 +62,7 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &compensation::Compensation,
         &strokes::Strokes,
         &warm_up::WarmUp,
+        &identify_joint::IdentifyJoint,
         &encoder::EncoderOffset,
         &encoder::EncoderDelay,
         &encoder::EncoderLinearity,

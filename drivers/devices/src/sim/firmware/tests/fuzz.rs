@@ -1,6 +1,6 @@
 //! The instruments' own parsers against garbage: no panic, bounded memory, and the next proper request is answered.
 
-use super::super::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Lorenz, Odrive, Qsb};
+use super::super::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Odrive, Qsb};
 use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant};
 use proptest::collection::vec;
@@ -44,6 +44,8 @@ proptest! {
     fn a_supply_is_back_after_one_line_end(garbage in pieces()) {
         let reply = ask(&mut Dp800::new(), &garbage, b"\n", b"*IDN?\n");
         prop_assert!(reply.starts_with(b"RIGOL"), "{}", reply.escape_ascii());
+        let reply = ask(&mut Hmp::new(), &garbage, b"\n", b"*IDN?\n");
+        prop_assert!(reply.starts_with(b"ROHDE"), "{}", reply.escape_ascii());
     }
 
     #[test]
