@@ -9,12 +9,13 @@ it('offers first what the bench has the instruments for', () => {
 		{ id: 'encoder_delay', kind: 'encoder' },
 		{ id: 'strokes', kind: 'friction' },
 	] as Procedure[];
-	const bench = (role: string) => ({ instruments: [{ role }] }) as Bench;
-	const told = (role: string) => offers(procedures, bench(role)).map((one) => [one.title, one.procedures.map(({ id }) => id).join()]);
-	expect(told('joint')).toEqual([
+	const bench = (roles: string[]) => ({ instruments: roles.map((role) => ({ role })) }) as Bench;
+	const told = (...roles: string[]) => offers(procedures, bench(roles)).map((one) => [one.title, one.procedures.map(({ id }) => id).join()]);
+	expect(told('joint', 'brake')).toEqual([
 		['friction', 'friction,strokes'],
 		['brake', 'brake_hysteresis'],
 		['encoder: this bench has no test encoder', 'encoder_delay'],
 	]);
-	expect(told('test_encoder')[0]).toEqual(['encoder', 'encoder_delay']);
+	expect(told('joint', 'test_encoder')[0]).toEqual(['encoder', 'encoder_delay']);
+	expect(told('joint').at(1)?.[0]).toBe('brake: this bench has no brake current source');
 });
