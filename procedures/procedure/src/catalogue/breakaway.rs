@@ -13,6 +13,7 @@ use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Drive, Plan, PlanFault, Until};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::words;
 use std::f64::consts::TAU;
 
 pub(super) struct Breakaway;
@@ -144,10 +145,10 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     Ok(Identification {
         verdict: if held == 0 { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "The joint breaks away at {:.4} Nm (motor) on the mean of {} positions, with a standard deviation of {:.4} Nm; the directions {}.",
-            mean.value,
+            "The joint breaks away at {} (motor) on the mean of {} positions, with a standard deviation of {}; the directions {}.",
+            words::figure(mean.value, "Nm"),
             all.len(),
-            deviation,
+            words::figure(deviation, "Nm"),
             if differ { "differ at 95 %" } else { "do not differ at 95 %" }
         ),
         advice: (held > 0).then(|| format!("At {held} positions it did not break away: raise top_torque_nm.")),

@@ -8,6 +8,7 @@ use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::words;
 use std::f64::consts::TAU;
 
 pub(super) struct Demagnetise;
@@ -116,8 +117,10 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     Ok(Identification {
         verdict: if clean { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Over one turn without current the torque varies by {left_nm:.3} Nm, {} the {allowed_nm:.3} Nm that noise and 0.5 % of the rating make up.",
-            if clean { "within" } else { "more than" }
+            "Over one turn without current the torque varies by {}, {} the {} that noise and 0.5 % of the rating make up.",
+            words::figure(left_nm, "Nm"),
+            if clean { "within" } else { "more than" },
+            words::figure(allowed_nm, "Nm"),
         ),
         advice: (!clean)
             .then(|| "Poles are left in the rotor: make more turns, or begin with a higher current.".into()),

@@ -10,6 +10,7 @@ use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::words;
 use jointbench_model::{Fit, ModelSpec, Options, fit};
 
 pub(super) struct FrictionLoad;
@@ -88,15 +89,16 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let motor_nm = heaviest / gear;
     let added_nm = more_nm("load_linear", "mu", motor_nm) + more_nm("load_quadratic", "mu_2", motor_nm * motor_nm);
     quantities.push(quantity(["added", "Δτ", "Friction that the highest load adds, motor side", "Nm"], added_nm, None));
-    let how = match law {
-        [] => "does not depend on the load",
-        ["load_linear"] => "grows in proportion to the load",
-        ["load_quadratic"] => "grows with the square of the load",
-        _ => "grows with the load, in proportion and with its square",
+    let more = format!("{} more at {heaviest:.1} Nm (commanded)", words::figure(added_nm, "Nm"));
+    let summary = match law {
+        [] => "Friction does not depend on the load.".to_owned(),
+        ["load_linear"] => format!("Friction grows in proportion to the load: {more}."),
+        ["load_quadratic"] => format!("Friction grows with the square of the load: {more}."),
+        _ => format!("Friction grows with the load, in proportion and with its square: {more}."),
     };
     Ok(Identification {
         verdict: Verdict::Identified,
-        summary: format!("Friction {how}: {added_nm:.4} Nm more at {heaviest:.1} Nm (commanded)."),
+        summary,
         advice: None,
         quantities,
         figures: vec![over_load(&table, gear)?],

@@ -5,6 +5,7 @@ use crate::findings::{
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
+use jointbench_model::words;
 use jointbench_model::{Fit, ModelSpec, Options, fit};
 
 /// A figure with its 95 % interval.
@@ -115,11 +116,11 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         Some(stribeck) => Identification {
             verdict: Verdict::Identified,
             summary: format!(
-                "Coulomb friction is {:.4} Nm, viscous friction {:.3e} Nm·s/rad, and below {:.3} rad/s at the link friction rises to {:.4} Nm; the directions {directions}.",
-                whole.coulomb.0,
-                whole.viscous.0,
-                stribeck.speed.0 / gear,
-                whole.coulomb.0 + stribeck.rise.0,
+                "Coulomb friction is {}, viscous friction {}, and below {} at the link friction rises to {}; the directions {directions}.",
+                words::figure(whole.coulomb.0, "Nm"),
+                words::figure(whole.viscous.0, "Nm·s/rad"),
+                words::figure(stribeck.speed.0 / gear, "rad/s"),
+                words::figure(whole.coulomb.0 + stribeck.rise.0, "Nm"),
             ),
             advice: None,
             quantities,
@@ -128,8 +129,9 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         None => Identification {
             verdict: Verdict::Inconclusive,
             summary: format!(
-                "Coulomb friction is {:.4} Nm, viscous friction {:.3e} Nm·s/rad; no rise towards standstill is visible; the directions {directions}.",
-                whole.coulomb.0, whole.viscous.0,
+                "Coulomb friction is {}, viscous friction {}; no rise towards standstill is visible; the directions {directions}.",
+                words::figure(whole.coulomb.0, "Nm"),
+                words::figure(whole.viscous.0, "Nm·s/rad"),
             ),
             advice: Some(
                 "To decide the Stribeck part, repeat with more repeats or a lower stribeck_speed_rad_s.".into(),
