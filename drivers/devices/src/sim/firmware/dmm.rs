@@ -1,6 +1,6 @@
 //! A 34401A-class multimeter on the analogue output of the torque sensor's small range, 10 V for 20 Nm.
 
-use super::Firmware;
+use super::lines::LineFirmware;
 use super::scpi::{Error, Pattern, Status, number, units};
 use crate::sim::plant::{Plant, Signal};
 use crate::sim::trouble::Trouble;
@@ -12,7 +12,6 @@ const NOISE_V: f64 = 1e-4;
 const OVER_RANGE: f64 = 1.2;
 const OVERLOAD: f64 = 9.9e37;
 const RANGES_V: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
-const LONGEST_LINE: usize = 512;
 
 #[derive(Debug, Clone, Copy)]
 enum Command {
@@ -109,32 +108,26 @@ fn exponential(value: f64) -> String {
     format!("{digits}E{:+03}", exponent.parse::<i32>().unwrap_or(0))
 }
 
-impl Firmware for Dmm {
-    fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>) {
-        while let Some(end) = input.iter().position(|byte| *byte == b'\n') {
-            let line: Vec<u8> = input.drain(..=end).collect();
-            let mut replies = Vec::new();
-            for unit in units(String::from_utf8_lossy(&line).trim()) {
-                let header: Vec<&str> = unit.header.iter().map(String::as_str).collect();
-                match self.execute(&header, unit.query, &unit.parameters, plant) {
-                    Ok(reply) => replies.extend(reply),
-                    Err(error) => self.status.push(error),
-                }
-            }
-            if !replies.is_empty() {
-                output.extend(replies.join(";").bytes().chain([b'\n']));
+impl LineFirmware for Dmm {
+    const LONGEST_LINE: usize = 512;
+
+    fn line(&mut self, line: &str, plant: &Plant) -> Option<String> {
+        let mut replies = Vec::new();
+        for unit in units(line.trim()) {
+            let header: Vec<&str> = unit.header.iter().map(String::as_str).collect();
+            match self.execute(&header, unit.query, &unit.parameters, plant) {
+                Ok(reply) => replies.extend(reply),
+                Err(error) => self.status.push(error),
             }
         }
-        input.truncate(LONGEST_LINE);
+        (!replies.is_empty()).then(|| replies.join(";"))
     }
 
-    fn step(&mut self, _plant: &mut Plant) {}
-
-    fn afflict(&mut self, trouble: Trouble) {
-        self.trouble = trouble;
+    fn trouble(&mut self) -> &mut Trouble {
+        &mut self.trouble
     }
 
-    fn power_cycle(&mut self, _plant: &mut Plant) {
-        *self = Self { trouble: self.trouble, ..Self::new() };
+    fn restart(&mut self, _plant: &mut Plant) {
+        *self = Self::new();
     }
 }

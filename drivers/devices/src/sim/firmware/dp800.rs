@@ -1,15 +1,12 @@
 //! A Rigol DP821A, channel 1 on a brake's coil (DP800 programming guide PGH03109-1110, data sheet DSH03108-1110).
 
-use super::Firmware;
 use super::dp800_channel::{Channel, Protection};
 use super::dp800_commands::{COMMANDS, Command, Quantity};
+use super::lines::LineFirmware;
 use super::scpi::{Error, Status, Unit, number, units};
 use super::supply_output::{self, CoilOutput, held, measured};
 use crate::sim::plant::Plant;
 use crate::sim::trouble::Trouble;
-
-/// A longer line than any client sends.
-const LONGEST_LINE: usize = 1024;
 
 pub struct Dp800 {
     channels: [Channel; 2],
@@ -28,18 +25,6 @@ impl Dp800 {
             output: CoilOutput::default(),
             trouble: Trouble::None,
         }
-    }
-
-    fn line(&mut self, line: &str, plant: &Plant) -> Option<String> {
-        let mut replies = Vec::new();
-        for unit in units(line) {
-            match self.execute(&unit, plant) {
-                Ok(Some(reply)) => replies.push(reply),
-                Ok(None) => {}
-                Err(error) => self.status.push(error),
-            }
-        }
-        (!replies.is_empty()).then(|| replies.join(";"))
     }
 
     fn execute(&mut self, unit: &Unit, plant: &Plant) -> Result<Option<String>, Error> {
@@ -193,28 +178,32 @@ fn switch(text: &str) -> Result<bool, Error> {
     supply_output::switch(text).ok_or(Error::IllegalValue)
 }
 
-impl Firmware for Dp800 {
-    fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>) {
-        while let Some(end) = input.iter().position(|byte| *byte == b'\n') {
-            let line: Vec<u8> = input.drain(..=end).collect();
-            if let Some(reply) = self.line(String::from_utf8_lossy(&line).trim(), plant) {
-                output.extend(reply.bytes());
-                output.push(b'\n');
+impl LineFirmware for Dp800 {
+    /// More than any client sends.
+    const LONGEST_LINE: usize = 1024;
+
+    fn line(&mut self, line: &str, plant: &Plant) -> Option<String> {
+        let mut replies = Vec::new();
+        for unit in units(line.trim()) {
+            match self.execute(&unit, plant) {
+                Ok(Some(reply)) => replies.push(reply),
+                Ok(None) => {}
+                Err(error) => self.status.push(error),
             }
         }
-        input.truncate(LONGEST_LINE);
+        (!replies.is_empty()).then(|| replies.join(";"))
     }
 
     fn step(&mut self, plant: &mut Plant) {
         self.output.step(&mut self.channels[0], plant);
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
-        self.trouble = trouble;
+    fn trouble(&mut self) -> &mut Trouble {
+        &mut self.trouble
     }
 
-    fn power_cycle(&mut self, plant: &mut Plant) {
-        *self = Self { trouble: self.trouble, ..Self::new() };
+    fn restart(&mut self, plant: &mut Plant) {
+        *self = Self::new();
         plant.inputs.coil = None;
     }
 }

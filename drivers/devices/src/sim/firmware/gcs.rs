@@ -2,6 +2,7 @@
 
 use super::Firmware;
 use super::gcs_motion::Motion;
+use super::lines::answer_lines;
 use crate::sim::plant::{Plant, Signal};
 use crate::sim::trouble::Trouble;
 
@@ -196,15 +197,12 @@ impl Firmware for Gcs {
             }
             !single
         });
-        while let Some(end) = input.iter().position(|byte| *byte == b'\n') {
-            let line: Vec<u8> = input.drain(..=end).collect();
-            match self.line(&String::from_utf8_lossy(&line), plant) {
-                Ok(Some(reply)) => output.extend(reply.bytes().chain([b'\n'])),
-                Ok(None) => {}
-                Err(error) => self.error = error,
-            }
-        }
-        input.truncate(LONGEST_LINE);
+        answer_lines(input, LONGEST_LINE, output, |line| {
+            self.line(line, plant).unwrap_or_else(|error| {
+                self.error = error;
+                None
+            })
+        });
     }
 
     fn step(&mut self, plant: &mut Plant) {

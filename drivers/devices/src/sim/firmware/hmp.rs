@@ -1,15 +1,14 @@
 //! A Rohde & Schwarz HMP4040, channel 1 on a brake's coil. The command set is the one that pymeasure's client uses; the
 //! condition registers are assumed.
 
-use super::Firmware;
 use super::dp800_channel::Channel;
+use super::lines::LineFirmware;
 use super::scpi::{Error, Pattern, Status, Unit, number, units};
 use super::supply_output::{CoilOutput, held, measured, switch};
 use crate::sim::plant::{CoilSupply, Plant};
 use crate::sim::trouble::Trouble;
 use std::sync::LazyLock;
 
-const LONGEST_LINE: usize = 1024;
 const MOST_V: f64 = 32.05;
 const MOST_A: f64 = 10.01;
 /// Of set values (assumed).
@@ -90,20 +89,6 @@ impl Hmp {
 
     fn wanted(&self) -> Option<CoilSupply> {
         self.channels[0].wanted().filter(|_| self.general)
-    }
-
-    fn line(&mut self, line: &str, plant: &Plant) -> Option<String> {
-        let mut replies = Vec::new();
-        for unit in units(line) {
-            let before = self.wanted();
-            match self.execute(&unit, plant) {
-                Ok(Some(reply)) => replies.push(reply),
-                Ok(None) => {}
-                Err(error) => self.status.push(error),
-            }
-            self.output.pass_on(before, self.wanted(), plant);
-        }
-        (!replies.is_empty()).then(|| replies.join(";"))
     }
 
     fn execute(&mut self, unit: &Unit, plant: &Plant) -> Result<Option<String>, Error> {
@@ -227,28 +212,34 @@ fn level(text: &str, unit: &str, now: f64, step: f64, most: f64, grain: f64) -> 
     Ok((wanted / grain).round() * grain)
 }
 
-impl Firmware for Hmp {
-    fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>) {
-        while let Some(end) = input.iter().position(|byte| *byte == b'\n') {
-            let line: Vec<u8> = input.drain(..=end).collect();
-            if let Some(reply) = self.line(String::from_utf8_lossy(&line).trim(), plant) {
-                output.extend(reply.bytes());
-                output.push(b'\n');
+impl LineFirmware for Hmp {
+    /// More than any client sends.
+    const LONGEST_LINE: usize = 1024;
+
+    fn line(&mut self, line: &str, plant: &Plant) -> Option<String> {
+        let mut replies = Vec::new();
+        for unit in units(line.trim()) {
+            let before = self.wanted();
+            match self.execute(&unit, plant) {
+                Ok(Some(reply)) => replies.push(reply),
+                Ok(None) => {}
+                Err(error) => self.status.push(error),
             }
+            self.output.pass_on(before, self.wanted(), plant);
         }
-        input.truncate(LONGEST_LINE);
+        (!replies.is_empty()).then(|| replies.join(";"))
     }
 
     fn step(&mut self, plant: &mut Plant) {
         self.output.step(&mut self.channels[0], plant);
     }
 
-    fn afflict(&mut self, trouble: Trouble) {
-        self.trouble = trouble;
+    fn trouble(&mut self) -> &mut Trouble {
+        &mut self.trouble
     }
 
-    fn power_cycle(&mut self, plant: &mut Plant) {
-        *self = Self { trouble: self.trouble, ..Self::new() };
+    fn restart(&mut self, plant: &mut Plant) {
+        *self = Self::new();
         plant.inputs.coil = None;
     }
 }

@@ -8,6 +8,7 @@ mod dp800_commands;
 mod gcs;
 mod gcs_motion;
 mod hmp;
+mod lines;
 mod lorenz;
 mod odrive;
 mod odrive_lines;

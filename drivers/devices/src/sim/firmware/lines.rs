@@ -1,0 +1,57 @@
+//! What instruments that answer line by line have in common.
+
+use super::Firmware;
+use crate::sim::plant::Plant;
+use crate::sim::trouble::Trouble;
+
+/// Firmware that is asked in lines and answers in lines, each with a line feed at its end.
+pub trait LineFirmware {
+    /// What is kept of a line that does not end.
+    const LONGEST_LINE: usize;
+
+    /// What follows from a line, its end still on it. `None`: no reply.
+    fn line(&mut self, line: &str, plant: &Plant) -> Option<String>;
+
+    fn step(&mut self, _plant: &mut Plant) {}
+
+    fn trouble(&mut self) -> &mut Trouble;
+
+    /// As it is after power-up. The bad day that it has goes on.
+    fn restart(&mut self, plant: &mut Plant);
+}
+
+/// Takes the whole lines out of `input` and keeps at most `longest` of one that has not ended.
+pub fn answer_lines(
+    input: &mut Vec<u8>,
+    longest: usize,
+    output: &mut Vec<u8>,
+    mut answer: impl FnMut(&str) -> Option<String>,
+) {
+    while let Some(end) = input.iter().position(|byte| *byte == b'\n') {
+        let line: Vec<u8> = input.drain(..=end).collect();
+        if let Some(reply) = answer(&String::from_utf8_lossy(&line)) {
+            output.extend(reply.bytes().chain([b'\n']));
+        }
+    }
+    input.truncate(longest);
+}
+
+impl<F: LineFirmware> Firmware for F {
+    fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>) {
+        answer_lines(input, F::LONGEST_LINE, output, |line| self.line(line, plant));
+    }
+
+    fn step(&mut self, plant: &mut Plant) {
+        LineFirmware::step(self, plant);
+    }
+
+    fn afflict(&mut self, trouble: Trouble) {
+        *self.trouble() = trouble;
+    }
+
+    fn power_cycle(&mut self, plant: &mut Plant) {
+        let trouble = *self.trouble();
+        self.restart(plant);
+        *self.trouble() = trouble;
+    }
+}
