@@ -1,6 +1,7 @@
 //! What a procedure makes of its run: a verdict in words, quantities with their intervals, figures. A pure function of the
 //! stored run, so that it can be repeated later with newer code.
 
+use crate::state::RunState;
 use serde::Serialize;
 
 /// Whether the run has shown what it was made for.
@@ -35,6 +36,25 @@ impl Identification {
             quantities: Vec::new(),
             figures: Vec::new(),
         }
+    }
+
+    /// The same, made of a run that is in this state: a run that did not come to its end has not shown what it was made
+    /// for, whatever its part says.
+    pub fn of_run_in(mut self, state: RunState) -> Self {
+        if state == RunState::Completed {
+            return self;
+        }
+        let (part, next) = if state.is_final() {
+            ("The run did not come to its end", "make the run to its end")
+        } else {
+            ("The run is not at its end yet", "let the run come to its end")
+        };
+        self.summary = format!("{part} ({state}), this is what its part says: {}", self.summary);
+        if self.verdict == Verdict::Identified {
+            self.verdict = Verdict::Inconclusive;
+            self.advice = Some(next.to_owned());
+        }
+        self
     }
 
     /// The first quantity of that name.

@@ -22,7 +22,8 @@ impl Lab {
         let found = tokio::task::spawn_blocking(move || procedure.identify(&values, &table))
             .await
             .map_err(|fault| LabError::Internal(format!("the identification of run {id} failed: {fault}")))?
-            .ok_or_else(none)?;
+            .ok_or_else(none)?
+            .of_run_in(record.state);
         Ok(Identification {
             run: id,
             procedure: record.procedure,
