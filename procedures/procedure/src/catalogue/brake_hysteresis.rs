@@ -13,7 +13,7 @@ mod identify;
 
 use super::Procedure;
 use super::brake_run;
-use super::legs::Legs;
+use super::legs::{ACCELERATION, Legs, sample_rate};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -32,8 +32,8 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("top_current", "Highest current, share of rated", "", 1.0, [0.2, 1.0]),
     Parameter::number("dwell_s", "Time at each current", "s", 0.9, [0.5, 20.0]),
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(100.0),
     Parameter::count("order_seed", "Seed of the random history", 1, [0, 1_000_000]),
 ];
 

@@ -2,7 +2,7 @@
 
 use super::Procedure;
 use super::brake_run;
-use super::legs::{Legs, turn_s};
+use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use crate::findings::{Line, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -22,8 +22,8 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("top_current", "Highest current, share of rated", "", 0.9, [0.05, 1.0]),
     Parameter::number("dwell_s", "Constant speed at each point", "s", 1.5, [0.5, 60.0]),
     Parameter::number("bound", "Independent where the torque changes less, share", "", 0.02, [0.001, 0.5]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(250.0),
     Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
 ];
 

@@ -6,7 +6,7 @@
 //! Olsson, Åström, Lischinsky 1995): only a slow ramp comes near the friction at rest.
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta};
+use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate};
 use crate::findings::{Mean, Unusable, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -24,8 +24,8 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("ramp_nm_s", "Rise of the torque (motor)", "Nm/s", 0.005, [1e-4, 10.0]),
     Parameter::count("increases", "Encoder increases in a row", 5, [2, 50]),
     Parameter::number("speed_rad_s", "Speed of the approach (motor)", "rad/s", 60.0, [1.0, 1000.0]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(250.0),
 ];
 
 /// Between the approach and the ramp the joint rests under no torque for so long.

@@ -7,7 +7,7 @@
 mod identify;
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta};
+use super::legs::{Legs, friction_meta, sample_rate};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -29,7 +29,7 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("period_s", "Period of the reference", "s", 6.0, [0.5, 120.0]),
     Parameter::count("periods", "Periods with each way of compensating", 3, [2, 100]),
     Parameter::number("acceleration_rad_s2", "Acceleration between them (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    sample_rate(250.0),
 ];
 
 /// Around standstill the jump of Coulomb friction is left out, or made a line (thesis, section 4.2.3; link side).

@@ -2,7 +2,7 @@
 
 use super::Procedure;
 use super::brake_run;
-use super::legs::{Legs, turn_s};
+use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use crate::findings::{Unusable, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -17,8 +17,8 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
     Parameter::number("turns", "Turns of the link while the current falls", "", 3.0, [1.0, 20.0]),
     Parameter::number("top_current", "Current to begin with, share of rated", "", 1.0, [0.05, 1.0]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(250.0),
 ];
 
 /// What may be left, peak to peak, as a share of the rated torque (bench-physics, section 3).

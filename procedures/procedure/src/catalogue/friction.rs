@@ -10,7 +10,7 @@
 //! facts counts them): it is where temperature changes most, which is what shows an effect of temperature.
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta, turn_s};
+use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
 use super::warm_up;
 use crate::findings::verdict;
 use crate::identification::Identification;
@@ -34,8 +34,8 @@ const SCHEMA: &[Parameter] = &[
     Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
     Parameter::number("dwell_s", "Constant speed at each point", "s", 1.1, [0.3, 60.0]),
     Parameter::number("warm_up_s", "Longest warm-up", "s", 20.0, [1.0, 3600.0]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(250.0),
     Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
 ];
 

@@ -5,6 +5,7 @@
 
 use super::Procedure;
 use super::friction::Friction;
+use super::legs::sample_rate;
 use crate::findings::{Unusable, interval_of, keep, legs, parameter, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -23,7 +24,7 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
     Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
     Parameter::number("warm_up_s", "Longest warm-up", "s", 20.0, [1.0, 3600.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    sample_rate(250.0),
     Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
 ];
 

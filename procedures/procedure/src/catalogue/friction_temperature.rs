@@ -4,7 +4,7 @@
 //! temperatures are passed at different times: what depends on temperature and what merely drifts with time show apart.
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta, turn_s};
+use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
 use super::warm_up;
 use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
@@ -21,8 +21,8 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("heat_s", "Warm-up", "s", 420.0, [20.0, 14400.0]),
     Parameter::number("cool_s", "Cool-down", "s", 420.0, [0.0, 14400.0]),
     Parameter::number("rest_s", "Rest between the bouts of the cool-down", "s", 45.0, [1.0, 3600.0]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(100.0),
 ];
 
 /// Below this span nothing can be said about temperature.

@@ -6,6 +6,7 @@
 use super::breakaway::Breakaway;
 use super::friction::Friction;
 use super::friction_load::FrictionLoad;
+use super::legs::sample_rate;
 use super::stiffness::Stiffness;
 use super::{Procedure, procedure};
 use crate::findings::{Unusable, keep_rows, verdict};
@@ -25,7 +26,7 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
     Parameter::number("bearing_stiffness_nm_rad", "Stiffness of the bearing, 0: none known", "Nm/rad", 0.0, [0.0, 1e9]),
     Parameter::count("repeats", "Repeats of the profiles", 2, [2, 50]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    sample_rate(250.0),
 ];
 
 /// Name of the fact that tells which rows are whose.

@@ -1,5 +1,6 @@
 //! What the procedures of a joint share: numbered steps, legs of constant speed, the facts of a friction run.
 
+use crate::parameter::Parameter;
 use crate::place::Place;
 use crate::plan::{Before, BenchFacts, Drive, Phase, Step};
 use crate::profile::Profile;
@@ -15,6 +16,14 @@ const RAISE_S: f64 = 0.8;
 const LAG_S: f64 = 0.6;
 /// A falling one is spread over at least this time and a whole link turn (bench-physics, section 3).
 const UNLOAD_S: f64 = 2.0;
+
+/// What nearly every procedure lets people set.
+pub(super) const ACCELERATION: Parameter =
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]);
+
+pub(super) const fn sample_rate(default_hz: f64) -> Parameter {
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", default_hz, [50.0, 1000.0])
+}
 
 /// Collects steps and numbers their segments.
 pub(super) struct Legs {

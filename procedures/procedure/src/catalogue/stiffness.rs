@@ -6,7 +6,7 @@
 mod identify;
 
 use super::Procedure;
-use super::legs::Legs;
+use super::legs::{ACCELERATION, Legs, sample_rate};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -22,8 +22,8 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.5, [0.11, 20.0]),
     Parameter::number("dwell_s", "Constant speed each way", "s", 1.5, [0.5, 60.0]),
     Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(250.0),
 ];
 
 impl Procedure for Stiffness {

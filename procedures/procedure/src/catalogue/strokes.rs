@@ -4,7 +4,7 @@
 //! time or its way is up, whichever comes first.
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta};
+use super::legs::{Legs, friction_meta, sample_rate};
 use crate::findings::{Line, Unusable, curve, keep, legs, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -25,7 +25,7 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("dwell_s", "Longest time at each speed", "s", 3.0, [0.3, 60.0]),
     Parameter::number("travel_rad", "Longest way of each stroke (link)", "rad", 0.6, [1e-3, 100.0]),
     Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [1e-2, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    sample_rate(250.0),
     Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
 ];
 

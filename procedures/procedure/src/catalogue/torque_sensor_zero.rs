@@ -4,7 +4,7 @@
 //! without load, and the zero is half the sum of both directions: drag has the sign of motion, the zero has not.
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta};
+use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate};
 use crate::findings::{Line, Mean, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -18,8 +18,8 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.3, [0.05, 20.0]),
     Parameter::number("dwell_s", "Constant speed each way", "s", 2.0, [0.5, 60.0]),
     Parameter::number("steady_nm_per_min", "Steady below this drift", "Nm/min", 0.002, [1e-5, 1.0]),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(100.0),
 ];
 
 /// The settled end of a hold: the brake's rotor winds up first.

@@ -1,7 +1,7 @@
 //! Work the joint until temperature and friction are steady, or the time is up.
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta, turn_s};
+use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
 use crate::findings::{Line, Plateau, Unusable, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -21,8 +21,8 @@ const SCHEMA: &[Parameter] = &[
         0.01,
         [1e-4, 1.0],
     ),
-    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 250.0, [50.0, 1000.0]),
+    ACCELERATION,
+    sample_rate(250.0),
 ];
 
 /// Steps of one cycle: fast and slow, out and back.

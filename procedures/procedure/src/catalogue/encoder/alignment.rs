@@ -4,7 +4,7 @@ use super::edges::{Found, WAYS, Way, found};
 use super::say::{quantity, too_little};
 use super::solve::solve;
 use super::sweeps::sweeps;
-use super::{ACCELERATION, both_ways, counts, meta, radial, rate, stage};
+use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
@@ -64,7 +64,7 @@ impl Procedure for EncoderAlignment {
                 Parameter::count("map_positions", "Positions of the map", 5, [3, 50]),
                 Parameter::number("map_turns", "Turns each way at a position", "", 4.0, [1.0, 100.0]),
                 ACCELERATION,
-                rate(250.0),
+                sample_rate(250.0),
             ]
         }
     }

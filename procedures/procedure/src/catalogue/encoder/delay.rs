@@ -3,7 +3,7 @@
 use super::say::{quantity, too_little};
 use super::solve::solve;
 use super::sweeps::sweeps;
-use super::{ACCELERATION, both_ways, counts, meta, rate};
+use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
@@ -41,7 +41,7 @@ impl Procedure for EncoderDelay {
                 Parameter::count("repeats", "Repeats", 2, [1, 20]),
                 Parameter::number("delay_without_filter_s", "Delay without filter, 0: unknown", "s", 0.0, [0.0, 1e-2]),
                 ACCELERATION,
-                rate(250.0),
+                sample_rate(250.0),
             ]
         }
     }

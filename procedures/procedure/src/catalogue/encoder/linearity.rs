@@ -4,7 +4,7 @@ use super::say::{histogram, quantity, scatter, too_little};
 use super::solve::solve;
 use super::sweeps::{Sweep, sweeps};
 use super::table::{Class, Table, Terms};
-use super::{ACCELERATION, both_ways, counts, meta, radial, rate, stage};
+use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
@@ -48,7 +48,7 @@ impl Procedure for EncoderLinearity {
                 Parameter::count("table_size", "Entries of the look-up table", 1024, [16, 16_384]),
                 Parameter::number("radial_shift_m", "Radial shift of the stage", "m", 0.0, [-5e-4, 5e-4]),
                 ACCELERATION,
-                rate(1000.0),
+                sample_rate(1000.0),
             ]
         }
     }

@@ -15,8 +15,7 @@ pub(super) use delay::EncoderDelay;
 pub(super) use linearity::EncoderLinearity;
 pub(super) use offset::EncoderOffset;
 
-use super::legs::Legs;
-use crate::parameter::Parameter;
+use super::legs::{ACCELERATION, Legs, sample_rate};
 use crate::place::Place;
 use crate::plan::{BenchFacts, PlanFault};
 use crate::profile::Profile;
@@ -26,13 +25,6 @@ use std::f64::consts::TAU;
 
 /// The velocity loop has settled after this.
 const SETTLE_S: f64 = 0.4;
-
-const ACCELERATION: Parameter =
-    Parameter::number("acceleration_rad_s2", "Acceleration", "rad/s²", 400.0, [10.0, 5000.0]);
-
-const fn rate(default_hz: f64) -> Parameter {
-    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", default_hz, [50.0, 1000.0])
-}
 
 /// Counts of a turn of reference and test encoder.
 fn counts(bench: &BenchFacts) -> Result<[f64; 2], PlanFault> {

@@ -3,7 +3,7 @@
 use super::say::{histogram, quantity, scatter, too_little};
 use super::solve::t95;
 use super::sweeps::{Sweep, sweeps};
-use super::{ACCELERATION, both_ways, counts, meta, rate};
+use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
@@ -40,7 +40,7 @@ impl Procedure for EncoderOffset {
                 Parameter::number("turns", "Turns each way", "", 2.0, [1.0, 100.0]),
                 Parameter::count("repeats", "Repeats", 4, [2, 50]),
                 ACCELERATION,
-                rate(250.0),
+                sample_rate(250.0),
             ]
         }
     }
