@@ -1,16 +1,21 @@
 //! Figures as people say them.
 
+/// Factor and prefix of a unit that keep the digits of `size` before the point.
+pub fn prefix(size: f64) -> (f64, &'static str) {
+    match size {
+        s if s == 0.0 || s >= 1.0 => (1.0, ""),
+        s if s >= 1e-3 => (1e3, "m"),
+        s if s >= 1e-6 => (1e6, "µ"),
+        _ => (1e9, "n"),
+    }
+}
+
 /// A value with its unit, three digits, and a prefix that keeps them before the point: `6.1 mNm`. A unit of `1` is not said.
 pub fn figure(value: f64, unit: &str) -> String {
     let unit = if unit == "1" { "" } else { unit };
     let size = value.abs();
     let prefixed = unit.starts_with("Nm") || unit.starts_with("rad") || unit == "N" || unit == "m";
-    let (factor, prefix) = match size {
-        s if !prefixed || s == 0.0 || s >= 1.0 => (1.0, ""),
-        s if s >= 1e-3 => (1e3, "m"),
-        s if s >= 1e-6 => (1e6, "µ"),
-        _ => (1e9, "n"),
-    };
+    let (factor, prefix) = if prefixed { prefix(size) } else { (1.0, "") };
     let scaled = value * factor;
     let digits = match scaled.abs() {
         s if s >= 100.0 => 0,

@@ -6,7 +6,7 @@ use super::exit::{Done, Exit};
 use super::identify;
 use super::progress::RunProgress;
 use super::require::{Kept, Requirement};
-use crate::view::{Bench, Identification, NewRun, Run, RunState};
+use crate::view::{Bench, Identification, NewRun, Run, RunState, word};
 use serde_json::{Map, Value};
 use std::time::Duration;
 
@@ -137,11 +137,6 @@ fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
 pub(super) fn is_over(state: RunState) -> bool {
     use RunState as S;
     matches!(state, S::Completed | S::Stopped | S::Aborted | S::Failed | S::Interrupted)
-}
-
-/// In the words of the API: `safe_verified`.
-fn word(value: impl serde::Serialize) -> String {
-    serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 pub(super) fn ending(run: &Run) -> String {

@@ -5,7 +5,7 @@
 mod figure;
 mod number;
 
-use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict};
+use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict, word};
 pub use figure::svg;
 use jointbench_model::words;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -52,9 +52,9 @@ impl Report {
         let summary = &self.run.summary;
         html! {
             p.quiet {
-                (summary.created_at) " · " (word(summary.state)) " · " (summary.rows) " samples"
+                (summary.created_at) " · " (word(summary.state).replace('_', " ")) " · " (summary.rows) " samples"
                 @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of the bench")) }
-                @if let Some(safe) = summary.safe { " · bench " (word(safe)) }
+                @if let Some(safe) = summary.safe { " · bench " (word(safe).replace('_', " ")) }
             }
             @if let Some(reason) = &summary.reason { p { (reason) } }
         }
@@ -208,10 +208,4 @@ fn plain(value: &Value) -> String {
         }
         other => other.to_string(),
     }
-}
-
-/// In the words of the API, without their underscores.
-fn word(value: impl serde::Serialize) -> String {
-    let text = serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned));
-    text.unwrap_or_default().replace('_', " ")
 }

@@ -1,22 +1,16 @@
 //! Figures for paper: as many digits as the interval carries.
 
-/// Factor and prefix that keep the digits of `size` before the point, where the unit takes a prefix.
-fn prefix(size: f64, unit: &str) -> (f64, &'static str) {
-    let takes = ["Nm", "N", "rad", "m", "A", "s", "V", "kg"].contains(&unit)
-        || unit.starts_with("Nm")
-        || unit.starts_with("rad");
-    match size {
-        s if !takes || unit == "kg" || s == 0.0 || s >= 1.0 => (1.0, ""),
-        s if s >= 1e-3 => (1e3, "m"),
-        s if s >= 1e-6 => (1e6, "µ"),
-        _ => (1e9, "n"),
-    }
+use jointbench_model::words;
+
+/// Whether a figure in this unit is said with a prefix.
+fn takes_prefix(unit: &str) -> bool {
+    ["N", "m", "A", "s", "V"].contains(&unit) || unit.starts_with("Nm") || unit.starts_with("rad")
 }
 
 /// `32.14 mNm` and `31.90 … 32.38`, in one unit and with two digits of the half-width.
 pub fn with_interval(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> (String, Option<String>) {
     let unit = if unit == "1" { "" } else { unit };
-    let (factor, prefix) = prefix(value.abs(), unit);
+    let (factor, prefix) = if takes_prefix(unit) { words::prefix(value.abs()) } else { (1.0, "") };
     let spread = ci95.map_or(value.abs() / 50.0, |[low, high]| (high - low) / 2.0) * factor;
     let text = |value: f64| digits(value * factor, spread);
     let shown = format!("{} {prefix}{unit}", text(value)).trim_end().to_owned();

@@ -27,3 +27,8 @@ pub use run::*;
 pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
+
+/// A state in the word that the API has for it: `safe_verified`.
+pub fn word(value: impl serde::Serialize) -> String {
+    serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
+}
