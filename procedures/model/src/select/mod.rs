@@ -1,6 +1,7 @@
 //! Which effect is missing.
 
 mod flips;
+mod forms;
 mod ground;
 mod library;
 mod rivals;

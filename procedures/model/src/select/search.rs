@@ -1,12 +1,13 @@
 //! From a model to the model that is left when nothing more can be named.
 
+use super::forms::{extend, reform};
 use super::ground::Ground;
-use super::library::{Candidate, Library};
-use super::rivals::{Bar, Rival, significance, step};
+use super::library::Library;
+use super::rivals::{Bar, Rival, step};
 use crate::Options;
 use crate::linear::{BlockGrams, dot};
 use crate::prepare::Problem;
-use crate::terms::{Term, Terms, polish};
+use crate::terms::{Term, Terms};
 
 pub enum Move<'p> {
     Added { rival: Box<Rival<'p>>, ties: Vec<&'p str> },
@@ -147,82 +148,6 @@ impl<'p> Iterator for Search<'_, 'p> {
         reform(&mut self.now, self.library);
         extend(&mut self.now, self.library, self.options);
         Some(Move::Added { rival: rival.into(), ties })
-    }
-}
-
-/// Gives an effect of several parts another one, as long as that explains more than any effect that is not in the model
-/// and passes the same tests.
-fn extend<'p>(terms: &mut Terms<'p>, library: &Library<'p>, options: &Options) {
-    for at in 0..terms.terms.len() {
-        while let Some(longer) = one_more(terms, at, library, options) {
-            terms.terms[at] = longer;
-            terms.refine();
-        }
-    }
-}
-
-/// The term with the part that explains most, where that is worth it.
-fn one_more<'p>(terms: &Terms<'p>, at: usize, library: &Library<'p>, options: &Options) -> Option<Term<'p>> {
-    let term = &terms.terms[at];
-    let (part, form) = term.effect.extended(&term.form)?;
-    let ground = Ground::of(terms);
-    let share = |c: &Candidate| ground.own(&c.columns).share;
-    let is_part = |c: &&Candidate| c.id() == term.id() && c.form.name == part && !term.shape.contains(&c.shape[0]);
-    let parts = library.candidates.iter().filter(is_part).map(|c| (share(c), c));
-    let (share_of_part, part) = parts.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let others = library.candidates.iter().filter(|c| !terms.contains(c.id()));
-    let enough = others.map(share).fold(options.practical_share, f64::max);
-    if share_of_part < enough || significance(&part.term(), library, &ground, options) > options.alpha {
-        return None;
-    }
-    let shape = term.shape.iter().chain(&part.shape).copied().collect();
-    let longer = Term::new(term.effect, form, shape, terms.problem);
-    let mut with = terms.clone();
-    with.terms[at] = longer.clone();
-    longer.allows(&with.linear().factors[at]).then_some(longer)
-}
-
-/// Another form must take this share off the squared error for each parameter that it has more.
-const BETTER_FORM: f64 = 0.01;
-
-/// Asks of every effect with several forms, or with an order that was found beside fewer effects, whether another one
-/// fits better beside the effects that came in since.
-fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
-    for i in 0..terms.terms.len() {
-        let mut others = terms.clone();
-        let term = others.terms.remove(i);
-        let same: Vec<_> = library.candidates.iter().filter(|c| c.id() == term.id()).collect();
-        let of_order = term.form.shape.len() == 1 && term.form.shape[0].search == crate::effect::Search::Whole;
-        let is_open = |form: &str| form != term.form.name || of_order;
-        if !same.iter().any(|c| is_open(c.form.name)) {
-            continue;
-        }
-        let basis = others.tangent();
-        let rest = basis.rest(&terms.response());
-        let ground = Ground::new(basis, rest, terms.problem);
-        let sse = |term: &Term<'p>| {
-            let mut one = [term.clone()];
-            let sse = polish(&mut one, &ground.basis, &ground.residual, terms.problem);
-            let [term] = one;
-            (sse, term)
-        };
-        let mut best = sse(&term);
-        let mut forms: Vec<&str> = same.iter().map(|c| c.form.name).filter(|f| is_open(f)).collect();
-        forms.dedup();
-        for form in forms {
-            let share = |c: &&&Candidate| ground.own(&c.columns).share;
-            let of_form = same.iter().filter(|c| c.form.name == form);
-            let Some(start) = of_form.max_by(|a, b| share(a).total_cmp(&share(b))) else { continue };
-            let trial = sse(&start.term());
-            let more = trial.1.size().saturating_sub(best.1.size()).max(1) as f64;
-            if trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
-                best = trial;
-            }
-        }
-        if best.1.form.name != term.form.name || of_order && best.1.shape != term.shape {
-            terms.terms[i] = best.1;
-            terms.refine();
-        }
     }
 }
 
