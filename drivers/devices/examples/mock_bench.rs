@@ -9,7 +9,7 @@ use std::io::Read;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut settings = MockSettings::new(Joint::JointA, 1);
+    let mut settings = MockSettings { transport: Transport::Terminal, ..MockSettings::new(Joint::JointA, 1) };
     for argument in std::env::args().skip(1) {
         match argument.as_str() {
             "joint_a" => settings.joint = Joint::JointA,

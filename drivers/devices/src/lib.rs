@@ -6,7 +6,8 @@
 //! a missed or garbled reply refuses further use until the instrument has been drained and identified again.
 //!
 //! The mock bench ([`sim`]) simulates instruments, not drivers: the firmware side of each protocol answers on
-//! pseudo-terminals that the drivers open like any serial port. Its truth never crosses the wire.
+//! pseudo-terminals or TCP ports that any program may open, or within the process, for a time-lapse. Its truth never
+//! crosses the wire.
 //!
 //! The traffic of any link can be written down ([`PortSettings::record`]) and replayed as an instrument ([`sim::Replay`]).
 

@@ -1,13 +1,14 @@
 //! What may be opened, and what may not.
 
-use jointbench_devices::sim::MockInstrument;
+use jointbench_devices::sim::{MockInstrument, Transport};
 use jointbench_devices::transport::{Address, ports, why_closed};
 use jointbench_devices::{Joint, MockBench, MockSettings, PortSettings, ScpiSettings, ScpiSource};
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_port_that_is_in_use_or_gone_says_so() {
-    let mock = MockBench::start(MockSettings::new(Joint::JointA, 1)).unwrap();
+    let settings = MockSettings { transport: Transport::Terminal, ..MockSettings::new(Joint::JointA, 1) };
+    let mock = MockBench::start(settings).unwrap();
     let Address::Serial(path) = mock.address(MockInstrument::Brake).unwrap() else { panic!("a terminal") };
     let why = why_closed(&path).expect("the simulator itself has it open");
     assert!(why.contains("in use by") && why.contains(&std::process::id().to_string()), "{why}");

@@ -6,7 +6,7 @@ use super::mistake::{Collector, Mistakes};
 use super::raw::{RawBench, RawFile, RawMock};
 use super::values::{choice, positive};
 use super::{BenchDescription, Source};
-use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, Supply};
+use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, Supply, Transport};
 use jointbench_devices::{Joint, MockSettings};
 
 pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
@@ -96,5 +96,7 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     let settings = MockSettings::new(joint?, raw.seed.unwrap_or(1));
     let load = load.unwrap_or(Some(settings.load))?;
     let (filter, supply, troubles) = (raw.filter, supply?, raw.troubles.clone());
-    Some(MockSettings { load, effects, pace, filter, supply, troubles, ..settings })
+    // A bench that keeps time is one that other programs may listen to; in a time-lapse they could not follow.
+    let transport = if pace.is_some() { Transport::Terminal } else { settings.transport };
+    Some(MockSettings { load, effects, pace, filter, supply, troubles, transport, ..settings })
 }

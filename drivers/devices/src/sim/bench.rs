@@ -6,7 +6,7 @@ use super::firmware::Odrive;
 use super::plant::{HIDDEN_EFFECTS, Hidden, Plant, Truth};
 #[cfg(unix)]
 use super::port::serve_terminal;
-use super::port::{Port, lock, serve_tcp};
+use super::port::{Port, lock, serve_inside, serve_tcp};
 use super::rig::{MockInstrument, Rig, Supply};
 use super::trouble::{PlannedTrouble, Trouble};
 use crate::driver::{
@@ -27,6 +27,8 @@ const DEADLINE_MS: u64 = 3000;
 /// What the instruments' wires are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Transport {
+    /// Within this process, for whoever holds the bench: fast, and nobody else can listen.
+    Inside,
     /// Pseudo-terminals; loopback TCP on systems that have none.
     Terminal,
     Tcp,
@@ -67,7 +69,7 @@ impl MockSettings {
             filter: false,
             effects: Vec::new(),
             pace: None,
-            transport: Transport::Terminal,
+            transport: Transport::Inside,
             deadline_ms: DEADLINE_MS,
             troubles: Vec::new(),
             others,
@@ -150,12 +152,13 @@ impl MockBench {
             }
             let rig = Arc::clone(&bench.rig);
             let (port, thread) = match bench.settings.transport {
+                Transport::Inside => (serve_inside(instrument, rig), None),
                 #[cfg(unix)]
                 Transport::Terminal => serve_terminal(instrument, rig)?,
                 _ => serve_tcp(instrument, rig)?,
             };
             bench.ports.push((instrument, port));
-            bench.threads.push(thread);
+            bench.threads.extend(thread);
         }
         Ok(bench)
     }

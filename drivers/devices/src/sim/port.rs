@@ -1,12 +1,13 @@
-//! One instrument's connector: a thread that carries bytes between a wire and the rig, and can be made to misbehave.
+//! One instrument's connector: it carries bytes between a wire and the rig, and can be made to misbehave. A port of the
+//! system has a thread for that.
 
 #[cfg(unix)]
 use super::pty::Pty;
 use super::rig::{MockInstrument, Rig};
 use super::trouble::{Cable, Trouble};
 use super::wire::{Wire, plain};
-use crate::transport::Address;
-use std::io;
+use crate::transport::{Address, Cord, Inside, Socket};
+use std::io::{self, ErrorKind};
 use std::net::TcpListener;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -21,7 +22,7 @@ const GLANCE_STREAMING: Duration = Duration::from_micros(200);
 pub struct Port {
     instrument: MockInstrument,
     address: Mutex<Address>,
-    closing: AtomicBool,
+    closing: Arc<AtomicBool>,
 }
 
 pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -48,12 +49,15 @@ impl Port {
 
 /// Opens a connector and starts its thread.
 #[cfg(unix)]
-pub fn serve_terminal(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result<(Arc<Port>, JoinHandle<()>)> {
+pub fn serve_terminal(
+    instrument: MockInstrument,
+    rig: Arc<Mutex<Rig>>,
+) -> io::Result<(Arc<Port>, Option<JoinHandle<()>>)> {
     let pty = Pty::open()?;
     let port = Arc::new(Port {
         instrument,
         address: Mutex::new(Address::Serial(pty.path().to_owned())),
-        closing: AtomicBool::new(false),
+        closing: Arc::default(),
     });
     let shared = Arc::clone(&port);
     let thread = std::thread::Builder::new().name(format!("mock {}", instrument.label())).spawn(move || {
@@ -78,17 +82,17 @@ pub fn serve_terminal(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::R
             }
         }
     })?;
-    Ok((port, thread))
+    Ok((port, Some(thread)))
 }
 
 /// Listens on a free port of the loopback interface; every client talks to the same instrument.
-pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result<(Arc<Port>, JoinHandle<()>)> {
+pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result<(Arc<Port>, Option<JoinHandle<()>>)> {
     let listener = TcpListener::bind(("127.0.0.1", 0))?;
     listener.set_nonblocking(true)?;
     let port = Arc::new(Port {
         instrument,
         address: Mutex::new(Address::Tcp(listener.local_addr()?.to_string())),
-        closing: AtomicBool::new(false),
+        closing: Arc::default(),
     });
     let shared = Arc::clone(&port);
     let thread = std::thread::Builder::new().name(format!("mock {}", instrument.label())).spawn(move || {
@@ -106,43 +110,104 @@ pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result
             }
         });
     })?;
-    Ok((port, thread))
+    Ok((port, Some(thread)))
+}
+
+/// Needs no thread: the instrument is asked when its bytes are.
+pub fn serve_inside(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> Arc<Port> {
+    let closing = Arc::new(AtomicBool::new(false));
+    let connector = Connector { instrument, closing: Arc::clone(&closing), rig };
+    Arc::new(Port { instrument, address: Mutex::new(Address::Inside(Inside(Arc::new(connector)))), closing })
+}
+
+/// A connector without a port: whoever is in this process plugs a cord in.
+#[derive(Clone)]
+struct Connector {
+    instrument: MockInstrument,
+    closing: Arc<AtomicBool>,
+    rig: Arc<Mutex<Rig>>,
+}
+
+impl Socket for Connector {
+    fn name(&self) -> &str {
+        self.instrument.label()
+    }
+
+    fn plug(&self) -> io::Result<Box<dyn Cord>> {
+        let mut cord = Plugged { connector: self.clone(), talk: Talk::default() };
+        cord.write(&[])?;
+        Ok(Box::new(cord))
+    }
+}
+
+struct Plugged {
+    connector: Connector,
+    talk: Talk,
+}
+
+impl Cord for Plugged {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let Connector { instrument, closing, rig } = &self.connector;
+        if closing.load(Ordering::Acquire) {
+            return Err(ErrorKind::BrokenPipe.into());
+        }
+        self.talk.exchange(*instrument, &mut lock(rig), bytes)
+    }
+
+    fn read(&mut self, received: &mut Vec<u8>) -> io::Result<()> {
+        self.write(&[])?;
+        received.append(&mut self.talk.output);
+        Ok(())
+    }
 }
 
 /// Carries bytes until the wire breaks, is pulled, or the bench closes.
 fn converse(port: &Port, rig: &Mutex<Rig>, wire: &mut impl Wire) {
     let instrument = port.instrument;
-    let (mut input, mut output, mut chunk) = (Vec::new(), Vec::new(), [0; 1024]);
-    let mut cable = Cable::default();
-    let mut wait = GLANCE;
-    while !port.is_closing() && !port.is_unplugged(rig) {
-        let count = match wire.hear(&mut chunk, wait) {
-            Ok(count) => count,
-            Err(error) => {
-                tracing::debug!(%error, instrument = instrument.label(), "client left");
-                return;
-            }
-        };
-        input.extend_from_slice(&chunk[..count]);
-        let trouble = {
-            let mut rig = lock(rig);
-            if count > 0 {
-                rig.receive(instrument, &mut input, &mut output);
-            }
-            rig.unasked(instrument, &mut output);
-            wait = if rig.is_streaming(instrument) { GLANCE_STREAMING } else { GLANCE };
-            rig.trouble(instrument)
-        };
-        if trouble == Trouble::Unplugged {
+    let mut talk = Talk::default();
+    while !port.is_closing() {
+        if let Err(error) = talk.carry(instrument, rig, wire) {
+            tracing::debug!(%error, instrument = instrument.label(), "client left");
             return;
         }
-        cable.carry(trouble, &mut output);
-        if !output.is_empty() {
-            if let Err(error) = wire.say(&output) {
-                tracing::debug!(%error, instrument = instrument.label(), "client left");
-                return;
-            }
-            output.clear();
+    }
+}
+
+/// One conversation with an instrument: what it has not understood yet, and what it says.
+#[derive(Default)]
+struct Talk {
+    input: Vec<u8>,
+    said: Vec<u8>,
+    output: Vec<u8>,
+    cable: Cable,
+}
+
+impl Talk {
+    fn carry(&mut self, instrument: MockInstrument, rig: &Mutex<Rig>, wire: &mut impl Wire) -> io::Result<()> {
+        let mut chunk = [0; 1024];
+        let wait = if lock(rig).is_streaming(instrument) { GLANCE_STREAMING } else { GLANCE };
+        let count = wire.hear(&mut chunk, wait)?;
+        self.exchange(instrument, &mut lock(rig), &chunk[..count])?;
+        if !self.output.is_empty() {
+            wire.say(&self.output)?;
+            self.output.clear();
         }
+        Ok(())
+    }
+
+    /// Hands `heard` over and takes what the instrument says, as the cable carries it.
+    fn exchange(&mut self, instrument: MockInstrument, rig: &mut Rig, heard: &[u8]) -> io::Result<()> {
+        let trouble = rig.trouble(instrument);
+        if trouble == Trouble::Unplugged {
+            return Err(ErrorKind::NotConnected.into());
+        }
+        self.input.extend_from_slice(heard);
+        if !heard.is_empty() {
+            rig.receive(instrument, &mut self.input, &mut self.said);
+        }
+        rig.unasked(instrument, &mut self.said);
+        self.cable.carry(trouble, &mut self.said);
+        self.output.append(&mut self.said);
+        Ok(())
     }
 }

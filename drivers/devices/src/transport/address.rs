@@ -1,5 +1,6 @@
 //! Where an instrument is wired.
 
+use super::Inside;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::fmt;
@@ -8,12 +9,14 @@ use std::str::FromStr;
 
 /// `tcp://host:port`, `usb://` and the serial number of a USB device wherever it is plugged in, or the name of a serial port
 /// (`/dev/ttyUSB0`, `COM3`, the path of a pseudo-terminal).
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum Address {
     Serial(String),
     Usb(String),
     Tcp(String),
+    /// No text names it: only who simulates the instrument can give it away.
+    Inside(Inside),
 }
 
 impl From<&str> for Address {
@@ -54,6 +57,7 @@ impl fmt::Display for Address {
             Address::Serial(path) => f.write_str(path),
             Address::Usb(serial_number) => write!(f, "usb://{serial_number}"),
             Address::Tcp(host) => write!(f, "tcp://{host}"),
+            Address::Inside(inside) => write!(f, "mock:{}", inside.0.name()),
         }
     }
 }

@@ -1,5 +1,6 @@
-//! One open port: a serial port held exclusively, or a TCP stream. Reads come in chunks; nothing blocks past its deadline.
+//! One open port: a serial port held exclusively, a TCP stream, or an instrument in this process. Reads come in chunks; nothing blocks past its deadline.
 
+use super::inside::Plugged;
 use super::ports::path_of;
 use super::{Address, PortSettings};
 use jointbench_instrument::FaultKind;
@@ -17,14 +18,19 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(2);
 pub enum Wire {
     Serial(NativePort),
     Tcp(TcpStream),
+    Inside(Plugged),
 }
+
+/// How often an instrument in this process is looked at while its reply is waited for: another thread may move its time.
+const GLANCE: Duration = Duration::from_micros(200);
 
 impl Wire {
     pub fn open(settings: &PortSettings) -> Result<Self, FaultKind> {
         match &settings.address {
             Address::Serial(path) => open_serial(path, settings.baud),
             Address::Usb(serial_number) => open_serial(&path_of(serial_number)?, settings.baud),
-            Address::Tcp(host) => open_tcp(host).map_err(|e| FaultKind::NotOpened { what: e.to_string() }),
+            Address::Tcp(host) => open_tcp(host).map_err(not_opened),
+            Address::Inside(inside) => Plugged::new(inside).map(Wire::Inside).map_err(not_opened),
         }
     }
 
@@ -57,7 +63,11 @@ impl Wire {
             match self.set_timeout(left).and_then(|()| self.io().read(buffer)) {
                 Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
                 Ok(count) => return Ok(count),
-                Err(error) if is_wait_over(&error) => {}
+                Err(error) if is_wait_over(&error) => {
+                    if let Wire::Inside(_) = self {
+                        std::thread::sleep(GLANCE.min(left));
+                    }
+                }
                 Err(error) => return Err(error),
             }
         }
@@ -77,6 +87,7 @@ impl Wire {
                     result => result.map(|_| true),
                 }
             }
+            Wire::Inside(plugged) => plugged.has_input(),
         }
     }
 
@@ -84,6 +95,7 @@ impl Wire {
         match self {
             Wire::Serial(port) => port,
             Wire::Tcp(stream) => stream,
+            Wire::Inside(plugged) => plugged,
         }
     }
 
@@ -94,6 +106,7 @@ impl Wire {
                 stream.set_read_timeout(Some(timeout))?;
                 stream.set_write_timeout(Some(timeout))
             }
+            Wire::Inside(_) => Ok(()),
         }
     }
 }
@@ -115,6 +128,10 @@ impl Drop for Wire {
 
 fn is_wait_over(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}
+
+fn not_opened(error: io::Error) -> FaultKind {
+    FaultKind::NotOpened { what: error.to_string() }
 }
 
 fn open_serial(path: &str, baud: u32) -> Result<Wire, FaultKind> {

@@ -25,7 +25,7 @@ fn check_passing(trouble: Trouble, expected: fn(&FaultKind) -> bool) {
     };
     // Side by side: nearly all of it is waiting for deadlines.
     std::thread::scope(|scope| {
-        for transport in [Transport::Terminal, Transport::Tcp] {
+        for transport in [Transport::Terminal, Transport::Tcp, Transport::Inside] {
             for instrument in MockInstrument::JOINT_BENCH {
                 scope.spawn(move || check(transport, instrument));
             }
@@ -55,7 +55,7 @@ fn the_reply_to_an_earlier_question_answers_no_later_one() {
 
 #[test]
 fn a_second_copy_of_a_reply_is_nobodys() {
-    for transport in [Transport::Terminal, Transport::Tcp] {
+    for transport in [Transport::Terminal, Transport::Tcp, Transport::Inside] {
         let (mock, mut bench) = start(transport);
         for instrument in MockInstrument::JOINT_BENCH {
             mock.trouble(instrument, Trouble::Doubled);
@@ -86,7 +86,7 @@ fn a_late_reply_answers_no_later_question() {
 
 #[test]
 fn a_pulled_cable_is_a_lost_port() {
-    for transport in [Transport::Terminal, Transport::Tcp] {
+    for transport in [Transport::Terminal, Transport::Tcp, Transport::Inside] {
         let (mock, mut bench) = start(transport);
         for instrument in MockInstrument::JOINT_BENCH {
             mock.trouble(instrument, Trouble::Unplugged);
@@ -138,12 +138,12 @@ fn another_instrument_behind_the_port_is_named() {
         thermistor: None,
     };
     let Err(fault) = OdriveJoint::open(joint, mock.clock()) else { panic!("a supply passed for a drive") };
-    assert!(fault.to_string().starts_with("joint on /dev/"), "{fault}");
+    assert!(fault.to_string().starts_with("joint on mock:"), "{fault}");
     let port = PortSettings::new(mock.address(MockInstrument::Joint).unwrap(), 115_200);
     let Err(fault) = ScpiSource::open(ScpiSettings { name: "brake_a".into(), port, deadline_ms }) else {
         panic!("a drive passed for a supply")
     };
-    assert!(fault.to_string().starts_with("brake_a on /dev/"), "{fault}");
+    assert!(fault.to_string().starts_with("brake_a on mock:"), "{fault}");
 }
 
 #[test]

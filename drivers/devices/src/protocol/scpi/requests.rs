@@ -20,7 +20,7 @@ pub enum Terminator {
 impl Terminator {
     pub fn for_address(address: &Address) -> Self {
         match address {
-            Address::Serial(_) | Address::Usb(_) => Terminator::CrLf,
+            Address::Serial(_) | Address::Usb(_) | Address::Inside(_) => Terminator::CrLf,
             Address::Tcp(_) => Terminator::Lf,
         }
     }

@@ -10,7 +10,7 @@ const BRISTLE_DAMPING: f64 = 0.4;
 pub struct Friction {
     pub coulomb_nm: f64,
     pub viscous_nm_s: f64,
-    stiffness_nm_rad: f64,
+    pub stiffness_nm_rad: f64,
     damping_nm_s: f64,
     deflection_rad: f64,
 }

@@ -40,6 +40,8 @@ pub struct Truth {
     pub coulomb_nm: f64,
     /// Motor side.
     pub viscous_nm_s: f64,
+    /// Motor side: of the contacts before they slide.
+    pub bristle_nm_rad: f64,
     /// Motor side: the rotor and what the link carries on the joint's side of the torque sensor.
     pub inertia_kg_m2: f64,
     /// Link side.

@@ -218,6 +218,7 @@ impl Plant {
             hidden: self.hidden.described(),
             coulomb_nm: self.friction.coulomb_nm,
             viscous_nm_s: self.friction.viscous_nm_s,
+            bristle_nm_rad: self.friction.stiffness_nm_rad,
             inertia_kg_m2: self.sheet.rotor_inertia_kg_m2 + reflected_kg_m2,
             stiffness_nm_rad: self.sheet.stiffness_nm_rad,
             directional_offset_rad: self.sheet.lost_rad + self.sheet.soft_rad,
