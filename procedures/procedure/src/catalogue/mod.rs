@@ -12,6 +12,7 @@ mod friction_load;
 mod friction_temperature;
 mod identify_joint;
 mod legs;
+mod presliding;
 mod stiffness;
 mod strokes;
 mod torque_sensor_zero;
@@ -59,6 +60,7 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &torque_sensor_zero::TorqueSensorZero,
         &stiffness::Stiffness,
         &breakaway::Breakaway,
+        &presliding::Presliding,
         &compensation::Compensation,
         &strokes::Strokes,
         &warm_up::WarmUp,

@@ -1,13 +1,16 @@
-//! What identifications share: parts of a run, means of its settled stretches, straight lines, parameters as quantities.
+//! What identifications share: parts of a run, means of its settled stretches, straight lines, small least squares,
+//! parameters as quantities.
 
 mod holds;
 mod line;
 mod part;
 mod plateaus;
 mod say;
+mod solve;
 
 pub(crate) use holds::{Hold, holds};
 pub(crate) use line::{Line, Mean};
 pub(crate) use part::{Leg, keep, keep_rows, legs};
 pub(crate) use plateaus::{Plateau, plateaus};
 pub(crate) use say::{Unusable, combined, curve, interval_of, parameter, quantity, scatter, verdict};
+pub(crate) use solve::{solve, t95};

@@ -51,6 +51,32 @@ fn a_joint_breaks_away_where_its_friction_at_rest_lies() {
 }
 
 #[test]
+fn presliding_finds_the_stiffness_of_the_contacts_from_a_few_counts() {
+    let (mock, found) = found(MockSettings::new(Joint::JointA, 1), "presliding", json!({}));
+    assert_eq!(found.verdict, Verdict::Identified, "{found:?}");
+    let truth = mock.truth();
+    for (name, truth, share) in [("sigma_0", truth.bristle_nm_rad, 0.03), ("tau_c", truth.coulomb_nm, 0.01)] {
+        let quantity = found.quantity(name).unwrap();
+        assert!((quantity.value / truth - 1.0).abs() < share, "{name}: {} for {truth}", quantity.value);
+    }
+    let elements = |what: &str| -> Vec<f64> {
+        let value = |n: u32| found.quantity(&format!("element_{n}_{what}")).unwrap().value;
+        (1..=4).map(value).collect()
+    };
+    let (stiffness, slips_nm): (f64, f64) = (elements("stiffness").iter().sum(), elements("slip").iter().sum());
+    assert!(stiffness < truth.bristle_nm_rad && stiffness > 0.5 * truth.bristle_nm_rad, "{stiffness}");
+    assert!((slips_nm / truth.coulomb_nm - 0.98).abs() < 0.02, "{slips_nm}");
+}
+
+#[test]
+fn a_joint_that_breaks_away_in_the_swings_decides_nothing() {
+    let given = json!({"top_torque_nm": 0.045, "repeats": 2, "amplitudes": 2, "swings": 1});
+    let (_, found) = found(MockSettings::new(Joint::JointA, 1), "presliding", given);
+    assert_ne!(found.verdict, Verdict::Identified, "{found:?}");
+    assert!(found.advice.as_ref().is_some_and(|advice| advice.contains("lower top_torque_nm")), "{found:?}");
+}
+
+#[test]
 fn stiffness_takes_the_bearing_off() {
     let given = json!({"load_levels": 4, "repeats": 2, "dwell_s": 0.8, "bearing_stiffness_nm_rad": 155e3,
         "sample_rate_hz": 100.0});

@@ -2,11 +2,11 @@
 
 use super::edges::{Found, WAYS, Way, found};
 use super::say::{quantity, too_little};
-use super::solve::solve;
 use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::{Edge, Place};

@@ -1,11 +1,11 @@
 //! How late the encoder under test tells: its disparity over the speed (eq. 4.4 and 4.5, tables 4.2 and 4.3 of the thesis).
 
 use super::say::{quantity, too_little};
-use super::solve::solve;
 use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;

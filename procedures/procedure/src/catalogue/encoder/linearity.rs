@@ -1,12 +1,12 @@
 //! The shape of the error over the turn, the look-up table against it, and what precision is left (figs 4.4 to 4.11).
 
 use super::say::{histogram, quantity, scatter, too_little};
-use super::solve::solve;
 use super::sweeps::{Sweep, sweeps};
 use super::table::{Class, Table, Terms};
 use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;

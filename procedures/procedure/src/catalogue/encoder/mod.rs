@@ -6,7 +6,6 @@ mod edges;
 mod linearity;
 mod offset;
 mod say;
-mod solve;
 mod sweeps;
 mod table;
 

@@ -1,11 +1,11 @@
 //! How the zero of the encoder under test lies to that of the reference (eq. 4.1 to 4.3 of the thesis).
 
 use super::say::{histogram, quantity, scatter, too_little};
-use super::solve::t95;
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
 use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::findings::t95;
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;

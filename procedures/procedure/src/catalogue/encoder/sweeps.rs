@@ -1,8 +1,8 @@
 //! The parts of a run in which the shaft turned evenly, as differences of both encoders over the angle.
 
 use super::SETTLE_S;
-use super::solve::solve;
 use crate::encoder_columns::POSE;
+use crate::findings::solve;
 use jointbench_instrument::RunTable;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;

@@ -1,7 +1,7 @@
 //! The look-up table over the turn, and what is left of an error where it is averaged over the reference's own steps.
 
-use super::solve::solve;
 use super::sweeps::Sweep;
+use crate::findings::solve;
 use crate::identification::{Mark, Series};
 use std::f64::consts::TAU;
 

@@ -1,0 +1,104 @@
+//! Friction before it slides: the motor current swings to and fro below breakaway, at several amplitudes.
+//!
+//! Every swing begins after a stroke that ends in the same direction and a rest without torque, so that the contacts
+//! start from the same state. The torque is commanded and the motor's encoder tells the way: a joint moves by a few counts
+//! of it only, so the moments count at which a reading changes.
+
+use super::Procedure;
+use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate};
+use crate::findings::verdict;
+use crate::identification::Identification;
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Drive, Plan, PlanFault, Until};
+use crate::profile::Profile;
+use jointbench_instrument::{Kind, RunTable};
+
+mod identify;
+mod loops;
+
+pub(super) struct Presliding;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::number("top_torque_nm", "Largest swing, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
+    Parameter::count("amplitudes", "Amplitudes, evenly spaced up to the largest swing", 4, [2, 20]),
+    Parameter::count("swings", "Swings at each of them", 3, [1, 50]),
+    Parameter::number("period_s", "Time of a swing", "s", 8.0, [0.2, 600.0]),
+    Parameter::count("repeats", "Repeats of the whole profile, each at other places", 4, [2, 50]),
+    ACCELERATION,
+    sample_rate(250.0),
+];
+
+/// The stroke before a swing (motor), far enough to renew every contact.
+const STROKE_RAD: f64 = 1.3;
+const STROKE_RAD_S: f64 = 10.0;
+const FURTHER: f64 = 1e-3;
+/// After the stroke the joint rests without torque for so long.
+const REST_S: f64 = 0.4;
+/// A joint that breaks away is caught when it has gone on for so many samples, or at this speed (motor).
+const UNTIL: Until = Until { increases: 50, speed_rad_s: 10.0 };
+
+impl Procedure for Presliding {
+    fn id(&self) -> &'static str {
+        "presliding"
+    }
+
+    fn title(&self) -> &'static str {
+        "Presliding"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Swings the motor current to and fro below breakaway at several amplitudes. The loops show how stiff the contacts are before they slide."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Friction
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let rate_hz = values.number("sample_rate_hz");
+        let top_a = values.number("top_torque_nm") / bench.constants.torque_constant_nm_per_a;
+        let quarter_s = 0.25 * values.number("period_s");
+        let amplitudes = values.count("amplitudes");
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        let dwell_s = STROKE_RAD / STROKE_RAD_S;
+        for repeat in 0..values.count("repeats") {
+            legs.repeat = repeat;
+            for amplitude in 1..=amplitudes {
+                let share = f64::from(amplitude) / f64::from(amplitudes);
+                let mut current_a = Profile::from(0.0).hold(REST_S);
+                for _ in 0..values.count("swings") {
+                    current_a =
+                        current_a.to(share * top_a, quarter_s).to(-share * top_a, 2.0 * quarter_s).to(0.0, quarter_s);
+                }
+                // Out and back, and a little further each time: swings all at one place would see one part of a count only.
+                let further = 1.0 + FURTHER * f64::from(repeat * amplitudes + amplitude);
+                let out = Profile::plateau(-STROKE_RAD_S, legs.acceleration_rad_s2, dwell_s);
+                let back = Profile::plateau(STROKE_RAD_S, legs.acceleration_rad_s2, dwell_s * further);
+                legs.push("stroke".into(), out, Profile::constant(0.0));
+                let from_s = back.duration_s() + REST_S;
+                legs.push(format!("swings of {:.0} % of top torque", 100.0 * share), back, Profile::constant(0.0));
+                legs.drive_of_last(Drive::Current { from_s, current_a, until: UNTIL });
+            }
+        }
+        // The last of them is held before the run ends.
+        legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: friction_meta(bench, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify::identify(values, run))
+    }
+}

@@ -1,0 +1,251 @@
+//! Dahl's parameters by least squares of the motor's way, and what follows from them for LuGre and for Maxwell slip.
+
+use super::loops::{Swings, dahl, swings};
+use crate::findings::{Unusable, curve, quantity, scatter, solve, t95};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use crate::parameter::Values;
+use jointbench_instrument::RunTable;
+use jointbench_model::words;
+
+const ROUNDS: usize = 30;
+/// Elements of the Maxwell-slip polygon.
+const ELEMENTS: usize = 4;
+/// The polygon ends where the contacts hold this share of the Coulomb torque.
+const POLYGON_END: f64 = 0.98;
+/// An interval wider than this, either way, decides nothing.
+const WIDEST: f64 = 0.25;
+
+/// Compliance [rad/Nm], Coulomb torque [Nm] and the torque that something else holds [Nm].
+#[derive(Debug, Clone, Copy)]
+struct Dahl {
+    compliance: f64,
+    coulomb_nm: f64,
+    bias_nm: f64,
+}
+
+impl Dahl {
+    fn stiffness(self) -> f64 {
+        1.0 / self.compliance
+    }
+
+    /// τ_c/k: the way at which a straight spring would reach the Coulomb torque.
+    fn reach_rad(self) -> f64 {
+        self.compliance * self.coulomb_nm
+    }
+
+    fn shifted(self, by: [f64; 3], share: f64, top_nm: f64) -> Self {
+        Self {
+            compliance: (self.compliance + share * by[0]).max(0.1 * self.compliance),
+            // Contacts that carried the largest swing hold more than it.
+            coulomb_nm: (self.coulomb_nm + share * by[1]).max(1.001 * (top_nm + self.bias_nm.abs())),
+            bias_nm: (self.bias_nm + share * by[2]).clamp(-0.2 * top_nm, 0.2 * top_nm),
+        }
+    }
+}
+
+pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
+    let torque_constant = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
+    let Some(all) = swings(run, torque_constant) else {
+        return Err(Unusable::TooLittle("the run holds no motor current set-point: it is of another procedure"));
+    };
+    let broke_away = all.iter().filter(|swings| swings.broke_away).count();
+    let held: Vec<&Swings> = all.iter().filter(|swings| !swings.broke_away).collect();
+    let Some(dahl) = fit(&held) else {
+        return Err(Unusable::TooLittle(if broke_away > 0 {
+            "the joint broke away in the swings: lower top_torque_nm"
+        } else {
+            "the motor's encoder hardly moved: raise top_torque_nm towards breakaway, or repeats"
+        }));
+    };
+    // Each step in turn is left out: what one step says is of one place and one start.
+    let without = |left_out: usize| fit(&others(&held, left_out));
+    let jackknife: Vec<Dahl> = (0..held.len()).filter_map(without).collect();
+    let interval = |figure: fn(Dahl) -> f64| spread(&jackknife, figure).map(|reach| around(figure(dahl), reach));
+    let points: usize = held.iter().map(|swings| swings.points.len()).sum();
+    let wide = |ci95: Option<[f64; 2]>, value: f64| ci95.is_none_or(|[low, high]| high - low > 2.0 * WIDEST * value);
+    let (k, coulomb, reach) = (interval(Dahl::stiffness), interval(|d| d.coulomb_nm), interval(Dahl::reach_rad));
+    let decided = !wide(k, dahl.stiffness()) && !wide(coulomb, dahl.coulomb_nm) && broke_away == 0;
+    let mut quantities = vec![
+        quantity(
+            ["sigma_0", "σ₀", "Stiffness of the contacts before sliding (Dahl, LuGre)", "Nm/rad"],
+            dahl.stiffness(),
+            k,
+        ),
+        quantity(["tau_c", "τ_c", "Torque at which the contacts slide", "Nm"], dahl.coulomb_nm, coulomb),
+        quantity(["reach", "τ_c/σ₀", "Presliding way", "rad"], dahl.reach_rad(), reach),
+        quantity(["bias", "τ₀", "Torque that something else holds", "Nm"], dahl.bias_nm, interval(|d| d.bias_nm)),
+    ];
+    for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
+        let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
+        let named = |what: &str, symbol: &str, text: &str, unit: &str, value| {
+            let words = [&format!("element_{n}_{what}"), &format!("{symbol}{n}"), &format!("{title}: {text}"), unit];
+            quantity(words.map(|word: &str| word), value, None)
+        };
+        quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", stiffness));
+        quantities.push(named("slip", "w", "torque at which it slips", "Nm", slips_nm));
+    }
+    Ok(Identification {
+        verdict: if decided { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!(
+            "Before it slides the joint gives way like a spring of {} (motor) and would slide at {}: {} of presliding, from {points} points.",
+            words::figure(dahl.stiffness(), "Nm/rad"),
+            words::figure(dahl.coulomb_nm, "Nm"),
+            words::figure(dahl.reach_rad(), "rad"),
+        ),
+        advice: (!decided).then(|| {
+            let top_nm = words::figure(values.number("top_torque_nm"), "Nm");
+            match broke_away {
+                0 => "The loops are too small to decide: raise repeats, or top_torque_nm towards breakaway.".into(),
+                _ => format!("In {broke_away} steps the joint broke away below {top_nm}: lower top_torque_nm."),
+            }
+        }),
+        quantities,
+        figures: vec![loops(&held, dahl), first_loading(dahl)],
+    })
+}
+
+fn others<'s>(held: &[&'s Swings], left_out: usize) -> Vec<&'s Swings> {
+    held.iter().enumerate().filter(|(i, _)| *i != left_out).map(|(_, swings)| *swings).collect()
+}
+
+fn around(value: f64, reach: f64) -> [f64; 2] {
+    [value - reach, value + reach]
+}
+
+/// Half the width of a 95 % interval, by the jackknife.
+fn spread(jackknife: &[Dahl], figure: fn(Dahl) -> f64) -> Option<f64> {
+    let n = jackknife.len() as f64;
+    let mean = jackknife.iter().map(|d| figure(*d)).sum::<f64>() / n;
+    let variance = (n - 1.0) / n * jackknife.iter().map(|d| (figure(*d) - mean).powi(2)).sum::<f64>();
+    (jackknife.len() > 2).then(|| t95(n - 1.0) * variance.sqrt())
+}
+
+/// Gauss–Newton with halved steps; each step's own zero is taken off.
+fn fit(all: &[&Swings]) -> Option<Dahl> {
+    let top_nm = all.iter().flat_map(|s| &s.torque_nm).fold(0.0, |top: f64, nm| top.max(nm.abs()));
+    let ways: f64 = all.iter().filter_map(|s| width(s)).fold(0.0, f64::max);
+    if top_nm == 0.0 || ways == 0.0 {
+        return None;
+    }
+    let mut at = Dahl { compliance: 0.2 * ways / top_nm, coulomb_nm: 1.1 * top_nm, bias_nm: 0.0 };
+    let (mut left, mut error) = residuals(all, at);
+    for _ in 0..ROUNDS {
+        let sizes = [at.compliance, at.coulomb_nm, top_nm].map(|size| 1e-5 * size);
+        let slopes = [0, 1, 2].map(|i| {
+            let mut by = [0.0; 3];
+            by[i] = sizes[i];
+            residuals(all, at.shifted(by, 1.0, top_nm)).0
+        });
+        // In shares of each parameter's size: they differ by orders of magnitude.
+        let rows: Vec<[f64; 3]> =
+            (0..left.len()).map(|row| [0, 1, 2].map(|i| (left[row] - slopes[i][row]) / 1e-5)).collect();
+        let step = solve(&rows, &left)?.values;
+        let step = [0, 1, 2].map(|i| step[i] * sizes[i] / 1e-5);
+        let tried = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.015_625].into_iter().find_map(|share| {
+            let next = at.shifted(step, share, top_nm);
+            let (left, next_error) = residuals(all, next);
+            (next_error < error).then_some((next, left, next_error))
+        });
+        let Some((next, next_left, next_error)) = tried else { break };
+        let done = next_error > (1.0 - 1e-9) * error;
+        (at, left, error) = (next, next_left, next_error);
+        if done {
+            break;
+        }
+    }
+    Some(at)
+}
+
+fn width(swings: &Swings) -> Option<f64> {
+    let (low, high) =
+        swings.points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (_, q)| (q.min(l), q.max(h)));
+    (high > low).then_some(high - low)
+}
+
+/// Way measured less way of the model, without each step's mean, and the sum of the squares.
+fn residuals(all: &[&Swings], at: Dahl) -> (Vec<f64>, f64) {
+    let mut left = Vec::new();
+    for swings in all {
+        let (errors, mean) = errors(swings, at);
+        left.extend(errors.iter().map(|error| error - mean));
+    }
+    let error = left.iter().map(|e| e * e).sum();
+    (left, error)
+}
+
+/// Way measured less way of the model at every point, and their mean.
+fn errors(swings: &Swings, at: Dahl) -> (Vec<f64>, f64) {
+    let way = dahl(&swings.torque_nm, at.coulomb_nm, at.bias_nm);
+    let errors: Vec<f64> = swings.points.iter().map(|(row, q)| q - at.compliance * way[*row]).collect();
+    let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
+    (errors, mean)
+}
+
+/// Elements side by side whose first loading is a polygon on Dahl's: stiffness [Nm/rad] and torque of slip [Nm] of each.
+fn maxwell(at: Dahl) -> Vec<(f64, f64)> {
+    let loading = |way_rad: f64| first(at, way_rad);
+    let end_rad = -at.reach_rad() * (1.0 - POLYGON_END).ln();
+    // Corners closer together where the curve bends more.
+    let corner = |i: usize| end_rad * (i as f64 / ELEMENTS as f64).powf(1.5);
+    let slope = |i: usize| (loading(corner(i + 1)) - loading(corner(i))) / (corner(i + 1) - corner(i));
+    let slopes: Vec<f64> = (0..ELEMENTS).map(slope).chain([0.0]).collect();
+    (0..ELEMENTS)
+        .map(|i| {
+            let stiffness = slopes[i] - slopes[i + 1];
+            (stiffness, stiffness * corner(i + 1))
+        })
+        .collect()
+}
+
+/// Torque of contacts that are bent for the first time.
+fn first(at: Dahl, way_rad: f64) -> f64 {
+    at.coulomb_nm * (1.0 - (-way_rad / at.reach_rad()).exp())
+}
+
+fn loops(held: &[&Swings], at: Dahl) -> Figure {
+    let mut series = Vec::new();
+    let mut measured = Vec::new();
+    for swings in held {
+        let (_, zero) = errors(swings, at);
+        measured.extend(swings.points.iter().map(|(row, q)| (q - zero, swings.torque_nm[*row])));
+    }
+    series.push(scatter("where the encoder moved on", measured));
+    // One step of each amplitude.
+    let mut shown: Vec<f64> = Vec::new();
+    for swings in held {
+        let top_nm = swings.torque_nm.iter().copied().fold(0.0, f64::max);
+        if shown.iter().any(|seen| (seen - top_nm).abs() < 0.01 * top_nm) {
+            continue;
+        }
+        shown.push(top_nm);
+        let way = dahl(&swings.torque_nm, at.coulomb_nm, at.bias_nm);
+        let x = way.iter().map(|q| at.compliance * q).collect();
+        let label = format!("Dahl, {}", words::figure(top_nm, "Nm"));
+        series.push(Series::new(&label, Mark::Line, x, swings.torque_nm.clone()));
+    }
+    Figure {
+        name: "loops".into(),
+        title: "Torque over the motor's way, before sliding".into(),
+        form: Form::Cartesian,
+        x: Axis::of("motor way", "rad"),
+        y: Axis::of("motor torque", "Nm"),
+        series,
+    }
+}
+
+fn first_loading(at: Dahl) -> Figure {
+    let end_rad = -at.reach_rad() * (1.0 - POLYGON_END).ln();
+    let elements = maxwell(at);
+    let polygon = |way_rad: f64| elements.iter().map(|(k, w)| (k * way_rad).min(*w)).sum();
+    Figure {
+        name: "first_loading".into(),
+        title: "First loading: Dahl's contacts and Maxwell-slip elements".into(),
+        form: Form::Cartesian,
+        x: Axis::of("motor way", "rad"),
+        y: Axis::of("motor torque", "Nm"),
+        series: vec![
+            curve("Dahl", [0.0, 1.2 * end_rad], 100, |way_rad| first(at, way_rad)),
+            curve(&format!("{ELEMENTS} Maxwell-slip elements"), [0.0, 1.2 * end_rad], 100, polygon),
+        ],
+    }
+}
