@@ -44,6 +44,8 @@ pub enum TableFault {
     TimeNotRising { row: usize, before: f64, after: f64 },
     #[error("column {column}: expected a whole number, found {value}")]
     NotWhole { column: String, row: usize, value: f64 },
+    #[error("column {0} is not in both parts of the measurement")]
+    Different(String),
     #[error("the table has no rows: expected at least one sample")]
     Empty,
 }
@@ -67,7 +69,10 @@ impl TableFault {
             TableFault::DuplicateColumn(column) => Some(column),
             TableFault::NotFinite { column, .. } | TableFault::NotWhole { column, .. } => Some(column),
             TableFault::TimeNotRising { .. } | TableFault::TimeAgainstRate { .. } => Some("time_s"),
-            TableFault::UnknownKind | TableFault::Empty | TableFault::ImpossibleFact { .. } => None,
+            TableFault::Different(_)
+            | TableFault::UnknownKind
+            | TableFault::Empty
+            | TableFault::ImpossibleFact { .. } => None,
         }
     }
 }

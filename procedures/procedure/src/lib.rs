@@ -7,6 +7,7 @@
 pub mod catalogue;
 mod columns;
 pub mod conduct;
+pub mod continuing;
 mod encoder_columns;
 pub mod engine;
 pub mod event;

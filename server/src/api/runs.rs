@@ -58,6 +58,14 @@ pub async fn resume(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> 
     Ok(Json(lab.control(id, Control::Resume).await?))
 }
 
+/// Makes the steps that a run has left, in a new run: the warm-up again, the brake demagnetised, then from the first step
+/// that was not finished. Both together are one measurement
+#[utoipa::path(post, path = "/runs/{id}/continue", operation_id = "continue_run", tag = "runs", params(("id" = i64, Path, description = "Run that did not come to its end")),
+    responses((status = 201, description = "The new run, queued", body = Run), Refusals))]
+pub async fn go_on(State(lab): State<Lab>, Path(id): Path<i64>) -> Created<Run> {
+    created(lab.continue_run(id).await?)
+}
+
 /// Ends the run after the step at hand; what was measured counts
 #[utoipa::path(post, path = "/runs/{id}/stop", operation_id = "stop_run", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]

@@ -22,7 +22,7 @@ pub fn run(arguments: &Arguments) -> Done {
         None => Vec::new(),
     };
     if let Some(path) = &arguments.junit {
-        std::fs::write(path, junit(&arguments.procedure, &ended, &demands))
+        std::fs::write(path, junit(&title(arguments), &ended, &demands))
             .map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
     }
     let run = ended?;
@@ -39,6 +39,13 @@ pub fn run(arguments: &Arguments) -> Done {
     match is_over(run.summary.state) && run.summary.state != RunState::Completed {
         true => Err(Exit::failed(if arguments.json { said } else { String::new() })),
         false => judge(&demands, arguments.json),
+    }
+}
+
+fn title(arguments: &Arguments) -> String {
+    match (&arguments.procedure, arguments.continues) {
+        (Some(procedure), _) => procedure.clone(),
+        (None, before) => format!("run {} continued", before.unwrap_or_default()),
     }
 }
 
@@ -74,21 +81,28 @@ fn judge(demands: &[(&Requirement, Kept)], quiet: bool) -> Done {
 
 /// The run as it has just started, or as it ended where that is waited for.
 fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
-    let new = NewRun {
-        bench: choose_bench(client, arguments.bench.as_deref())?,
-        procedure: arguments.procedure.clone(),
-        parameters: parameters(&arguments.set)?,
+    let run: Run = match arguments.continues {
+        Some(before) => client.post(&format!("/runs/{before}/continue"), &())?,
+        None => client.post("/runs", &new_run(client, arguments)?)?,
     };
-    let run: Run = client.post("/runs", &new)?;
-    let id = run.summary.id;
+    let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);
     if !arguments.json {
-        println!("run {id}: {} on {}  {}", new.procedure, new.bench, client.page(&format!("/runs/{id}")));
+        let goes_on = arguments.continues.map(|before| format!(", going on with run {before}")).unwrap_or_default();
+        println!("run {id}: {procedure} on {bench}{goes_on}  {}", client.page(&format!("/runs/{id}")));
     }
     match arguments.wait || arguments.junit.is_some() || !arguments.require.is_empty() {
         // The arguments were good: from here on it is the run that fails.
         true => wait(client, id).map_err(|exit| Exit::failed(format!("run {id} is lost from sight: {}", exit.said))),
         false => Ok(run),
     }
+}
+
+fn new_run(client: &Client, arguments: &Arguments) -> Result<NewRun, Exit> {
+    Ok(NewRun {
+        bench: choose_bench(client, arguments.bench.as_deref())?,
+        procedure: arguments.procedure.clone().unwrap_or_default(),
+        parameters: parameters(&arguments.set)?,
+    })
 }
 
 pub(super) fn choose_bench(client: &Client, named: Option<&str>) -> Result<String, Exit> {

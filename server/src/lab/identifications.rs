@@ -18,7 +18,7 @@ impl Lab {
         let procedure = jointbench_procedure::procedure(&record.procedure).ok_or_else(none)?;
         let values = Values::parse(procedure.schema(), &record.parameters)
             .map_err(|fault| LabError::Invalid(format!("run {id} was made by another version: {fault}")))?;
-        let table = self.table(id).await?;
+        let table = self.measurement(id).await?;
         let found = tokio::task::spawn_blocking(move || procedure.identify(&values, &table))
             .await
             .map_err(|fault| LabError::Internal(format!("the identification of run {id} failed: {fault}")))?

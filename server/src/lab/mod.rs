@@ -3,6 +3,7 @@
 
 mod autopilot;
 mod benches;
+mod continuing;
 mod convert;
 mod error;
 mod experiment;

@@ -12,6 +12,10 @@ impl Lab {
     /// Plans, checks against the limits, and hands the plan to the thread of the bench.
     pub async fn start_run(&self, bench: &str, procedure: &str, parameters: &Map<String, Value>) -> Answer<Run> {
         let (bench, plan) = self.plan(bench, procedure, parameters)?;
+        self.launch(bench, plan).await
+    }
+
+    pub(super) async fn launch(&self, bench: &BenchHandle, plan: Plan) -> Answer<Run> {
         let preview = plan.preview(&bench.facts());
         let failed: Vec<String> = preview
             .checks
@@ -40,6 +44,7 @@ impl Lab {
             return Err(LabError::Bench(format!("bench {} is not ready: {faults}", bench.name())));
         }
         let run = self.inner.store.create_run(&new_run(bench, &plan)?).await?;
+        let procedure = plan.procedure;
         tracing::info!(run.id = run, bench = bench.name(), procedure, planned_s = plan.duration_s(), "run queued");
         claim.start(run, plan)?;
         self.run(run).await
@@ -112,7 +117,7 @@ impl Lab {
             if runs[..i].contains(run) {
                 return Err(LabError::Invalid(format!("run {run} is named twice: name each run once")));
             }
-            tables.push(self.table(*run).await?);
+            tables.push(self.measurement(*run).await?);
         }
         if tables.is_empty() {
             return Err(LabError::Invalid("name at least one run".into()));

@@ -86,6 +86,41 @@ fn a_run_can_be_paused_resumed_and_stopped_and_the_bench_has_one_run() {
 }
 
 #[test]
+fn what_is_left_of_a_stopped_run_is_made_later_and_both_are_one_measurement() {
+    let daemon = TestDaemon::start();
+    let whole = daemon.wait_for_end(start(&daemon));
+    assert_eq!(whole["state"], "completed");
+    let id = start(&daemon);
+    let measured = |run: &Value| run["progress"]["step"].as_u64().is_some_and(|step| step > 20);
+    daemon.wait_for(&format!("/api/v1/runs/{id}"), measured);
+    assert_eq!(daemon.post(&format!("/api/v1/runs/{id}/continue"), "").0, 409, "it is still on");
+    daemon.post(&format!("/api/v1/runs/{id}/abort"), "");
+    assert_eq!(daemon.wait_for_end(id)["state"], "aborted");
+    let (status, rest) = daemon.post(&format!("/api/v1/runs/{id}/continue"), "");
+    assert_eq!(status, 201, "{rest}");
+    let rest = daemon.wait_for_end(rest["id"].as_i64().unwrap());
+    assert_eq!(rest["state"], "completed", "{rest}");
+    assert!(rest["rows"].as_u64().unwrap() < whole["rows"].as_u64().unwrap(), "only what was left, and its history");
+    let found = |run: &Value| daemon.get(&format!("/api/v1/runs/{}/identification", run["id"])).1;
+    let (uninterrupted, resumed) = (found(&whole), found(&rest));
+    assert_eq!(resumed["verdict"], uninterrupted["verdict"], "{resumed}");
+    let figures = |found: &Value| -> Vec<(String, Vec<f64>)> {
+        let interval = |quantity: &Value| {
+            quantity["ci95"].as_array().map(|ci95| ci95.iter().map(|end| end.as_f64().unwrap()).collect())
+        };
+        let quantities = found["quantities"].as_array().unwrap().iter();
+        quantities.filter_map(|quantity| Some((quantity["name"].to_string(), interval(quantity)?))).collect()
+    };
+    let pairs: Vec<_> = figures(&uninterrupted).into_iter().zip(figures(&resumed)).collect();
+    assert!(pairs.len() > 4, "{resumed}");
+    for ((name, whole), (same, rest)) in pairs {
+        assert_eq!(name, same);
+        assert!(whole[0] <= rest[1] && rest[0] <= whole[1], "{name}: {rest:?} does not meet {whole:?}");
+    }
+    assert_eq!(daemon.post(&format!("/api/v1/runs/{}/continue", rest["id"]), "").0, 409, "nothing is left");
+}
+
+#[test]
 fn the_software_stop_ends_a_run_and_the_end_of_the_daemon_too() {
     let mut daemon = TestDaemon::start_with(Some(4.0), |_| {});
     let id = start(&daemon);

@@ -51,6 +51,10 @@ impl Procedure for FrictionTemperature {
         SCHEMA
     }
 
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Err("the warm-up and the cool-down that it measures are one history")
+    }
+
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         let rate_hz = values.number("sample_rate_hz");
         let top_rad_s = values.number("top_speed_rad_s");

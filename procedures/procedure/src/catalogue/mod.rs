@@ -13,6 +13,7 @@ mod friction_temperature;
 mod identify_joint;
 mod legs;
 mod presliding;
+mod rest;
 mod stiffness;
 mod strokes;
 mod torque_sensor_zero;
@@ -40,6 +41,12 @@ pub trait Procedure: Sync {
     /// table that says nothing gets its verdict too. `None`: nothing but samples is asked of it.
     fn identify(&self, _values: &Values, _run: &RunTable) -> Option<Identification> {
         None
+    }
+
+    /// Whether what is left of a run that did not come to its end may be made in another one later. `Err` says what of the
+    /// first run's history cannot be had again.
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Ok(())
     }
 
     /// Checks the choices against the schema, fills in the defaults and plans. Nothing moves.

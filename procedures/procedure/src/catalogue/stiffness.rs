@@ -47,6 +47,10 @@ impl Procedure for Stiffness {
         SCHEMA
     }
 
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Err("its positions share one zero of the encoders, which an instrument that was off has lost")
+    }
+
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         for (there, role) in [(bench.has_brake, "brake"), (bench.has_torque_sensor, "torque sensor")] {
             if !there {

@@ -48,6 +48,10 @@ impl Procedure for TorqueSensorZero {
         SCHEMA
     }
 
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Err("the sensor's drift is one history")
+    }
+
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         if !bench.has_torque_sensor {
             let cure = "connect it";

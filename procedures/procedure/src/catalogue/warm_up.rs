@@ -51,6 +51,10 @@ impl Procedure for WarmUp {
         SCHEMA
     }
 
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Err("a warm-up is one history")
+    }
+
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         let rate_hz = values.number("sample_rate_hz");
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));

@@ -136,7 +136,12 @@ pub struct Reach {
 #[derive(Debug, Args)]
 pub struct Run {
     /// Id of the procedure, such as friction or warm_up
-    pub procedure: String,
+    #[arg(required_unless_present = "continues")]
+    pub procedure: Option<String>,
+    /// Make what is left of a run that did not come to its end: the warm-up again, the brake demagnetised, then from the
+    /// first step that was not finished. Both runs together are one measurement
+    #[arg(long = "continue", value_name = "RUN", conflicts_with_all = ["procedure", "set", "bench"])]
+    pub continues: Option<i64>,
     /// A parameter of the procedure, in SI units; may be given again
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,

@@ -45,6 +45,10 @@ impl Procedure for EncoderOffset {
         }
     }
 
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Err("its positions share one zero of the encoders, which an instrument that was off has lost")
+    }
+
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         let counts = counts(bench)?;
         let rate_hz = values.number("sample_rate_hz");

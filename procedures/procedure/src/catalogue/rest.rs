@@ -1,0 +1,96 @@
+//! The steps of a plan that are left after a run that did not come to its end, behind what restores their history.
+
+use super::legs::Legs;
+use crate::continuing::Continues;
+use crate::place::Place;
+use crate::plan::{BenchFacts, Phase, Plan};
+use crate::recorder::RunId;
+
+/// The brake is ramped down over so many turns of the link before anything is measured again.
+const DEMAGNETISING_TURNS: f64 = 2.0;
+
+impl Plan {
+    /// What is left of the plan from a step on. Before it: the warm-up again, where the plan has one; the brake, which was
+    /// shut down wherever the link stood, demagnetised while turning; and the current that the step begins with, approached
+    /// from below. `first_segment` is the first number that no row has yet.
+    ///
+    /// `None` where nothing is left, or nothing but the warm-up was done.
+    pub fn rest(mut self, run: RunId, from_step: usize, first_segment: u32, bench: &BenchFacts) -> Option<Plan> {
+        let (done, left) = self.steps.split_at_checked(from_step)?;
+        if left.is_empty() || done.iter().all(|step| step.phase == Phase::WarmUp) {
+            return None;
+        }
+        let top_a = self.top_brake_current_a();
+        let speed_rad_s = self.top_speed_rad_s();
+        let begins_a = left[0].brake.at(0.0);
+        let mut legs = Legs::new(self.acceleration_rad_s2);
+        legs.steps.extend(done.iter().filter(|step| step.phase == Phase::WarmUp).cloned());
+        if top_a > 0.0 && speed_rad_s > 0.0 {
+            legs.demagnetise(speed_rad_s, top_a, DEMAGNETISING_TURNS, bench);
+            if begins_a > 0.0 {
+                legs.change(speed_rad_s, 0.0, begins_a);
+            }
+        }
+        let first_segment = first_segment.max(self.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0));
+        for (segment, step) in (first_segment..).zip(&mut legs.steps) {
+            step.segment = segment;
+        }
+        let restored = legs.steps.len();
+        let mut left = left.to_vec();
+        // Where the stage was told to be last.
+        let place = done.iter().rev().find_map(|step| match step.place {
+            Place::At(pose) => Some(pose),
+            Place::AsLeft | Place::Edge(_) => None,
+        });
+        if let (Place::AsLeft, Some(pose)) = (&left[0].place, place) {
+            left[0].place = Place::At(pose);
+        }
+        self.steps = legs.steps;
+        self.steps.append(&mut left);
+        let continues = Continues { run, from_step, restored, restored_from: first_segment };
+        continues.note_in(&mut self.meta);
+        Some(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::legs::testing::joint_a;
+    use super::super::procedure;
+    use super::*;
+    use serde_json::{Map, json};
+
+    fn plan(parameters: serde_json::Value) -> Plan {
+        let chosen: Map<_, _> = parameters.as_object().unwrap().clone();
+        procedure("friction").unwrap().plan(&chosen, &joint_a()).unwrap()
+    }
+
+    #[test]
+    fn the_rest_begins_warm_demagnetised_and_under_the_load_of_its_first_step() {
+        let whole = plan(json!({}));
+        let from = whole.steps.iter().position(|step| step.brake.at(0.0) > 0.1).unwrap();
+        let rest = whole.clone().rest(7, from, 3, &joint_a()).unwrap();
+        let continues = Continues::of(&rest.meta).unwrap();
+        assert_eq!((continues.run, continues.from_step), (7, from));
+        let (restoring, left) = rest.steps.split_at(continues.restored);
+        assert_eq!(left, &whole.steps[from..]);
+        assert!(restoring.iter().all(|step| step.segment >= whole.steps.len() as u32), "numbers of their own");
+        assert!(restoring[0].phase == Phase::WarmUp);
+        let tops: Vec<f64> = restoring.iter().map(|step| step.brake.largest()).collect();
+        let top_a = whole.top_brake_current_a();
+        let demagnetised = tops.iter().position(|a| *a == top_a).unwrap();
+        assert_eq!(restoring[demagnetised].brake.at(1e9), 0.0, "ramped down while it turns");
+        assert_eq!(tops[tops.len() - 1], left[0].brake.at(0.0), "from below");
+        assert!(rest.preview(&joint_a()).checks.iter().all(|check| check.ok), "within the limits");
+    }
+
+    #[test]
+    fn nothing_but_a_warm_up_is_nothing_to_go_on_from() {
+        let whole = plan(json!({}));
+        let measured = whole.steps.iter().position(|step| step.phase == Phase::Measure).unwrap();
+        let count = whole.steps.len();
+        assert!(whole.clone().rest(1, measured, 0, &joint_a()).is_none());
+        assert!(whole.clone().rest(1, measured + 1, 0, &joint_a()).is_some());
+        assert!(whole.clone().rest(1, count, 0, &joint_a()).is_none(), "all done");
+    }
+}

@@ -1,0 +1,141 @@
+//! Runs that go on where an earlier one ended too soon: which steps that had done, and both as one measurement.
+
+use crate::findings::keep_rows;
+use crate::recorder::RunId;
+use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// Where [`Continues`] stands among the facts of a run.
+const FACT: &str = "continues";
+/// What lies at least between two parts of a measurement.
+const PAUSE_S: f64 = 1.0;
+
+/// What a run goes on with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Continues {
+    /// The run before it.
+    pub run: RunId,
+    /// The first step of the whole plan that is done in this run.
+    pub from_step: usize,
+    /// Steps in front that only restore the history.
+    pub restored: usize,
+    /// Number of the first segment of these.
+    pub restored_from: u32,
+}
+
+impl Continues {
+    /// `None`: the run stands for itself.
+    pub fn of(meta: &Meta) -> Option<Self> {
+        serde_json::from_value(meta.other.get(FACT)?.clone()).ok()
+    }
+
+    pub(crate) fn note_in(self, meta: &mut Meta) {
+        let noted = serde_json::to_value(self).expect("four numbers are JSON");
+        meta.other.insert(FACT.to_owned(), noted);
+    }
+
+    fn restores(self, segment: u32) -> bool {
+        (self.restored_from..).take(self.restored).any(|number| number == segment)
+    }
+}
+
+/// What a run has done of its procedure's whole plan.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Done {
+    /// Steps up to the last one that was finished.
+    pub steps: usize,
+    /// Segments that were measured to their end; what only restored a history is not among them.
+    pub segments: BTreeSet<u32>,
+    /// The first number that no segment has yet.
+    pub next_segment: u32,
+}
+
+impl Done {
+    /// Takes one step of the journal's in: its number in the run's own plan, its segment, and whether it was finished.
+    pub fn take(&mut self, continues: Option<Continues>, step: usize, segment: u32, finished: bool) {
+        self.next_segment = self.next_segment.max(segment + 1);
+        let (from, restored) = continues.map_or((0, 0), |continues| (continues.from_step, continues.restored));
+        if finished && step >= restored {
+            self.steps = self.steps.max(from + step - restored + 1);
+            self.segments.insert(segment);
+        }
+    }
+}
+
+/// Two runs as one measurement: of the first what was finished, of the second all but what restored the history.
+/// `later_s`: from the start of the first to the start of the second.
+pub fn joined(first: &RunTable, done: &Done, second: &RunTable, later_s: f64) -> Result<RunTable, TableFault> {
+    let continues = Continues::of(second.meta());
+    let finished = part(first, |segment| done.segments.contains(&segment))?;
+    let rest = part(second, |segment| continues.is_none_or(|continues| !continues.restores(segment)))?;
+    let (meta, rest) = rest.into_parts();
+    let (_, mut whole) = finished.into_parts();
+    let ended_s = whole.column("time_s").and_then(|time_s| time_s.last()).copied().unwrap_or(0.0);
+    let begins_s = rest.column("time_s").and_then(|time_s| time_s.first()).copied().unwrap_or(0.0);
+    let shift_s = later_s.max(ended_s + PAUSE_S - begins_s);
+    // In the order of the first, which decides what there is.
+    let column = |name: &str| rest.column(name).map(<[f64]>::to_vec);
+    let found: Option<Vec<Vec<f64>>> = whole.channels().iter().map(|channel| column(&channel.name)).collect();
+    let Some(mut columns) = found else {
+        let missing = whole.channels().iter().find(|channel| rest.index_of(&channel.name).is_none());
+        return Err(TableFault::Different(missing.map_or_else(String::new, |channel| channel.name.clone())));
+    };
+    if let Some(time) = whole.index_of("time_s") {
+        columns[time].iter_mut().for_each(|time_s| *time_s += shift_s);
+    }
+    whole.append(Trace::from_columns(whole.channels().to_vec(), columns));
+    RunTable::new(meta, whole)
+}
+
+/// The rows of some segments.
+fn part(table: &RunTable, wanted: impl Fn(u32) -> bool) -> Result<RunTable, TableFault> {
+    let segment = table.column("segment").unwrap_or_default();
+    let mut start = 0;
+    let mut rows = Vec::new();
+    for chunk in segment.chunk_by(|a, b| a == b) {
+        if wanted(chunk[0] as u32) {
+            rows.push(start..start + chunk.len());
+        }
+        start += chunk.len();
+    }
+    keep_rows(table, &rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointbench_instrument::{Channel, Kind};
+
+    fn table(continues: Option<Continues>, rows: &[[f64; 4]]) -> RunTable {
+        let mut meta = Meta { kind: Some(Kind::Friction), ..Meta::default() };
+        if let Some(continues) = continues {
+            continues.note_in(&mut meta);
+        }
+        let names = ["time_s", "motor_position_rad", "motor_current_a", "segment"];
+        let mut trace = Trace::new(names.map(Channel::new).to_vec());
+        rows.iter().for_each(|row| trace.push_row(row));
+        RunTable::new(meta, trace).unwrap()
+    }
+
+    #[test]
+    fn two_runs_are_one_measurement_without_what_was_cut_off_and_what_restored() {
+        let first = table(None, &[[0.0, 1.0, 0.1, 0.0], [1.0, 1.0, 0.2, 1.0], [2.0, 1.0, 0.3, 2.0]]);
+        let mut done = Done::default();
+        done.take(None, 0, 0, true);
+        done.take(None, 1, 1, true);
+        done.take(None, 2, 2, false);
+        assert_eq!((done.steps, done.next_segment), (2, 3));
+        let continues = Continues { run: 4, from_step: 2, restored: 1, restored_from: 9 };
+        let second = table(Some(continues), &[[0.0, 1.0, 0.4, 9.0], [1.0, 1.0, 0.5, 2.0], [2.0, 1.0, 0.6, 3.0]]);
+        let whole = joined(&first, &done, &second, 100.0).unwrap();
+        assert_eq!(whole.column("motor_current_a").unwrap(), [0.1, 0.2, 0.5, 0.6]);
+        assert_eq!(whole.column("time_s").unwrap(), [0.0, 1.0, 101.0, 102.0]);
+        done.take(Some(continues), 0, 9, true);
+        done.take(Some(continues), 1, 2, true);
+        assert_eq!((done.steps, done.segments.contains(&9)), (3, false));
+        // A mock bench is ahead of the clock on the wall.
+        let whole = joined(&first, &done, &second, 0.1).unwrap();
+        assert_eq!(whole.column("time_s").unwrap(), [0.0, 1.0, 2.0, 3.0, 4.0]);
+    }
+}

@@ -1,0 +1,95 @@
+//! Runs that go on where an earlier one ended too soon.
+
+use super::{Answer, Lab, LabError};
+use crate::store::RunRecord;
+use crate::view::Run;
+use jiff::Timestamp;
+use jointbench_instrument::{Meta, RunTable};
+use jointbench_procedure::continuing::{Continues, Done, joined};
+use jointbench_procedure::{Plan, RunState};
+
+impl Lab {
+    /// Starts a run that makes the steps that another one has left, behind what restores their history.
+    pub async fn continue_run(&self, id: i64) -> Answer<Run> {
+        let record = self.inner.store.run(id).await?;
+        let name = &record.procedure;
+        match record.state {
+            RunState::Completed => {
+                return Err(LabError::Conflict(format!("run {id} is complete: nothing is left of it")));
+            }
+            state if !state.is_final() => {
+                return Err(LabError::Conflict(format!("run {id} is {state}: resume it, or wait for its end")));
+            }
+            _ => {}
+        }
+        let again = format!("start {name} again instead");
+        let procedure = jointbench_procedure::procedure(name).ok_or_else(|| {
+            LabError::Invalid(format!("run {id} is of {name}, which no procedure here can go on with"))
+        })?;
+        procedure
+            .goes_on()
+            .map_err(|why| LabError::Invalid(format!("run {id} cannot be gone on with: {why}; {again}")))?;
+        let (bench, plan) = self.plan(&record.bench, name, &record.parameters)?;
+        let done = self.done(&record, Some(&plan)).await?;
+        let rest = plan.rest(id, done.steps, done.next_segment, &bench.facts()).ok_or_else(|| {
+            LabError::Invalid(format!("run {id} has finished no step that could be gone on from: {again}"))
+        })?;
+        self.launch(bench, rest).await
+    }
+
+    /// All that was measured: of a run that goes on with others, theirs too.
+    pub(super) async fn measurement(&self, id: i64) -> Answer<RunTable> {
+        let mut parts = vec![self.inner.store.run(id).await?];
+        while let Some(before) = continues(&parts[parts.len() - 1])? {
+            parts.push(self.inner.store.run(before.run).await?);
+        }
+        let (Some(first), later) = (parts.pop(), parts.into_iter().rev()) else { unreachable!("one part at least") };
+        let mut whole = self.table(first.id).await?;
+        let mut done = self.done(&first, None).await?;
+        for part in later {
+            let table = self.table(part.id).await?;
+            let later_s = began(&part)?.duration_since(began(&first)?).as_secs_f64();
+            whole = joined(&whole, &done, &table, later_s)?;
+            let more = self.done(&part, None).await?;
+            done.segments.extend(more.segments);
+        }
+        Ok(whole)
+    }
+
+    /// What a run, with those before it, has finished of the plan of its procedure. With the plan at hand its steps are
+    /// compared with those of the journal.
+    async fn done(&self, record: &RunRecord, plan: Option<&Plan>) -> Answer<Done> {
+        let continues = continues(record)?;
+        let mut done = Done { steps: continues.map_or(0, |continues| continues.from_step), ..Done::default() };
+        for event in self.inner.store.events(record.id, 0).await? {
+            let number = |name: &str| event.data.get(name).and_then(serde_json::Value::as_u64);
+            let (Some(step), Some(segment)) = (number("step"), number("segment")) else { continue };
+            done.take(continues, step as usize, segment as u32, event.kind == "step_finished");
+            let (from, restored) = continues.map_or((0, 0), |continues| (continues.from_step, continues.restored));
+            let label = event.data.get("label").and_then(serde_json::Value::as_str);
+            let planned = (step as usize)
+                .checked_sub(restored)
+                .zip(plan)
+                .map(|(step, plan)| plan.steps.get(from + step).map(|step| step.label.as_str()));
+            if let (Some(label), Some(planned)) = (label, planned)
+                && planned != Some(label)
+            {
+                return Err(LabError::Invalid(format!(
+                    "run {} was planned otherwise than this version plans it (step {step}, {label}): start {} again instead",
+                    record.id, record.procedure
+                )));
+            }
+        }
+        Ok(done)
+    }
+}
+
+fn continues(record: &RunRecord) -> Answer<Option<Continues>> {
+    let meta: Meta = super::reread(&record.meta)?;
+    Ok(Continues::of(&meta))
+}
+
+fn began(record: &RunRecord) -> Answer<Timestamp> {
+    let text = record.started_at.as_deref().unwrap_or(&record.created_at);
+    text.parse().map_err(|fault| LabError::Internal(format!("run {} began at {text}: {fault}", record.id)))
+}
