@@ -52,6 +52,8 @@ export const api = {
 		body(client.POST('/api/v1/runs', { body: { bench, procedure, parameters } })),
 	control: (id: number, what: 'pause' | 'resume' | 'stop' | 'abort') =>
 		body(client.POST(`/api/v1/runs/{id}/${what}`, { params: { path: { id } } })),
+	/** Starts a run that makes what this one has left. */
+	goOn: (id: number) => body(client.POST('/api/v1/runs/{id}/continue', { params: { path: { id } } })),
 	events: (id: number, after?: number, signal?: Signal) =>
 		body(client.GET('/api/v1/runs/{id}/events', { params: { path: { id }, query: { after } }, signal })),
 	notes: (id: number, signal?: Signal) => body(client.GET('/api/v1/runs/{id}/notes', { params: { path: { id } }, signal })),
