@@ -3,7 +3,7 @@
 use super::models::{blocking, effect_view, find_kind};
 use super::{Answer, Lab, LabError, reread};
 use crate::store::OwnEffectRecord;
-use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage, FormulaSignal};
+use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage, FormulaSignal, LiveMessage};
 use jointbench_instrument::Kind;
 use jointbench_model::formula::{self, Function};
 use jointbench_model::{Definition, Effect as _, ModelSpec, Options, OwnEffect};
@@ -47,7 +47,8 @@ impl Lab {
             parameters: Vec::new(),
         };
         if let Some(run) = trial.run {
-            let table = self.table(run).await?;
+            let runs: Vec<i64> = std::iter::once(run).chain(trial.more_runs.iter().copied()).collect();
+            let table = self.tables(&runs).await?;
             let effects = table.meta().baseline.iter().cloned().chain([own.id().to_owned()]);
             let spec = ModelSpec::with_own(table.kind(), effects, vec![own.clone()])?;
             let fit = blocking(move || jointbench_model::fit(&table, &spec, &Options::default())).await?;
@@ -63,11 +64,19 @@ impl Lab {
         let kept = reread(own.definition())?;
         let record = self.inner.store.save_own_effect(own.kind().name(), own.id(), &kept).await?;
         tracing::info!(effect = own.id(), version = record.version, "effect defined");
+        self.tell_effects(own.kind(), own.id());
         view(&record)
     }
 
     pub async fn delete_effect(&self, kind: &str, id: &str) -> Answer<()> {
-        Ok(self.inner.store.delete_own_effect(find_kind(kind)?.name(), id).await?)
+        let kind = find_kind(kind)?;
+        self.inner.store.delete_own_effect(kind.name(), id).await?;
+        self.tell_effects(kind, id);
+        Ok(())
+    }
+
+    fn tell_effects(&self, kind: Kind, effect: &str) {
+        self.hub().tell(LiveMessage::Effects { kind: kind.to_string(), effect: effect.to_owned() });
     }
 
     pub fn formula_language(&self, kind: &str) -> Answer<FormulaLanguage> {

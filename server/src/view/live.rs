@@ -42,6 +42,11 @@ pub enum LiveMessage {
         run: i64,
         model: i64,
     },
+    /// Users' effects of a kind have come, changed or gone: what a diagnosis may suggest is not what it was.
+    Effects {
+        kind: String,
+        effect: String,
+    },
     /// An autopilot has made a step or has ended.
     Autopilot {
         autopilot: i64,

@@ -48,3 +48,20 @@ fn a_run_is_told_as_it_happens() {
         assert!(told.contains_key(kind), "{kind} in {told:?}");
     }
 }
+
+#[test]
+fn a_new_effect_is_told_to_everybody() {
+    let daemon = TestDaemon::start();
+    let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
+    let effect = r#"{"id": "rub", "kind": "friction", "formula": "tau = a * velocity", "parameters": [{"name": "a"}]}"#;
+    assert_eq!(daemon.post("/api/v1/effects", effect).0, 201);
+    let told = loop {
+        if let Message::Text(text) = socket.read().unwrap() {
+            let message: Value = serde_json::from_str(&text).unwrap();
+            if message["type"] == "effects" {
+                break message;
+            }
+        }
+    };
+    assert_eq!((&told["kind"], &told["effect"]), (&"friction".into(), &"rub".into()));
+}

@@ -88,6 +88,17 @@ fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
     assert_eq!((status, &check["linear"], &check["shape"]), (200, &json!(["a"]), &json!(["w0"])), "{check}");
     assert!((check["parameters"][1]["value"].as_f64().unwrap() - 12.0).abs() < 1.0, "{check}");
 
+    let twice = json!({"effect": rub(RUB), "run": run, "more_runs": [run]});
+    assert_eq!(daemon.post("/api/v1/effects/check", &twice.to_string()).0, 422, "a run is named once");
+    let more = json!({"effect": rub(RUB), "run": run, "more_runs": [rubbing_run(&daemon)]});
+    let (status, both) = daemon.post("/api/v1/effects/check", &more.to_string());
+    assert_eq!(status, 200, "{both}");
+    let width = |check: &Value| {
+        let ci95 = check["parameters"][1]["ci95"].as_array().unwrap().clone();
+        ci95[1].as_f64().unwrap() - ci95[0].as_f64().unwrap()
+    };
+    assert!(width(&both) < width(&check), "two runs tell more than one: {both}");
+
     let (status, effect) = daemon.post("/api/v1/effects", &rub(RUB).to_string());
     assert_eq!((status, &effect["version"]), (201, &1.into()), "{effect}");
     assert_eq!(daemon.post("/api/v1/effects", &rub(RUB).to_string()).1["version"], 1, "the same again");

@@ -25,6 +25,8 @@ class LabState {
 	dropped = $state(0);
 	/** Raised when a model version was made anywhere. */
 	models = $state(0);
+	/** Counts what has become of users' effects, so that diagnoses that may suggest them are asked for again. */
+	effects = $state(0);
 	/** Raised when an autopilot made a step or ended. */
 	autopilots = $state(0);
 	line = $state(false);
@@ -119,6 +121,9 @@ class LabState {
 				break;
 			case 'model':
 				this.models += 1;
+				break;
+			case 'effects':
+				this.effects += 1;
 				break;
 			case 'autopilot':
 				this.autopilots += 1;

@@ -33,8 +33,8 @@ export function openWorkbench(id: number) {
 		(_key, signal) => api.models(id, signal),
 	);
 	const effects = resource(
-		() => run.data?.kind ?? null,
-		(kind, signal) => api.effects(kind, signal),
+		() => (run.data ? `${run.data.kind} ${lab.effects}` : null),
+		(_key, signal) => api.effects(run.data?.kind ?? '', signal),
 	);
 	const versions: Model[] = $derived(models.data ?? []);
 	const model: Model | null = $derived(
@@ -64,8 +64,8 @@ export function openWorkbench(id: number) {
 	const region = $derived(readRegion(router.query.get('region')));
 	const chosen = $derived(residuals.data ? selected(residuals.data.set, region, side, ramps) : null);
 	const diagnosis = resource(
-		() => model?.id ?? null,
-		(version, signal) => api.diagnose(version, signal),
+		() => (model ? `${model.id} ${lab.effects}` : null),
+		(_key, signal) => api.diagnose(model?.id ?? 0, signal),
 	);
 
 	/** A version with these effects. A set that was fitted before from the same parent needs no new fit. */
