@@ -3,7 +3,7 @@
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
-use crate::view::{Comparison, Evaluation, Model, ModelImport, NewEvaluation};
+use crate::view::{Comparison, Evaluation, Model, ModelImport, NewEvaluation, Worth};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -29,6 +29,14 @@ pub async fn compare(
     Query(query): Query<CompareQuery>,
 ) -> Answer<Comparison> {
     Ok(Json(lab.compare(id, other, query.run).await?))
+}
+
+/// What each effect of a model version is worth: the error outside the fit without it, the others fitted again
+#[utoipa::path(get, path = "/models/{id}/worth", operation_id = "effects_worth", tag = "models",
+    params(("id" = i64, Path, description = "Model version")),
+    responses((status = 200, description = "One entry for each effect; nothing is kept", body = Vec<Worth>), Refusals))]
+pub async fn worth(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Worth>> {
+    Ok(Json(lab.worth(id).await?))
 }
 
 /// The error of a model version on any run of its kind

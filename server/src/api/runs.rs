@@ -3,7 +3,7 @@
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::Refusals;
 use crate::lab::Lab;
-use crate::view::{NewRun, Run, RunEvent, RunList, Samples};
+use crate::view::{ChannelStatistics, NewRun, Run, RunEvent, RunList, Samples};
 use axum::extract::State;
 use jointbench_procedure::Control;
 use serde::Deserialize;
@@ -120,7 +120,34 @@ pub struct SampleQuery {
     params(("id" = i64, Path, description = "Run"), SampleQuery),
     responses((status = 200, description = "The window", body = Samples), Refusals))]
 pub async fn samples(State(lab): State<Lab>, Path(id): Path<i64>, Query(query): Query<SampleQuery>) -> Answer<Samples> {
-    let channels: Option<Vec<String>> =
-        query.channels.map(|names| names.split(',').map(|name| name.trim().to_owned()).collect());
+    let channels = named(query.channels);
     Ok(Json(lab.samples(id, channels.as_deref(), query.from_s, query.to_s, query.px.unwrap_or(2000)).await?))
+}
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct StatisticsQuery {
+    /// Names with commas between; all where left out.
+    pub channels: Option<String>,
+    /// Begin of the window on the run's clock; its first row where left out.
+    pub from_s: Option<f64>,
+    /// End of the window; the last row where left out.
+    pub to_s: Option<f64>,
+}
+
+/// Mean, deviation, RMS, smallest and largest value of each channel over every row of a window
+#[utoipa::path(get, path = "/runs/{id}/statistics", tag = "samples",
+    params(("id" = i64, Path, description = "Run"), StatisticsQuery),
+    responses((status = 200, description = "One entry for each channel", body = Vec<ChannelStatistics>), Refusals))]
+pub async fn statistics(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Query(query): Query<StatisticsQuery>,
+) -> Answer<Vec<ChannelStatistics>> {
+    Ok(Json(lab.statistics(id, named(query.channels).as_deref(), query.from_s, query.to_s).await?))
+}
+
+fn named(channels: Option<String>) -> Option<Vec<String>> {
+    channels.map(|names| names.split(',').map(|name| name.trim().to_owned()).collect())
 }

@@ -18,9 +18,13 @@ pub struct ExportQuery {
     /// Kind of file.
     #[param(inline)]
     pub format: FileFormat,
+    /// Begin of the stretch on the run's clock; its first row where left out.
+    pub from_s: Option<f64>,
+    /// End of the stretch; the last row where left out.
+    pub to_s: Option<f64>,
 }
 
-/// The whole run as one file, which `import` takes back unchanged
+/// The run, or a stretch of it, as one file in full resolution, which `import` takes back unchanged
 #[utoipa::path(get, path = "/runs/{id}/export", tag = "runs",
     params(("id" = i64, Path, description = "Run"), ExportQuery),
     responses(
@@ -31,7 +35,7 @@ pub async fn export(
     Path(id): Path<i64>,
     Query(query): Query<ExportQuery>,
 ) -> Result<Response, Problem> {
-    let bytes = lab.export(id, query.format).await?;
+    let bytes = lab.export(id, query.format, query.from_s, query.to_s).await?;
     let name = format!("attachment; filename=\"run-{id}.{}\"", query.format.extension());
     let headers = [(header::CONTENT_TYPE, query.format.media_type().to_owned()), (header::CONTENT_DISPOSITION, name)];
     Ok((headers, bytes).into_response())

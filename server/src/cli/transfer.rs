@@ -29,8 +29,9 @@ pub fn export(arguments: &Export) -> Done {
     let runtime = runtime()?;
     let (run, format) = (arguments.run, format(arguments)?);
     let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
-        Way::Folder(lab) => runtime
-            .block_on(async { Ok::<_, LabError>((lab.export(run, format).await?, lab.export_meta(run).await?)) })?,
+        Way::Folder(lab) => runtime.block_on(async {
+            Ok::<_, LabError>((lab.export(run, format, None, None).await?, lab.export_meta(run).await?))
+        })?,
         Way::Daemon(client) => {
             let bytes = client.get_bytes(&format!("/runs/{run}/export?format={}", format.extension()))?;
             (bytes, String::from_utf8_lossy(&client.get_bytes(&format!("/runs/{run}/meta"))?).into_owned())

@@ -15,6 +15,7 @@ mod pilot;
 mod report;
 mod revisions;
 mod runs;
+mod statistics;
 mod transfer;
 
 pub use convert::{bench_view, reread, run_event, safe_view, state_view};

@@ -3,9 +3,9 @@
 use super::models::blocking;
 use super::{Answer, Lab, LabError, convert, reread};
 use crate::store::NewModel;
-use crate::view::{Comparison, Evaluation, LiveMessage, Model, ModelImport};
+use crate::view::{Comparison, Evaluation, LiveMessage, Model, ModelImport, Worth, finite};
 use jointbench_model::transfer::{Format, ModelFile, export};
-use jointbench_model::{Fit, Options};
+use jointbench_model::{Fit, ModelSpec, Options};
 
 impl Lab {
     /// `run`: where both are evaluated; the run of the first where left out.
@@ -17,6 +17,27 @@ impl Lab {
         let (first, second) = (self.fit(first).await?, self.fit(second).await?);
         let table = self.table(run).await?;
         reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)
+    }
+
+    /// The error outside the fit without each effect in turn. The order in which effects were added says nothing of it.
+    pub async fn worth(&self, model: i64) -> Answer<Vec<Worth>> {
+        let record = self.inner.store.model(model).await?;
+        let fit: Fit = reread(&record.fit)?;
+        let table = self.tables(&record.runs()).await?;
+        let refit = move |effect: &str| {
+            let others = record.effects.iter().filter(|one| *one != effect);
+            let spec = ModelSpec::with_own(table.kind(), others, fit.own.clone())?;
+            jointbench_model::fit(&table, &spec, &Options::default())
+        };
+        let effects = fit.effects.clone();
+        let said = move |effect: String| {
+            let (without_rms, reason) = match refit(&effect) {
+                Ok(fit) => (finite(fit.validation_rms), None),
+                Err(fault) => (None, Some(fault.to_string())),
+            };
+            Worth { effect, without_rms, reason }
+        };
+        blocking(move || Ok(effects.into_iter().map(said).collect())).await
     }
 
     pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {

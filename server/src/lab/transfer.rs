@@ -86,10 +86,11 @@ impl Lab {
         self.run(run).await
     }
 
-    /// The whole run as a file, which [`Lab::import`] takes back unchanged.
-    pub async fn export(&self, id: i64, format: FileFormat) -> Answer<Vec<u8>> {
-        let (meta, record) = self.facts(id).await?;
-        let trace = self.inner.store.trace(id, None, 0..record.rows).await?;
+    /// The run, or a stretch of it, as a file, which [`Lab::import`] takes back unchanged.
+    pub async fn export(&self, id: i64, format: FileFormat, from_s: Option<f64>, to_s: Option<f64>) -> Answer<Vec<u8>> {
+        let (meta, _) = self.facts(id).await?;
+        let rows = self.inner.store.rows_between(id, from_s, to_s).await?;
+        let trace = self.inner.store.trace(id, None, rows).await?;
         tokio::task::spawn_blocking(move || write(&meta, &trace, format))
             .await
             .map_err(|fault| LabError::Internal(format!("writing the file failed: {fault}")))?

@@ -57,6 +57,21 @@ impl Store {
     }
 }
 
+impl Store {
+    /// The rows of a run from `from_s` to `to_s`, both included; from its first, or to its last, where left out.
+    pub async fn rows_between(
+        &self,
+        run: RunId,
+        from_s: Option<f64>,
+        to_s: Option<f64>,
+    ) -> Result<Range<u64>, StoreError> {
+        let mut reader = self.readers.begin().await?;
+        let Some(time) = choose(&mut reader, run, None).await?.into_iter().next() else { return Ok(0..0) };
+        let rows = window(&mut reader, run, &time, from_s, to_s).await?;
+        Ok(rows.start as u64..rows.end.max(rows.start) as u64)
+    }
+}
+
 async fn exactly(
     reader: &mut SqliteConnection,
     run: RunId,

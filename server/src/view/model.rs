@@ -80,6 +80,16 @@ pub struct Model {
     pub options: Map<String, Value>,
 }
 
+/// What an effect of a version is worth now, whatever the order in which the effects came.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Worth {
+    pub effect: String,
+    /// The error outside the fit that is left when the others are fitted again without it; `null` where they cannot be.
+    pub without_rms: Option<f64>,
+    /// Why there is no figure.
+    pub reason: Option<String>,
+}
+
 /// A model with the parameters that fit one run best.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Fit {

@@ -170,6 +170,21 @@ pub struct SampleColumn {
     pub max: Vec<Option<f64>>,
 }
 
+/// One channel over every row of a window, nothing left out but what was not measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ChannelStatistics {
+    pub name: String,
+    pub unit: Option<String>,
+    /// Values that there are. The figures are `null` where there is none.
+    pub n: u64,
+    pub mean: Option<f64>,
+    /// Standard deviation about the mean (n − 1); `null` for fewer than two values.
+    pub deviation: Option<f64>,
+    pub rms: Option<f64>,
+    pub min: Option<f64>,
+    pub max: Option<f64>,
+}
+
 impl From<&jointbench_instrument::Channel> for ChannelInfo {
     fn from(channel: &jointbench_instrument::Channel) -> Self {
         Self { name: channel.name.clone(), unit: channel.unit().map(str::to_owned), resolution: channel.resolution }

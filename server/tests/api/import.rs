@@ -65,3 +65,29 @@ fn what_goes_out_comes_in_again_unchanged() {
     assert_eq!(samples["channels"][0]["min"], serde_json::json!([0.2, 0.4, 0.2]));
     assert_eq!((&samples["exact"], &samples["channels"][0]["unit"]), (&true.into(), &"A".into()));
 }
+
+#[test]
+fn a_stretch_goes_out_and_is_summed_up_in_full_resolution() {
+    let daemon = TestDaemon::start();
+    let (status, run) = upload(&daemon, GOOD, &[("meta", META)]);
+    assert_eq!(status, 201, "{run}");
+    let path = format!("/api/v1/runs/{}", run["id"]);
+    let mut part = daemon.get_raw(&format!("{path}/export?format=csv&from_s=0.001&to_s=0.004")).into_body();
+    assert_eq!(part.read_to_string().unwrap().lines().count(), 2, "a head and the one row in the stretch");
+    let (status, figures) = daemon.get(&format!("{path}/statistics?channels=motor_current_a&from_s=0.004"));
+    assert_eq!((status, figures.as_array().unwrap().len()), (200, 1), "{figures}");
+    let current = &figures[0];
+    let is = |name: &str, wanted: f64| assert!((current[name].as_f64().unwrap() - wanted).abs() < 1e-12, "{current}");
+    assert_eq!((&current["n"], &current["unit"]), (&2.into(), &"A".into()));
+    is("mean", 0.15);
+    is("rms", 0.025_f64.sqrt());
+    is("deviation", 0.005_f64.sqrt());
+    is("min", 0.1);
+    is("max", 0.2);
+    let (_, none) = daemon.get(&format!("{path}/statistics?from_s=5"));
+    assert!(none[0]["n"] == 0 && none[0]["mean"].is_null(), "{none}");
+    assert_eq!(
+        daemon.get(&format!("{path}/statistics?channels=absent")).0,
+        daemon.get(&format!("{path}/samples?channels=absent")).0
+    );
+}

@@ -47,6 +47,18 @@ fn two_versions_stand_side_by_side() {
 }
 
 #[test]
+fn each_effect_says_what_it_is_worth() {
+    let Two { daemon, bare, better, .. } = two_versions();
+    let (status, worth) = daemon.get(&format!("/api/v1/models/{}/worth", better["id"]));
+    assert_eq!(status, 200, "{worth}");
+    let of = |effect: &str| worth.as_array().unwrap().iter().find(|one| one["effect"] == effect).unwrap().clone();
+    assert_eq!(of("rub")["without_rms"], bare["validation_rms"], "without what was added it is the version before");
+    assert!(of("coulomb")["without_rms"].as_f64() > better["validation_rms"].as_f64(), "{worth}");
+    assert_eq!(worth.as_array().unwrap().len(), better["effects"].as_array().unwrap().len());
+    assert_eq!(daemon.get("/api/v1/models/99/worth").0, 404);
+}
+
+#[test]
 fn what_is_exported_comes_in_again_unchanged() {
     let Two { daemon, run, better, .. } = two_versions();
     let path = format!("/api/v1/models/{}/export?format=", better["id"]);

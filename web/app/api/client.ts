@@ -64,6 +64,9 @@ export const api = {
 	samples: (id: number, query: { channels?: string; from_s?: number; to_s?: number; px?: number }, signal?: Signal) =>
 		body(client.GET('/api/v1/runs/{id}/samples', { params: { path: { id }, query }, signal })),
 
+	statistics: (id: number, query: { channels?: string; from_s?: number; to_s?: number }, signal?: Signal) =>
+		body(client.GET('/api/v1/runs/{id}/statistics', { params: { path: { id }, query }, signal })),
+
 	effects: (kind?: string, signal?: Signal) => body(client.GET('/api/v1/effects', { params: { query: { kind } }, signal })),
 	formulas: (kind: string, signal?: Signal) => body(client.GET('/api/v1/formulas/{kind}', { params: { path: { kind } }, signal })),
 	checkEffect: (trial: { effect: EffectDefinition; run?: number }, signal?: Signal) =>
@@ -74,6 +77,7 @@ export const api = {
 	models: (run: number, signal?: Signal) => body(client.GET('/api/v1/models', { params: { query: { run } }, signal })),
 	fit: (run: number, effects: string[], parent?: { id: number; more_runs: number[] }) =>
 		body(client.POST('/api/v1/models', { body: { run, effects, parent: parent?.id, more_runs: parent?.more_runs } })),
+	worth: (id: number, signal?: Signal) => body(client.GET('/api/v1/models/{id}/worth', { params: { path: { id } }, signal })),
 	compare: (first: number, second: number, run: number, signal?: Signal) =>
 		body(client.GET('/api/v1/models/{id}/compare/{other}', { params: { path: { id: first, other: second }, query: { run } }, signal })),
 	importModel: (run: number, model: Values) => body(client.POST('/api/v1/models/import', { body: { run, model } })),
@@ -93,6 +97,7 @@ export const modelHref = (id: number, format: 'json' | 'c' | 'lut' | 'mujoco' | 
 
 export const reportHref = (run: number) => `${BASE}/runs/${run}/report`;
 
-export function exportHref(run: number, format: 'csv' | 'parquet'): string {
-	return `${BASE}/runs/${run}/export?format=${format}`;
+export function exportHref(run: number, format: 'csv' | 'parquet', stretch: readonly [from_s: number, to_s: number] | null = null): string {
+	const part = stretch ? `&from_s=${stretch[0]}&to_s=${stretch[1]}` : '';
+	return `${BASE}/runs/${run}/export?format=${format}${part}`;
 }

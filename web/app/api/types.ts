@@ -33,3 +33,4 @@ export type RunState = Schemas['RunState'];
 export type Samples = Schemas['Samples'];
 export type Suggestion = Schemas['Suggestion'];
 export type TradeOff = Schemas['TradeOff'];
+export type Worth = Schemas['Worth'];

@@ -1,6 +1,7 @@
 import uPlot from 'uplot';
 import { colour } from './colour';
 import { type Asked, type View, gestures } from './gestures';
+import { type Cursors, type Moved, rulers } from './measure';
 import { trace } from './trace';
 
 /** `line` joins the points, `chord` only the first and the last; the others mark each point by itself. */
@@ -26,6 +27,8 @@ export interface Frame {
 	height: number;
 	/** The axis below says it already. */
 	bareX?: boolean;
+	/** The cursors of the plots above are the same. */
+	cursorsAbove?: boolean;
 }
 
 /** Behind the curves: stretches of x, and a band of y about zero. */
@@ -37,6 +40,10 @@ export interface Backdrop {
 
 export interface Chart {
 	draw: (data: uPlot.AlignedData, view: View | null, backdrop: Backdrop) => void;
+	/** What the axes show. */
+	shows: () => { x: View; y: View };
+	/** Two cursors to measure between, or none. */
+	measure: (cursors: Cursors | null) => void;
 	resize: (width: number, height: number) => void;
 	destroy: () => void;
 }
@@ -49,9 +56,11 @@ export function makeChart(
 	frame: Frame,
 	asked: Asked,
 	pointed: (index: number | null) => void,
+	moved: Moved = () => {},
 ): Chart {
 	let view: View | null = null;
 	let backdrop = NOTHING;
+	let lines: ReturnType<typeof rulers> | null = null;
 	const hands = gestures(asked);
 	const plot = new uPlot(
 		{
@@ -70,6 +79,7 @@ export function makeChart(
 			},
 			hooks: {
 				...hands.hooks,
+				draw: [() => lines?.place()],
 				drawAxes: [(u) => paintBackdrop(u, backdrop)],
 				setCursor: [(u) => pointed(u.cursor.idx ?? null)],
 			},
@@ -77,16 +87,21 @@ export function makeChart(
 		[[], ...frame.curves.map(() => [])] as unknown as uPlot.AlignedData,
 		host,
 	);
+	lines = rulers(plot, frame.xTitle, moved, !frame.cursorsAbove);
 	return {
 		draw: (data, next, behind) => {
 			view = next;
 			backdrop = behind;
 			plot.setData(data, true);
 		},
+		shows: () => ({ x: shown(plot.scales.x), y: shown(plot.scales.y) }),
+		measure: (cursors) => lines?.put(cursors),
 		resize: (width, height) => plot.setSize({ width, height }),
 		destroy: () => plot.destroy(),
 	};
 }
+
+const shown = (scale: uPlot.Scale | undefined): View => [scale?.min ?? 0, scale?.max ?? 1];
 
 function padded(low: number, high: number): View {
 	if (low == null || high == null) return [0, 1];

@@ -36,16 +36,23 @@ export function picture(plot: HTMLCanvasElement, curves: readonly Curve[]): Prom
 	return canvas.convertToBlob({ type: 'image/png' });
 }
 
-/** Rows within the view; a missing value is an empty cell. */
-export function numbers(xTitle: string, curves: readonly Curve[], data: readonly ArrayLike<number | null>[], view: View | null): string {
+export type Cells = (number | null)[];
+
+/** Rows within the view, x first; `null` for a missing value. */
+export function rowsIn(view: View | null, curves: readonly Curve[], data: readonly ArrayLike<number | null>[]): Cells[] {
 	const x = data[0] ?? [];
-	const rows: (number | null)[][] = [];
+	const rows: Cells[] = [];
 	for (let i = 0; i < x.length; i++) {
 		const at = x[i];
 		if (at == null || (view && (at < view[0] || at > view[1]))) continue;
 		rows.push([at, ...curves.map((_, c) => finite(data[c + 1]?.[i]))]);
 	}
-	return csv([xTitle, ...curves.map(({ label, unit }) => (unit ? `${label} [${unit}]` : label))], rows);
+	return rows;
 }
+
+export const headOf = (xTitle: string, curves: readonly Curve[]): string[] => [xTitle, ...curves.map(({ label, unit }) => (unit ? `${label} [${unit}]` : label))];
+
+export const numbers = (xTitle: string, curves: readonly Curve[], data: readonly ArrayLike<number | null>[], view: View | null): string =>
+	csv(headOf(xTitle, curves), rowsIn(view, curves, data));
 
 const finite = (value: number | null | undefined) => (value == null || Number.isNaN(value) ? null : value);

@@ -1,4 +1,4 @@
-import type { Model, Suggestion } from '../api/types';
+import type { Model, Suggestion, Worth } from '../api/types';
 import { sameData, stepName } from './tree';
 
 export interface Bar {
@@ -32,6 +32,22 @@ export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' |
 		bars.push({ key: 'next', label: `+ ${next.effect.replaceAll('_', ' ')}?`, held: next.validation_rms, training: null, change, id: null });
 	}
 	return bars;
+}
+
+/** What is left when an effect goes and the others are fitted again. */
+export interface Loss {
+	effect: string;
+	without: number;
+}
+
+/** The largest loss first; an effect without which nothing can be fitted has no figure. */
+export function lossesOf(worth: readonly Worth[]): Loss[] {
+	return worth.flatMap(({ effect, without_rms }) => (without_rms == null ? [] : [{ effect, without: without_rms }])).sort((a, b) => b.without - a.without);
+}
+
+/** Where the mark of a bar stands that added one effect alone: the error if that went now. */
+export function markOf(added: readonly string[], losses: readonly Loss[]): number | null {
+	return added.length === 1 ? (losses.find((one) => one.effect === added[0])?.without ?? null) : null;
 }
 
 export function topOf(bars: readonly Bar[], floor: number | null): number {

@@ -7,7 +7,7 @@ import { readRegion, strength, writeRegion, writeStretch } from './region';
 import { sharesOf } from '../residual/line';
 import { selected } from '../residual/selected';
 import { branches, chain, childWith, gain, stepName } from './tree';
-import { barsOf, topOf } from './waterfall';
+import { barsOf, lossesOf, markOf, topOf } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
 	({ id, parent, effects, added, removed: [], run: 1, more_runs: [], validation_rms: held, rms: held * 0.9 }) as unknown as Model;
@@ -63,6 +63,19 @@ it('lets the waterfall end with what would come next', () => {
 	]);
 	expect(bars[1]!.change).toBeCloseTo(-0.6, 12);
 	expect(topOf(bars, 0.3)).toBeGreaterThan(10);
+});
+
+it('says what would be lost, the most first', () => {
+	const losses = lossesOf([
+		{ effect: 'viscous', without_rms: 2 },
+		{ effect: 'coulomb', without_rms: 9 },
+		{ effect: 'inertia', without_rms: null, reason: 'nothing to fit' },
+	]);
+	expect(losses).toEqual([
+		{ effect: 'coulomb', without: 9 },
+		{ effect: 'viscous', without: 2 },
+	]);
+	expect([markOf(['viscous'], losses), markOf(['inertia'], losses), markOf(['viscous', 'coulomb'], losses)]).toEqual([2, null, null]);
 });
 
 describe('regions', () => {

@@ -1,0 +1,82 @@
+import type uPlot from 'uplot';
+
+/** Where the two measuring cursors stand along x. Either may be the left one. */
+export type Cursors = readonly [a: number, b: number];
+export type Moved = (cursors: Cursors) => void;
+
+export function readCursors(text: string | null): Cursors | null {
+	const [a = Number.NaN, b = Number.NaN] = text?.split(':').map(Number) ?? [];
+	return Number.isFinite(a) && Number.isFinite(b) ? [a, b] : null;
+}
+
+export const writeCursors = (cursors: Cursors): string => cursors.map((at) => Number(at.toPrecision(9))).join(':');
+
+/** A third of what is seen from each end: where cursors begin. */
+export const within = ([from, to]: readonly [number, number]): Cursors => [from + (to - from) / 3, to - (to - from) / 3];
+
+/** The rows next to a moment; `null` beyond the ends. */
+export function nearest(x: ArrayLike<number>, at: number): number | null {
+	let best: number | null = null;
+	for (let i = 0; i < x.length; i++) {
+		if (best === null || Math.abs(x[i]! - at) < Math.abs(x[best]! - at)) best = i;
+	}
+	return best;
+}
+
+export interface Rulers {
+	put: (cursors: Cursors | null) => void;
+	/** After every painting: the scale may have moved. */
+	place: () => void;
+}
+
+/** Two lines over a plot: dragged by hand, or moved by the arrow keys, a pixel a stroke, with Shift ten. */
+export function rulers(u: uPlot, title: string, moved: Moved, reachable: boolean): Rulers {
+	let now: Cursors | null = null;
+	const lines = (['A', 'B'] as const).map((name, which) => {
+		const line = document.createElement('div');
+		line.className = `ruler ruler-${name.toLowerCase()}`;
+		line.dataset.name = name;
+		line.tabIndex = reachable ? 0 : -1;
+		line.setAttribute('role', 'slider');
+		line.setAttribute('aria-label', `Cursor ${name} over ${title}`);
+		const to = (x: number) => now && moved(which === 0 ? [x, now[1]] : [now[0], x]);
+		const at = (event: PointerEvent) => u.posToVal(event.clientX - u.over.getBoundingClientRect().left, 'x');
+		line.addEventListener('mousedown', (event) => event.stopPropagation());
+		line.addEventListener('pointerdown', (event) => {
+			event.stopPropagation();
+			line.setPointerCapture(event.pointerId);
+		});
+		line.addEventListener('pointermove', (event) => line.hasPointerCapture(event.pointerId) && to(at(event)));
+		line.addEventListener('keydown', (event) => {
+			const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+			const { min, max } = u.scales.x!;
+			if (step === undefined || now === null || min == null || max == null) return;
+			event.preventDefault();
+			event.stopPropagation();
+			to(now[which]! + (step * (event.shiftKey ? 10 : 1) * (max - min)) / u.over.clientWidth);
+		});
+		return line;
+	});
+	const place = () => {
+		const { min, max } = u.scales.x!;
+		lines.forEach((line, which) => {
+			const x = now?.[which];
+			const seen = x !== undefined && min != null && max != null && x >= min && x <= max;
+			line.hidden = !seen;
+			if (!seen) return;
+			line.style.left = `${u.valToPos(x, 'x')}px`;
+			line.setAttribute('aria-valuemin', String(min));
+			line.setAttribute('aria-valuemax', String(max));
+			line.setAttribute('aria-valuenow', String(x));
+		});
+	};
+	return {
+		put: (cursors) => {
+			if (now === null && cursors) u.over.append(...lines);
+			if (cursors === null) lines.forEach((line) => line.remove());
+			now = cursors;
+			place();
+		},
+		place,
+	};
+}

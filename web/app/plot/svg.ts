@@ -1,0 +1,107 @@
+/** A plot as a drawing of lines: what is on the canvas, to be scaled and edited. */
+import type { Backdrop, Curve } from './chart';
+import type { View } from './gestures';
+import { tickText, ticks } from './ticks';
+
+export interface Drawing {
+	xTitle: string;
+	yTitle: string;
+	curves: readonly Curve[];
+	data: readonly ArrayLike<number | null>[];
+	/** What the axes show. */
+	x: View;
+	y: View;
+	backdrop: Backdrop;
+	width: number;
+	height: number;
+}
+
+const [LEFT, RIGHT, HEAD, FOOT] = [76, 10, 26, 44];
+const escaped = (text: string) => text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
+const short = (pixels: number) => String(Number(pixels.toFixed(2)));
+
+/** `ink` gives the colour of a custom property. */
+export function svgOf(drawing: Drawing, ink: (property: string) => string): string {
+	const { curves, data, backdrop, width, height } = drawing;
+	const [right, foot] = [width - RIGHT, height - FOOT];
+	const x = (value: number) => LEFT + ((value - drawing.x[0]) / (drawing.x[1] - drawing.x[0])) * (right - LEFT);
+	const y = (value: number) => foot - ((value - drawing.y[0]) / (drawing.y[1] - drawing.y[0])) * (foot - HEAD);
+	const text = (at: readonly [number, number], said: string, more = '') => `<text x="${short(at[0])}" y="${short(at[1])}" fill="${ink('--soft')}" ${more}>${escaped(said)}</text>`;
+	const path = (d: string, stroke: string, more = '') => `<path d="${d}" fill="none" stroke="${ink(stroke)}" ${more}/>`;
+	const middle = 'text-anchor="middle"';
+
+	const axes = [
+		...ticks(...drawing.x, 8).flatMap((tick) => [path(`M${short(x(tick))} ${HEAD}V${foot}`, '--hair'), text([x(tick), foot + 16], tickText(tick), middle)]),
+		...ticks(...drawing.y, 5).flatMap((tick) => [path(`M${LEFT} ${short(y(tick))}H${right}`, '--hair'), text([LEFT - 6, y(tick) + 4], tickText(tick), 'text-anchor="end"')]),
+		text([(LEFT + right) / 2, height - 8], drawing.xTitle, middle),
+		text([0, 0], drawing.yTitle, `${middle} transform="translate(14 ${short((HEAD + foot) / 2)}) rotate(-90)"`),
+	];
+	const behind = [
+		backdrop.region && `<rect x="${short(x(backdrop.region[0]))}" y="${HEAD}" width="${short(Math.max(2, x(backdrop.region[1]) - x(backdrop.region[0])))}" height="${foot - HEAD}" fill="${ink('--accent-wash')}"/>`,
+		backdrop.band !== null && `<rect x="${LEFT}" y="${short(y(backdrop.band))}" width="${right - LEFT}" height="${short(y(-backdrop.band) - y(backdrop.band))}" fill="${ink('--sunk')}"/>`,
+	].filter((shape) => shape);
+	const drawn = curves.map((curve, i) => {
+		const points = pointsOf(data[0] ?? [], data[i + 1] ?? [], drawing.x);
+		const at = points.map(([px, py]) => (py === null ? null : ([x(px), y(py)] as const)));
+		const dash = curve.dash?.length ? `stroke-dasharray="${curve.dash.join(' ')}"` : '';
+		if (curve.mark === 'line') return path(joined(points, at, backdrop.gaps), curve.stroke, dash);
+		const seen = at.filter((one) => one !== null);
+		if (curve.mark === 'chord') return path(joined([], [seen[0] ?? null, seen.at(-1) ?? null], []), curve.stroke, dash);
+		if (curve.mark === 'dash') {
+			const reach = ((curve.spread ?? 0) / (drawing.y[1] - drawing.y[0])) * (foot - HEAD);
+			const boxes = reach > 0 ? `<path d="${seen.map(([px, py]) => `M${short(px - 5)} ${short(py - reach)}h10v${short(2 * reach)}h-10Z`).join('')}" fill="${ink(curve.stroke)}" fill-opacity="0.22"/>` : '';
+			return boxes + path(seen.map(([px, py]) => `M${short(px - 5)} ${short(py)}h10`).join(''), curve.stroke, 'stroke-width="2"');
+		}
+		const dots = seen.map(([px, py]) => `M${short(px - 2.5)} ${short(py)}a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0`).join('');
+		return curve.mark === 'dot' ? `<path d="${dots}" fill="${ink(curve.stroke)}"/>` : path(dots, curve.stroke);
+	});
+	let from = LEFT;
+	const legend = curves.map(({ label, stroke, mark, dash }) => {
+		const d = mark === 'dot' || mark === 'ring' ? `M${from + 7.5} 13a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0` : `M${from} 13h20`;
+		const entry = path(d, stroke, `stroke-width="2" stroke-dasharray="${dash?.join(' ') || 'none'}"`) + text([from + 26, 17], label);
+		from += 46 + 6.6 * label.length;
+		return entry;
+	});
+	return [
+		`<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}" font-family="system-ui, sans-serif" font-size="11">`,
+		`<title>${escaped(drawing.yTitle)}</title>`,
+		`<clipPath id="inside"><rect x="${LEFT}" y="${HEAD}" width="${right - LEFT}" height="${foot - HEAD}"/></clipPath>`,
+		`<rect width="${width}" height="${height}" fill="${ink('--panel')}"/>`,
+		`<g clip-path="url(#inside)">${behind.join('')}</g>`,
+		...axes,
+		`<g clip-path="url(#inside)">${drawn.join('\n')}</g>`,
+		...legend,
+		'</svg>\n',
+	].join('\n');
+}
+
+type Point = readonly [x: number, y: number | null];
+
+/** What lies in the window, and one more on each side, so that lines reach its border. */
+function pointsOf(xs: ArrayLike<number | null>, ys: ArrayLike<number | null>, [from, to]: View): Point[] {
+	const points: Point[] = [];
+	for (let i = 0; i < xs.length; i++) {
+		const [before, here, after] = [xs[i - 1] ?? xs[i]!, xs[i], xs[i + 1] ?? xs[i]!];
+		if (here == null || Math.max(here, after) < from || Math.min(here, before) > to) continue;
+		const value = ys[i];
+		points.push([here, value == null || Number.isNaN(value) ? null : value]);
+	}
+	return points;
+}
+
+function joined(points: readonly Point[], at: readonly (readonly [number, number] | null)[], gaps: Backdrop['gaps']): string {
+	let apart = true;
+	return at
+		.map((one, i) => {
+			const [last, here] = [points[i - 1]?.[0], points[i]?.[0]];
+			if (last !== undefined && here !== undefined && gaps.some(([begin, end]) => last <= begin && here >= end)) apart = true;
+			if (one === null) {
+				apart = true;
+				return '';
+			}
+			const step = `${apart ? 'M' : 'L'}${short(one[0])} ${short(one[1])}`;
+			apart = false;
+			return step;
+		})
+		.join('');
+}
