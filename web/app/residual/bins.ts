@@ -8,6 +8,8 @@ export interface Bins {
 	 * dense where the physics is, and on a linear axis the slow speeds would be a hair.
 	 */
 	levels: number[] | null;
+	/** What a value is multiplied by to be read, such as rad/s as rpm. */
+	factor?: number;
 }
 
 /** Points for a bin that shows something. */

@@ -10,7 +10,7 @@ export interface Place {
 	say: (tick: number) => string;
 }
 
-export function place({ edges, levels }: Bins, from: number, to: number, count: number): Place {
+export function place({ edges, levels, factor = 1 }: Bins, from: number, to: number, count: number): Place {
 	const low = edges[0] ?? 0;
 	const high = edges.at(-1) ?? 1;
 	if (!levels) {
@@ -18,12 +18,12 @@ export function place({ edges, levels }: Bins, from: number, to: number, count: 
 		return {
 			at: (value) => from + ((value - low) / span) * (to - from),
 			value: (px) => low + ((px - from) / (to - from)) * span,
-			ticks: ticks(low, high, count),
-			say: tickText,
+			ticks: ticks(low * factor, high * factor, count).map((tick) => tick / factor),
+			say: (tick) => tickText(tick * factor),
 		};
 	}
 	const n = levels.length;
-	const decimals = Math.max(0, Math.min(9, 2 - Math.floor(Math.log10(Math.max(Math.abs(low), Math.abs(high))))));
+	const decimals = Math.max(0, Math.min(9, 2 - Math.floor(Math.log10(factor * Math.max(Math.abs(low), Math.abs(high))))));
 	const each = Math.max(1, Math.ceil(n / count));
 	return {
 		at: (value) => {
@@ -38,7 +38,7 @@ export function place({ edges, levels }: Bins, from: number, to: number, count: 
 		},
 		ticks: levels.filter((_, i) => i % each === Math.floor(((n - 1) % each) / 2)),
 		// Set points were measured; digits beyond the third of the largest tell nothing about which one it is.
-		say: (tick) => tickText(Number(tick.toFixed(decimals)) || 0),
+		say: (tick) => tickText(Number((tick * factor).toFixed(decimals)) || 0),
 	};
 }
 

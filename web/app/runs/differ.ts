@@ -1,7 +1,16 @@
+import { percent } from '../format/number';
+
 /** A figure that several runs give, each with what is known of its interval. */
 export interface Given {
 	value: number;
 	ci95?: readonly (number | null)[] | null;
+}
+
+/** Change against the base, as a share of it: `+17 %`. Nothing where there is no base or it is zero. */
+export function against(base: Given | null, one: Given | null): string {
+	if (!base || !one || base.value === 0) return '';
+	const share = (one.value - base.value) / Math.abs(base.value);
+	return `${share >= 0 ? '+' : ''}${percent(share, Math.abs(share) < 0.1 ? 1 : 0)}`;
 }
 
 function half({ ci95 }: Given): number | null {

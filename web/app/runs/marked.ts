@@ -6,6 +6,9 @@ export function readMarked(text: string | null): number[] {
 	return [...new Set(ids.filter((id) => Number.isInteger(id) && id > 0))].slice(0, MOST);
 }
 
+/** The first is the base, which the others are held against. */
+export const withBase = (marked: readonly number[], id: number): number[] => [id, ...marked.filter((one) => one !== id)];
+
 export function toggleMarked(marked: readonly number[], id: number): number[] {
 	if (marked.includes(id)) return marked.filter((one) => one !== id);
 	return marked.length < MOST ? [...marked, id] : [...marked];

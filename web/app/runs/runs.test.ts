@@ -2,8 +2,8 @@ import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
 import { alignCourses, courseOf, factTable, sharedMoments } from './align';
 import { completions } from './complete';
-import { differ } from './differ';
-import { readMarked, toggleMarked } from './marked';
+import { against, differ } from './differ';
+import { readMarked, toggleMarked, withBase } from './marked';
 
 const samples = {
 	time_s: [0, 1, 2, 3],
@@ -67,4 +67,11 @@ it('completes the last term of a search', () => {
 	expect(completions('-state:f', values)).toEqual(['-state:failed']);
 	expect(completions('tag:', values)).toEqual(['tag:oil', 'tag:"warm oil"']);
 	expect(completions('tag:oil', values)).toEqual([]);
+});
+
+it('holds the others against the base, which comes first', () => {
+	expect(withBase([3, 1, 2], 2)).toEqual([2, 3, 1]);
+	expect(against({ value: -2 }, { value: -1.5 })).toBe('+25 %');
+	expect(against({ value: 4 }, { value: 3.9 })).toBe('−2.5 %');
+	expect([against(null, { value: 1 }), against({ value: 0 }, { value: 1 })]).toEqual(['', '']);
 });

@@ -1,3 +1,4 @@
+import { axisTitle, label } from '../format/label';
 import { speedScale } from '../format/speed';
 import type { Scale } from '../format/number';
 
@@ -14,6 +15,11 @@ class Speed {
 
 	scale(unit: string): Scale {
 		return speedScale(unit, this.rpm);
+	}
+
+	/** The title of an axis in the unit that is shown. */
+	title(column: string, unit?: string | null): string {
+		return axisTitle(column, this.scale(label(column, unit).unit).unit);
 	}
 }
 

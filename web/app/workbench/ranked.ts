@@ -18,12 +18,12 @@ export interface Ranked {
 const RUNS_ALONG = /^time_s$|^run_order$|^temperature|position/;
 
 /** Every axis with the curve of some figure of each point, the axis that explains most of it first. */
-export function rankAxes(set: ResidualSet, figure: readonly number[], side: Side, ramps: boolean, noise: number): Ranked[] {
+export function rankAxes(set: ResidualSet, figure: readonly number[], side: Side, ramps: boolean, noise: number, shown: (unit: string) => { factor: number } = () => ({ factor: 1 })): Ranked[] {
 	const kept = keep(set, side, ramps);
 	const sides = { positive: keep(set, 'positive', ramps), negative: keep(set, 'negative', ramps) };
 	return usefulAxes(set, kept)
 		.map((axis) => {
-			const bins = binsFor(axis.values, RUNS_ALONG.test(axis.name) ? [] : set.segment, kept);
+			const bins = { ...binsFor(axis.values, RUNS_ALONG.test(axis.name) ? [] : set.segment, kept), factor: shown(axis.unit).factor };
 			const { edges } = bins;
 			const over = (which: Uint8Array) => curve(axis.values, edges, figure, which, noise);
 			return {
