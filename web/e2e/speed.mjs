@@ -1,0 +1,95 @@
+// How quick the pages are, against a running daemon with a mock bench and, for the first part, a stored run of millions of rows:
+//   node web/e2e/speed.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
+// Prints one line a figure. Chromium draws in software; what else the machine does counts in.
+import { expect, open, settings, tell } from './browser.mjs';
+import { startRun } from './steps.mjs';
+
+const where = settings('usage: node web/e2e/speed.mjs http://127.0.0.1:8080 [path/to/chromium]');
+const rest = async (path) => (await fetch(`${where.base}/api/v1${path}`)).json();
+const say = (what, figures, unit) => console.log(`${what}: ${[].concat(figures).map((one) => one.toFixed(one < 10 ? 1 : 0)).join(', ')} ${unit}`);
+const LIVE_S = 15;
+const HANDS = 12;
+const median = (list) => list.toSorted((a, b) => a - b)[list.length >> 1];
+
+/** Milliseconds from the start of the page until `done` holds and is painted. */
+async function opened(page, address, done) {
+	await page.goto(address, { waitUntil: 'commit' });
+	await page.waitForFunction(done, null, { timeout: 120_000, polling: 'raf' });
+	return page.evaluate(() => new Promise((ok) => requestAnimationFrame(() => requestAnimationFrame(() => ok(performance.now())))));
+}
+
+/** Turns the wheel over a plot; milliseconds until the picture has moved, and until the samples of the new view are drawn. */
+async function zoom(page, plot, deltaY) {
+	return page.evaluate(
+		async ([selector, deltaY]) => {
+			const over = document.querySelector(selector);
+			const box = over.getBoundingClientRect();
+			const asked = () => performance.getEntriesByType('resource').filter((one) => one.name.includes('/samples?')).length;
+			const painted = () => new Promise((ok) => requestAnimationFrame(() => setTimeout(ok)));
+			performance.clearResourceTimings();
+			const begun = performance.now();
+			over.dispatchEvent(new WheelEvent('wheel', { deltaY, clientX: box.left + box.width * 0.4, clientY: box.top + 20, bubbles: true, cancelable: true }));
+			await painted();
+			const moved = performance.now() - begun;
+			const until = begun + 5000;
+			while (asked() === 0 && performance.now() < until) await painted();
+			await painted();
+			return { moved, sharp: performance.now() - begun };
+		},
+		[plot, deltaY],
+	);
+}
+
+await tell('speed', async () => {
+	const { browser, page, faults } = await open(where);
+	const { runs } = await rest('/runs?search=' + encodeURIComponent('rows>1000000'));
+	if (runs.length === 0) console.log('no run of more than a million rows is stored: the first part is left out');
+	for (const { id, rows } of runs.slice(0, 1)) {
+		const workbench = `${where.base}/workbench/${id}`;
+		const there = () => document.querySelector('section[data-verdict]') && document.querySelector('main canvas') && document.querySelectorAll('main .uplot').length >= 2 && !document.querySelector('main .old');
+		say(`${rows} rows, workbench for the first time (fit and diagnosis)`, await opened(page, workbench, there), 'ms');
+		const again = [];
+		for (let i = 0; i < 5; i++) again.push(await opened(page, workbench, there));
+		say('workbench again', again, 'ms');
+		const near = [];
+		for (let i = 0; i < HANDS; i++) near.push((await zoom(page, 'main .uplot .u-over', i % 2 ? 60 : -60)).moved);
+		say('zoom in the workbench, p50 and worst', [median(near), Math.max(...near)], 'ms');
+		say('run page with its plots', await opened(page, `${where.base}/runs/${id}`, () => document.querySelector('main .uplot canvas')), 'ms');
+		await page.waitForTimeout(1500);
+		const hands = [];
+		for (let i = 0; i < HANDS; i++) hands.push(await zoom(page, 'main .uplot .u-over', i < HANDS / 2 ? -60 : 60));
+		for (const [what, key] of [['picture has moved', 'moved'], ['samples of the new view drawn', 'sharp']]) {
+			const list = hands.map((one) => one[key]);
+			say(`zoom on the run page, ${what}, p50 and worst`, [median(list), Math.max(...list)], 'ms');
+		}
+	}
+
+	await startRun(page, where.base, '?p.sample_rate_hz=1000&p.repeats=4');
+	await page.locator('.uplot').first().waitFor();
+	await page.goto(`${page.url()}?hide=none`);
+	await page.locator('.uplot').nth(4).waitFor();
+	await page.waitForTimeout(3000);
+	const session = await page.context().newCDPSession(page);
+	await session.send('Performance.enable');
+	const metrics = async () => Object.fromEntries((await session.send('Performance.getMetrics')).metrics.map(({ name, value }) => [name, value]));
+	const channels = await page.locator('main table').first().locator('tr').count();
+	const before = await metrics();
+	const frames = await page.evaluate(
+		(wait_ms) =>
+			new Promise((ok) => {
+				const times = [];
+				const begun = performance.now();
+				const step = (now) => (times.push(now), now - begun < wait_ms ? requestAnimationFrame(step) : ok(times.length - 1));
+				requestAnimationFrame(step);
+			}),
+		LIVE_S * 1000,
+	);
+	const after = await metrics();
+	expect(/RUNNING/.test(await page.locator('header:has(h1)').last().innerText()), 'the run ended before its plots were watched');
+	say(`live, ${channels} channels and time at 1 kHz, pictures a second`, frames / LIVE_S, '1/s');
+	for (const [what, name] of [['main thread', 'TaskDuration'], ['of that scripts', 'ScriptDuration']]) say(`${what} for each picture`, (1000 * (after[name] - before[name])) / frames, 'ms');
+	const run = Number(/runs\/(\d+)/.exec(page.url())[1]);
+	await fetch(`${where.base}/api/v1/runs/${run}/abort`, { method: 'POST' });
+	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
+	await browser.close();
+});
