@@ -78,7 +78,7 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
         let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
         let named = |what: &str, symbol: &str, text: &str, unit: &str, value| {
-            let words = [&format!("element_{n}_{what}"), &format!("{symbol}{n}"), &format!("{title}: {text}"), unit];
+            let words = [&format!("element_{n}_{what}"), &format!("{symbol}_{n}"), &format!("{title}: {text}"), unit];
             quantity(words.map(|word: &str| word), value, None)
         };
         quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", stiffness));
@@ -214,7 +214,7 @@ fn loops(held: &[&Swings], at: Dahl) -> Figure {
     let mut shown: Vec<f64> = Vec::new();
     for swings in held {
         let top_nm = swings.torque_nm.iter().copied().fold(0.0, f64::max);
-        if shown.iter().any(|seen| (seen - top_nm).abs() < 0.01 * top_nm) {
+        if shown.iter().any(|seen| (seen - top_nm).abs() < 0.05 * top_nm) {
             continue;
         }
         shown.push(top_nm);
