@@ -2,7 +2,7 @@
 
 use crate::driver::{
     AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, LorenzSensor, LorenzSettings,
-    OdriveJoint, OdriveSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
+    OdriveJoint, OdriveSettings, PumaAxis, PumaSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
 };
 use crate::transport::PortSettings;
 use jointbench_instrument::bench::JointConstants;
@@ -16,13 +16,43 @@ use std::sync::Arc;
 /// How each instrument is reached. Absence is an empty slot.
 #[derive(Debug, Clone)]
 pub struct InstrumentSettings {
-    pub joint: OdriveSettings,
+    pub joint: JointSettings,
     pub torque_sensor: Option<TorqueSensorSettings>,
     pub brake: Option<ScpiSettings>,
     pub reference_encoder: Option<QsbSettings>,
     pub test_encoder: Option<QsbSettings>,
     pub stage: Option<GcsSettings>,
     pub thermometer: Option<AdamSettings>,
+}
+
+#[derive(Debug, Clone)]
+pub enum JointSettings {
+    Odrive(OdriveSettings),
+    Puma(PumaSettings),
+}
+
+impl JointSettings {
+    fn parts(&mut self) -> (&'static str, &str, &mut PortSettings) {
+        match self {
+            JointSettings::Odrive(settings) => ("odrive", &settings.name, &mut settings.port),
+            JointSettings::Puma(settings) => ("puma", &settings.name, &mut settings.port),
+        }
+    }
+
+    /// Motor current for each volt, where it is read as the voltage at a shunt.
+    pub fn amperes_per_volt(&self) -> Option<f64> {
+        match self {
+            JointSettings::Odrive(_) => None,
+            JointSettings::Puma(settings) => Some(settings.amperes_per_volt),
+        }
+    }
+
+    fn open(self, clock: Arc<dyn Clock>) -> Result<Box<dyn JointController>, Fault> {
+        Ok(match self {
+            JointSettings::Odrive(settings) => Box::new(OdriveJoint::open(settings, clock)?),
+            JointSettings::Puma(settings) => Box::new(PumaAxis::open(settings, clock)?),
+        })
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -79,8 +109,9 @@ impl InstrumentSettings {
             TorqueSensorSettings::Lorenz(settings) => (&settings.name, &mut settings.port),
             TorqueSensorSettings::Multimeter(settings) => (&settings.name, &mut settings.port),
         });
+        let (_, name, port) = self.joint.parts();
+        port.record = Some(folder.join(format!("{name}.traffic")));
         let all = [
-            Some((&self.joint.name, &mut self.joint.port)),
             sensor,
             self.brake.as_mut().map(|brake| (&brake.name, &mut brake.port)),
             self.reference_encoder.as_mut().map(|counter| (&counter.name, &mut counter.port)),
@@ -96,10 +127,9 @@ impl InstrumentSettings {
     /// Opens and identifies every instrument; one that does not answer keeps no other from being asked. Nothing moves.
     pub fn open(&self, clock: &Arc<dyn Clock>) -> Instruments {
         let mut desk = Desk { asked: Vec::new() };
-        let joint = self.joint.clone();
-        let joint = desk.ask("joint", "odrive", &self.joint.name, &self.joint.port, || {
-            Ok(Box::new(OdriveJoint::open(joint, Arc::clone(clock))?) as Box<dyn JointController>)
-        });
+        let (mut joint, opened) = (self.joint.clone(), self.joint.clone());
+        let (driver, name, port) = joint.parts();
+        let joint = desk.ask("joint", driver, name, port, || opened.open(Arc::clone(clock)));
         let torque_sensor = self.torque_sensor.clone().and_then(|settings| {
             let (driver, name, port) = match &settings {
                 TorqueSensorSettings::Lorenz(lorenz) => ("lorenz", &lorenz.name, &lorenz.port),

@@ -19,8 +19,8 @@ pub mod transport;
 
 pub use driver::{
     AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, LorenzSensor, LorenzSettings,
-    OdriveJoint, OdriveSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
+    OdriveJoint, OdriveSettings, PumaAxis, PumaSettings, QsbCounter, QsbSettings, ScpiSettings, ScpiSource,
 };
-pub use instruments::{Asked, InstrumentSettings, Instruments, TorqueSensorSettings};
+pub use instruments::{Asked, InstrumentSettings, Instruments, JointSettings, TorqueSensorSettings};
 pub use sim::{Joint, MockBench, MockSettings, Replay};
 pub use transport::{Address, PortSettings};

@@ -91,7 +91,10 @@ fn the_drive_reports_what_it_is_and_stands_down() {
     stretch(&mut bench, 50.0, 0.0, 0.4);
     let health = bench.joint.health().unwrap();
     assert!(health.armed && health.errors.is_empty(), "{health:?}");
-    assert!((20.0..40.0).contains(&health.temperature.unwrap().0) && health.bus_voltage.0 > 20.0, "{health:?}");
+    assert!(
+        (20.0..40.0).contains(&health.temperature.unwrap().0) && health.bus_voltage.unwrap().0 > 20.0,
+        "{health:?}"
+    );
     bench.joint.disarm().unwrap();
     assert!(!bench.joint.health().unwrap().armed);
     bench.clock.sleep_until_s(bench.clock.now_s() + 1.0);

@@ -6,6 +6,7 @@ use jointbench_devices::protocol::lorenz::{
 };
 use jointbench_devices::protocol::modbus::ReadRegisters;
 use jointbench_devices::protocol::odrive::{Part, ReadErrors, ReadFeedback, ReadInfo, ReadNumber, SetVelocity};
+use jointbench_devices::protocol::puma::{DiagRead, Numbered, PositionMode, ReadPosition};
 use jointbench_devices::protocol::qsb::{ReadRegister, Register, WriteRegister};
 use jointbench_devices::protocol::scpi::{
     Dialect, Identify, QueryError, QueryFlag, QueryNumber, ReadCondition, ReadMeasured, ReadVoltage, Set, Terminator,
@@ -83,6 +84,8 @@ proptest! {
         walk(&ReadRegister(Register::Encoder), &noise);
         walk(&WriteRegister(Register::Mode, 0), &noise);
         walk(&REGISTERS, &noise);
+        walk(&Numbered { number: 1, order: PositionMode(-5) }, &noise);
+        walk(&Numbered { number: 0x5A, order: DiagRead(4) }, &noise);
         walk(&QueryAxes("POS?"), &noise);
         walk(&gcs::Identify, &noise);
         walk(&gcs::Set("FRF".into()), &noise);
@@ -102,6 +105,17 @@ proptest! {
         check_back_in_step(&ReadRegister(Register::Encoder), &noise, b"\n", b"r 0E 000012F3 0000ABD0 !\r\n");
         // A line that ends with a blank is not the last one of its reply.
         check_back_in_step(&gcs::QueryError, &noise, b".\n", b"7\n");
+    }
+
+    #[test]
+    fn frames_are_found_behind_noise(noise in bytes(), counts in any::<i16>()) {
+        let noise: Vec<u8> = noise.into_iter().filter(|byte| *byte != 0x5A).collect();
+        let [high, low] = counts.to_be_bytes();
+        let sum = [0x07, 0x01, high, low].iter().fold(0u8, |sum, byte| sum.wrapping_sub(*byte));
+        let reply = [0x5A, 0x07, 0x01, high, low, sum];
+        let request = Numbered { number: 0x07, order: ReadPosition };
+        check_back_in_step(&request, &noise, b"", &reply);
+        check_back_in_step(&request, &reply[..4], b"", &reply);
     }
 
     #[test]

@@ -51,7 +51,8 @@ pub struct JointReading {
 pub struct DriveHealth {
     pub armed: bool,
     pub errors: Vec<String>,
-    pub bus_voltage: Volts,
+    /// Where the drive measures it.
+    pub bus_voltage: Option<Volts>,
     pub temperature: Option<Celsius>,
 }
 
@@ -73,6 +74,10 @@ pub trait JointController: Instrument {
     fn disarm(&mut self) -> Result<(), Fault>;
     /// The smallest steps of the readings.
     fn resolution(&self) -> JointResolution;
+    /// Motor current for each volt, where the drive reads it as the voltage at a shunt.
+    fn amperes_per_volt(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// The smallest steps that a joint controller can report.

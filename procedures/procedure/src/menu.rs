@@ -127,6 +127,7 @@ impl BenchFacts {
             has_brake: brake_a > 0.0,
             encoder_counts: None,
             has_stage: false,
+            amperes_per_volt: None,
         }
     }
 }

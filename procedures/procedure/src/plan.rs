@@ -20,6 +20,8 @@ pub struct BenchFacts {
     /// Reference and test: counts of a turn. `None` where one of them is missing.
     pub encoder_counts: Option<[f64; 2]>,
     pub has_stage: bool,
+    /// Motor current for each volt, where the joint's servo reads it as the voltage at a shunt.
+    pub amperes_per_volt: Option<f64>,
 }
 
 impl BenchFacts {
@@ -35,6 +37,7 @@ impl BenchFacts {
                 .zip(counts(&bench.test_encoder))
                 .map(|(reference, test)| [reference, test]),
             has_stage: bench.stage.is_some(),
+            amperes_per_volt: bench.joint.amperes_per_volt(),
         }
     }
 }

@@ -78,6 +78,7 @@ impl BenchHandle {
             has_brake: has.brake,
             encoder_counts: has.encoder_counts,
             has_stage: has.stage,
+            amperes_per_volt: has.amperes_per_volt,
         }
     }
 

@@ -98,8 +98,8 @@ fn joint_state(joint: &mut dyn JointController) -> State {
     let (health, reading) = (joint.health()?, joint.read()?);
     let armed = if health.armed { "armed" } else { "off" };
     let heat = health.temperature.map(|felt| format!(", {:.1} °C", felt.0)).unwrap_or_default();
-    let (bus_v, at_rad) = (health.bus_voltage.0, reading.motor_position.0);
-    let told = format!("{armed}, bus {bus_v:.1} V{heat}, motor at {at_rad:.3} rad");
+    let bus = health.bus_voltage.map(|bus| format!(", bus {:.1} V", bus.0)).unwrap_or_default();
+    let told = format!("{armed}{bus}{heat}, motor at {:.3} rad", reading.motor_position.0);
     let against = match (health.errors.is_empty(), health.armed) {
         (false, _) => Some(format!("it reports {}; clear it with the drive's own tool", health.errors.join(", "))),
         (true, true) => Some("it holds torque already; end the program that drives it".to_owned()),

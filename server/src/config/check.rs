@@ -77,7 +77,8 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
 }
 
 fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
-    let joints = [("a", Joint::JointA), ("b", Joint::JointB), ("encoder_shaft", Joint::EncoderShaft)];
+    let joints =
+        [("a", Joint::JointA), ("b", Joint::JointB), ("encoder_shaft", Joint::EncoderShaft), ("puma", Joint::Puma)];
     let joint = choice(&raw.joint, "joint", &joints, wrong);
     for effect in raw.effects.iter().filter(|effect| !HIDDEN_EFFECTS.contains(&effect.get_ref().as_str())) {
         let known = HIDDEN_EFFECTS.join(", ");
@@ -85,8 +86,8 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     }
     let loads = [("brake_a", Load::BrakeA), ("gear_and_brake_b", Load::GearAndBrakeB)];
     let load = raw.load.as_ref().map(|load| choice(load, "load", &loads, wrong));
-    if let (Some(given), Some(Joint::EncoderShaft)) = (&raw.load, joint) {
-        wrong.add(given.span(), "an encoder shaft has no load: leave load out");
+    if let (Some(given), Some(Joint::EncoderShaft | Joint::Puma)) = (&raw.load, joint) {
+        wrong.add(given.span(), "this joint has no load: leave load out");
     }
     let supplies = [("dp821a", Supply::Dp821a), ("hmp4040", Supply::Hmp4040)];
     let supply =

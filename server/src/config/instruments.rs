@@ -5,13 +5,16 @@ use super::raw::{RawBench, RawCounter, RawJoint, RawPort, RawThermometer, RawTor
 use super::values::{calibrated, choice, deadline_ms, flip, port, positive, within};
 use jiff::civil::Date;
 use jointbench_devices::driver::{
-    AdamSettings, DmmSettings, GcsSettings, LorenzSettings, OdriveSettings, QsbSettings, Range, ScpiSettings,
-    Thermistor,
+    AdamSettings, DmmSettings, GcsSettings, LorenzSettings, OdriveSettings, PumaSettings, QsbSettings,
+    Range as TorqueRange, ScpiSettings, Thermistor,
 };
-use jointbench_devices::{InstrumentSettings, TorqueSensorSettings};
+use jointbench_devices::{InstrumentSettings, JointSettings, PortSettings, TorqueSensorSettings};
+use std::ops::Range;
 use toml::Spanned;
 use toml::value::Datetime;
 
+/// Ticks of a Puma's servo from one set-point to the next, where none are given: VAL's 28 ms.
+const NINTER: u8 = 32;
 /// Counts of a turn after the quadrature: what the counter's 32 bits hold with turns to spare.
 const MOST_COUNTS: u32 = 1 << 24;
 
@@ -71,20 +74,67 @@ fn check_ports(raw: &RawBench, wrong: &mut Collector) {
     }
 }
 
-fn check_joint(raw: &RawJoint, wrong: &mut Collector) -> Option<OdriveSettings> {
-    let driver = choice(&raw.driver, "driver", &[("odrive", ())], wrong);
-    let port = port(&raw.port, raw.baud.unwrap_or(921_600), wrong);
+fn check_joint(raw: &RawJoint, wrong: &mut Collector) -> Option<JointSettings> {
+    let is_puma = choice(&raw.driver, "driver", &[("odrive", false), ("puma", true)], wrong);
+    let port = port(&raw.port, raw.baud.unwrap_or(if is_puma == Some(true) { 115_200 } else { 921_600 }), wrong);
     let deadline_ms = deadline_ms(raw.deadline_ms.as_ref(), wrong);
+    if is_puma? { check_puma(raw, port, deadline_ms, wrong) } else { check_odrive(raw, port, deadline_ms, wrong) }
+}
+
+fn check_odrive(
+    raw: &RawJoint,
+    port: Option<PortSettings>,
+    deadline_ms: Option<u64>,
+    wrong: &mut Collector,
+) -> Option<JointSettings> {
     let thermistors = [("motor", Thermistor::Motor), ("power_stage", Thermistor::PowerStage)];
     let thermistor = raw.thermistor.as_ref().map(|given| choice(given, "thermistor", &thermistors, wrong));
-    driver?;
-    Some(OdriveSettings {
+    for (name, place) in [
+        ("counts_per_turn", raw.counts_per_turn.as_ref().map(Spanned::span)),
+        ("amperes_per_volt", raw.amperes_per_volt.as_ref().map(Spanned::span)),
+        ("ninter", raw.ninter.as_ref().map(Spanned::span)),
+    ] {
+        misplaced(name, "odrive", place, wrong);
+    }
+    Some(JointSettings::Odrive(OdriveSettings {
         name: "joint".into(),
         port: port?,
         deadline_ms: deadline_ms?,
-        link_encoder: raw.link_encoder,
+        link_encoder: raw.link_encoder.as_ref().is_some_and(|given| *given.get_ref()),
         thermistor: flip(thermistor)?,
-    })
+    }))
+}
+
+fn check_puma(
+    raw: &RawJoint,
+    port: Option<PortSettings>,
+    deadline_ms: Option<u64>,
+    wrong: &mut Collector,
+) -> Option<JointSettings> {
+    misplaced("link_encoder", "puma", raw.link_encoder.as_ref().map(Spanned::span), wrong);
+    misplaced("thermistor", "puma", raw.thermistor.as_ref().map(Spanned::span), wrong);
+    if raw.counts_per_turn.is_none() || raw.amperes_per_volt.is_none() {
+        let cure = "a puma has to give counts_per_turn of its encoder and amperes_per_volt of its shunt";
+        wrong.add(raw.driver.span(), cure);
+    }
+    let counts =
+        raw.counts_per_turn.as_ref().and_then(|given| within(given, "counts_per_turn", 4..=MOST_COUNTS, wrong));
+    let scale = raw.amperes_per_volt.as_ref().and_then(|given| positive(given, "amperes_per_volt", wrong));
+    let ninter = raw.ninter.as_ref().map_or(Some(NINTER), |given| within(given, "ninter", 1..=255, wrong));
+    Some(JointSettings::Puma(PumaSettings {
+        name: "joint".into(),
+        port: port?,
+        deadline_ms: deadline_ms?,
+        counts_per_turn: counts?,
+        amperes_per_volt: scale?,
+        ninter: ninter?,
+    }))
+}
+
+fn misplaced(what: &str, driver: &str, place: Option<Range<usize>>, wrong: &mut Collector) {
+    if let Some(place) = place {
+        wrong.add(place, format!("{what} is not for driver {driver:?}: leave it out"));
+    }
 }
 
 fn check_sensor(raw: &RawTorqueSensor, wrong: &mut Collector) -> Option<TorqueSensorSettings> {
@@ -93,7 +143,7 @@ fn check_sensor(raw: &RawTorqueSensor, wrong: &mut Collector) -> Option<TorqueSe
     let port = port(&raw.port, baud, wrong);
     let deadline_ms = deadline_ms(raw.deadline_ms.as_ref(), wrong);
     let nominal_nm = positive(&raw.nominal_nm, "nominal_nm", wrong);
-    let ranges = [("fine", Range::Fine), ("coarse", Range::Coarse)];
+    let ranges = [("fine", TorqueRange::Fine), ("coarse", TorqueRange::Coarse)];
     let range = raw.range.as_ref().map(|range| choice(range, "range", &ranges, wrong));
     let name = "torque_sensor".into();
     if is_lorenz? {

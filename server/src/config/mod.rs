@@ -19,13 +19,15 @@ use jointbench_instrument::bench::JointConstants;
 use std::path::{Path, PathBuf};
 
 /// Ready-made descriptions, also to start a new one from.
-pub const READY_MADE: [(&str, &str); 6] = [
+pub const READY_MADE: [(&str, &str); 8] = [
     ("joint-a-mock", include_str!("../../descriptions/joint-a-mock.toml")),
     ("joint-b-mock", include_str!("../../descriptions/joint-b-mock.toml")),
     ("encoder-bench-mock", include_str!("../../descriptions/encoder-bench-mock.toml")),
+    ("puma-mock", include_str!("../../descriptions/puma-mock.toml")),
     ("joint-a", include_str!("../../descriptions/joint-a.toml")),
     ("joint-b", include_str!("../../descriptions/joint-b.toml")),
     ("encoder-bench", include_str!("../../descriptions/encoder-bench.toml")),
+    ("puma", include_str!("../../descriptions/puma.toml")),
 ];
 
 /// A checked bench.
@@ -58,6 +60,8 @@ pub struct Has {
     /// Counts of a turn: reference, and encoder under test.
     pub encoder_counts: Option<[f64; 2]>,
     pub stage: bool,
+    /// Motor current for each volt, where it is read as the voltage at a shunt.
+    pub amperes_per_volt: Option<f64>,
 }
 
 impl BenchDescription {
@@ -87,6 +91,7 @@ impl BenchDescription {
                 encoder_counts: (settings.has(MockInstrument::CounterS1) && settings.has(MockInstrument::CounterS2))
                     .then_some(ENCODER_COUNTS.map(f64::from)),
                 stage: settings.has(MockInstrument::Stage),
+                amperes_per_volt: settings.amperes_per_volt(),
             },
             Source::Hardware(settings) => Has {
                 torque_sensor: settings.torque_sensor.is_some(),
@@ -97,6 +102,7 @@ impl BenchDescription {
                     .zip(settings.test_encoder.as_ref())
                     .map(|(reference, test)| [reference, test].map(|counter| f64::from(counter.counts_per_turn))),
                 stage: settings.stage.is_some(),
+                amperes_per_volt: settings.joint.amperes_per_volt(),
             },
         }
     }

@@ -65,9 +65,12 @@ pub struct RawJoint {
     pub port: Spanned<String>,
     pub baud: Option<u32>,
     pub deadline_ms: Option<Spanned<u64>>,
-    #[serde(default)]
-    pub link_encoder: bool,
+    pub link_encoder: Option<Spanned<bool>>,
     pub thermistor: Option<Spanned<String>>,
+    /// Of a Puma-type servo.
+    pub counts_per_turn: Option<Spanned<u32>>,
+    pub amperes_per_volt: Option<Spanned<f64>>,
+    pub ninter: Option<Spanned<u8>>,
 }
 
 #[derive(Debug, Deserialize)]

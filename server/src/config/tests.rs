@@ -8,7 +8,11 @@ fn the_ready_made_descriptions_are_right() {
         let benches = parse(name, text).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         assert_eq!((benches.len(), benches[0].name.as_str()), (1, name));
         assert_eq!(benches[0].is_simulated(), name.ends_with("-mock"));
-        assert_eq!(benches[0].limits.brake_power_w == 0.0, name.starts_with("encoder"), "a limit for a brake there is");
+        assert_eq!(
+            benches[0].limits.brake_power_w == 0.0,
+            name.starts_with("encoder") || name.starts_with("puma"),
+            "a limit for a brake there is"
+        );
     }
 }
 
@@ -46,7 +50,7 @@ name = \"two\"
     let said = mistakes.to_string();
     for expected in [
         "line 2: name \"bench one\"",
-        "line 4: driver \"odrve\" is not known: write \"odrive\"",
+        "line 4: driver \"odrve\" is not known: write \"odrive\" or \"puma\"",
         "line 8: port \"/dev/ttyUSB0\" has an instrument already",
         "line 9: deadline_ms 0: choose 1 to 10000",
         "line 11: limits.motor_velocity_rad_s = -3: give a number above 0",
@@ -132,4 +136,31 @@ fn what_toml_itself_refuses_has_a_line_too() {
         assert_eq!(mistakes.mistakes[0].line, line, "{mistakes}");
         assert!(mistakes.to_string().contains(said), "{mistakes}");
     }
+}
+
+#[test]
+fn a_puma_tells_what_its_driver_needs_and_nothing_of_another() {
+    let text = "[[bench]]
+name = \"arm\"
+[bench.joint]
+driver = \"puma\"
+port = \"/dev/ttyUSB0\"
+link_encoder = true
+counts_per_turn = 800
+ninter = 0
+";
+    let said = parse("bench.toml", text).unwrap_err().to_string();
+    for expected in [
+        "line 4: a puma has to give counts_per_turn of its encoder and amperes_per_volt",
+        "line 6: link_encoder is not for driver \"puma\": leave it out",
+        "line 8: ninter 0: choose 1 to 255",
+    ] {
+        assert!(said.contains(expected), "{expected:?} in\n{said}");
+    }
+    let text = text.replace("puma", "odrive");
+    let said = parse("bench.toml", &text).unwrap_err().to_string();
+    assert!(said.contains("line 8: ninter is not for driver \"odrive\": leave it out"), "{said}");
+    let mock = "[[bench]]\nname = \"arm\"\n[bench.mock]\njoint = \"puma\"\nload = \"brake_a\"\n";
+    let said = parse("bench.toml", mock).unwrap_err().to_string();
+    assert!(said.contains("line 5: this joint has no load"), "{said}");
 }

@@ -6,6 +6,7 @@ mod gcs;
 mod lorenz;
 mod lorenz_stream;
 mod odrive;
+mod puma;
 mod qsb;
 mod scpi;
 mod stream_clock;
@@ -15,6 +16,7 @@ pub use dmm::{DmmSettings, DmmTorqueSensor};
 pub use gcs::{GcsSettings, GcsStage};
 pub use lorenz::{LorenzSensor, LorenzSettings, Range};
 pub use odrive::{OdriveJoint, OdriveSettings, Thermistor};
+pub use puma::{PumaAxis, PumaSettings};
 pub use qsb::{QsbCounter, QsbSettings};
 pub use scpi::{ScpiSettings, ScpiSource};
 

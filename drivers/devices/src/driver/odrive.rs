@@ -239,7 +239,7 @@ impl JointController for OdriveJoint {
     fn health(&mut self) -> Result<DriveHealth, Fault> {
         let armed = self.state()? == CLOSED_LOOP;
         let errors = self.errors()?;
-        let bus_voltage = Volts(self.link.request(&ReadNumber { path: "vbus_voltage" })?);
+        let bus_voltage = Some(Volts(self.link.request(&ReadNumber { path: "vbus_voltage" })?));
         let path = self.settings.thermistor.map(|thermistor| match thermistor {
             Thermistor::Motor => "axis0.motor.motor_thermistor.temperature",
             Thermistor::PowerStage => "axis0.motor.fet_thermistor.temperature",

@@ -4,6 +4,7 @@ pub mod gcs;
 pub mod lorenz;
 pub mod modbus;
 pub mod odrive;
+pub mod puma;
 pub mod qsb;
 pub mod scpi;
 

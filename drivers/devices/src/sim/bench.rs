@@ -2,7 +2,7 @@
 
 use super::clock::SteppedClock;
 use super::data_sheet::{Joint, Load};
-use super::firmware::Odrive;
+use super::firmware::{AMPERES_PER_VOLT, Firmware, Odrive, PUMA_COUNTS, Puma};
 use super::plant::{HIDDEN_EFFECTS, Hidden, Plant, Truth};
 #[cfg(unix)]
 use super::port::serve_terminal;
@@ -10,9 +10,10 @@ use super::port::{Port, lock, serve_inside, serve_tcp};
 use super::rig::{MockInstrument, Rig, Supply};
 use super::trouble::{PlannedTrouble, Trouble};
 use crate::driver::{
-    AdamSettings, GcsSettings, LorenzSettings, OdriveSettings, QsbSettings, Range, ScpiSettings, Thermistor,
+    AdamSettings, GcsSettings, LorenzSettings, OdriveSettings, PumaSettings, QsbSettings, Range, ScpiSettings,
+    Thermistor,
 };
-use crate::instruments::{InstrumentSettings, TorqueSensorSettings};
+use crate::instruments::{InstrumentSettings, JointSettings, TorqueSensorSettings};
 use crate::transport::{Address, PortSettings};
 use jointbench_instrument::{Bench, Clock, Fault};
 use std::io;
@@ -21,6 +22,8 @@ use std::thread::JoinHandle;
 
 /// Counts of a turn of encoders S1 and S2, as their owner knows them.
 pub const ENCODER_COUNTS: [u32; 2] = [1 << 14, 1 << 18];
+/// Ticks from one set-point of the Puma to the next: 28 ms, VAL's own.
+const NINTER: u8 = 32;
 /// Generous: other programs share the machine with a simulated instrument.
 const DEADLINE_MS: u64 = 3000;
 
@@ -55,11 +58,12 @@ pub struct MockSettings {
 }
 
 impl MockSettings {
-    /// An encoder shaft comes without a load and with the instruments of its bench.
+    /// An encoder shaft comes without a load and with the instruments of its bench, an arm with nothing but its servo.
     pub fn new(joint: Joint, seed: u64) -> Self {
         let (load, others) = match joint {
             Joint::JointA | Joint::JointB => (Load::default(), Vec::new()),
             Joint::EncoderShaft => (Load::None, MockInstrument::ENCODER_BENCH.to_vec()),
+            Joint::Puma => (Load::None, Vec::new()),
         };
         Self {
             joint,
@@ -83,6 +87,11 @@ impl MockSettings {
             Load::GearAndBrakeB => Some((Range::Coarse, 200.0)),
             Load::None => None,
         }
+    }
+
+    /// Motor current for each volt, where the joint's servo reads it as the voltage at a shunt.
+    pub fn amperes_per_volt(&self) -> Option<f64> {
+        (self.joint == Joint::Puma).then_some(AMPERES_PER_VOLT)
     }
 
     pub fn has(&self, instrument: MockInstrument) -> bool {
@@ -137,13 +146,11 @@ impl MockBench {
         let mut plant = Plant::new(settings.joint, settings.load, settings.seed, hidden);
         plant.filter_s2(settings.filter);
         let truth = plant.truth(settings.joint, settings.seed);
-        let rig = Arc::new(Mutex::new(Rig::new(
-            plant,
-            Odrive::new(settings.joint),
-            settings.supply,
-            &settings.others,
-            &settings.troubles,
-        )));
+        let joint: Box<dyn Firmware + Send> = match settings.joint {
+            Joint::Puma => Box::new(Puma::new()),
+            other => Box::new(Odrive::new(other)),
+        };
+        let rig = Arc::new(Mutex::new(Rig::new(plant, joint, settings.supply, &settings.others, &settings.troubles)));
         let clock = Arc::new(SteppedClock::new(Arc::clone(&rig), settings.pace));
         let mut bench = Self { settings, truth, rig, clock, ports: Vec::new(), threads: Vec::new() };
         for instrument in bench.settings.instruments() {
@@ -182,6 +189,28 @@ impl MockBench {
         lock(&self.rig).afflict(instrument, trouble);
     }
 
+    fn joint(&self) -> JointSettings {
+        let (name, deadline_ms) = ("joint".into(), self.settings.deadline_ms);
+        let address = self.address(MockInstrument::Joint).expect("every mock bench has a joint");
+        match self.settings.joint {
+            Joint::Puma => JointSettings::Puma(PumaSettings {
+                name,
+                port: PortSettings::new(address, 115_200),
+                deadline_ms,
+                counts_per_turn: PUMA_COUNTS,
+                amperes_per_volt: AMPERES_PER_VOLT,
+                ninter: NINTER,
+            }),
+            _ => JointSettings::Odrive(OdriveSettings {
+                name,
+                port: PortSettings::new(address, 921_600),
+                deadline_ms,
+                link_encoder: self.settings.load != Load::None,
+                thermistor: Some(Thermistor::Motor),
+            }),
+        }
+    }
+
     /// What the ordinary drivers need to reach the instruments of this bench.
     pub fn instruments(&self) -> InstrumentSettings {
         let deadline_ms = self.settings.deadline_ms;
@@ -193,13 +222,7 @@ impl MockBench {
         };
         let torque_sensor = self.settings.torque_range().zip(port(MockInstrument::TorqueSensor, 230_400));
         InstrumentSettings {
-            joint: OdriveSettings {
-                name: "joint".into(),
-                port: port(MockInstrument::Joint, 921_600).expect("every mock bench has a joint"),
-                deadline_ms,
-                link_encoder: self.settings.load != Load::None,
-                thermistor: Some(Thermistor::Motor),
-            },
+            joint: self.joint(),
             torque_sensor: torque_sensor.map(|((range, nominal_nm), port)| {
                 let name = "torque_sensor".into();
                 TorqueSensorSettings::Lorenz(LorenzSettings { name, port, deadline_ms, range, nominal_nm })

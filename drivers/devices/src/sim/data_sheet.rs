@@ -5,7 +5,7 @@ use jointbench_instrument::bench::JointConstants;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// What the drive turns: the two joints of the thesis behind the bench, or the motor of its encoder bench.
+/// What the drive turns: the two joints of the thesis behind the bench, the motor of its encoder bench, or an arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Joint {
@@ -15,6 +15,8 @@ pub enum Joint {
     JointB,
     /// No gear: the shaft carries the two encoders of the encoder bench, and nothing else.
     EncoderShaft,
+    /// The shoulder of a Puma 560, 107.8:1, upright at its encoder's zero.
+    Puma,
 }
 
 /// What loads the joint.
@@ -40,6 +42,11 @@ pub(super) struct DataSheet {
     pub coulomb_nm: f64,
     pub breakaway_nm: f64,
     pub viscous_nm_s: f64,
+    /// Half of what Coulomb friction differs by between the directions, and the same of viscous friction as a share of it.
+    pub direction_offset_nm: f64,
+    pub viscous_asymmetry: f64,
+    /// Weight of a link that stands upright at 0, when it is level. 0: the joint carries nothing.
+    pub upright_nm: f64,
     /// Link side.
     pub stribeck_velocity_rad_s: f64,
     pub stribeck_exponent: f64,
@@ -59,6 +66,9 @@ pub(super) struct DataSheet {
     pub max_motor_velocity_rad_s: f64,
     pub max_motor_current_a: f64,
 }
+
+/// Motor torque of the Puma for each volt at its converter: its published Coulomb friction [Nm] over that of figure 3.2 [V].
+const PUMA_NM_PER_V: f64 = 0.231;
 
 /// Magtrol HB-1750M, data sheet EN 04/2025.
 pub(super) mod brake {
@@ -86,6 +96,9 @@ impl Joint {
                 coulomb_nm: 0.030,
                 breakaway_nm: 0.039,
                 viscous_nm_s: 1.512e-4,
+                direction_offset_nm: 0.0,
+                viscous_asymmetry: 0.0,
+                upright_nm: 0.0,
                 stribeck_velocity_rad_s: 0.06,
                 stribeck_exponent: 0.8,
                 stiffness_nm_rad: 5722.5,
@@ -106,6 +119,9 @@ impl Joint {
                 coulomb_nm: 0.031,
                 breakaway_nm: 0.057,
                 viscous_nm_s: 7.835e-5,
+                direction_offset_nm: 0.0,
+                viscous_asymmetry: 0.0,
+                upright_nm: 0.0,
                 stribeck_velocity_rad_s: 0.08,
                 stribeck_exponent: 1.9,
                 stiffness_nm_rad: 684.3,
@@ -127,6 +143,9 @@ impl Joint {
                 coulomb_nm: 0.010,
                 breakaway_nm: 0.012,
                 viscous_nm_s: 2e-5,
+                direction_offset_nm: 0.0,
+                viscous_asymmetry: 0.0,
+                upright_nm: 0.0,
                 stribeck_velocity_rad_s: 1.0,
                 stribeck_exponent: 1.0,
                 stiffness_nm_rad: 20.0,
@@ -139,6 +158,39 @@ impl Joint {
                 max_motor_velocity_rad_s: 200.0,
                 max_motor_current_a: 5.0,
             },
+            // Friction: the lines of figure 3.2 of document 000, joint 2, in volts over degrees each second at the link, at
+            // PUMA_NM_PER_V. Ratio, rotor and weight: Corke and Armstrong-Hélouvry, "A search for consensus among model
+            // parameters reported for the PUMA 560 robot", ICRA 1994. The rest is assumed.
+            Joint::Puma => {
+                let ratio = 107.815;
+                let viscous = |line: f64| line * PUMA_NM_PER_V / (ratio * 1f64.to_radians());
+                let coulomb = |line: f64| line * PUMA_NM_PER_V;
+                let ([forward, backward], [out, back]) =
+                    ([coulomb(0.545064), coulomb(0.307835)], [viscous(0.007581), viscous(0.005757)]);
+                DataSheet {
+                    torque_constant_nm_per_a: PUMA_NM_PER_V,
+                    ratio,
+                    max_torque_nm: 97.0,
+                    range_rad: Some(1.6),
+                    coulomb_nm: 0.5 * (forward + backward),
+                    breakaway_nm: 0.115,
+                    viscous_nm_s: 0.5 * (out + back),
+                    direction_offset_nm: 0.5 * (forward - backward),
+                    viscous_asymmetry: (out - back) / (out + back),
+                    upright_nm: 37.2,
+                    stribeck_velocity_rad_s: 0.008,
+                    stribeck_exponent: 2.0,
+                    stiffness_nm_rad: 76e3,
+                    bearing_nm_rad: f64::INFINITY,
+                    lost_rad: 0.0,
+                    soft_rad: 0.0,
+                    link_inertia_kg_m2: 4.0,
+                    tuned_inertia_kg_m2: 4.0,
+                    rotor_inertia_kg_m2: 2.0e-4,
+                    max_motor_velocity_rad_s: 120.0,
+                    max_motor_current_a: 5.0,
+                }
+            }
         }
     }
 

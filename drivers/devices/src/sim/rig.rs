@@ -1,6 +1,6 @@
 //! Everything behind the wires: the plant and the instruments' firmware, advanced together.
 
-use super::firmware::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Odrive, Qsb};
+use super::firmware::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Qsb};
 use super::plant::{Plant, STEP_S};
 use super::trouble::{PlannedTrouble, Trouble};
 use serde::{Deserialize, Serialize};
@@ -78,7 +78,7 @@ const THERMISTOR_FAULT_K: f64 = 70.0;
 
 pub(super) struct Rig {
     pub plant: Plant,
-    joint: Odrive,
+    joint: Box<dyn Firmware + Send>,
     torque_sensor: Lorenz,
     brake: Box<dyn Firmware + Send>,
     others: Vec<(MockInstrument, Box<dyn Firmware + Send>)>,
@@ -90,7 +90,7 @@ pub(super) struct Rig {
 impl Rig {
     pub fn new(
         plant: Plant,
-        joint: Odrive,
+        joint: Box<dyn Firmware + Send>,
         supply: Supply,
         others: &[MockInstrument],
         planned: &[PlannedTrouble],
@@ -173,7 +173,7 @@ impl Rig {
     /// `None`: this bench does not have it.
     fn firmware(&mut self, instrument: MockInstrument) -> Option<(&mut dyn Firmware, &mut Plant)> {
         let firmware: &mut dyn Firmware = match instrument {
-            MockInstrument::Joint => &mut self.joint,
+            MockInstrument::Joint => self.joint.as_mut(),
             MockInstrument::TorqueSensor => &mut self.torque_sensor,
             MockInstrument::Brake => self.brake.as_mut(),
             other => self.others.iter_mut().find(|(known, _)| *known == other).map(|(_, firmware)| firmware)?.as_mut(),

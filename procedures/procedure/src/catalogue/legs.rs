@@ -178,6 +178,7 @@ pub(super) mod testing {
             has_brake: true,
             encoder_counts: None,
             has_stage: false,
+            amperes_per_volt: None,
         }
     }
 

@@ -276,7 +276,7 @@ impl JointController for FakeJoint {
         self.0.call(Call::Health, |world| DriveHealth {
             armed: world.armed,
             errors: world.errors.clone(),
-            bus_voltage: Volts(48.0),
+            bus_voltage: Some(Volts(48.0)),
             temperature: Some(Celsius(world.temperature_c)),
         })
     }

@@ -85,7 +85,7 @@ pub struct Demo {
 #[derive(Debug, Args)]
 pub struct Serve {
     /// Bench description: a file, or one of the ready-made ones (joint-a-mock, joint-b-mock,
-    /// encoder-bench-mock, joint-a, joint-b, encoder-bench)
+    /// encoder-bench-mock, puma-mock, joint-a, joint-b, encoder-bench, puma)
     #[arg(long, value_name = "BENCH.TOML", default_value = "joint-a-mock")]
     pub config: String,
     #[command(flatten)]

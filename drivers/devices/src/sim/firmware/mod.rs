@@ -13,6 +13,8 @@ mod lorenz;
 mod odrive;
 mod odrive_lines;
 mod odrive_properties;
+mod puma;
+mod puma_orders;
 mod qsb;
 mod qsb_registers;
 mod scan;
@@ -28,6 +30,7 @@ pub use gcs::Gcs;
 pub use hmp::Hmp;
 pub use lorenz::Lorenz;
 pub use odrive::Odrive;
+pub use puma::{AMPERES_PER_VOLT, ENCODER_COUNTS as PUMA_COUNTS, Puma};
 pub use qsb::{Encoder, Qsb};
 
 use super::plant::Plant;

@@ -3,11 +3,11 @@
 use super::encoders::EncoderTruth;
 use super::friction::Friction;
 use super::{Noise, Signal};
-use crate::sim::data_sheet::{Joint, brake};
+use crate::sim::data_sheet::{DataSheet, Joint, brake};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Effects that can be hidden. Without any, friction is Coulomb and viscous and nothing else.
 pub const HIDDEN_EFFECTS: [&str; 10] = [
@@ -88,10 +88,22 @@ pub struct Hidden {
 }
 
 impl Hidden {
+    /// What the data sheet itself tells of, drawn or not.
+    fn of(sheet: &DataSheet) -> Self {
+        let told = |figure: f64| (figure != 0.0).then_some(figure);
+        let upright = |size| Wave { size, harmonic: 1.0, phase_rad: PI };
+        Self {
+            direction_offset_nm: told(sheet.direction_offset_nm),
+            viscous_asymmetry: told(sheet.viscous_asymmetry),
+            gravity_nm: told(sheet.upright_nm).map(upright),
+            ..Self::default()
+        }
+    }
+
     /// Draws the named effects. `Err` holds the name that is not known.
     pub fn draw(joint: Joint, seed: u64, effects: &[String]) -> Result<Self, String> {
         let sheet = joint.data_sheet();
-        let mut hidden = Self::default();
+        let mut hidden = Self::of(&sheet);
         for name in effects {
             let index = HIDDEN_EFFECTS.iter().position(|known| known == name).ok_or_else(|| name.clone())?;
             let mut draw = Noise::new(seed).generator(Signal::Hidden, index as u64);

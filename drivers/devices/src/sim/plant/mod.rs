@@ -39,11 +39,15 @@ pub(super) const LINK_COUNTS: f64 = 524_288.0;
 const CURRENT_LAG_S: f64 = 1.0e-3;
 /// Low-pass of the torque sensor's electronics, 1 kHz class.
 const SENSOR_LAG_S: f64 = 0.4e-3;
+/// More than any weight of a link: what a holding brake bears (assumed).
+const HOLDING_NM: f64 = 1.0;
 
 /// What the drive's windings carry and the supply offers, as the firmware sides set them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Inputs {
     pub motor_current_a: f64,
+    /// A brake on the motor's shaft that holds while the drive is off, where the joint has one.
+    pub holding_brake: bool,
     /// `None`: output off.
     pub coil: Option<CoilSupply>,
 }
@@ -129,7 +133,8 @@ impl Plant {
             self.link_velocity_rad_s,
         );
         let velocity = self.motor_velocity_rad_s;
-        let grip = self.hidden.grip(&self.friction, velocity, gear_nm, self.link_angle_rad);
+        let held_nm = if self.inputs.holding_brake { HOLDING_NM } else { 0.0 };
+        let grip = held_nm + self.hidden.grip(&self.friction, velocity, gear_nm, self.link_angle_rad);
         let drag_nm = self.hidden.drag(&self.friction, velocity, self.thermal.gear_c());
         let friction_nm = self.friction.advance(velocity, grip) + drag_nm;
 
@@ -188,6 +193,14 @@ impl Plant {
 
     pub fn periods_are_consistent(&self) -> bool {
         self.encoders.periods_are_consistent()
+    }
+
+    pub fn motor_angle_rad(&self) -> f64 {
+        self.motor_angle_rad
+    }
+
+    pub fn motor_velocity_rad_s(&self) -> f64 {
+        self.motor_velocity_rad_s
     }
 
     pub fn motor_current_a(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! The instruments' own parsers against garbage: no panic, bounded memory, and the next proper request is answered.
 
-use super::super::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Odrive, Qsb};
+use super::super::{Adam, Dmm, Dp800, Encoder, Firmware, Gcs, Hmp, Lorenz, Odrive, Puma, Qsb};
 use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant};
 use proptest::collection::vec;
@@ -59,6 +59,14 @@ proptest! {
         prop_assert_eq!(reply, b"1\n");
         let reply = ask(&mut Adam::new(), &garbage, &[0; 8], b"\x01\x03\x00\xD2\x00\x02\x64\x32");
         prop_assert_eq!(reply, b"\x01\x03\x04\x40\x15\x00\x00\xFE\x37");
+    }
+
+    #[test]
+    fn a_servo_is_back_after_one_frame(garbage in pieces()) {
+        // Garbage may have begun a frame that takes the first of these with it.
+        let ask = |servo: &mut Puma| ask(servo, &garbage, &[0; 6], &[0xA5, 0x09, 0x0B, 0x00, 0x00, 0xEC]);
+        let reply = ask(&mut Puma::new());
+        prop_assert!(reply.starts_with(&[0x5A, 0x09]) && reply[3..5] == [0x05, 0x60], "{:02X?}", reply);
     }
 
     #[test]

@@ -8,4 +8,5 @@ mod gcs;
 mod hmp;
 mod lorenz;
 mod odrive;
+mod puma;
 mod qsb;

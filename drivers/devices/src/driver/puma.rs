@@ -1,0 +1,311 @@
+//! One axis of a Puma-type servo as the joint's controller.
+//!
+//! The servo takes positions: a velocity becomes a set-point each time that it is asked for, which the servo reaches
+//! `ninter` ticks later. Where it is asked for more often than that, the joint follows smoothly and a little behind. The
+//! servo tells no velocity: it is the way between two readings over the time between them.
+
+use super::{Recovers, same};
+use crate::protocol::puma::{
+    ArmPower, Clear, CurrentMode, DiagRead, Fact, Identify, Limit, MOST_COUNTS, Numbered, Order, PositionMode,
+    ReadCurrent, ReadPosition, ReadStatus, Reply, SetInterval, Stop, VOLTS_PER_COUNT, memory,
+};
+use crate::transport::{Command, Link, PortSettings};
+use jointbench_instrument::roles::{DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution};
+use jointbench_instrument::units::{Amperes, RadPerSec, Radians};
+use jointbench_instrument::{Clock, Fault, FaultKind};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A servo whose arm power is not on after so long will not get it.
+const ARMING_S: f64 = 1.0;
+/// Between the two positions of a first velocity.
+const GLANCE_S: f64 = 0.02;
+/// The servo takes arm power away where nobody asks for longer: no set-point makes up for more.
+const LONGEST_GAP_S: f64 = 0.25;
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PumaSettings {
+    pub name: String,
+    pub port: PortSettings,
+    pub deadline_ms: u64,
+    /// Of the motor's encoder, four for each line.
+    pub counts_per_turn: u32,
+    /// Motor current for each volt at the A/D converter.
+    pub amperes_per_volt: f64,
+    /// Clock ticks of 0.875 ms from one set-point to the next: more than the time between two commands of the bench.
+    pub ninter: u8,
+}
+
+/// What the servo was told last.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Told {
+    Nothing,
+    /// The position that it goes to, the velocity that it was asked for, and when.
+    Position {
+        counts: f64,
+        velocity_rad_s: f64,
+        at_s: f64,
+    },
+    Current,
+}
+
+/// The newest position, without the wraps of its word.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Seen {
+    at_s: f64,
+    counts: i64,
+    velocity_rad_s: f64,
+}
+
+pub struct PumaAxis {
+    settings: PumaSettings,
+    link: Link,
+    clock: Arc<dyn Clock>,
+    identity: Option<Identity>,
+    number: u8,
+    armed: bool,
+    told: Told,
+    seen: Option<Seen>,
+}
+
+impl PumaAxis {
+    /// Opens the port and identifies the servo. Nothing is commanded.
+    pub fn open(settings: PumaSettings, clock: Arc<dyn Clock>) -> Result<Self, Fault> {
+        let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
+        let usable = settings.counts_per_turn > 0 && settings.ninter > 0 && settings.amperes_per_volt > 0.0;
+        if !usable {
+            let what = "counts_per_turn, amperes_per_volt and ninter: expected numbers above 0".into();
+            return Err(link.fault(FaultKind::Refused { what }));
+        }
+        let (identity, told, seen) = (None, Told::Nothing, None);
+        let mut axis = Self { settings, link, clock, identity, number: 0, armed: false, told, seen };
+        axis.identify()?;
+        Ok(axis)
+    }
+
+    fn numbered<O: Order>(&mut self, order: O) -> Numbered<O> {
+        self.number = self.number.wrapping_add(1);
+        Numbered { number: self.number, order }
+    }
+
+    /// Asks whatever the state of the link.
+    fn probe<O: Order>(&mut self, order: O) -> Result<Reply<O::Reply>, Fault> {
+        let request = self.numbered(order);
+        self.link.probe(&request)
+    }
+
+    /// Asks a servo that still counts from where it did.
+    fn ask<O: Order>(&mut self, order: O) -> Result<O::Reply, Fault> {
+        let request = self.numbered(order);
+        let reply = self.ready()?.request(&request)?;
+        if reply.fresh {
+            self.probe(Clear)?;
+            return Err(self.lost_power());
+        }
+        Ok(reply.value)
+    }
+
+    /// Who answers, and whether it counts from a power-up.
+    fn facts(&mut self) -> Result<(Identity, bool), Fault> {
+        let [arm, axis, serial, revision] =
+            [Fact::Arm, Fact::Axis, Fact::Serial, Fact::Revision].map(|fact| self.probe(Identify(fact)));
+        let (revision, fresh) = revision.map(|reply| (reply.value, reply.fresh))?;
+        let identity = Identity {
+            maker: "Unimation".into(),
+            model: format!("Puma {:X}, axis {}", arm?.value, axis?.value),
+            serial: serial?.value.to_string(),
+            firmware: revision.to_string(),
+        };
+        Ok((identity, fresh))
+    }
+
+    fn lost_power(&mut self) -> Fault {
+        (self.armed, self.told, self.seen) = (false, Told::Nothing, None);
+        let what = "its power was interrupted: it is not armed any more, and positions before and after do not fit";
+        self.link.fault(FaultKind::Reported { what: what.into() })
+    }
+
+    fn step_rad(&self) -> f64 {
+        TAU / f64::from(self.settings.counts_per_turn)
+    }
+
+    /// Reads the position once.
+    fn look(&mut self) -> Result<Seen, Fault> {
+        let at_s = self.clock.now_s();
+        let word = self.ask(ReadPosition)?;
+        let seen = match self.seen {
+            None => Seen { at_s, counts: word.into(), velocity_rad_s: 0.0 },
+            Some(before) => {
+                let counts = before.counts + i64::from(word.wrapping_sub(before.counts as i16));
+                let moved_rad = (counts - before.counts) as f64 * self.step_rad();
+                let since_s = at_s - before.at_s;
+                let velocity_rad_s = if since_s > 0.0 { moved_rad / since_s } else { before.velocity_rad_s };
+                Seen { at_s, counts, velocity_rad_s }
+            }
+        };
+        self.seen = Some(seen);
+        Ok(seen)
+    }
+
+    /// What amperes are at the converter; the set-point ends where the converter does.
+    fn converter_counts(&self, current: Amperes) -> Result<i16, Fault> {
+        let counts = (current.0 / self.settings.amperes_per_volt / VOLTS_PER_COUNT).round();
+        if counts.abs() <= f64::from(MOST_COUNTS) {
+            return Ok(counts as i16);
+        }
+        let most_a = f64::from(MOST_COUNTS) * VOLTS_PER_COUNT * self.settings.amperes_per_volt;
+        let what = format!("{current}: the servo's converter ends at {most_a:.1} A");
+        Err(self.link.fault(FaultKind::Refused { what }))
+    }
+}
+
+impl Recovers for PumaAxis {
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
+    }
+
+    fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
+        let mut wake = Vec::new();
+        self.numbered(ReadStatus).encode(&mut wake);
+        self.link.drain(&wake, true)?;
+        let (found, fresh) = self.facts()?;
+        let was_known = self.identity.is_some();
+        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        if fresh {
+            self.probe(Clear)?;
+            if was_known {
+                return Err(self.lost_power());
+            }
+        }
+        if self.armed && !self.probe(ReadStatus)?.value.is_armed() {
+            (self.armed, self.told) = (false, Told::Nothing);
+            let what = "the servo was armed and is not any more: it has taken arm power away".into();
+            return Err(self.link.fault(FaultKind::Reported { what }));
+        }
+        Ok(identity)
+    }
+}
+
+impl Instrument for PumaAxis {
+    fn name(&self) -> &str {
+        &self.settings.name
+    }
+
+    fn port(&self) -> &str {
+        self.link.address()
+    }
+
+    fn identify(&mut self) -> Result<Identity, Fault> {
+        self.ready()?;
+        Ok(self.facts()?.0)
+    }
+
+    fn recover(&mut self) -> Result<Identity, Fault> {
+        self.resume()
+    }
+
+    fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
+        self.link.record(file)
+    }
+}
+
+impl JointController for PumaAxis {
+    /// The servo knows no limit of speed: the bench's guard has to watch it.
+    fn arm(&mut self, _speed_limit: RadPerSec, current_limit: Amperes) -> Result<(), Fault> {
+        let ninter = self.settings.ninter;
+        let limit = self.converter_counts(current_limit)?;
+        self.armed = false;
+        self.ask(Stop)?;
+        self.ask(Clear)?;
+        self.ask(SetInterval(ninter))?;
+        let held = self.ask(DiagRead(memory::INTERVAL))?;
+        if held != ninter {
+            let what = format!("ninter = {ninter}, and its memory holds {held}: write a whole number that it takes");
+            return Err(self.link.fault(FaultKind::Refused { what }));
+        }
+        self.ask(Limit(limit))?;
+        self.ask(ArmPower)?;
+        let deadline_s = self.clock.now_s() + ARMING_S;
+        while !self.ask(ReadStatus)?.is_armed() {
+            let errors = self.ask(ReadStatus)?.errors();
+            if !errors.is_empty() || self.clock.now_s() >= deadline_s {
+                let what = format!("arm power is not on after {ARMING_S} s: {}", errors.join(", "));
+                return Err(self.link.fault(FaultKind::Refused { what }));
+            }
+            self.clock.sleep_until_s(self.clock.now_s() + 1e-2);
+        }
+        self.told = Told::Nothing;
+        self.armed = true;
+        self.set_velocity(RadPerSec(0.0))
+    }
+
+    fn set_velocity_fed(&mut self, velocity: RadPerSec, current: Amperes) -> Result<(), Fault> {
+        if !velocity.0.is_finite() || current.0 != 0.0 {
+            let what = format!("{velocity} with {current} fed forward: this servo takes positions, or a current alone");
+            return Err(self.link.fault(FaultKind::Refused { what }));
+        }
+        let at_s = self.clock.now_s();
+        // Also where a current has moved the joint: from where it is now.
+        let (from, since_s, before_rad_s) = match self.told {
+            Told::Position { counts, velocity_rad_s, at_s: told_s } => (counts, at_s - told_s, velocity_rad_s),
+            Told::Nothing | Told::Current => (self.look()?.counts as f64, 0.0, velocity.0),
+        };
+        let mean_rad_s = 0.5 * (before_rad_s + velocity.0);
+        let counts = from + mean_rad_s * since_s.min(LONGEST_GAP_S) / self.step_rad();
+        // The word wraps as the encoder's does.
+        self.ask(PositionMode(counts.round() as i64 as i16))?;
+        self.told = Told::Position { counts, velocity_rad_s: velocity.0, at_s };
+        Ok(())
+    }
+
+    fn set_motor_current(&mut self, current: Amperes) -> Result<(), Fault> {
+        let counts = self.converter_counts(current)?;
+        self.told = Told::Current;
+        self.ask(CurrentMode(counts))
+    }
+
+    fn read(&mut self) -> Result<JointReading, Fault> {
+        if self.seen.is_none() {
+            self.look()?;
+            self.clock.sleep_until_s(self.clock.now_s() + GLANCE_S);
+        }
+        let Seen { at_s, counts, velocity_rad_s } = self.look()?;
+        let volts = self.ask(ReadCurrent)?;
+        Ok(JointReading {
+            at_s,
+            motor_position: Radians(counts as f64 * self.step_rad()),
+            motor_velocity: RadPerSec(velocity_rad_s),
+            motor_current: Amperes(volts.0 * self.settings.amperes_per_volt),
+            link_position: None,
+        })
+    }
+
+    fn health(&mut self) -> Result<DriveHealth, Fault> {
+        let status = self.ask(ReadStatus)?;
+        Ok(DriveHealth { armed: status.is_armed(), errors: status.errors(), bus_voltage: None, temperature: None })
+    }
+
+    fn disarm(&mut self) -> Result<(), Fault> {
+        (self.armed, self.told) = (false, Told::Nothing);
+        let stop = self.numbered(Stop);
+        if self.link.is_trusted() { self.link.request(&stop).map(drop) } else { self.link.send(&stop) }
+    }
+
+    fn resolution(&self) -> JointResolution {
+        JointResolution {
+            motor_position: Some(Radians(self.step_rad())),
+            motor_velocity: None,
+            motor_current: Some(Amperes(VOLTS_PER_COUNT * self.settings.amperes_per_volt)),
+            link_position: None,
+            temperature: None,
+        }
+    }
+
+    fn amperes_per_volt(&self) -> Option<f64> {
+        Some(self.settings.amperes_per_volt)
+    }
+}

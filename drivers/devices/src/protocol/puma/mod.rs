@@ -1,0 +1,44 @@
+//! A Puma-type axis servo, as Corke describes it (*The Unimation Puma servo system*, the project's document 000).
+//!
+//! From the document: the axis processor takes position set-points (`POSMODE`) and goes from each to the next in
+//! `ninter` clock ticks, a count that every new set-point starts again; a status word with error bits, of which bits 6
+//! and 7 are the processor's own and the bits for RAM, envelope and encoder are told of and never set; the memory can
+//! be read (`DIAGREAD`) at the addresses of table 2.7, `velgan` at 0x04 and not at 0x5C; 28 ms between set-points,
+//! which are the 32 ticks that `ninter` begins with; motor current is read as volts of a shunt at an A/D converter.
+//!
+//! Ours, since the pages at hand are silent on it or the original is a parallel bus: everything that is on the wire.
+//! The numbers of the commands, all other commands, the places of the other status bits, the scale of the converters,
+//! the codes of refusal, and the frames. Six bytes each way, big-endian:
+//!
+//! ```text
+//! request  A5 number command high low sum
+//! reply    5A number command high low sum
+//! ```
+//!
+//! `number` comes back as it was sent, so that no reply can be taken for another one. `sum` makes the sum of all bytes
+//! behind the first a multiple of 256. A reply's command has bit 7 set where the request is refused (the word is the
+//! reason), and bit 6 while positions count from a power-up that nobody has acknowledged (`CLEAR`).
+
+mod frame;
+mod orders;
+mod status;
+
+pub use frame::{Numbered, Order, Reply};
+pub use orders::{
+    ArmPower, Clear, CurrentMode, DiagRead, Fact, Identify, Limit, PositionMode, ReadCurrent, ReadPosition, ReadStatus,
+    SetInterval, Stop,
+};
+pub use status::Status;
+
+/// One count of the converters: 12 bit over ±10 V.
+pub const VOLTS_PER_COUNT: f64 = 10.0 / 2048.0;
+/// The largest word of a converter.
+pub const MOST_COUNTS: i16 = 2047;
+
+/// Addresses of table 2.7.
+pub mod memory {
+    pub const PROPORTIONAL_GAIN: u8 = 0x03;
+    pub const VELOCITY_GAIN: u8 = 0x04;
+    /// Clock ticks between set-points.
+    pub const INTERVAL: u8 = 0x06;
+}

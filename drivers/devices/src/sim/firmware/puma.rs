@@ -1,0 +1,193 @@
+//! A Puma 560's digital servo board and the amplifier behind it, one axis (document 000, section 2.3 and table 2.7; the
+//! frames, and whatever the document is silent on, are of this project: `protocol::puma` says which).
+//!
+//! The axis processor closes the position loop once a tick; the amplifier closes the velocity loop on the motor's
+//! tachometer, and the current loop in it.
+
+use super::Firmware;
+use crate::sim::plant::{Plant, STEP_S};
+use crate::sim::trouble::Trouble;
+use std::f64::consts::TAU;
+
+/// Four for each of 200 lines (assumed).
+pub const ENCODER_COUNTS: u32 = 800;
+/// Through the shunt for each volt at the converter (assumed).
+pub const AMPERES_PER_VOLT: f64 = 1.0;
+/// Steps of the plant in a tick of 0.875 ms: 32 of them are 28 ms.
+const STEPS_PER_TICK: u32 = 7;
+pub const VOLTS_PER_COUNT: f64 = 10.0 / 2048.0;
+pub const MOST_COUNTS: i16 = 2047;
+/// Initial value in table 2.7.
+const INITIAL_NINTER: u8 = 0x20;
+/// Of the position loop [1/s] and of the amplifier [A·s/rad] (assumed: a velocity loop of 150 rad/s).
+const POSITION_GAIN_PER_S: f64 = 20.0;
+const VELOCITY_GAIN_A_S: f64 = 0.35;
+/// The holding brake lets go, and the processor starts, after so long (assumed).
+pub const RELEASE_S: f64 = 0.2;
+const BOOT_S: f64 = 0.5;
+/// Without a command for so long, or with the current at its limit for so long, arm power goes (ours).
+const HOST_S: f64 = 0.25;
+const OVERLOAD_S: f64 = 0.5;
+
+pub const POSITION: u16 = 1 << 0;
+pub const CURRENT: u16 = 1 << 1;
+const ARM_POWER: u16 = 1 << 2;
+const NO_HOST: u16 = 1 << 11;
+const OVERLOADED: u16 = 1 << 12;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Power {
+    Off,
+    ReleasingUntil(f64),
+    On,
+}
+
+pub struct Puma {
+    pub power: Power,
+    pub mode: u16,
+    pub errors: u16,
+    /// Positions count from a power-up that nobody has acknowledged.
+    pub fresh: bool,
+    pub ninter: u8,
+    pub limit: i16,
+    pub memory_pointer: u8,
+    /// Where the encoder's counter stood at power-up, and the counter.
+    pub zero_counts: i64,
+    pub counts: i64,
+    /// The set-point on its way: target, where it is, what it moves by each tick, and ticks that are left.
+    pub target: f64,
+    pub interpolated: f64,
+    pub increment: f64,
+    pub count: u8,
+    pub current_word: i16,
+    pub shunt_a: f64,
+    pub steps: u32,
+    pub heard_s: f64,
+    pub overloaded_s: f64,
+    pub booting_until_s: f64,
+    pub trouble: Trouble,
+}
+
+impl Puma {
+    pub fn new() -> Self {
+        Self {
+            power: Power::Off,
+            mode: 0,
+            errors: 0,
+            fresh: true,
+            ninter: INITIAL_NINTER,
+            limit: MOST_COUNTS,
+            memory_pointer: 0,
+            zero_counts: 0,
+            counts: 0,
+            target: 0.0,
+            interpolated: 0.0,
+            increment: 0.0,
+            count: 0,
+            current_word: 0,
+            shunt_a: 0.0,
+            steps: 0,
+            heard_s: 0.0,
+            overloaded_s: 0.0,
+            booting_until_s: 0.0,
+            trouble: Trouble::None,
+        }
+    }
+
+    pub fn status(&self) -> u16 {
+        let power = if self.power == Power::On { ARM_POWER } else { 0 };
+        // Bits 6 and 7 are the encoder routines' own: the quadrature state.
+        let encoder = (self.counts.rem_euclid(4) as u16) << 6;
+        self.mode | power | encoder | self.errors
+    }
+
+    pub fn hold_here(&mut self) {
+        (self.target, self.interpolated) = (self.counts as f64, self.counts as f64);
+        (self.increment, self.count) = (0.0, 0);
+    }
+
+    pub fn stop(&mut self) {
+        (self.power, self.mode, self.current_word) = (Power::Off, 0, 0);
+    }
+
+    fn tick(&mut self) {
+        if self.count > 0 {
+            self.count -= 1;
+            self.interpolated += self.increment;
+            if self.count == 0 {
+                (self.interpolated, self.increment) = (self.target, 0.0);
+            }
+        }
+    }
+
+    /// Motor current that the amplifier is to give.
+    fn control(&self, plant: &Plant) -> f64 {
+        let wanted_a = match self.mode {
+            POSITION => {
+                let rad = TAU / f64::from(ENCODER_COUNTS);
+                let tick_s = f64::from(STEPS_PER_TICK) * STEP_S;
+                let behind = self.interpolated - self.counts as f64;
+                let demand_rad_s = (self.increment / tick_s + POSITION_GAIN_PER_S * behind) * rad;
+                VELOCITY_GAIN_A_S * (demand_rad_s - plant.motor_velocity_rad_s())
+            }
+            CURRENT => f64::from(self.current_word) * VOLTS_PER_COUNT * AMPERES_PER_VOLT,
+            _ => 0.0,
+        };
+        let most_a = f64::from(self.limit) * VOLTS_PER_COUNT * AMPERES_PER_VOLT;
+        wanted_a.clamp(-most_a, most_a)
+    }
+
+    /// What takes arm power away.
+    fn watch(&mut self, now_s: f64, at_limit: bool) {
+        self.overloaded_s = if at_limit { self.overloaded_s + STEP_S } else { 0.0 };
+        let host = if now_s - self.heard_s > HOST_S { NO_HOST } else { 0 };
+        let overload = if self.overloaded_s > OVERLOAD_S { OVERLOADED } else { 0 };
+        if self.power != Power::Off && host | overload != 0 {
+            self.errors |= host | overload;
+            self.stop();
+        }
+    }
+}
+
+impl Firmware for Puma {
+    fn receive(&mut self, input: &mut Vec<u8>, plant: &mut Plant, output: &mut Vec<u8>) {
+        if plant.now_s() < self.booting_until_s {
+            return input.clear();
+        }
+        super::puma_orders::receive(self, input, plant, output);
+    }
+
+    fn step(&mut self, plant: &mut Plant) {
+        let now_s = plant.now_s();
+        let turns = plant.motor_angle_rad() / TAU;
+        self.counts = (turns * f64::from(ENCODER_COUNTS)).floor() as i64 - self.zero_counts;
+        self.steps += 1;
+        if self.steps.is_multiple_of(STEPS_PER_TICK) {
+            self.tick();
+        }
+        if let Power::ReleasingUntil(until_s) = self.power
+            && now_s >= until_s
+        {
+            self.hold_here();
+            (self.power, self.mode) = (Power::On, POSITION);
+        }
+        let current_a = if self.power == Power::On { self.control(plant) } else { 0.0 };
+        let most_a = f64::from(self.limit) * VOLTS_PER_COUNT * AMPERES_PER_VOLT;
+        self.watch(now_s, current_a.abs() >= most_a);
+        let on = self.power == Power::On;
+        self.shunt_a = plant.motor_current_a();
+        plant.inputs.motor_current_a = if on { current_a } else { 0.0 };
+        plant.inputs.holding_brake = !on;
+    }
+
+    fn afflict(&mut self, trouble: Trouble) {
+        self.trouble = trouble;
+    }
+
+    /// The counter starts at 0 where the joint stands.
+    fn power_cycle(&mut self, plant: &mut Plant) {
+        let zero_counts = self.zero_counts + self.counts;
+        let booting_until_s = plant.now_s() + BOOT_S;
+        *self = Self { zero_counts, booting_until_s, trouble: self.trouble, ..Self::new() };
+    }
+}

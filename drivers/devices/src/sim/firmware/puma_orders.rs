@@ -1,0 +1,123 @@
+//! What a Puma's servo board is told, frame by frame, and what it answers.
+
+use super::puma::{AMPERES_PER_VOLT, CURRENT, MOST_COUNTS, POSITION, Power, Puma, RELEASE_S, VOLTS_PER_COUNT};
+use crate::sim::plant::{Plant, Signal};
+use crate::sim::trouble::Trouble;
+
+const SHUNT_NOISE_V: f64 = 0.02;
+/// Initial values in table 2.7.
+const EINTSCL: u8 = 0x03;
+const DIVISOR: u8 = 0x6F;
+
+const UNKNOWN: u16 = 1;
+const NO_ARM_POWER: u16 = 2;
+const OUT_OF_RANGE: u16 = 3;
+const NOT_READY: u16 = 4;
+
+/// Takes whole frames out of `input`; what cannot begin one is thrown away.
+pub fn receive(servo: &mut Puma, input: &mut Vec<u8>, plant: &Plant, output: &mut Vec<u8>) {
+    loop {
+        let start = input.iter().position(|byte| *byte == 0xA5).unwrap_or(input.len());
+        input.drain(..start);
+        let Some(&[_, number, command, high, low, _]) = input.first_chunk() else { return };
+        if input[1..6].iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)) != 0 {
+            input.drain(..1);
+            continue;
+        }
+        input.drain(..6);
+        servo.heard_s = plant.now_s();
+        let (mark, word) = match execute(servo, command, u16::from_be_bytes([high, low]), plant) {
+            Ok(word) => (0, word),
+            Err(reason) => (0x80, reason),
+        };
+        let fresh = if servo.fresh { 0x40 } else { 0 };
+        let [high, low] = word.to_be_bytes();
+        let content = [number, command & 0x3F | mark | fresh, high, low];
+        let sum = content.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)).wrapping_neg();
+        output.push(0x5A);
+        output.extend(content);
+        output.push(sum);
+    }
+}
+
+/// The word of the reply, or the reason of a refusal.
+fn execute(servo: &mut Puma, command: u8, word: u16, plant: &Plant) -> Result<u16, u16> {
+    let signed = word.cast_signed();
+    let now_s = plant.now_s();
+    match command {
+        _ if servo.trouble == Trouble::Refusing => return Err(NOT_READY),
+        0x00 => return Ok(servo.status()),
+        0x01 => return Ok((servo.counts as i16).cast_unsigned()),
+        0x02 => {
+            let volts = servo.shunt_a / AMPERES_PER_VOLT + SHUNT_NOISE_V * plant.noise_of(Signal::MotorCurrent);
+            let most = f64::from(MOST_COUNTS);
+            return Ok(((volts / VOLTS_PER_COUNT).round().clamp(-most - 1.0, most) as i16).cast_unsigned());
+        }
+        0x03 | 0x04 if servo.power != Power::On => return Err(NO_ARM_POWER),
+        0x03 => {
+            if servo.mode != POSITION {
+                servo.hold_here();
+            }
+            servo.mode = POSITION;
+            // The word wraps where the counter goes on.
+            let here = servo.interpolated.round() as i64;
+            servo.target = (here + i64::from(signed.wrapping_sub(here as i16))) as f64;
+            servo.count = servo.ninter;
+            servo.increment = (servo.target - servo.interpolated) / f64::from(servo.ninter);
+        }
+        0x04 if signed.unsigned_abs() > servo.limit.unsigned_abs() => return Err(OUT_OF_RANGE),
+        0x04 => (servo.mode, servo.current_word) = (CURRENT, signed),
+        0x05 => servo.stop(),
+        0x06 if servo.errors != 0 => return Err(NOT_READY),
+        0x06 if servo.power == Power::Off => {
+            servo.hold_here();
+            servo.power = Power::ReleasingUntil(now_s + RELEASE_S);
+        }
+        0x06 => {}
+        0x07 if !(1..=255).contains(&word) => return Err(OUT_OF_RANGE),
+        0x07 => servo.ninter = word as u8,
+        0x08 if !(1..=MOST_COUNTS).contains(&signed) => return Err(OUT_OF_RANGE),
+        0x08 => servo.limit = signed,
+        0x09 => (servo.errors, servo.fresh) = (0, false),
+        0x0A if word > 0x7F => return Err(OUT_OF_RANGE),
+        0x0A => {
+            servo.memory_pointer = word as u8;
+            return Ok(word << 8 | u16::from(memory(servo, word as u8)));
+        }
+        0x0B => return fact(servo, word),
+        _ => return Err(UNKNOWN),
+    }
+    Ok(word)
+}
+
+fn fact(servo: &Puma, word: u16) -> Result<u16, u16> {
+    match word {
+        0 => Ok(0x0560),
+        1 => Ok(2),
+        2 if servo.trouble == Trouble::Exchanged => Ok(999),
+        2 => Ok(1023),
+        3 => Ok(12),
+        _ => Err(OUT_OF_RANGE),
+    }
+}
+
+/// Table 2.7, as far as this board has it; the lowest byte of a number first, as a 6503 has it.
+fn memory(servo: &Puma, address: u8) -> u8 {
+    // 16 bits of counts behind 8 of fractions.
+    let fixed = |value: f64, byte: u8| ((value * 256.0).round() as i64 >> (8 * byte)) as u8;
+    match address {
+        0x00 => servo.status() as u8,
+        0x01 => (servo.status() >> 8) as u8,
+        0x02 => servo.memory_pointer,
+        // Proportional gain; velocity gain and output scale are 0.
+        0x03 => 0x01,
+        0x06 => servo.ninter,
+        0x07 => EINTSCL,
+        0x08 => DIVISOR,
+        0x0A..=0x0C => fixed(servo.increment, address - 0x0A),
+        0x0D..=0x0F => fixed(servo.interpolated, address - 0x0D),
+        0x50 => servo.count,
+        0x56..=0x58 => fixed(servo.counts as f64, address - 0x56),
+        _ => 0,
+    }
+}
