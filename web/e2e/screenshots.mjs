@@ -18,7 +18,13 @@ const GALLERY = {
 	demagnetise: {},
 	brake_speed_independence: {},
 	brake_hysteresis: { levels: 8, loops: 1, random_turns: 8 },
+	stiffness: { load_levels: 4 },
+	compensation: {},
+	encoder_linearity: {},
+	encoder_alignment: { halvings: 2, map_positions: 3 },
 };
+/** A run without repeats: nobody knows how small its error could become. */
+const UNDECIDED = { speeds: 2, repeats: 1 };
 
 async function shoot(page, name) {
 	for (const theme of ['light', 'dark']) {
@@ -87,6 +93,18 @@ await tell(`screens in ${folder}`, async () => {
 		await page.locator('[data-result] [data-figure]').first().waitFor({ timeout: 60_000 });
 		await shoot(page, `result-${procedure}`);
 	}
+	const bare = await makeRun(where.base, 'strokes', UNDECIDED);
+	if (bare !== null) {
+		await page.goto(`${where.base}/workbench/${bare}`);
+		expect((await readVersion(page)).verdict === 'undecided', 'a run without repeats should leave the diagnosis undecided');
+		await shoot(page, 'workbench-undecided');
+	}
+	await page.goto(`${where.base}/runs/${run}`);
+	await page.locator('.uplot').first().waitFor();
+	await page.keyboard.press('m');
+	await page.locator('[data-measured]').first().waitFor();
+	await page.locator('.uplot').first().scrollIntoViewIfNeeded();
+	await shoot(page, 'run-measured');
 	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
 	await browser.close();
 });

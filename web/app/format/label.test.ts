@@ -4,6 +4,8 @@ import { axisTitle, label, prose } from './label';
 it('reads the unit from the suffix', () => {
 	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
 	expect(label('torque_constant_nm_per_a').unit).toBe('Nm/A');
+	expect(label('bearing_stiffness_nm_rad')).toEqual({ title: 'bearing stiffness', unit: 'Nm/rad' });
+	expect(label('stage_radial_m')).toEqual({ title: 'stage radial', unit: 'm' });
 	expect(label('time_s')).toEqual({ title: 'time', unit: 's' });
 	expect(label('segment')).toEqual({ title: 'segment', unit: '' });
 });

@@ -2,6 +2,7 @@
 
 const SUFFIXES: [string, string][] = [
 	['_nm_per_rad', 'Nm/rad'],
+	['_nm_rad', 'Nm/rad'],
 	['_nm_per_a', 'Nm/A'],
 	['_kg_m2', 'kg·m²'],
 	['_rad_s2', 'rad/s²'],
@@ -14,6 +15,7 @@ const SUFFIXES: [string, string][] = [
 	['_a', 'A'],
 	['_c', '°C'],
 	['_s', 's'],
+	['_m', 'm'],
 ];
 
 const SAID: Record<string, string> = {
@@ -51,7 +53,7 @@ export function words(id: string): string {
 }
 
 /** A unit that can be nothing else; `tau_c` is no temperature. */
-const SPELT_UNIT = /_(rad_s2?|rad|nm|hz)$/;
+const SPELT_UNIT = /_(nm_rad|rad_s2?|rad|nm|hz)$/;
 
 /** A sentence of the daemon as people write it: ids as words, without the unit at their end; a capital at its start. */
 export function prose(sentence: string): string {
