@@ -28,6 +28,13 @@ impl Profile {
         self.to(value, seconds)
     }
 
+    /// Goes on as another profile does.
+    pub fn then(mut self, next: &Profile) -> Self {
+        let from_s = self.duration_s();
+        self.knots.extend(next.knots.iter().map(|(t_s, value)| (from_s + t_s, *value)));
+        self
+    }
+
     /// From rest to a speed, there for `dwell_s`, and back to rest.
     pub fn plateau(speed_rad_s: f64, acceleration_rad_s2: f64, dwell_s: f64) -> Self {
         let ramp_s = speed_rad_s.abs() / acceleration_rad_s2;

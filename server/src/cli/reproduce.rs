@@ -13,7 +13,11 @@ use std::fs;
 use std::path::Path;
 
 pub fn reproduce(arguments: &Reproduce) -> Done {
-    let subjects = [("Joint A", Joint::JointA, Subject::JointA), ("Joint B", Joint::JointB, Subject::JointB)];
+    let subjects = [
+        ("Joint A", Joint::JointA, Subject::JointA),
+        ("Joint B", Joint::JointB, Subject::JointB),
+        ("Puma", Joint::Puma, Subject::Puma),
+    ];
     let mut page = format!(
         "# The documents' tables, measured again\n\n\
          Written by `jointbench reproduce --seed {} --out …`, version {}. The bench is simulated: *given* is the constant that it was \
@@ -78,6 +82,22 @@ fn given(truth: &Truth, name: &str) -> Option<f64> {
         "delta_s" => stribeck("exponent"),
         "k" => Some(truth.stiffness_nm_rad),
         "beta_0" => Some(truth.directional_offset_rad),
+        _ => of_arm(truth, name),
+    }
+}
+
+/// An arm's lines, in volts of its shunt and degrees each second at the link.
+fn of_arm(truth: &Truth, name: &str) -> Option<f64> {
+    let hidden =
+        |effect: &str, figure: &str| truth.hidden.iter().find(|h| h.effect == effect)?.parameters.get(figure).copied();
+    let nm_per_v = truth.torque_constant_nm_per_a * MockSettings::new(truth.joint, truth.seed).amperes_per_volt()?;
+    let (offset_nm, share) = (hidden("direction_offset", "offset_nm")?, hidden("viscous_asymmetry", "relative")?);
+    let per_deg_s = truth.viscous_nm_s / nm_per_v / truth.gear_ratio.recip().to_degrees();
+    match name {
+        "f_positive" => Some((truth.coulomb_nm + offset_nm) / nm_per_v),
+        "f_negative" => Some((offset_nm - truth.coulomb_nm) / nm_per_v),
+        "b_positive" => Some((1.0 + share) * per_deg_s),
+        "b_negative" => Some((1.0 - share) * per_deg_s),
         _ => None,
     }
 }

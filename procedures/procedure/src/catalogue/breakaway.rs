@@ -6,7 +6,7 @@
 //! Olsson, Åström, Lischinsky 1995): only a slow ramp comes near the friction at rest.
 
 use super::Procedure;
-use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate};
+use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, stroke};
 use crate::findings::{Mean, Unusable, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -64,7 +64,7 @@ impl Procedure for Breakaway {
         for (repeat, sign) in [(0, 1.0), (1, -1.0)] {
             legs.repeat = repeat;
             for position in 1..=positions {
-                let velocity = approach(sign * stretch_rad, values.number("speed_rad_s"), legs.acceleration_rad_s2);
+                let velocity = stroke(sign * stretch_rad, values.number("speed_rad_s"), legs.acceleration_rad_s2);
                 let from_s = velocity.duration_s() + REST_S;
                 let current_a = Profile::from(0.0).hold(REST_S).to(sign * top_a, ramp_s);
                 let way = if sign > 0.0 { "forward" } else { "backward" };
@@ -92,18 +92,36 @@ impl Procedure for Breakaway {
     }
 }
 
-/// A stroke of a given way, as fast as it may be within its acceleration.
-fn approach(way_rad: f64, top_rad_s: f64, acceleration_rad_s2: f64) -> Profile {
-    let speed_rad_s = top_rad_s.min((0.5 * way_rad.abs() * acceleration_rad_s2).sqrt());
-    let dwell_s = way_rad.abs() / speed_rad_s - speed_rad_s / acceleration_rad_s2;
-    Profile::plateau(speed_rad_s.copysign(way_rad), acceleration_rad_s2, dwell_s.max(0.0))
-}
-
 /// Where and at which torque a joint broke away.
 struct Broke {
     link_rad: f64,
     torque_nm: f64,
     sign: f64,
+}
+
+/// Where a ramp of motor current has moved the joint.
+pub(super) struct Onset {
+    /// The first of the increases in a row, and the end of the ramp's rows.
+    pub row: usize,
+    pub end: usize,
+    pub current_a: f64,
+}
+
+/// The ramps of a run at whose end the joint moved, and the number of those that reached `top_a` before it did.
+pub(super) fn onsets(run: &RunTable, setpoint_a: &[f64], increases: usize, top_a: f64) -> (Vec<Onset>, usize) {
+    let (mut onsets, mut held, mut start) = (Vec::new(), 0, 0);
+    for rows in run.column("segment").unwrap_or_default().chunk_by(|a, b| a == b) {
+        let end = start + rows.len();
+        let last_a = setpoint_a[end - 1].abs();
+        let row = end - increases.min(rows.len());
+        if last_a > 0.999 * top_a {
+            held += 1;
+        } else if last_a > 0.0 {
+            onsets.push(Onset { row, end, current_a: setpoint_a[row] });
+        }
+        start = end;
+    }
+    (onsets, held)
 }
 
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
@@ -112,28 +130,17 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     };
     let km = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
     let link = run.column("link_position_rad");
-    let segment = run.column("segment").unwrap_or_default();
-    let repeat = run.column("repeat").unwrap_or_default();
     let increases = values.count("increases") as usize;
     let top_a = values.number("top_torque_nm") / km;
-    let (mut broke, mut held) = (Vec::new(), 0);
-    let mut start = 0;
-    for rows in segment.chunk_by(|a, b| a == b) {
-        let end = start + rows.len();
-        let ramp = &setpoint[start..end];
-        if let Some(last_a) = ramp.last().filter(|a| **a != 0.0) {
-            // The torque at the first of the increases.
-            let onset = rows.len().saturating_sub(increases);
-            if last_a.abs() > 0.999 * top_a {
-                held += 1;
-            } else {
-                let link_rad = link.map_or(0.0, |link| link[end - 1].rem_euclid(TAU));
-                let sign = if repeat[start] == 0.0 { 1.0 } else { -1.0 };
-                broke.push(Broke { link_rad, torque_nm: km * ramp[onset].abs(), sign });
-            }
-        }
-        start = end;
-    }
+    let (onsets, held) = onsets(run, setpoint, increases, top_a);
+    let broke: Vec<Broke> = onsets
+        .into_iter()
+        .map(|onset| Broke {
+            link_rad: link.map_or(0.0, |link| link[onset.end - 1].rem_euclid(TAU)),
+            torque_nm: km * onset.current_a.abs(),
+            sign: onset.current_a.signum(),
+        })
+        .collect();
     let of = |sign: f64| -> Vec<f64> { broke.iter().filter(|b| b.sign == sign).map(|b| b.torque_nm).collect() };
     let all: Vec<f64> = broke.iter().map(|b| b.torque_nm).collect();
     let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {

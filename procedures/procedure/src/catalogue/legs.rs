@@ -121,6 +121,13 @@ impl Legs {
     }
 }
 
+/// A stroke of a given way, as fast as it may be within its acceleration.
+pub(super) fn stroke(way_rad: f64, top_rad_s: f64, acceleration_rad_s2: f64) -> Profile {
+    let speed_rad_s = top_rad_s.min((0.5 * way_rad.abs() * acceleration_rad_s2).sqrt());
+    let dwell_s = way_rad.abs() / speed_rad_s - speed_rad_s / acceleration_rad_s2;
+    Profile::plateau(speed_rad_s.copysign(way_rad), acceleration_rad_s2, dwell_s.max(0.0))
+}
+
 /// How long a plateau has to be to cover a share of a link turn, and at least `least_s`.
 pub(super) fn turn_s(share: f64, speed_rad_s: f64, bench: &BenchFacts, least_s: f64) -> f64 {
     (share * TAU * bench.constants.gear_ratio / speed_rad_s.abs()).min(LONGEST_LEG_S).max(least_s)

@@ -13,6 +13,7 @@ mod friction_temperature;
 mod identify_joint;
 mod legs;
 mod presliding;
+mod puma_friction;
 mod rest;
 mod stiffness;
 mod strokes;
@@ -72,6 +73,7 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &strokes::Strokes,
         &warm_up::WarmUp,
         &identify_joint::IdentifyJoint,
+        &puma_friction::PumaFriction,
         &encoder::EncoderOffset,
         &encoder::EncoderDelay,
         &encoder::EncoderLinearity,

@@ -107,3 +107,39 @@ fn the_full_model_halves_the_error_without_over_compensating() {
     assert!(ratio("full") < 0.5 && ratio("full") < ratio("interpolated"), "{}", found.summary);
     assert!(ratio("observer") < 1.0);
 }
+
+/// The arm's constants lie in the intervals that the run gives, and the directions are told apart.
+#[test]
+fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
+    let given = json!({"speeds": 4, "repeats": 2, "breakaways": 2, "warm_up_s": 5.0, "ramp_nm_s": 0.03});
+    let settings = MockSettings::new(Joint::Puma, 2).hiding(&["stribeck"]);
+    let (mock, found) = found(settings, "puma_friction", given);
+    assert_eq!(found.verdict, Verdict::Identified, "{} {:?}", found.summary, found.advice);
+    let truth = mock.truth();
+    let hidden = |effect: &str, figure: &str| {
+        truth.hidden.iter().find(|h| h.effect == effect).expect("the arm has it").parameters[figure]
+    };
+    let (offset_nm, share) = (hidden("direction_offset", "offset_nm"), hidden("viscous_asymmetry", "relative"));
+    let deg_s = (1.0 / truth.gear_ratio).to_degrees();
+    let volts = |nm: f64| nm / truth.torque_constant_nm_per_a;
+    for (name, truth, widest) in [
+        ("f_positive", volts(truth.coulomb_nm + offset_nm), 0.02),
+        ("f_negative", -volts(truth.coulomb_nm - offset_nm), 0.02),
+        ("b_positive", volts(truth.viscous_nm_s * (1.0 + share)) / deg_s, 0.08),
+        ("b_negative", volts(truth.viscous_nm_s * (1.0 - share)) / deg_s, 0.08),
+        ("weight", volts(hidden("gravity", "link_nm") / truth.gear_ratio), 0.1),
+    ] {
+        let quantity = found.quantity(name).unwrap();
+        let [low, high] = quantity.ci95.unwrap();
+        assert!((low..=high).contains(&truth), "{name}: {low} … {high} for {truth}");
+        assert!(high - low < 2.0 * widest * truth.abs(), "{name}: {low} … {high}");
+    }
+    let rise_nm = hidden("stribeck", "rise_nm");
+    for (name, sign) in [("stiction_positive", 1.0), ("stiction_negative", -1.0)] {
+        let (value, truth) =
+            (found.quantity(name).unwrap().value, volts(sign * (truth.coulomb_nm + rise_nm) + offset_nm));
+        assert!((value / truth - 1.0).abs() < 0.04, "{name}: {value} for {truth}");
+    }
+    let [low, high] = found.quantity("f_difference").unwrap().ci95.unwrap();
+    assert!(low > 0.0 && high > low, "the directions differ: {low} … {high}");
+}

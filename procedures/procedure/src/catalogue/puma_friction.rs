@@ -1,0 +1,184 @@
+//! Friction of an arm's axis as document 000 measures it (section 3.1): a work-out first, then the mean motor current at
+//! constant speeds over a short arc about the pose in which the link has no weight, a line for each direction, a test
+//! whether the directions differ, and stiction: the current raised until the encoder increases five times in a row.
+//!
+//! The run begins where the encoder is 0, with the link upright. Every speed is held over the same arc in both
+//! directions, from one end to the other, so that what is left of the weight is the same in both and has no mean.
+
+use super::Procedure;
+use super::legs::{Legs, friction_meta, stroke};
+use crate::findings::verdict;
+use crate::identification::Identification;
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Drive, Phase, Plan, PlanFault, Steady, Until};
+use crate::profile::Profile;
+use jointbench_instrument::{Kind, RunTable};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+
+mod identify;
+
+pub(super) struct PumaFriction;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::number("lowest_speed_rad_s", "Lowest speed (link)", "rad/s", 0.0873, [0.001, 10.0]),
+    Parameter::number("top_speed_rad_s", "Highest speed (link)", "rad/s", 0.698, [0.01, 20.0]),
+    Parameter::count("speeds", "Speeds in each direction", 8, [3, 40]),
+    Parameter::number("arc_rad", "Arc to either side of the upright pose (link)", "rad", 0.45, [0.02, 3.0]),
+    Parameter::count("repeats", "Repeats of the whole profile", 3, [1, 50]),
+    Parameter::number("warm_up_s", "Longest work-out", "s", 60.0, [1.0, 3600.0]),
+    Parameter::count("breakaways", "Measurements of stiction in each direction", 4, [2, 50]),
+    Parameter::number("top_torque_nm", "Torque at which the rise ends (motor)", "Nm", 0.3, [1e-3, 100.0]),
+    Parameter::number("ramp_nm_s", "Rise of the torque (motor)", "Nm/s", 0.02, [1e-4, 10.0]),
+    Parameter::count("increases", "Encoder increases in a row", 5, [2, 50]),
+    Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [40.0, 500.0]),
+    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+];
+
+/// Strokes of one cycle of the work-out whose currents are compared: two out, two back.
+const CYCLE_STEPS: usize = 4;
+/// Before the current rises the joint rests for so long, and backs off by so much (link) to arrive in its direction.
+const REST_S: f64 = 0.4;
+const BACK_OFF_RAD: f64 = 0.02;
+/// Motor-side speed of what is not measured, and the one at which a joint that broke away is caught at the latest.
+const MOVE_SHARE: f64 = 0.5;
+const RUNAWAY_RAD_S: f64 = 10.0;
+
+impl Procedure for PumaFriction {
+    fn id(&self) -> &'static str {
+        "puma_friction"
+    }
+
+    fn title(&self) -> &'static str {
+        "Friction of an arm"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Works an arm's axis warm, then takes the mean shunt voltage at constant speeds over a short arc about the upright pose, a line for each direction, and the stiction. Stand the link upright first."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Friction
+    }
+
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Err("its arc lies about the pose in which it began: stand the link upright and make it again")
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let Some(amperes_per_volt) = bench.amperes_per_volt else {
+            return Err(PlanFault::Contradiction {
+                what: format!("bench {} does not read motor current as volts of a shunt", bench.name),
+                cure: "run friction and breakaway instead",
+            });
+        };
+        let gear = bench.constants.gear_ratio;
+        let rate_hz = values.number("sample_rate_hz");
+        let acceleration_rad_s2 = values.number("acceleration_rad_s2");
+        let speeds = speeds(values)?.map(|speed_rad_s| gear * speed_rad_s);
+        let mut speeds: Vec<f64> = speeds.collect();
+        let top_rad_s = speeds[speeds.len() - 1];
+        let arc_rad = gear * values.number("arc_rad");
+        let reached_rad_s = (2.0 * arc_rad * acceleration_rad_s2).sqrt();
+        if top_rad_s > 0.7 * reached_rad_s {
+            return Err(PlanFault::Contradiction {
+                what: format!("top_speed_rad_s = {} is not held on this arc", values.number("top_speed_rad_s")),
+                cure: "lower it, or raise arc_rad or acceleration_rad_s2",
+            });
+        }
+        let mut legs = Legs::new(acceleration_rad_s2);
+        let go = |legs: &mut Legs, label: String, way_rad: f64, speed_rad_s: f64| {
+            legs.push(label, stroke(way_rad, speed_rad_s, acceleration_rad_s2), Profile::constant(0.0));
+        };
+        go(&mut legs, "to the end of the arc".into(), -arc_rad, MOVE_SHARE * top_rad_s);
+        legs.phase = Phase::WarmUp;
+        let mut work_s = 0.0;
+        while work_s < values.number("warm_up_s") {
+            for sign in [1.0, -1.0, 1.0, -1.0] {
+                go(&mut legs, "work-out".into(), 2.0 * sign * arc_rad, top_rad_s);
+                work_s += legs.steps.last().map_or(0.0, crate::plan::Step::duration_s);
+            }
+        }
+        legs.phase = Phase::Measure;
+        let first = legs.steps.len();
+        let mut rng = ChaCha8Rng::seed_from_u64(u64::from(values.count("order_seed")));
+        for repeat in 0..values.count("repeats") {
+            legs.repeat = repeat;
+            speeds.shuffle(&mut rng);
+            for speed_rad_s in &speeds {
+                let shown = (speed_rad_s / gear).to_degrees();
+                for sign in [1.0, -1.0] {
+                    go(&mut legs, format!("{:+.1} °/s", sign * shown), 2.0 * sign * arc_rad, *speed_rad_s);
+                }
+            }
+        }
+        let lines = legs.steps.len() - first;
+        go(&mut legs, "to the upright pose".into(), arc_rad, MOVE_SHARE * top_rad_s);
+        break_away(&mut legs, values, bench);
+        let mut meta = friction_meta(bench, rate_hz);
+        meta.other.insert("warm_up_segments".into(), first.into());
+        meta.other.insert("line_segments".into(), lines.into());
+        meta.other.insert("segments".into(), legs.steps.len().into());
+        meta.other.insert("amperes_per_volt".into(), amperes_per_volt.into());
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta,
+            rate_hz,
+            acceleration_rad_s2,
+            steps: legs.steps,
+            steady: Some(Steady { cycle_steps: CYCLE_STEPS, temperature_c_per_min: 0.3, current_share_per_min: 0.05 }),
+        })
+    }
+
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify::identify(values, run))
+    }
+}
+
+/// Link side, evenly from the lowest to the highest.
+fn speeds(values: &Values) -> Result<impl Iterator<Item = f64> + use<>, PlanFault> {
+    let (low, top) = (values.number("lowest_speed_rad_s"), values.number("top_speed_rad_s"));
+    if top < 2.0 * low {
+        return Err(PlanFault::Contradiction {
+            what: format!("top_speed_rad_s = {top} is not well above lowest_speed_rad_s = {low}"),
+            cure: "no line is seen on a short range of speeds: raise one or lower the other",
+        });
+    }
+    let count = values.count("speeds");
+    Ok((0..count).map(move |i| low + (top - low) * f64::from(i) / f64::from(count - 1)))
+}
+
+/// Stiction at the upright pose, arrived at in the direction in which the joint will break away.
+fn break_away(legs: &mut Legs, values: &Values, bench: &BenchFacts) {
+    let top_a = values.number("top_torque_nm") / bench.constants.torque_constant_nm_per_a;
+    let ramp_s = values.number("top_torque_nm") / values.number("ramp_nm_s");
+    let until = Until { increases: values.count("increases"), speed_rad_s: RUNAWAY_RAD_S };
+    let back_rad = BACK_OFF_RAD * bench.constants.gear_ratio;
+    let count = values.count("breakaways");
+    for (repeat, sign) in [(0, 1.0), (1, -1.0)] {
+        legs.repeat = repeat;
+        for number in 1..=count {
+            let back = stroke(-sign * back_rad, RUNAWAY_RAD_S, legs.acceleration_rad_s2);
+            let there = stroke(sign * back_rad, RUNAWAY_RAD_S, legs.acceleration_rad_s2);
+            let velocity = back.then(&there);
+            let from_s = velocity.duration_s() + REST_S;
+            let way = if sign > 0.0 { "forward" } else { "backward" };
+            legs.push(format!("breakaway {way}, {number} of {count}"), velocity, Profile::constant(0.0));
+            let current_a = Profile::from(0.0).hold(REST_S).to(sign * top_a, ramp_s);
+            legs.drive_of_last(Drive::Current { from_s, current_a, until });
+        }
+    }
+    // The last of them is caught before the run ends.
+    legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,258 @@
+//! Lines of voltage over speed, each direction, and stiction, in the units of document 000: volts, degrees each second at
+//! the link; and beside them in newton metres at the motor.
+
+use super::super::breakaway::{Onset, onsets};
+use crate::findings::{Hold, Line, Mean, Unusable, combined, curve, holds, quantity, scatter};
+use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
+use crate::parameter::Values;
+use jointbench_instrument::RunTable;
+use jointbench_model::words;
+
+/// After its set-point has become constant the joint settles for so long.
+const SETTLE_S: f64 = 0.2;
+/// The volts of one angle in a figure are means over such a part of the arc.
+const ANGLES: usize = 24;
+
+/// One speed in one direction, within the arc that all have in common.
+struct Point {
+    deg_s: f64,
+    volts: f64,
+    /// What a volt gains for each unit of the sine of the link's angle.
+    per_sine: f64,
+}
+
+struct Figures<'a> {
+    volts: Vec<f64>,
+    link_rad: Vec<f64>,
+    time_s: &'a [f64],
+}
+
+pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
+    let meta = run.meta();
+    let fact = |name: &str| meta.other.get(name).and_then(serde_json::Value::as_f64);
+    let (Some(warm_up), Some(count), Some(planned), Some(scale), Some(position), Some(current), Some(setpoint)) = (
+        fact("warm_up_segments"),
+        fact("line_segments"),
+        fact("segments"),
+        fact("amperes_per_volt"),
+        run.column("motor_position_rad"),
+        run.column("motor_current_a"),
+        run.column("motor_current_setpoint_a"),
+    ) else {
+        return Err(Unusable::TooLittle("the run is of another procedure: run puma_friction"));
+    };
+    let gear = meta.gear_ratio.unwrap_or(1.0);
+    let km = meta.torque_constant_nm_per_a.unwrap_or(1.0);
+    let figures = Figures {
+        volts: current.iter().map(|a| a / scale).collect(),
+        link_rad: position.iter().map(|rad| rad / gear).collect(),
+        time_s: run.column("time_s").unwrap_or_default(),
+    };
+    let holds = measured(run, warm_up as i64, count as i64, planned as i64);
+    let (points, arc_rad) = figures.points(&holds)?;
+    let slopes: Vec<f64> = points.iter().map(|point| point.per_sine).collect();
+    let weight = Mean::of(&slopes).ok_or(FEW)?;
+    let side = |sign: f64| -> Vec<(f64, f64)> {
+        points.iter().filter(|p| p.deg_s * sign > 0.0).map(|p| (p.deg_s, p.volts)).collect()
+    };
+    let (forward, backward) = (Line::through(&side(1.0)).ok_or(FEW)?, Line::through(&side(-1.0)).ok_or(FEW)?);
+
+    let top_a = values.number("top_torque_nm") / km;
+    let (broke, held) = onsets(run, setpoint, values.count("increases") as usize, top_a);
+    // Off the upright pose the weight has helped or hindered.
+    let stiction = |sign: f64| -> Option<Mean> {
+        let volts = |onset: &Onset| onset.current_a / scale - weight.value * figures.link_rad[onset.row].sin();
+        Mean::of(&broke.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>())
+    };
+    let (out, back) = (stiction(1.0), stiction(-1.0));
+
+    let offset = |line: &Line| (line.offset, line.offset_ci95);
+    let slope = |line: &Line| (line.slope, line.slope_ci95);
+    // f⁻ is below 0: the sum is what the sizes differ by.
+    let f_difference = combined(offset(&forward), offset(&backward), 1.0);
+    let b_difference = combined(slope(&forward), slope(&backward), -1.0);
+    let differ = |(_, [low, high]): (f64, [f64; 2])| low > 0.0 || high < 0.0;
+    let mut quantities = sides(&forward, &backward);
+    quantities.extend([
+        named(["f_difference", "|f⁺| − |f⁻|", "Coulomb friction, difference of directions", "V"], f_difference),
+        named(["b_difference", "B⁺ − B⁻", "Viscous friction, difference of directions", "V/(°/s)"], b_difference),
+        named(
+            ["weight", "g", "Weight of the link when level", "V"],
+            (-weight.value, [-weight.ci95[1], -weight.ci95[0]]),
+        ),
+    ]);
+    for (name, symbol, title, mean) in [
+        ("stiction_positive", "τ_s⁺", "Stiction, positive direction", &out),
+        ("stiction_negative", "τ_s⁻", "Stiction, negative direction", &back),
+    ] {
+        quantities.extend(mean.map(|mean| named([name, symbol, title, "V"], (mean.value, mean.ci95))));
+    }
+    let nm_per_v = km * scale;
+    quantities.extend(at_motor(&forward, &backward, nm_per_v, nm_per_v * gear.recip().to_degrees()));
+
+    let told = match (differ(f_difference), differ(b_difference)) {
+        (true, true) => "in Coulomb and in viscous friction the directions differ at 95 %",
+        (true, false) => "in Coulomb friction the directions differ at 95 %, in viscous friction they do not",
+        (false, true) => "in viscous friction the directions differ at 95 %, in Coulomb friction they do not",
+        (false, false) => "the directions do not differ at 95 %",
+    };
+    let complete = held == 0 && out.is_some() && back.is_some();
+    Ok(Identification {
+        verdict: if complete { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!(
+            "Coulomb friction is {} and {} (motor), out and back; {told}.",
+            words::figure(nm_per_v * forward.offset, "Nm"),
+            words::figure(nm_per_v * backward.offset, "Nm"),
+        ),
+        advice: (!complete).then(|| "Not every breakaway was seen: raise top_torque_nm, or breakaways.".into()),
+        quantities,
+        figures: vec![over_speed(&points, &forward, &backward), figures.over_angle(&holds, arc_rad)],
+    })
+}
+
+const FEW: Unusable = Unusable::TooLittle("too few speeds were held: make the run to its end");
+
+/// The stretches of constant speed behind the work-out that were not broken off.
+fn measured(run: &RunTable, first: i64, count: i64, planned: i64) -> Vec<Hold> {
+    let segment = run.column("segment").unwrap_or_default();
+    // A step that was made again after a pause has a number of its own: it belongs where the one before it does.
+    let mut belongs = false;
+    holds(run, 2.0 * SETTLE_S)
+        .into_iter()
+        .filter(|hold| {
+            if hold.segment < planned {
+                belongs = (first..first + count).contains(&hold.segment);
+            }
+            let goes_on = segment.get(hold.rows.end).is_some_and(|next| *next as i64 == hold.segment);
+            belongs && goes_on && hold.velocity_rad_s != 0.0
+        })
+        .collect()
+}
+
+impl Figures<'_> {
+    /// The rows of a hold once the joint has settled.
+    fn settled(&self, hold: &Hold) -> std::ops::Range<usize> {
+        let from_s = self.time_s[hold.rows.start] + SETTLE_S;
+        let start = hold.rows.clone().find(|row| self.time_s[*row] >= from_s).unwrap_or(hold.rows.end);
+        start..hold.rows.end
+    }
+
+    /// Means over the largest arc about the upright pose that every hold covers, and that arc to either side.
+    fn points(&self, holds: &[Hold]) -> Result<(Vec<Point>, f64), Unusable> {
+        let reach = |hold: &Hold| {
+            let rows = self.settled(hold);
+            let (first, last) = (self.link_rad[rows.start.min(hold.rows.end - 1)], self.link_rad[hold.rows.end - 1]);
+            // How far it goes to the nearer side of 0; below 0 where it does not pass it.
+            (-first * last.signum()).min(last.abs())
+        };
+        let arc_rad = holds.iter().map(reach).fold(f64::INFINITY, f64::min);
+        if !(arc_rad > 0.0 && arc_rad.is_finite()) {
+            return Err(Unusable::TooLittle(
+                "the link did not pass its upright pose: stand it upright, where its encoder is 0, and run again",
+            ));
+        }
+        let points: Vec<Point> = holds.iter().filter_map(|hold| self.point(hold, arc_rad)).collect();
+        Ok((points, arc_rad))
+    }
+
+    fn point(&self, hold: &Hold, arc_rad: f64) -> Option<Point> {
+        let rows: Vec<usize> = self.settled(hold).filter(|row| self.link_rad[*row].abs() <= arc_rad).collect();
+        let (first, last) = (*rows.first()?, *rows.last()?);
+        let count = rows.len() as f64;
+        let mean = |of: &dyn Fn(usize) -> f64| rows.iter().map(|row| of(*row)).sum::<f64>() / count;
+        let sine = |row: usize| self.link_rad[row].sin();
+        let (volts, centre) = (mean(&|row| self.volts[row]), mean(&sine));
+        let spread = mean(&|row| (sine(row) - centre).powi(2));
+        let per_sine = mean(&|row| (sine(row) - centre) * (self.volts[row] - volts)) / spread;
+        let way_rad = self.link_rad[last] - self.link_rad[first];
+        let deg_s = (way_rad / (self.time_s[last] - self.time_s[first])).to_degrees();
+        // The arc is even about 0: what is left of the weight is what its edges are apart.
+        Some(Point { deg_s, volts: volts - per_sine * centre, per_sine })
+            .filter(|p| p.volts.is_finite() && p.deg_s != 0.0)
+    }
+
+    fn over_angle(&self, holds: &[Hold], arc_rad: f64) -> Figure {
+        let side = |label, sign: f64| {
+            let mut sums = [(0.0, 0.0); ANGLES];
+            for row in holds.iter().filter(|hold| hold.velocity_rad_s * sign > 0.0).flat_map(|hold| self.settled(hold))
+            {
+                let part = (self.link_rad[row] / arc_rad + 1.0) / 2.0 * ANGLES as f64;
+                if (0.0..ANGLES as f64).contains(&part) {
+                    let sum = &mut sums[part as usize];
+                    *sum = (sum.0 + self.volts[row], sum.1 + 1.0);
+                }
+            }
+            let angle = |part: usize| arc_rad * (2.0 * (part as f64 + 0.5) / ANGLES as f64 - 1.0);
+            let seen = sums.into_iter().enumerate().filter(|(_, (_, count))| *count > 0.0);
+            scatter(label, seen.map(|(part, (volts, count))| (angle(part).to_degrees(), volts / count)))
+        };
+        Figure {
+            name: "volts_over_angle".into(),
+            title: "Shunt voltage over the link's angle, all speeds".into(),
+            form: Form::Cartesian,
+            x: Axis::of("angle from upright (link)", "°"),
+            y: Axis::of("shunt voltage", "V"),
+            series: vec![side("positive", 1.0), side("negative", -1.0)],
+        }
+    }
+}
+
+fn named(words: [&str; 4], (value, ci95): (f64, [f64; 2])) -> Quantity {
+    quantity(words, value, Some(ci95))
+}
+
+/// The table of figure 3.2.
+fn sides(forward: &Line, backward: &Line) -> Vec<Quantity> {
+    let mut all = Vec::new();
+    for (suffix, sign, way, line) in
+        [("positive", "⁺", "positive direction", forward), ("negative", "⁻", "negative direction", backward)]
+    {
+        let words = |name: &str, symbol: &str, title: &str| {
+            [format!("{name}_{suffix}"), format!("{symbol}{sign}"), format!("{title}, {way}")]
+        };
+        for ([name, symbol, title], unit, value, ci95) in [
+            (words("b", "B", "Viscous friction"), "V/(°/s)", line.slope, Some(line.slope_ci95)),
+            (words("f", "f", "Coulomb friction"), "V", line.offset, Some(line.offset_ci95)),
+            (words("r2", "r²", "Share of the scatter explained"), "", line.r2, None),
+        ] {
+            all.push(quantity([&name, &symbol, &title, unit], value, ci95));
+        }
+    }
+    all
+}
+
+/// The same in newton metres at the motor, sizes only.
+fn at_motor(forward: &Line, backward: &Line, nm_per_v: f64, nm_s_per_slope: f64) -> Vec<Quantity> {
+    let sized = |value: f64, ci95: [f64; 2], scale: f64| {
+        let ends = ci95.map(|end| end * scale * value.signum());
+        ((value * scale).abs(), [ends[0].min(ends[1]), ends[0].max(ends[1])])
+    };
+    let mut all = Vec::new();
+    for (suffix, sign, line) in [("positive", "⁺", forward), ("negative", "⁻", backward)] {
+        let coulomb = [&format!("tau_c_{suffix}"), &format!("τ_c{sign}"), "Coulomb friction (motor)", "Nm"];
+        all.push(named(coulomb, sized(line.offset, line.offset_ci95, nm_per_v)));
+        let viscous = [&format!("c_v_{suffix}"), &format!("c_v{sign}"), "Viscous friction (motor)", "Nm·s/rad"];
+        all.push(named(viscous, sized(line.slope, line.slope_ci95, nm_s_per_slope)));
+    }
+    all
+}
+
+fn over_speed(points: &[Point], forward: &Line, backward: &Line) -> Figure {
+    let top = points.iter().map(|p| p.deg_s.abs()).fold(0.0, f64::max);
+    let side = |label, sign: f64| {
+        scatter(label, points.iter().filter(move |p| p.deg_s * sign > 0.0).map(|p| (p.deg_s, p.volts)))
+    };
+    Figure {
+        name: "volts_over_speed".into(),
+        title: "Shunt voltage over speed".into(),
+        form: Form::Cartesian,
+        x: Axis::of("speed (link)", "°/s"),
+        y: Axis::of("shunt voltage", "V"),
+        series: vec![
+            side("positive", 1.0),
+            side("negative", -1.0),
+            curve("line, positive", [0.0, top], 1, |x| forward.at(x)),
+            curve("line, negative", [-top, 0.0], 1, |x| backward.at(x)),
+        ],
+    }
+}
