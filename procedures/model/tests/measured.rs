@@ -45,6 +45,22 @@ fn emps_goes_on_to_the_flexibility() {
     let unseen = evaluate(&found.fit, &read(&data.join("emps-pulses"))).unwrap();
     assert!(unseen.relative_error < 0.028, "{:?}: {}", found.model, unseen.relative_error);
     assert_eq!(found.verdict, Verdict::UnexplainedStructure);
+    // Dry friction below the 20 N of the symmetric model, whose rest comes with the first centimetre per second.
+    let coulomb = found.fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
+    assert!(coulomb.ci95[0] > 5.0 && coulomb.ci95[1] < 22.0, "{coulomb:?}");
+}
+
+/// A hobby servo under a pendulum. Its authors found friction that grows with the load; a pendulum's load is a curve over the
+/// angle too, and a wave over the angle that was never seen to come again is no rival.
+#[test]
+fn bam_has_friction_that_grows_with_the_load() {
+    let Some(data) = shared("data") else { return };
+    let run = read(&data.join("bam-xl330"));
+    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    let first = &found.suggestions[0];
+    assert_eq!(first.effect, "stribeck_load", "{}", found.summary);
+    let squared = (first.validation_rms / found.fit.validation_rms).powi(2);
+    assert!(squared < 0.70, "{squared} of the held-out squared error is left");
 }
 
 /// A 12N14P motor turned slowly: 7 is a neighbour motor, 12 slots, 14 poles and their multiples.

@@ -97,6 +97,16 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
     vec![Form { name: "harmonic", linear: vec!["a", "b"], shape, grid }]
 }
 
+/// The same of an axis that may turn only a part of a turn: an order counts where the angle went all the way round, or
+/// its wave was there twice. Less of it is a curve over the angle, and under gravity that is a curve over the load.
+fn repeated_harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form<'static>> {
+    let angles = view.find(angle).unwrap_or_default();
+    let (low, high) = angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+    let turns = (high - low) / std::f64::consts::TAU;
+    let twice = if turns >= 1.0 { 1 } else { (2.0 / turns).ceil() as u32 };
+    harmonic_form(view, angle, twice.max(*orders.start())..=*orders.end())
+}
+
 /// Name of the form of an effect that may have several harmonics.
 pub(crate) const SEVERAL_HARMONICS: &str = "harmonics";
 
@@ -111,4 +121,22 @@ pub(crate) fn one_more_harmonic(form: &Form) -> Option<(&'static str, Form<'stat
     let shape = SHAPE.get(..count)?.iter().map(shape).collect();
     let form = Form { name: SEVERAL_HARMONICS, linear: LINEAR[..2 * count].to_vec(), shape, grid: Vec::new() };
     Some((SEVERAL_HARMONICS, form))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::Signals;
+
+    #[test]
+    fn a_wave_over_a_part_of_a_turn_was_there_twice() {
+        let first = |turns: f64| {
+            let angle: Vec<f64> = (0..4000).map(|i| f64::from(i) / 3999.0 * turns * std::f64::consts::TAU).collect();
+            let mut signals = Signals::new(angle.len());
+            signals.set(Signal::Link, angle);
+            let view = View::new(signals.clone(), signals, Vec::new(), vec![0], 0.01);
+            repeated_harmonic_form(&view, Signal::Link, 1..=60).first().map(|f| f.grid[0][0])
+        };
+        assert_eq!([1.2, 0.5, 0.39, 0.02].map(first), [Some(1.0), Some(4.0), Some(6.0), None]);
+    }
 }

@@ -50,24 +50,52 @@ pub fn integers(run: &RunTable, column: &str) -> Option<Vec<i64>> {
     run.column(column).map(|values| values.iter().map(|v| *v as i64).collect())
 }
 
+/// Rows of a long signal that are enough to know its period, and lags that are tried.
+const ENOUGH: usize = 4_000;
+
 /// The period after which a signal repeats itself, in rows: the first peak of its autocorrelation that is as good as
-/// perfect. `None` where fewer than two periods were recorded.
+/// perfect. `None` where fewer than two periods were recorded. A long signal is looked at in steps at first: cost stays
+/// linear.
 pub fn period(signal: &[f64]) -> Option<usize> {
     let n = signal.len();
+    let stride = n.div_ceil(ENOUGH).max(1);
     let mean = signal.iter().sum::<f64>() / n.max(1) as f64;
     let x: Vec<f64> = signal.iter().map(|v| v - mean).collect();
     let correlation = |lag: usize| {
         let (a, b) = (&x[..n - lag], &x[lag..]);
-        let ab: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-        let aa: f64 = a.iter().map(|a| a * a).sum();
-        let bb: f64 = b.iter().map(|b| b * b).sum();
+        let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+        for (a, b) in a.iter().zip(b).step_by(stride) {
+            ab += a * b;
+            aa += a * a;
+            bb += b * b;
+        }
         if aa * bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
     };
     let mut lag = n / 100 + 2;
     while lag < n / 2 && correlation(lag) > 0.5 {
-        lag += 1;
+        lag += stride;
     }
-    let (best, value) =
-        (lag..=n / 2).map(|l| (l, correlation(l))).fold((0, 0.0), |m, c| if c.1 > m.1 + 1e-3 { c } else { m });
-    (value > 0.98).then_some(best)
+    let best = |lags: &mut dyn Iterator<Item = usize>| {
+        lags.map(|l| (l, correlation(l))).fold((0, 0.0), |m, c| if c.1 > m.1 + 1e-3 { c } else { m })
+    };
+    let (near, _) = best(&mut (lag..=n / 2).step_by(stride));
+    let (period, value) = best(&mut (near.saturating_sub(stride - 1).max(1)..=(near + stride - 1).min(n / 2)));
+    (value > 0.98).then_some(period)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_period_is_found_in_short_and_long_signals() {
+        for (period_rows, rows) in [(50, 3_000), (1_237, 4_100), (20_011, 200_000)] {
+            let turn = std::f64::consts::TAU / period_rows as f64;
+            let signal: Vec<f64> =
+                (0..rows).map(|i| (turn * i as f64).sin() + 0.4 * (turn * 3.0 * i as f64).cos()).collect();
+            let found = period(&signal).unwrap();
+            assert!(found.abs_diff(period_rows) * 100 <= period_rows, "{found} instead of {period_rows}");
+        }
+        assert_eq!(period(&(0..50_000).map(|i| (f64::from(i) * 1e-4).exp()).collect::<Vec<_>>()), None);
+    }
 }

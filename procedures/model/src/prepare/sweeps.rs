@@ -8,6 +8,9 @@ use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
 
+/// Of a run of more chunks than these some are taken: what it says, it says in few of them.
+const MOST_ROWS: usize = 12_000;
+
 pub fn prepare(
     run: &RunTable,
     samples: Source,
@@ -19,9 +22,11 @@ pub fn prepare(
     let n = if raw { 1 } else { samples.chunk(options.chunk_s.unwrap_or(chunk_s)) };
     let legs = samples.legs();
     let conditions = conditions(&samples, &legs, inputs);
+    let thin = if raw { 1 } else { (run.len() / n).div_ceil(MOST_ROWS).max(1) };
     let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (number, leg) in legs.iter().enumerate() {
-        for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n).enumerate() {
+        // One of several and not their mean, which would blur a short wave.
+        for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
             chunks.push(start..start + n);
             group.push(number);
             phase.push(k);

@@ -41,6 +41,10 @@ pub struct Bar<'l> {
 /// No formula fits nature better than to this share of what it explains, squared (4.5 % in RMS).
 const FORM_ERROR: f64 = 0.002;
 
+/// A simpler effect is as good as another where it brings this share of what that one brings: beside noise everything is
+/// near in held-out error.
+const MOST_OF_GAIN: f64 = 0.8;
+
 /// What takes so much of the error that is left is no remainder of another effect's formula.
 const UNMISTAKABLE: f64 = 0.5;
 
@@ -112,9 +116,13 @@ pub fn step<'p>(
     });
     let first = rivals.first()?;
 
-    let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(first, &rivals[*i])).collect();
+    let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(&first.losses, &rivals[*i].losses)).collect();
     // Of what explains the data equally well, the simplest, and of those the one that the contract names first.
-    let near = |i: &usize| rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
+    let near = |i: &usize| {
+        let gain = |i: usize| present - rivals[i].held_out;
+        let as_good = rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
+        as_good && gain(*i) >= MOST_OF_GAIN * gain(0)
+    };
     let rank = |i: &usize| {
         let id = rivals[*i].term.id();
         (rivals[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
@@ -144,13 +152,13 @@ fn family_wise(term: &Term, mut scores: Vec<Score>, ground: &Ground, options: &O
     Null::new(&scores, options.flips, options.seed).p_value(z)
 }
 
-/// Two effects tie where the difference of their held-out errors is not larger than its own scatter over the folds.
-fn is_tie(a: &Rival, b: &Rival) -> bool {
-    let differences: Vec<f64> = b.losses.iter().zip(&a.losses).map(|(b, a)| b - a).collect();
+/// Two models tie where the difference of their held-out errors is not larger than its own scatter over the folds.
+pub(super) fn is_tie(a: &[f64], b: &[f64]) -> bool {
+    let differences: Vec<f64> = b.iter().zip(a).map(|(b, a)| b - a).collect();
     let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;
     let spread = (differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt();
-    differences.iter().sum::<f64>() <= 2.0 * n.sqrt() * spread + 1e-9 * a.held_out
+    differences.iter().sum::<f64>() <= 2.0 * n.sqrt() * spread + 1e-9 * a.iter().sum::<f64>()
 }
 
 /// Whether the model with `one` leaves nothing that matters for `other`, and the other way round it does (the encompassing

@@ -3,7 +3,7 @@
 use super::forms::{extend, reform};
 use super::ground::Ground;
 use super::library::Library;
-use super::rivals::{Bar, Rival, step};
+use super::rivals::{Bar, Rival, is_tie, step};
 use crate::Options;
 use crate::linear::{BlockGrams, dot};
 use crate::prepare::Problem;
@@ -95,14 +95,16 @@ impl<'l, 'p> Search<'l, 'p> {
     }
 
     /// An added effect in whose place another one makes the model clearly better: one effect that came first because it
-    /// looks a little like two that are missing.
+    /// looks a little like two that are missing. No effect gives way to one that this run cannot tell it from.
     fn misplaced(&self) -> Option<&'p str> {
-        let present: f64 = held_out(&self.now).iter().sum();
+        let losses = held_out(&self.now);
+        let present: f64 = losses.iter().sum();
         let ids: Vec<&'p str> = self.added().map(Term::id).collect();
         ids.into_iter().filter(|_| self.now.terms.len() > self.kept.len() + 1).find(|id| {
             let better = self.step(&self.without(id));
             better.is_some_and(|(rival, _)| {
-                rival.term.id() != *id && rival.held_out < (1.0 - self.options.practical_share) * present
+                let clearly = rival.held_out < (1.0 - self.options.practical_share) * present;
+                rival.term.id() != *id && clearly && !is_tie(&rival.losses, &losses)
             })
         })
     }

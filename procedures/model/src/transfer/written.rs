@@ -49,6 +49,7 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
             ("viscous_asymmetry", _) => formula("abs(velocity)"),
             ("viscous_quadratic", "one_sided") => formula("velocity * velocity"),
             ("viscous_quadratic", _) => formula("velocity * abs(velocity)"),
+            ("viscous_sublinear", "limited") => formula("(1 - exp(-abs(velocity) / omega_l)) * direction"),
             ("viscous_sublinear", _) => formula("abs(velocity) ^ alpha * direction"),
             ("load_linear", _) => formula("abs(load) * direction"),
             ("load_quadratic", _) => formula("load * load * direction"),

@@ -28,7 +28,7 @@ impl Effect for Cogging {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let mut forms = crate::effects::harmonic_form(view, Signal::Position, 1..=120);
+        let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Position, 1..=120);
         forms.iter_mut().for_each(|f| f.name = crate::effects::SEVERAL_HARMONICS);
         forms
     }

@@ -30,7 +30,7 @@ impl Effect for FrictionRipple {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let mut forms = crate::effects::harmonic_form(view, Signal::Link, 1..=60);
+        let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Link, 1..=60);
         let with_speed =
             forms.iter().map(|f| Form { name: "with_speed", linear: vec!["a", "b", "a_v", "b_v"], ..f.clone() });
         forms.extend(with_speed.collect::<Vec<_>>());

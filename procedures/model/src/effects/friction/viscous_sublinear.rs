@@ -11,10 +11,15 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Shear-thinning viscous friction",
     sentence: "Sheared grease gets thinner: the drag grows more slowly than the speed.",
-    formula: "c_α·|ω|^α·sgn ω, α < 1",
-    source: "Harnoy, Friedland, Cohn 2008; contract section 2",
+    formula: "c_α·|ω|^α·sgn ω, α < 1; or τ_l·(1 − exp(−|ω|/ω_l))·sgn ω, a limiting shear stress",
+    source: "Harnoy, Friedland, Cohn 2008; contract section 2; Bair and Winer 1979 for the limit",
     looks: "a curve over speed that is steep at first and flattens, odd in direction",
-    parameters: &[parameter("c_alpha", "Nm·(s/rad)^α", 0.0, f64::INFINITY), parameter("alpha", "1", 0.15, 0.85)],
+    parameters: &[
+        parameter("c_alpha", "Nm·(s/rad)^α", 0.0, f64::INFINITY),
+        parameter("alpha", "1", 0.15, 0.85),
+        parameter("tau_l", "Nm", 0.0, f64::INFINITY),
+        parameter("omega_l", "rad/s", 0.0, f64::INFINITY),
+    ],
     needs: &[],
 };
 
@@ -24,15 +29,25 @@ impl Effect for ViscousSublinear {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        if crate::effects::speed_range(view).is_none_or(|(slow, fast)| fast < 3.0 * slow) {
+        let Some((slow, fast)) = crate::effects::speed_range(view).filter(|(slow, fast)| *fast >= 3.0 * slow) else {
             return Vec::new();
-        }
+        };
         let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, search: Search::Smooth }];
         let grid = [0.25, 0.4, 0.55, 0.7].iter().map(|a| vec![*a]).collect();
-        vec![Form { name: "power", linear: vec!["c_alpha"], shape, grid }]
+        let power = Form { name: "power", linear: vec!["c_alpha"], shape, grid };
+        let (low, high) = (slow, fast / 3.0);
+        if high < 2.0 * low {
+            return vec![power];
+        }
+        let shape = vec![Shape { name: "omega_l", min: low, max: high, search: Search::Smooth }];
+        let grid = crate::effects::log_grid(low, high, 4).into_iter().map(|w| vec![w]).collect();
+        vec![power, Form { name: "limited", linear: vec!["tau_l"], shape, grid }]
     }
 
-    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        vec![view.map2(Signal::Velocity, Signal::Direction, |w, d| w.abs().powf(shape[0]) * d)]
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
+        vec![match form {
+            "limited" => view.map2(Signal::Velocity, Signal::Direction, |w, d| (1.0 - (-w.abs() / shape[0]).exp()) * d),
+            _ => view.map2(Signal::Velocity, Signal::Direction, |w, d| w.abs().powf(shape[0]) * d),
+        }]
     }
 }

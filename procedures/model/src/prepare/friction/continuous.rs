@@ -11,6 +11,9 @@ use crate::view::{Signal, View};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
 
+/// Of a trajectory of more rows than these some are taken.
+const MOST_ROWS: usize = 12_000;
+
 /// Rows for each second that the defaults aim at.
 const ROWS_HZ: f64 = 100.0;
 
@@ -25,14 +28,34 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
             (skip..v.len().saturating_sub(skip)).step_by(every).map(|i| v[i]).collect()
         })
     };
-    let left_out = standstill(&pick(samples.signals.find(Signal::Velocity).unwrap_or_default()));
-    let reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone(), left_out: left_out.clone() };
-    let keep = |values: &[f64]| {
-        let mut out = left_out.iter();
-        let mut rows = pick(values);
-        rows.retain(|_| left_out.is_empty() || out.next() == Some(&false));
-        rows
+    let velocity = pick(samples.signals.find(Signal::Velocity).unwrap_or_default());
+    let rests = standstill(&velocity);
+    let velocity = without(velocity, &rests);
+    let run_of: Vec<usize> =
+        without(pick(&run_number(run.len(), &samples.runs)), &rests).into_iter().map(|n| n as usize).collect();
+    let whole = |values: &Option<Vec<i64>>, left_out: &[bool]| -> Option<Vec<i64>> {
+        values.as_ref().map(|v| {
+            let v: Vec<f64> = v.iter().map(|x| *x as f64).collect();
+            without(pick(&v), left_out).into_iter().map(|x| x as i64).collect()
+        })
     };
+    let within_a_run = |r: &Vec<i64>| (1..r.len()).any(|i| r[i] != r[i - 1] && run_of[i] == run_of[i - 1]);
+    let (repeat, phase, repeats_from) = match whole(&samples.repeat, &rests).filter(within_a_run) {
+        Some(repeat) => {
+            let phase = phases(&repeat);
+            (repeat, phase, "column")
+        }
+        None => periods(&velocity, &run_of, starts.len() == samples.runs.len()),
+    };
+    // The same moments of every repeat, so that these can still be held against each other.
+    let thin = phase.len().div_ceil(MOST_ROWS).max(1);
+    let is_taken = |row: usize| phase[row].is_multiple_of(thin);
+    let left_out = thinned(rests, phase.len(), is_taken);
+    let taken: Vec<usize> = (0..phase.len()).filter(|row| is_taken(*row)).collect();
+    let repeat: Vec<i64> = taken.iter().map(|row| repeat[*row]).collect();
+    let run_of: Vec<usize> = taken.iter().map(|row| run_of[*row]).collect();
+    let phase: Vec<usize> = taken.iter().map(|row| phase[*row]).collect();
+    let reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone(), left_out: left_out.clone() };
     let target = reduce.apply(samples.target.clone());
     if target.len() < 24 {
         return Err(ModelError::TooFewSamples { usable: target.len(), needed: 24, what: "filtered rows" });
@@ -48,31 +71,14 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
             stroke as f64
         })
         .collect();
-    let group: Vec<usize> = keep(&strokes).into_iter().map(|s| s as usize).collect();
+    let group: Vec<usize> = without(pick(&strokes), &left_out).into_iter().map(|s| s as usize).collect();
     let (block, blocks) = layout::blocks(&group, 16);
     let folds = blocks.clamp(1, 8);
     let fold: Vec<usize> = block.iter().map(|b| b % folds).collect();
 
-    let column = |values: &Option<Vec<i64>>| -> Option<Vec<i64>> {
-        values.as_ref().map(|v| {
-            let v: Vec<f64> = v.iter().map(|x| *x as f64).collect();
-            keep(&v).into_iter().map(|x| x as i64).collect()
-        })
-    };
-    let velocity = keep(samples.signals.find(Signal::Velocity).unwrap_or_default());
-    let run_of: Vec<usize> =
-        keep(&run_number(run.len(), &samples.runs)).into_iter().map(|number| number as usize).collect();
-    let within_a_run = |r: &Vec<i64>| (1..r.len()).any(|i| r[i] != r[i - 1] && run_of[i] == run_of[i - 1]);
-    let (repeat, phase, repeats_from) = match column(&samples.repeat).filter(within_a_run) {
-        Some(repeat) => {
-            let phase = phases(&repeat);
-            (repeat, phase, "column")
-        }
-        None => periods(&velocity, &run_of, starts.len() == samples.runs.len()),
-    };
     // Trajectories of different runs are not repeats of each other.
     let twins = layout::twins(&run_of, &phase, &repeat, 0);
-    let segment = column(&samples.segment).unwrap_or_else(|| group.iter().map(|g| *g as i64).collect());
+    let segment = whole(&samples.segment, &left_out).unwrap_or_else(|| group.iter().map(|g| *g as i64).collect());
     let about = Preparation {
         residual: ResidualKind::Raw,
         sample_rate_hz: 1.0 / samples.step_s,
@@ -101,6 +107,26 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         memory: None,
         about,
     })
+}
+
+/// The rows that are not left out. Nothing is where `left_out` is empty.
+fn without(mut rows: Vec<f64>, left_out: &[bool]) -> Vec<f64> {
+    let mut out = left_out.iter();
+    rows.retain(|_| left_out.is_empty() || out.next() == Some(&false));
+    rows
+}
+
+/// Leaves out of the `moving` rows those that are not taken, beside those in which the axis rests.
+fn thinned(mut rests: Vec<bool>, moving: usize, is_taken: impl Fn(usize) -> bool) -> Vec<bool> {
+    if (0..moving).all(&is_taken) {
+        return rests;
+    }
+    if rests.is_empty() {
+        rests = vec![false; moving];
+    }
+    let mut row = 0..;
+    rests.iter_mut().filter(|rests| !**rests).zip(&mut row).for_each(|(out, row)| *out = !is_taken(row));
+    rests
 }
 
 /// The number of the run of every sample.
