@@ -33,9 +33,10 @@ pub(crate) fn scatter(label: &str, points: impl IntoIterator<Item = (f64, f64)>)
     Series::new(label, Mark::Points, x, y)
 }
 
-/// A line through `steps` + 1 places from one end to the other.
+/// A line through `steps` + 1 places from one end to the other. The last is the end itself and not an ulp beyond, where a
+/// power of what should be 0 is no number.
 pub(crate) fn curve(label: &str, [from, to]: [f64; 2], steps: u32, y: impl Fn(f64) -> f64) -> Series {
-    let x: Vec<f64> = (0..=steps).map(|i| from + (to - from) * f64::from(i) / f64::from(steps)).collect();
+    let x: Vec<f64> = (0..=steps).map(|i| from + (to - from) * (f64::from(i) / f64::from(steps))).collect();
     let y = x.iter().map(|x| y(*x)).collect();
     Series::new(label, Mark::Line, x, y)
 }
@@ -56,4 +57,18 @@ pub(crate) fn verdict(found: Result<Identification, Unusable>) -> Option<Identif
     let failed =
         |fault: Unusable| Identification::failed("Nothing can be identified from this run.", fault.to_string());
     Some(found.unwrap_or_else(failed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_ends_where_it_is_told_to() {
+        for i in 0..1000 {
+            let top = 160.0 + f64::from(i) * 0.0137;
+            let drawn = curve("model, negative", [-top, 0.0], 200, |v| (-v).powf(0.8));
+            assert!(drawn.x.last() == Some(&0.0) && drawn.y.iter().all(|y| y.is_finite()), "from {top}");
+        }
+    }
 }
