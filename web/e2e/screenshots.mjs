@@ -100,8 +100,7 @@ await tell(`screens in ${folder}`, async () => {
 		await shoot(page, 'workbench-undecided');
 	}
 	await page.goto(`${where.base}/runs/${run}`);
-	await page.locator('.uplot').first().waitFor();
-	await page.keyboard.press('m');
+	await page.getByRole('button', { name: 'Measure' }).click();
 	await page.locator('[data-measured]').first().waitFor();
 	await page.locator('.uplot').first().scrollIntoViewIfNeeded();
 	await shoot(page, 'run-measured');
