@@ -3,7 +3,7 @@
 //! ```text
 //! cargo run -p jointbench-procedure --example on_mock -- a 1 stribeck friction '{"repeats": 2}'
 //! ```
-//! Joint a or b (ab, bb: behind the gear with brake B), seed, hidden effects (or -), then procedures with parameters.
+//! Joint a or b (ab, bb: behind the gear with brake B) or puma, seed, hidden effects (or -), then procedures with parameters.
 
 use jointbench_devices::sim::Load;
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -16,9 +16,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [joint, seed, effects, work @ ..] = &words[..] else {
         return Err("joint seed effects procedure json …".into());
     };
-    let mut settings =
-        MockSettings::new(if joint.starts_with('a') { Joint::JointA } else { Joint::JointB }, seed.parse()?);
-    if joint.len() > 1 {
+    let subject = match joint.as_str() {
+        "a" | "ab" => Joint::JointA,
+        "b" | "bb" => Joint::JointB,
+        "puma" => Joint::Puma,
+        _ => return Err("joint: a, b, ab, bb or puma".into()),
+    };
+    let mut settings = MockSettings::new(subject, seed.parse()?);
+    if joint.len() == 2 {
         settings.load = Load::GearAndBrakeB;
     }
     settings.effects = effects.split(',').filter(|e| *e != "-").map(str::to_owned).collect();
