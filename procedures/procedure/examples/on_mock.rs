@@ -3,7 +3,8 @@
 //! ```text
 //! cargo run -p jointbench-procedure --example on_mock -- a 1 stribeck friction '{"repeats": 2}'
 //! ```
-//! Joint a or b (ab, bb: behind the gear with brake B) or puma, seed, hidden effects (or -), then procedures with parameters.
+//! Joint a or b (ab, bb: behind the gear with brake B), encoder or puma, seed, hidden effects (or -), then procedures with
+//! parameters.
 
 use jointbench_devices::sim::Load;
 use jointbench_devices::{Joint, MockBench, MockSettings};
@@ -20,7 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "a" | "ab" => Joint::JointA,
         "b" | "bb" => Joint::JointB,
         "puma" => Joint::Puma,
-        _ => return Err("joint: a, b, ab, bb or puma".into()),
+        "encoder" => Joint::EncoderShaft,
+        _ => return Err("joint: a, b, ab, bb, encoder or puma".into()),
     };
     let mut settings = MockSettings::new(subject, seed.parse()?);
     if joint.len() == 2 {
@@ -41,9 +43,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{:?}: {} {}", found.verdict, found.summary, found.advice.unwrap_or_default());
         for q in &found.quantities {
             let ci95 = q.ci95.map_or(String::new(), |[low, high]| {
-                format!("[{low:.6}, {high:.6}] ±{:.2} %", 50.0 * (high - low) / q.value.abs())
+                format!("[{low:.6e}, {high:.6e}] ±{:.2} %", 50.0 * (high - low) / q.value.abs())
             });
-            println!("  {:24} {:12.6} {:10} {ci95}", q.name, q.value, q.unit);
+            println!("  {:24} {:14.6e} {:10} {ci95}", q.name, q.value, q.unit);
         }
         let figures: Vec<_> = found.figures.iter().map(|f| (f.name.as_str(), f.series.len())).collect();
         println!("  figures {figures:?}");

@@ -7,13 +7,27 @@ use crate::conduct::{ConductFault, Conducted, conduct};
 use crate::identification::{Identification, Quantity};
 use jointbench_instrument::Bench;
 use serde_json::{Map, Value, json};
+use statrs::distribution::{Binomial, DiscreteCDF};
+use std::f64::consts::TAU;
 
-/// Which of the documents' joints is on the bench.
+/// Which of the documents' subjects is on the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
     JointA,
     JointB,
+    /// The encoder bench.
+    Encoder,
+    /// Joint 2 of the arm of document 000.
     Puma,
+}
+
+/// How far an interval may reach to either side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Widest {
+    /// In the unit of the quantity.
+    To(f64),
+    /// As a share of the value.
+    Share(f64),
 }
 
 /// One figure of a table: the document's, what the run found, what the bench was given.
@@ -24,8 +38,7 @@ pub struct Comparison {
     pub document: f64,
     /// `None`: nobody knows, or the bench was not given such a figure.
     pub given: Option<f64>,
-    /// The interval may reach this share of the value to either side.
-    pub widest: Option<f64>,
+    pub widest: Option<Widest>,
 }
 
 impl Comparison {
@@ -35,14 +48,21 @@ impl Comparison {
         Some((low..=high).contains(&given))
     }
 
-    /// Half the width of the interval as a share of the value.
-    pub fn width(&self) -> Option<f64> {
-        self.found.ci95.map(|[low, high]| 0.5 * (high - low) / self.found.value.abs())
-    }
-
     pub fn is_narrow(&self) -> Option<bool> {
-        Some(self.width()? <= self.widest?)
+        let ([low, high], widest) = (self.found.ci95?, self.widest?);
+        let widest = match widest {
+            Widest::To(widest) => widest,
+            Widest::Share(share) => share * self.found.value.abs(),
+        };
+        Some(0.5 * (high - low) <= widest)
     }
+}
+
+/// How likely it is that so many 95 % intervals or more, of so many, miss what the bench was given, where each of them is
+/// right: one in twenty does.
+pub fn chance_of_missing(missed: u64, of: u64) -> f64 {
+    let Some(fewer) = missed.checked_sub(1) else { return 1.0 };
+    Binomial::new(0.05, of).map_or(0.0, |misses| misses.sf(fewer))
 }
 
 /// One procedure of the campaign.
@@ -57,70 +77,128 @@ pub struct Chapter {
     pub duration_s: f64,
 }
 
-/// A figure of a document: table, quantity, value, widest interval.
-type Figure = (&'static str, &'static str, f64, Option<f64>);
-/// A row of the thesis: table, quantity, joint A, joint B, widest interval.
-type Row = (&'static str, &'static str, f64, f64, Option<f64>);
+/// A figure of the document: table, quantity, what the document says, widest interval.
+type Figure = (&'static str, &'static str, f64, Option<Widest>);
 
-const FRICTION: &[Row] = &[
-    ("4.5, 4.6", "tau_c", 0.030, 0.031, Some(0.02)),
-    ("4.5, 4.6", "c_v", 1.512e-4, 7.835e-5, Some(0.03)),
-    ("4.5, 4.6", "tau_h", 0.039, 0.057, Some(0.05)),
-    ("4.5, 4.6", "omega_s", 0.06, 0.08, Some(0.15)),
-    ("4.5, 4.6", "delta_s", 0.8, 1.9, None),
-];
+/// One procedure with its choices, and the figures that the document has of it.
+type Part = (&'static str, Value, Vec<Figure>);
 
-const COMPENSATION: &[Row] = &[
-    ("4.7", "ratio_zero_area", 0.87, 0.79, None),
-    ("4.7", "ratio_interpolated", 0.86, 0.82, None),
-    ("4.7", "ratio_coulomb_viscous", 0.87, 0.79, None),
-    ("4.7", "ratio_observer", 0.87, 0.85, None),
-    ("4.7", "rho_max_none", 7.640e-3, 7.245e-3, None),
-    ("4.7", "rho_max_observer", 6.480e-3, 6.400e-3, None),
-];
+fn friction([tau_c, c_v, tau_h, omega_s, delta_s]: [f64; 5]) -> Vec<Figure> {
+    let table = "4.5, 4.6";
+    vec![
+        (table, "tau_c", tau_c, Some(Widest::Share(0.02))),
+        (table, "c_v", c_v, Some(Widest::Share(0.03))),
+        (table, "tau_h", tau_h, Some(Widest::Share(0.05))),
+        (table, "omega_s", omega_s, Some(Widest::Share(0.15))),
+        (table, "delta_s", delta_s, None),
+    ]
+}
 
-const STIFFNESS: &[Row] = &[
-    ("4.8", "inverse_k", 0.1812e-3, 1.4746e-3, None),
-    ("4.8", "k", 5722.5, 684.3, Some(0.01)),
-    ("4.8", "beta_0", 0.5871e-3, 0.9588e-3, Some(0.03)),
-];
+fn compensation(figures: [f64; 6]) -> Vec<Figure> {
+    let names = [
+        "ratio_zero_area",
+        "ratio_interpolated",
+        "ratio_coulomb_viscous",
+        "ratio_observer",
+        "rho_max_none",
+        "rho_max_observer",
+    ];
+    names.into_iter().zip(figures).map(|(name, figure)| ("4.7", name, figure, None)).collect()
+}
 
-/// Figure 3.2 of the chapter on the Puma, joint 2: volts, and volts over degrees each second at the link.
-const PUMA: &[Figure] = &[
-    ("3.2", "b_positive", 0.007581, Some(0.03)),
-    ("3.2", "f_positive", 0.545064, Some(0.02)),
-    ("3.2", "r2_positive", 0.979807, None),
-    ("3.2", "b_negative", 0.005757, Some(0.03)),
-    ("3.2", "f_negative", -0.307835, Some(0.02)),
-    ("3.2", "r2_negative", 0.975420, None),
-];
+fn stiffness([inverse_k, k, beta_0]: [f64; 3]) -> Vec<Figure> {
+    vec![
+        ("4.8", "inverse_k", inverse_k, None),
+        ("4.8", "k", k, Some(Widest::Share(0.01))),
+        ("4.8", "beta_0", beta_0, Some(Widest::Share(0.03))),
+    ]
+}
 
-/// The procedures of a campaign in their order, each with its choices and its table.
-fn campaign(subject: Subject) -> Vec<(&'static str, Value, Vec<Figure>)> {
-    let bearing = match subject {
-        Subject::JointA => 155.0e3,
-        Subject::JointB => 75.0e3,
-        Subject::Puma => return vec![("puma_friction", json!({}), PUMA.to_vec())],
-    };
-    let of = |rows: &[Row]| column(rows, subject);
+/// The campaign of a joint, in its order.
+fn joint(bearing_nm_rad: f64, figures: [Vec<Figure>; 3]) -> Vec<Part> {
+    let [friction, stiffness, compensation] = figures;
     vec![
         ("brake_speed_independence", json!({}), Vec::new()),
         ("brake_hysteresis", json!({}), Vec::new()),
         ("demagnetise", json!({}), Vec::new()),
-        ("friction", json!({"load_levels": 1, "repeats": 3}), of(FRICTION)),
+        ("friction", json!({"load_levels": 1, "repeats": 3}), friction),
         ("breakaway", json!({}), Vec::new()),
+        ("presliding", json!({}), Vec::new()),
         ("friction_load", json!({}), Vec::new()),
-        ("stiffness", json!({"bearing_stiffness_nm_rad": bearing}), of(STIFFNESS)),
-        ("compensation", json!({}), of(COMPENSATION)),
+        ("stiffness", json!({"bearing_stiffness_nm_rad": bearing_nm_rad}), stiffness),
+        ("compensation", json!({}), compensation),
     ]
 }
 
-/// The thesis' figures of one joint.
-fn column(rows: &[Row], subject: Subject) -> Vec<Figure> {
-    let one = |(table, name, joint_a, joint_b, widest): &Row| {
-        (*table, *name, if subject == Subject::JointA { *joint_a } else { *joint_b }, *widest)
-    };
-    rows.iter().map(one).collect()
+/// The smallest steps of the stage that an edge is looked for with, a shift and a rotation.
+const SHIFT_STEP: Widest = Widest::To(4e-6);
+const ROTATION_STEP: Widest = Widest::To(2e-4);
+
+fn encoder() -> Vec<Part> {
+    let point_rad = TAU / f64::from(1 << 18);
+    let degree = TAU / 360.0;
+    let edge = |name, at, step| ("4.4", name, at, Some(step));
+    vec![
+        ("encoder_offset", json!({}), vec![("eq. 4.3", "offset", 1437.0 * point_rad, Some(Widest::To(point_rad)))]),
+        ("encoder_delay", json!({}), vec![("4.2", "delay", 64.34e-6, Some(Widest::To(1e-6)))]),
+        (
+            "encoder_linearity",
+            json!({}),
+            vec![("figs 4.4–4.11", "bits_before", 10.0, None), ("figs 4.4–4.11", "bits_velocity", 14.0, None)],
+        ),
+        (
+            "encoder_alignment",
+            json!({}),
+            vec![
+                edge("radial_negative", -0.25e-3, SHIFT_STEP),
+                edge("radial_positive", 0.3e-3, SHIFT_STEP),
+                edge("axial_positive", 0.65e-3, SHIFT_STEP),
+                edge("rotation_negative", -degree, ROTATION_STEP),
+                edge("rotation_positive", degree, ROTATION_STEP),
+                edge("tilt_negative", -1.5 * degree, ROTATION_STEP),
+                edge("tilt_positive", 1.5 * degree, ROTATION_STEP),
+            ],
+        ),
+    ]
+}
+
+/// Figure 3.2 of the chapter on the Puma, joint 2: volts, and volts over degrees each second at the link.
+fn puma() -> Vec<Part> {
+    let line = |name, figure, widest: Option<f64>| ("3.2", name, figure, widest.map(Widest::Share));
+    let figures = vec![
+        line("b_positive", 0.007581, Some(0.03)),
+        line("f_positive", 0.545064, Some(0.02)),
+        line("r2_positive", 0.979807, None),
+        line("b_negative", 0.005757, Some(0.03)),
+        line("f_negative", -0.307835, Some(0.02)),
+        line("r2_negative", 0.975420, None),
+    ];
+    vec![("puma_friction", json!({}), figures)]
+}
+
+impl Subject {
+    fn campaign(self) -> Vec<Part> {
+        match self {
+            Subject::JointA => joint(
+                155.0e3,
+                [
+                    friction([0.030, 1.512e-4, 0.039, 0.06, 0.8]),
+                    stiffness([0.1812e-3, 5722.5, 0.5871e-3]),
+                    compensation([0.87, 0.86, 0.87, 0.87, 7.640e-3, 6.480e-3]),
+                ],
+            ),
+            Subject::JointB => joint(
+                75.0e3,
+                [
+                    friction([0.031, 7.835e-5, 0.057, 0.08, 1.9]),
+                    stiffness([1.4746e-3, 684.3, 0.9588e-3]),
+                    compensation([0.79, 0.82, 0.79, 0.85, 7.245e-3, 6.400e-3]),
+                ],
+            ),
+            Subject::Encoder => encoder(),
+            Subject::Puma => puma(),
+        }
+    }
 }
 
 /// Runs the campaign in its order and tells of each chapter as it is done. `given` names what the bench was given, by the
@@ -132,7 +210,7 @@ pub fn reproduce(
     done: &mut dyn FnMut(&Chapter),
 ) -> Result<Vec<Chapter>, ConductFault> {
     let mut chapters: Vec<Chapter> = Vec::new();
-    for (id, parameters, figures) in campaign(subject) {
+    for (id, parameters, figures) in subject.campaign() {
         let Some(procedure) = procedure(id) else { continue };
         let mut parameters = parameters.as_object().cloned().unwrap_or_default();
         if id == "compensation" {
@@ -182,7 +260,7 @@ mod tests {
     use super::*;
     use crate::identification::Verdict;
 
-    fn friction(names: &[(&str, f64)]) -> Identification {
+    fn found(names: &[(&str, f64)]) -> Identification {
         let quantity = |(name, value): &(&str, f64)| Quantity {
             name: (*name).into(),
             symbol: String::new(),
@@ -198,12 +276,20 @@ mod tests {
 
     #[test]
     fn an_interval_is_held_against_what_the_bench_was_given() {
-        let found = friction(&[("tau_c", 0.0300), ("c_v", 1.6e-4)]);
+        let found = found(&[("tau_c", 0.0300), ("c_v", 1.6e-4)]);
         let given = |name: &str| (name == "tau_c").then_some(0.0302);
-        let comparisons = compare(&found, &column(FRICTION, Subject::JointA), &given);
+        let comparisons = compare(&found, &friction([0.030, 1.512e-4, 0.039, 0.06, 0.8]), &given);
         assert_eq!(comparisons.iter().map(|c| c.document).collect::<Vec<_>>(), [0.030, 1.512e-4]);
         assert_eq!((comparisons[0].is_inside(), comparisons[0].is_narrow()), (Some(true), Some(true)));
         assert_eq!((comparisons[1].is_inside(), comparisons[1].is_narrow()), (None, Some(true)));
+    }
+
+    #[test]
+    fn one_interval_in_twenty_may_miss() {
+        assert_eq!(chance_of_missing(0, 30), 1.0);
+        // 1 − 0.95³⁰, and nobody misses ten of thirty by chance.
+        assert!((chance_of_missing(1, 30) - 0.785_361).abs() < 1e-6);
+        assert!(chance_of_missing(10, 30) < 1e-5);
     }
 
     #[test]
@@ -212,7 +298,7 @@ mod tests {
             procedure: "friction",
             title: "Friction",
             parameters: Map::new(),
-            identification: friction(&[("tau_c", 0.03), ("c_v", 1.5e-4)]),
+            identification: found(&[("tau_c", 0.03), ("c_v", 1.5e-4)]),
             comparisons: Vec::new(),
             duration_s: 1.0,
         };

@@ -13,9 +13,18 @@ const BETTER: f64 = 0.85;
 /// A joint that is soft until its teeth and belts carry: what it gives more than a spring ends at φ, and how sharply it
 /// gets there is left open. φ is then what β₀ is for a line through high loads.
 const SOFT: &str = "soft_start";
+/// The end lies beyond the loads, and what is said of it hangs on the shape that leads there: one that bends late, and one
+/// that bends early.
+const SHAPES: [&str; 2] = [
+    "torsion = phi * load / (t_h^p + abs(load)^p)^(1/p)",
+    "torsion = phi * sign(load) * (1 - (1 + abs(load) / t_h)^(-p))",
+];
+
+/// No joint follows a shape to the last bit: those that leave less than this share of φ are equally good.
+const ALIKE: f64 = 0.005;
 
 /// `None`: there is no load to speak of.
-fn softening(run: &RunTable) -> Option<OwnEffect> {
+fn softening(run: &RunTable, shape: &str) -> Option<OwnEffect> {
     let top = run.column("link_torque_nm")?.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     let parameter = |name: &str, unit: &str, min: Option<f64>, max: Option<f64>| OwnParameter {
         name: name.into(),
@@ -28,7 +37,7 @@ fn softening(run: &RunTable) -> Option<OwnEffect> {
     let definition = Definition {
         id: SOFT.into(),
         kind: run.kind(),
-        formula: "torsion = phi * load / (t_h^p + abs(load)^p)^(1/p)".into(),
+        formula: shape.into(),
         parameters: vec![
             parameter("phi", "rad", None, None),
             parameter("t_h", "Nm", Some(0.01 * top), Some(top)),
@@ -50,14 +59,21 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         return Err(Unusable::TooLittle("the run holds too few loads: make it again to its end"));
     }
     let settled = keep_rows(run, &rows)?;
-    let with = |more: &'static str| {
-        let own = if more == SOFT { softening(&settled).into_iter().collect() } else { Vec::new() };
+    let with = |more: &str, own: Vec<OwnEffect>| {
         let spec = ModelSpec::with_own(run.kind(), ["offset", "compliance", more], own)?;
         fit(&settled, &spec, &Options::default())
     };
-    let line = with("directional_offset")?;
-    let curved = with(SOFT).ok().filter(|curved| curved.validation_rms < BETTER * line.validation_rms);
-    let best = curved.as_ref().unwrap_or(&line);
+    let line = with("directional_offset", Vec::new())?;
+    let curve_of = |shape: &&str| with(SOFT, vec![softening(&settled, shape)?]).ok();
+    let mut curves: Vec<Fit> = SHAPES.iter().filter_map(curve_of).collect();
+    curves.retain(|curve| curve.validation_rms < BETTER * line.validation_rms);
+    curves.sort_by(|a, b| a.validation_rms.total_cmp(&b.validation_rms));
+    let end = curves.first().and_then(|best| Some(parameter(best, SOFT, "phi")?.value.abs()));
+    let bound = curves.first().map_or(0.0, |best| best.validation_rms.max(ALIKE * end.unwrap_or(0.0)));
+    curves.retain(|curve| curve.validation_rms <= bound);
+    let is_curved = !curves.is_empty();
+    let fits = if is_curved { curves } else { vec![line.clone()] };
+    let best = &fits[0];
 
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let points: Vec<Point> = rows
@@ -70,10 +86,9 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             (mean("link_torque_nm"), mean("motor_position_rad") / gear - mean("link_position_rad"))
         })
         .collect();
-    let Some(compliance) = parameter(best, "compliance", "inverse_k") else {
+    let Some((inverse, inverse_ci95)) = of_all(&fits, "compliance", "inverse_k") else {
         return Err(Unusable::TooLittle("the loads do not decide the stiffness: raise top_load or load_levels"));
     };
-    let (inverse, inverse_ci95) = interval_of(compliance, 1.0);
     let bearing = run.meta().bearing_stiffness_nm_per_rad.map_or(0.0, f64::recip);
     let stiffness = |inverse: f64| 1.0 / (inverse - bearing);
     let area = loop_area(run, &held, gear);
@@ -85,9 +100,9 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             Some([stiffness(inverse_ci95[1]), stiffness(inverse_ci95[0])]),
         ),
     ];
-    let offset = if curved.is_some() { (SOFT, "phi") } else { ("directional_offset", "beta_0") };
-    if let Some(found) = parameter(best, offset.0, offset.1) {
-        let (value, ci95) = with_steps(interval_of(found, 1.0), run, gear);
+    let offset = if is_curved { (SOFT, "phi") } else { ("directional_offset", "beta_0") };
+    if let Some(found) = of_all(&fits, offset.0, offset.1) {
+        let (value, ci95) = with_steps(found, run, gear);
         quantities.push(quantity(["beta_0", "β₀", "Directional offset", "rad"], value, Some(ci95)));
     }
     if let Some(found) = parameter(best, "offset", "xi") {
@@ -99,7 +114,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         quantity(["rms", "e", "What the chosen curve leaves on loads not seen", "rad"], best.validation_rms, None),
         quantity(["loop_area", "A", "Area of the loop at the highest load", "J"], area, None),
     ]);
-    let shape = if curved.is_some() {
+    let shape = if is_curved {
         "softer at low torque: use the curve or a look-up table"
     } else {
         "linear: a line with an offset by direction is enough"
@@ -112,6 +127,16 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         quantities,
         figures: vec![torsion_over_torque(&points, best), table(&points)],
     })
+}
+
+/// A figure that several fits have: the middle of what they find, and an interval that holds all of theirs. `None` where one
+/// of them does not decide it.
+fn of_all(fits: &[Fit], effect: &str, name: &str) -> Option<(f64, [f64; 2])> {
+    let found: Vec<_> =
+        fits.iter().map(|fit| Some(interval_of(parameter(fit, effect, name)?, 1.0))).collect::<Option<_>>()?;
+    let least = |pick: fn(&(f64, [f64; 2])) -> f64| found.iter().map(pick).fold(f64::INFINITY, f64::min);
+    let most = |pick: fn(&(f64, [f64; 2])) -> f64| found.iter().map(pick).fold(f64::NEG_INFINITY, f64::max);
+    Some((0.5 * (least(|f| f.0) + most(|f| f.0)), [least(|f| f.1[0]), most(|f| f.1[1])]))
 }
 
 /// An offset is no surer than the encoders' steps, however many samples are averaged: a uniform error of one step each
