@@ -10,9 +10,6 @@ use jointbench_model::words;
 
 /// After its set-point has become constant the joint settles for so long.
 const SETTLE_S: f64 = 0.2;
-/// A joint on a rising torque moves for up to three times as long before its first count as it takes for those that tell it
-/// (36 simulated arms).
-const UNSEEN: f64 = 3.0;
 /// The volts of one angle in a figure are means over such a part of the arc.
 const ANGLES: usize = 24;
 
@@ -67,16 +64,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
         let volts = |onset: &Onset| onset.current_a / scale - weight.value * figures.link_rad[onset.row].sin();
         Mean::of(&broke.iter().filter(|o| o.current_a * sign > 0.0).map(volts).collect::<Vec<_>>())
     };
-    // Less than a count of motion is not seen: the joint has begun to move earlier than its encoder shows.
-    let unseen_s = UNSEEN * f64::from(values.count("increases")) / values.number("sample_rate_hz");
-    let unseen_v = values.number("ramp_nm_s") / (km * scale) * unseen_s;
-    let widened = |sign: f64| {
-        stiction(sign).map(|mean| {
-            let [low, high] = mean.ci95;
-            (mean.value, if sign > 0.0 { [low - unseen_v, high] } else { [low, high + unseen_v] })
-        })
-    };
-    let (out, back) = (widened(1.0), widened(-1.0));
+    let (out, back) = (stiction(1.0), stiction(-1.0));
 
     let offset = |line: &Line| (line.offset, line.offset_ci95);
     let slope = |line: &Line| (line.slope, line.slope_ci95);
@@ -94,10 +82,10 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
         ),
     ]);
     for (name, symbol, title, mean) in [
-        ("stiction_positive", "τ_s⁺", "Stiction, positive direction", &out),
-        ("stiction_negative", "τ_s⁻", "Stiction, negative direction", &back),
+        ("stiction_positive", "τ_s⁺", "Stiction, first increase in positive direction", &out),
+        ("stiction_negative", "τ_s⁻", "Stiction, first increase in negative direction", &back),
     ] {
-        quantities.extend(mean.map(|mean| named([name, symbol, title, "V"], mean)));
+        quantities.extend(mean.map(|mean| named([name, symbol, title, "V"], (mean.value, mean.ci95))));
     }
     let nm_per_v = km * scale;
     quantities.extend(at_motor(&forward, &backward, nm_per_v, nm_per_v * gear.recip().to_degrees()));
