@@ -56,6 +56,19 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             });
         }
     }
+    let parameters = terms.iter().flat_map(|term| {
+        let values = term.linear.iter().chain(&term.shape);
+        term.names.iter().zip(values).map(|(name, value)| crate::Parameter {
+            effect: term.effect.clone(),
+            name: name.clone(),
+            value: *value,
+            unit: "Nm·s²/rad²".into(),
+            ci95: [0.9 * value, 1.1 * value],
+            state: crate::ParameterState::AtBound,
+            note: Some("at its bound */ of 3 °C".into()),
+        })
+    });
+    let parameters = parameters.collect();
     Fit {
         kind,
         effects: ids,
@@ -65,7 +78,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
         unit: kind.target_unit().into(),
         residual: ResidualKind::Raw,
         relative_error: 0.1,
-        parameters: Vec::new(),
+        parameters,
         trade_offs: Vec::new(),
         condition: 1.0,
         notes: Vec::new(),

@@ -32,7 +32,8 @@ impl Body {
         let mut body =
             Self { kind: fit.kind, motion, inputs, states: Vec::new(), statements: Vec::new(), uses_step: false };
         for part in &parts.parts {
-            body.statements.push(format!("/* {} */", suffix::ascii(part.title)));
+            body.statements
+                .push(format!("/* {} */", suffix::ascii(if part.title.is_empty() { part.effect } else { part.title })));
             for (i, column) in part.columns.iter().enumerate() {
                 match part.factors.get(i) {
                     Some((name, _)) => body.column(part, &format!("p->{}_{name}", part.effect), column),

@@ -90,5 +90,5 @@ fn parameters<'f>(fit: &'f Fit, parts: &Parts<'f>) -> Vec<(String, f64, Option<&
 fn comment(parameter: &Parameter) -> String {
     let [low, high] = parameter.ci95;
     let note = parameter.note.as_ref().map(|note| format!("; {note}")).unwrap_or_default();
-    suffix::ascii(&format!(" /* [{}] 95 %: {low:.4e} to {high:.4e}{note} */", parameter.unit))
+    format!(" /* {} */", suffix::ascii(&format!("[{}] 95 %: {low:.4e} to {high:.4e}{note}", parameter.unit)))
 }
