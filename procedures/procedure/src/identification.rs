@@ -45,14 +45,15 @@ impl Identification {
             return self;
         }
         let (part, next) = if state.is_final() {
-            ("The run did not come to its end", "make the run to its end")
+            ("The run did not come to its end", "make the rest of it (jointbench run --continue RUN), or make it again")
         } else {
-            ("The run is not at its end yet", "let the run come to its end")
+            ("The run is not at its end yet", "let it come to its end")
         };
         self.summary = format!("{part} ({state}), this is what its part says: {}", self.summary);
+        // What a part lacks is no fault of how the run was planned.
+        self.advice = Some(next.to_owned());
         if self.verdict == Verdict::Identified {
             self.verdict = Verdict::Inconclusive;
-            self.advice = Some(next.to_owned());
         }
         self
     }

@@ -3,7 +3,7 @@
 use crate::catalogue::procedure;
 use crate::plan::{BenchFacts, Phase, Plan};
 use jointbench_instrument::bench::JointConstants;
-use jointbench_instrument::{Limits, RunTable};
+use jointbench_instrument::{Kind, Limits, RunTable};
 use jointbench_model::{Choice, Stretch};
 use serde_json::{Map, Value, json};
 
@@ -21,6 +21,16 @@ const HELD_S: f64 = 0.6;
 /// Runs that could be made next, the ordinary one first. `run`: the one at hand, which gives the sample rate; `parameters`:
 /// what it was made with, where it came from a procedure.
 pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>) -> Vec<Choice> {
+    let ordinary = match run.kind() {
+        Kind::Friction => None,
+        Kind::Encoder => Some(("encoder_linearity", json!({"repeats": 3}))),
+        Kind::Stiffness => Some(("stiffness", json!({"repeats": 3}))),
+        // It has no repeats of its own: it is looked at together with the run at hand.
+        Kind::Brake => Some(("brake_hysteresis", json!({}))),
+    };
+    if let Some((id, parameters)) = ordinary {
+        return repeated(id, parameters, bench).into_iter().collect();
+    }
     let rate_hz = run.rate_hz().round();
     let mut menu = Vec::new();
     let mut offer = |id: &str, parameters: Value| {
@@ -74,6 +84,15 @@ pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>)
         }
     }
     menu
+}
+
+/// A run for its repeats, with its duration where the bench may make it. Benches that only a run has shown are not known
+/// well enough to plan for.
+fn repeated(id: &str, parameters: Value, bench: &BenchFacts) -> Option<Choice> {
+    let parameters = parameters.as_object()?.clone();
+    let plan = procedure(id)?.plan(&parameters, bench).ok().filter(|plan| plan.preview(bench).is_allowed());
+    let duration_s = plan.map_or(f64::INFINITY, |plan| plan.duration_s());
+    Some(Choice { procedure: id.into(), parameters, duration_s, stretches: Vec::new() })
 }
 
 /// The highest speed that a stroke of this length reaches, holds and leaves: `v·t + v²/a = way`.
@@ -173,5 +192,31 @@ fn choice(plan: &Plan, parameters: &Map<String, Value>, bench: &BenchFacts) -> C
         parameters: parameters.clone(),
         duration_s: plan.duration_s(),
         stretches,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::Values;
+    use jointbench_instrument::{Channel, Meta, Trace};
+
+    #[test]
+    fn what_is_offered_for_any_kind_can_be_started() {
+        for kind in Kind::ALL {
+            let columns = kind.required_columns();
+            let mut trace = Trace::new(columns.iter().copied().map(Channel::new).collect());
+            for row in 0..100 {
+                trace.push_row(&vec![0.01 * f64::from(row); columns.len()]);
+            }
+            let run = RunTable::new(Meta { kind: Some(kind), ..Meta::default() }, trace).unwrap();
+            let offered = menu(&BenchFacts::shown_by(&run), &run, &Map::new());
+            assert!(kind == Kind::Friction || offered.len() == 1, "{kind}");
+            for choice in offered {
+                let known = procedure(&choice.procedure).unwrap_or_else(|| panic!("{kind}: {}", choice.procedure));
+                assert_eq!(known.kind(), kind);
+                Values::parse(known.schema(), &choice.parameters).unwrap();
+            }
+        }
     }
 }

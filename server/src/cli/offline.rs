@@ -9,7 +9,7 @@ use jointbench_instrument::RunTable;
 use jointbench_model::{ModelSpec, Open, Options};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub fn diagnose(arguments: &Diagnose) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
@@ -25,7 +25,8 @@ pub fn diagnose(arguments: &Diagnose) -> Done {
 pub fn discover(arguments: &Discover) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
     let mut discovery = jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {})?;
-    discovery.experiment = next_run(&run, &Open::from(&discovery), &Offer::shown_by(&run), &options);
+    discovery.experiment =
+        next_run(&run, &Open { own: spec.own, ..Open::from(&discovery) }, &Offer::shown_by(&run), &options);
     if arguments.run.json {
         json_out(&discovery)?;
     } else {
@@ -72,7 +73,11 @@ pub fn fit(arguments: &Fit) -> Done {
 
 fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
     let mut runs = Vec::new();
-    for file in &measured.files {
+    for (i, file) in measured.files.iter().enumerate() {
+        let same = |other: &PathBuf| matches!((other.canonicalize(), file.canonicalize()), (Ok(a), Ok(b)) if a == b);
+        if measured.files[..i].iter().any(same) {
+            return Err(Exit::bad_input(format!("{} is named twice: one run is no repeat of itself", file.display())));
+        }
         runs.push(read(file, measured.meta.as_deref(), &measured.columns)?);
     }
     let first = runs.remove(0);

@@ -71,16 +71,17 @@ pub(super) enum Way {
 }
 
 pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Way, Exit> {
-    if place.reach.daemon.is_some() {
-        return Ok(Way::Daemon(Client::new(&place.reach)));
-    }
-    if !makes_it && !crate::store::Store::is_in(&place.data) {
-        let folder = place.data.display();
+    let data = match (&place.data, &place.reach.daemon) {
+        (None, Some(_)) => return Ok(Way::Daemon(Client::new(&place.reach))),
+        (data, _) => data.as_deref().unwrap_or(Path::new("jointbench-data")),
+    };
+    if !makes_it && !crate::store::Store::is_in(data) {
+        let folder = data.display();
         return Err(Exit::bad_input(format!(
             "no store is in {folder}: name its folder with --data, or a daemon with --daemon"
         )));
     }
-    match runtime.block_on(crate::store::Store::open(&place.data)) {
+    match runtime.block_on(crate::store::Store::open(data)) {
         Ok(store) => Ok(Way::Folder(Lab::of_store(store))),
         Err(in_use @ crate::store::StoreError::InUse { .. }) => {
             // Most likely by the daemon on this machine's usual address.

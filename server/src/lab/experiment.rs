@@ -63,7 +63,7 @@ impl Lab {
         let table = self.tables(&model.runs()).await?;
         let offer = self.offer(&table, &model.runs(), Some(bench)).await?;
         let found: jointbench_model::Diagnosis = convert::reread(&record.diagnosis)?;
-        let open = Open::from(&found);
+        let open = Open { own: self.own_effects(table.kind()).await?, ..Open::from(&found) };
         let next = super::models::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
         Ok((model, next.map(|next| convert::reread(&next)).transpose()?))
     }

@@ -117,7 +117,8 @@ pub fn diagnose(
     offer: &Offer,
 ) -> Result<jointbench_model::Diagnosis, ModelError> {
     let mut diagnosis = jointbench_model::diagnose(table, spec, options)?;
-    diagnosis.experiment = next_run(table, &Open::from(&diagnosis), offer, options);
+    let open = Open { own: spec.own.clone(), ..Open::from(&diagnosis) };
+    diagnosis.experiment = next_run(table, &open, offer, options);
     Ok(diagnosis)
 }
 

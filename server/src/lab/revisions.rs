@@ -15,7 +15,7 @@ impl Lab {
             None => self.inner.store.model(first).await?.run,
         };
         let (first, second) = (self.fit(first).await?, self.fit(second).await?);
-        let table = self.table(run).await?;
+        let table = self.measurement(run).await?;
         reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)
     }
 
@@ -42,7 +42,7 @@ impl Lab {
 
     pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {
         let fit = self.fit(model).await?;
-        let table = self.table(run).await?;
+        let table = self.measurement(run).await?;
         reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)
     }
 
@@ -55,7 +55,7 @@ impl Lab {
         let file: ModelFile = serde_json::from_value(import.model.into())
             .map_err(|fault| LabError::Invalid(format!("this is no exported model: {fault}")))?;
         let fit = file.check()?;
-        let table = self.table(import.run).await?;
+        let table = self.measurement(import.run).await?;
         let (kept, held) = (fit.clone(), blocking(move || jointbench_model::evaluate(&fit, &table)).await?);
         let new = NewModel {
             run: import.run,

@@ -25,6 +25,7 @@ const SEPARATED_Z: f64 = 4.0;
 pub struct Choice {
     pub procedure: String,
     pub parameters: Map<String, Value>,
+    /// Infinite where nobody knows.
     pub duration_s: f64,
     pub stretches: Vec<Stretch>,
 }
@@ -91,7 +92,7 @@ pub fn next_run(
     options: &Options,
 ) -> Result<Option<Experiment>, ModelError> {
     if run.kind() != Kind::Friction {
-        return Ok((!open.has_noise_floor).then(|| repeats(run.kind().name(), [("repeats".to_owned(), 3.into())])));
+        return Ok(menu.first().filter(|_| !open.has_noise_floor).map(again));
     }
     let prepared = prepare(run, options)?;
     let spec = |effects: &[String]| ModelSpec::with_own(run.kind(), effects, open.own.clone());
@@ -120,10 +121,7 @@ pub fn next_run(
     if !open.has_noise_floor
         && let Some(choice) = menu.first()
     {
-        return Ok(Some(Experiment {
-            expected_duration_s: Some(choice.duration_s),
-            ..repeats(&choice.procedure, choice.parameters.clone())
-        }));
+        return Ok(Some(again(choice)));
     }
     Ok(unseen::unseen(&model, &noise, menu, &imagined))
 }
@@ -167,13 +165,14 @@ fn tie(bid: Bid, effect: &str, rivals: &[String]) -> Experiment {
     }
 }
 
-fn repeats(procedure: &str, parameters: impl IntoIterator<Item = (String, Value)>) -> Experiment {
+/// The ordinary run, for its repeats.
+fn again(choice: &Choice) -> Experiment {
     Experiment {
-        procedure: procedure.into(),
-        parameters: parameters.into_iter().collect(),
+        procedure: choice.procedure.clone(),
+        parameters: choice.parameters.clone(),
         why: "without repeats of the same profile nobody knows how small the error can become".into(),
         expected_z: None,
-        expected_duration_s: None,
+        expected_duration_s: choice.duration_s.is_finite().then_some(choice.duration_s),
         separates: Vec::new(),
     }
 }

@@ -68,9 +68,9 @@ pub struct Reproduce {
 /// The daemon where its address is given; else the folder, or the daemon on the usual address where one has the folder.
 #[derive(Debug, Args)]
 pub struct StorePlace {
-    /// Folder of the store
-    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA", default_value = "jointbench-data")]
-    pub data: PathBuf,
+    /// Folder of the store, which is then looked at whatever daemon is named [default: jointbench-data]
+    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA")]
+    pub data: Option<PathBuf>,
     #[command(flatten)]
     pub reach: Reach,
 }
