@@ -116,7 +116,7 @@ pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result
 /// Needs no thread: the instrument is asked when its bytes are.
 pub fn serve_inside(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> Arc<Port> {
     let closing = Arc::new(AtomicBool::new(false));
-    let connector = Connector { instrument, closing: Arc::clone(&closing), rig };
+    let connector = Connector { instrument, closing: Arc::clone(&closing), taken: Arc::default(), rig };
     Arc::new(Port { instrument, address: Mutex::new(Address::Inside(Inside(Arc::new(connector)))), closing })
 }
 
@@ -125,6 +125,8 @@ pub fn serve_inside(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> Arc<Por
 struct Connector {
     instrument: MockInstrument,
     closing: Arc<AtomicBool>,
+    /// A cord is plugged in.
+    taken: Arc<AtomicBool>,
     rig: Arc<Mutex<Rig>>,
 }
 
@@ -134,6 +136,9 @@ impl Socket for Connector {
     }
 
     fn plug(&self) -> io::Result<Box<dyn Cord>> {
+        if self.taken.swap(true, Ordering::AcqRel) {
+            return Err(io::Error::new(ErrorKind::ResourceBusy, "in use; a port has one owner"));
+        }
         let mut cord = Plugged { connector: self.clone(), talk: Talk::default() };
         cord.write(&[])?;
         Ok(Box::new(cord))
@@ -145,9 +150,15 @@ struct Plugged {
     talk: Talk,
 }
 
+impl Drop for Plugged {
+    fn drop(&mut self) {
+        self.connector.taken.store(false, Ordering::Release);
+    }
+}
+
 impl Cord for Plugged {
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let Connector { instrument, closing, rig } = &self.connector;
+        let Connector { instrument, closing, rig, .. } = &self.connector;
         if closing.load(Ordering::Acquire) {
             return Err(ErrorKind::BrokenPipe.into());
         }
