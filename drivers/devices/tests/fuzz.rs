@@ -115,7 +115,11 @@ proptest! {
         let reply = [0x5A, 0x07, 0x01, high, low, sum];
         let request = Numbered { number: 0x07, order: ReadPosition };
         check_back_in_step(&request, &noise, b"", &reply);
-        check_back_in_step(&request, &reply[..4], b"", &reply);
+        // A frame that broke off: one in 256 makes a good sum with the beginning of the next, as far as one byte can tell.
+        let broken = &reply[..4];
+        if broken[1..].iter().chain(&reply[..2]).fold(0u8, |sum, byte| sum.wrapping_add(*byte)) != 0 {
+            check_back_in_step(&request, broken, b"", &reply);
+        }
     }
 
     #[test]
