@@ -71,10 +71,12 @@ pub(super) enum Way {
 }
 
 pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_it: bool) -> Result<Way, Exit> {
-    let data = match (&place.data, &place.reach.daemon) {
-        (None, Some(_)) => return Ok(Way::Daemon(Client::new(&place.reach))),
-        (data, _) => data.as_deref().unwrap_or(Path::new("jointbench-data")),
-    };
+    // A folder that is named outweighs an address of the environment, and an address that is named a folder.
+    let outweighed = place.data.is_some() && place.reach.daemon == std::env::var("JOINTBENCH_URL").ok();
+    if place.reach.daemon.is_some() && !outweighed {
+        return Ok(Way::Daemon(Client::new(&place.reach)));
+    }
+    let data = place.data.as_deref().unwrap_or(Path::new("jointbench-data"));
     if !makes_it && !crate::store::Store::is_in(data) {
         let folder = data.display();
         return Err(Exit::bad_input(format!(

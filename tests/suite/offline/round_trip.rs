@@ -27,6 +27,11 @@ fn nothing_is_made_where_nothing_is() {
     let nowhere = ["export", "1", "--format", "csv", "--daemon", "127.0.0.1:9", "--data"];
     let output = jointbench().args(nowhere).arg(&data).output().expect("it starts");
     assert!(stderr(&output).contains("no daemon answers at http://127.0.0.1:9"), "{}", stderr(&output));
+    // One of the environment is not, where a folder is named.
+    let mut command = jointbench();
+    command.env("JOINTBENCH_URL", "http://127.0.0.1:9").args(["export", "1", "--format", "csv", "--data"]).arg(&data);
+    let output = command.output().expect("it starts");
+    assert!(stderr(&output).contains("no store is in"), "{}", stderr(&output));
 }
 
 #[test]

@@ -68,7 +68,7 @@ pub struct Reproduce {
 /// The daemon where its address is given; else the folder, or the daemon on the usual address where one has the folder.
 #[derive(Debug, Args)]
 pub struct StorePlace {
-    /// Folder of the store, which is then looked at whatever daemon is named [default: jointbench-data]
+    /// Folder of the store; outweighs JOINTBENCH_URL, not --daemon [default: jointbench-data]
     #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA")]
     pub data: Option<PathBuf>,
     #[command(flatten)]
