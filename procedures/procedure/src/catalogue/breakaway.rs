@@ -6,7 +6,7 @@
 //! Olsson, Åström, Lischinsky 1995): only a slow ramp comes near the friction at rest.
 
 use super::Procedure;
-use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, stroke};
+use super::legs::{ACCELERATION, Legs, sample_rate, stroke};
 use crate::findings::{Mean, Unusable, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -75,16 +75,7 @@ impl Procedure for Breakaway {
         }
         // The last of them is caught before the run ends.
         legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: friction_meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

@@ -7,7 +7,7 @@
 mod identify;
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta, sample_rate};
+use super::legs::{Legs, sample_rate};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -167,16 +167,7 @@ impl Procedure for Compensation {
             }
             over_compensates(&stated, way, share, values.number("amplitude_rad_s"))?;
         }
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: friction_meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

@@ -4,7 +4,7 @@
 //! temperatures are passed at different times: what depends on temperature and what merely drifts with time show apart.
 
 use super::Procedure;
-use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
+use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::warm_up;
 use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
@@ -75,16 +75,7 @@ impl Procedure for FrictionTemperature {
             }
             cooled_s = legs.steps[heated..].iter().map(crate::plan::Step::duration_s).sum();
         }
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: friction_meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -1,8 +1,9 @@
 //! What the procedures of a joint share: numbered steps, legs of constant speed, the facts of a friction run.
 
-use crate::parameter::Parameter;
+use super::Procedure;
+use crate::parameter::{Parameter, Values};
 use crate::place::Place;
-use crate::plan::{Before, BenchFacts, Drive, Phase, Step};
+use crate::plan::{Before, BenchFacts, Drive, Phase, Plan, Step};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, Meta};
 use std::f64::consts::TAU;
@@ -91,6 +92,20 @@ impl Legs {
         let brake = Profile::from(from_a).hold(turning_s).to(0.0, ramp_s);
         self.push("demagnetise the brake while turning".into(), velocity, brake);
         self.leg(-speed_rad_s, ramp_s + LAG_S, 0.0);
+    }
+
+    /// The plan of a friction procedure without a warm-up of its own.
+    pub fn friction_plan(self, procedure: &dyn Procedure, values: &Values, bench: &BenchFacts, rate_hz: f64) -> Plan {
+        Plan {
+            procedure: procedure.id(),
+            parameters: values.to_json(),
+            kind: procedure.kind(),
+            meta: friction_meta(bench, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: self.acceleration_rad_s2,
+            steps: self.steps,
+            steady: None,
+        }
     }
 
     pub fn drive_of_last(&mut self, drive: Drive) {

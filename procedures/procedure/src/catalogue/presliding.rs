@@ -5,7 +5,7 @@
 //! of it only, so the moments count at which a reading changes.
 
 use super::Procedure;
-use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate};
+use super::legs::{ACCELERATION, Legs, sample_rate};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -86,16 +86,7 @@ impl Procedure for Presliding {
         }
         // The last of them is held before the run ends.
         legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: friction_meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

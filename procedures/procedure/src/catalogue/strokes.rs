@@ -4,7 +4,7 @@
 //! time or its way is up, whichever comes first.
 
 use super::Procedure;
-use super::legs::{Legs, friction_meta, sample_rate};
+use super::legs::{Legs, sample_rate};
 use crate::findings::{Line, Unusable, curve, keep, legs, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -82,16 +82,7 @@ impl Procedure for Strokes {
                 legs.unload(turning_rad_s, brake_a, bench);
             }
         }
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: friction_meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -4,7 +4,7 @@
 //! without load, and the zero is half the sum of both directions: drag has the sign of motion, the zero has not.
 
 use super::Procedure;
-use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate};
+use super::legs::{ACCELERATION, Legs, sample_rate};
 use crate::findings::{Line, Mean, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -67,16 +67,7 @@ impl Procedure for TorqueSensorZero {
             legs.repeat += 1;
             planned_s = legs.steps.iter().map(crate::plan::Step::duration_s).sum();
         }
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: friction_meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.friction_plan(self, values, bench, rate_hz))
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
