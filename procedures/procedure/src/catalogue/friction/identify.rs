@@ -197,7 +197,8 @@ fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
     for sign in [1.0, -1.0] {
         let fast = points.iter().filter(|p| p.velocity_rad_s * sign > clear);
         if let Some(line) = Line::through(&fast.map(|p| (p.velocity_rad_s, friction_nm(p))).collect::<Vec<_>>()) {
-            let label = format!("line, r² = {:.4}", line.r2);
+            let way = if sign > 0.0 { "positive" } else { "negative" };
+            let label = format!("line, {way}, r² = {:.4}", line.r2);
             let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
             series.push(curve(&label, ends, 1, |v| line.at(v)));
         }
