@@ -10,6 +10,12 @@ pub mod scpi;
 
 use crate::transport::Scan;
 
+/// CRC-16 of Modbus: polynomial A001, reflected, from FFFF; low byte first.
+fn crc16(bytes: &[u8]) -> [u8; 2] {
+    let step = |sum: u16| if sum & 1 == 1 { sum >> 1 ^ 0xA001 } else { sum >> 1 };
+    bytes.iter().fold(0xFFFF_u16, |sum, byte| (0..8).fold(sum ^ u16::from(*byte), |sum, _| step(sum))).to_le_bytes()
+}
+
 /// A reply line up to its line feed. Longer than `limit` without one: noise.
 fn scan_line(received: &[u8], limit: usize) -> Scan {
     match received.iter().position(|byte| *byte == b'\n') {

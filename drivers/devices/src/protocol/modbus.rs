@@ -1,5 +1,6 @@
 //! Modbus RTU (Modbus over Serial Line 1.02): reading holding registers, which is all that the bench's thermometer needs.
 
+use super::crc16;
 use crate::transport::{Command, Request, Scan, shown};
 use jointbench_instrument::FaultKind;
 
@@ -7,12 +8,6 @@ const READ_HOLDING: u8 = 0x03;
 const EXCEPTION: u8 = 0x80;
 /// Slave, function, exception code, checksum.
 const EXCEPTION_LENGTH: usize = 5;
-
-/// Polynomial A001, reflected, from FFFF; sent low byte first.
-fn checksum(bytes: &[u8]) -> [u8; 2] {
-    let step = |sum: u16| if sum & 1 == 1 { sum >> 1 ^ 0xA001 } else { sum >> 1 };
-    bytes.iter().fold(0xFFFF_u16, |sum, byte| (0..8).fold(sum ^ u16::from(*byte), |sum, _| step(sum))).to_le_bytes()
-}
 
 /// Up to 125 registers that follow each other.
 #[derive(Debug, Clone, Copy)]
@@ -33,7 +28,7 @@ impl Command for ReadRegisters {
         let [high, low] = self.first.to_be_bytes();
         let frame = [self.slave, READ_HOLDING, high, low, 0, self.count];
         out.extend_from_slice(&frame);
-        out.extend_from_slice(&checksum(&frame));
+        out.extend_from_slice(&crc16(&frame));
     }
 
     fn name(&self) -> String {
@@ -44,12 +39,14 @@ impl Command for ReadRegisters {
 impl Request for ReadRegisters {
     type Reply = Vec<u16>;
 
+    /// A frame whose checksum is wrong is noise up to what may begin another one, and a garbled reply where nothing does.
     fn scan(&self, received: &[u8]) -> Scan {
-        let begins = |at: usize| {
+        let begins = |at: &usize| {
             let function = received.get(at + 1).copied().unwrap_or(READ_HOLDING);
-            received[at] == self.slave && matches!(function, READ_HOLDING | 0x83)
+            received[*at] == self.slave && function & !EXCEPTION == READ_HOLDING
         };
-        match (0..received.len()).find(|at| begins(*at)) {
+        let next = |from: usize| (from..received.len()).find(begins);
+        match next(0) {
             None if received.is_empty() => Scan::Short,
             None => Scan::Noise { skip: received.len() },
             Some(0) => {
@@ -57,7 +54,11 @@ impl Request for ReadRegisters {
                     Some(function) if function & EXCEPTION != 0 => EXCEPTION_LENGTH,
                     _ => self.reply_length(),
                 };
-                if received.len() >= length { Scan::Packet { length } } else { Scan::Short }
+                match received.get(..length) {
+                    None => Scan::Short,
+                    Some(frame) if is_whole(frame) => Scan::Packet { length },
+                    Some(_) => next(1).map_or(Scan::Packet { length }, |skip| Scan::Noise { skip }),
+                }
             }
             Some(skip) => Scan::Noise { skip },
         }
@@ -65,22 +66,25 @@ impl Request for ReadRegisters {
 
     fn decode(&self, packet: &[u8]) -> Result<Vec<u16>, FaultKind> {
         let garbled = |what: &str| FaultKind::Garbled { what: format!("{}: {what}", shown(packet)) };
-        let Some((content, sums)) = packet.split_last_chunk::<2>() else { return Err(garbled("too short")) };
-        if checksum(content) != *sums {
+        if !is_whole(packet) {
             return Err(garbled("the checksum is wrong"));
         }
-        match content {
+        match packet[..packet.len() - 2] {
             [_, function, code] if function & EXCEPTION != 0 => {
-                Err(FaultKind::Refused { what: format!("{}: {}", self.name(), exception(*code)) })
+                Err(FaultKind::Refused { what: format!("{}: {}", self.name(), exception(code)) })
             }
-            [_, _, length, words @ ..]
-                if usize::from(*length) == words.len() && words.len() == 2 * usize::from(self.count) =>
+            [_, _, length, ref words @ ..]
+                if usize::from(length) == words.len() && words.len() == 2 * usize::from(self.count) =>
             {
                 Ok(words.chunks_exact(2).map(|word| u16::from_be_bytes([word[0], word[1]])).collect())
             }
             _ => Err(garbled("not as many registers as were asked for")),
         }
     }
+}
+
+fn is_whole(frame: &[u8]) -> bool {
+    matches!(frame.split_last_chunk(), Some((content, sums)) if crc16(content) == *sums)
 }
 
 fn exception(code: u8) -> String {

@@ -1,11 +1,12 @@
-//! Frames of six bytes.
+//! Frames of seven bytes.
 
+use crate::protocol::crc16;
 use crate::transport::{Command, Request, Scan, shown};
 use jointbench_instrument::FaultKind;
 
 const REQUEST: u8 = 0xA5;
 const REPLY: u8 = 0x5A;
-const LENGTH: usize = 6;
+const LENGTH: usize = 7;
 const REFUSED: u8 = 0x80;
 const FRESH: u8 = 0x40;
 
@@ -38,18 +39,13 @@ pub struct Reply<T> {
     pub fresh: bool,
 }
 
-/// What makes the sum of all bytes a multiple of 256.
-fn sum(bytes: &[u8]) -> u8 {
-    bytes.iter().fold(0u8, |sum, byte| sum.wrapping_sub(*byte))
-}
-
 impl<O: Order> Command for Numbered<O> {
     fn encode(&self, out: &mut Vec<u8>) {
         let [high, low] = self.order.word().to_be_bytes();
         let content = [self.number, O::CODE, high, low];
         out.push(REQUEST);
         out.extend_from_slice(&content);
-        out.push(sum(&content));
+        out.extend_from_slice(&crc16(&content));
     }
 
     fn name(&self) -> String {
@@ -60,7 +56,7 @@ impl<O: Order> Command for Numbered<O> {
 impl<O: Order> Request for Numbered<O> {
     type Reply = Reply<O::Reply>;
 
-    /// A frame whose sum is wrong is noise up to what may begin another one, and a garbled reply where nothing does.
+    /// A frame whose checksum is wrong is noise up to what may begin another one, and a garbled reply where nothing does.
     fn scan(&self, received: &[u8]) -> Scan {
         let next = |from: usize| received.iter().skip(from).position(|byte| *byte == REPLY).map(|at| from + at);
         match next(0) {
@@ -75,9 +71,9 @@ impl<O: Order> Request for Numbered<O> {
 
     fn decode(&self, packet: &[u8]) -> Result<Reply<O::Reply>, FaultKind> {
         let garbled = |why: &str| FaultKind::Garbled { what: format!("{}: {why}", shown(packet)) };
-        let [_, number, command, high, low, _] = *packet else { return Err(garbled("expected six bytes")) };
+        let [_, number, command, high, low, _, _] = *packet else { return Err(garbled("expected seven bytes")) };
         if !is_whole(packet) {
-            return Err(garbled("the sum is wrong"));
+            return Err(garbled("the checksum is wrong"));
         }
         if number != self.number || command & !(REFUSED | FRESH) != O::CODE {
             return Err(garbled("the reply to another command"));
@@ -91,7 +87,7 @@ impl<O: Order> Request for Numbered<O> {
 }
 
 fn is_whole(frame: &[u8]) -> bool {
-    frame[1..].iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)) == 0
+    matches!(frame[1..].split_last_chunk(), Some((content, sums)) if crc16(content) == *sums)
 }
 
 fn reason(code: u16) -> String {
@@ -119,37 +115,38 @@ mod tests {
 
     #[test]
     fn the_bytes_on_the_wire() {
-        assert_eq!(encoded(&READ), [0xA5, 0x07, 0x01, 0x00, 0x00, 0xF8]);
-        assert_eq!(encoded(&Numbered { number: 0xFE, order: PositionMode(-2) }), [0xA5, 0xFE, 0x03, 0xFF, 0xFE, 0x02]);
-        let reply = [0x5A, 0x07, 0x01, 0xFF, 0xFE, 0xFB];
-        assert_eq!(READ.scan(&reply), Scan::Packet { length: 6 });
+        assert_eq!(encoded(&READ), [0xA5, 0x07, 0x01, 0x00, 0x00, 0x50, 0x90]);
+        let go = Numbered { number: 0xFE, order: PositionMode(-2) };
+        assert_eq!(encoded(&go), [0xA5, 0xFE, 0x03, 0xFF, 0xFE, 0x01, 0xBC]);
+        let reply = [0x5A, 0x07, 0x01, 0xFF, 0xFE, 0x90, 0xE0];
+        assert_eq!(READ.scan(&reply), Scan::Packet { length: 7 });
         assert_eq!(READ.decode(&reply), Ok(Reply { value: -2, fresh: false }));
-        let fresh = [0x5A, 0x07, 0x41, 0x00, 0x00, 0xB8];
+        let fresh = [0x5A, 0x07, 0x41, 0x00, 0x00, 0x51, 0x44];
         assert_eq!(READ.decode(&fresh), Ok(Reply { value: 0, fresh: true }));
     }
 
     #[test]
     fn what_is_no_reply_to_this_command_is_no_reading() {
         for (bytes, why) in [
-            ([0x5A, 0x07, 0x01, 0xFF, 0xFE, 0xFA], "sum"),
-            ([0x5A, 0x06, 0x01, 0xFF, 0xFE, 0xFC], "another command"),
-            ([0x5A, 0x07, 0x02, 0xFF, 0xFE, 0xFA], "another command"),
+            ([0x5A, 0x07, 0x01, 0xFF, 0xFE, 0x90, 0xE1], "checksum"),
+            ([0x5A, 0x06, 0x01, 0xFF, 0xFE, 0x91, 0x1C], "another command"),
+            ([0x5A, 0x07, 0x02, 0xFF, 0xFE, 0x60, 0xE0], "another command"),
         ] {
             let said = READ.decode(&bytes).unwrap_err();
             assert!(matches!(&said, FaultKind::Garbled { what } if what.contains(why)), "{said}");
         }
-        let refused = [0x5A, 0x07, 0x81, 0x00, 0x02, 0x76];
+        let refused = [0x5A, 0x07, 0x81, 0x00, 0x02, 0xD0, 0xB9];
         assert!(matches!(READ.decode(&refused), Err(FaultKind::Refused { what }) if what.contains("arm power is off")));
         let set = Numbered { number: 1, order: SetInterval(32) };
-        let other = [0x5A, 0x01, 0x07, 0x00, 0x10, 0xE8];
+        let other = [0x5A, 0x01, 0x07, 0x00, 0x10, 0xB1, 0xD5];
         assert!(matches!(set.decode(&other), Err(FaultKind::Garbled { what }) if what.contains("16")));
     }
 
     #[test]
     fn a_reply_is_found_behind_one_that_broke_off() {
-        let bytes = [0x5A, 0x07, 0x01, 0x5A, 0x07, 0x01, 0xFF, 0xFE, 0xFB];
+        let bytes = [0x5A, 0x07, 0x01, 0x5A, 0x07, 0x01, 0xFF, 0xFE, 0x90, 0xE0];
         assert_eq!(READ.scan(&bytes), Scan::Noise { skip: 3 });
-        assert_eq!(READ.scan(&bytes[3..]), Scan::Packet { length: 6 });
+        assert_eq!(READ.scan(&bytes[3..]), Scan::Packet { length: 7 });
         assert_eq!(READ.scan(b"xyz"), Scan::Noise { skip: 3 });
     }
 }

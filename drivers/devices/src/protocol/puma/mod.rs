@@ -8,16 +8,17 @@
 //!
 //! Ours, since the pages at hand are silent on it or the original is a parallel bus: everything that is on the wire.
 //! The numbers of the commands, all other commands, the places of the other status bits, the scale of the converters,
-//! the codes of refusal, and the frames. Six bytes each way, big-endian:
+//! the codes of refusal, and the frames. Seven bytes each way, the word big-endian:
 //!
 //! ```text
-//! request  A5 number command high low sum
-//! reply    5A number command high low sum
+//! request  A5 number command high low crc crc
+//! reply    5A number command high low crc crc
 //! ```
 //!
-//! `number` comes back as it was sent, so that no reply can be taken for another one. `sum` makes the sum of all bytes
-//! behind the first a multiple of 256. A reply's command has bit 7 set where the request is refused (the word is the
-//! reason), and bit 6 while positions count from a power-up that nobody has acknowledged (`CLEAR`).
+//! `number` comes back as it was sent, so that no reply can be taken for another one. The checksum of the four bytes
+//! between is Modbus's CRC-16, low byte first: it notices every error within 16 bits of each other, as a cable makes them. A
+//! reply's command has bit 7 set where the request is refused (the word is the reason), and bit 6 while positions count
+//! from a power-up that nobody has acknowledged (`CLEAR`).
 
 mod frame;
 mod orders;

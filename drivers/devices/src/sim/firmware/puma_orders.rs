@@ -1,5 +1,6 @@
 //! What a Puma's servo board is told, frame by frame, and what it answers.
 
+use super::adam::crc;
 use super::puma::{AMPERES_PER_VOLT, CURRENT, MOST_COUNTS, POSITION, Power, Puma, RELEASE_S, VOLTS_PER_COUNT};
 use crate::sim::plant::{Plant, Signal};
 use crate::sim::trouble::Trouble;
@@ -19,12 +20,12 @@ pub fn receive(servo: &mut Puma, input: &mut Vec<u8>, plant: &Plant, output: &mu
     loop {
         let start = input.iter().position(|byte| *byte == 0xA5).unwrap_or(input.len());
         input.drain(..start);
-        let Some(&[_, number, command, high, low, _]) = input.first_chunk() else { return };
-        if input[1..6].iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)) != 0 {
+        let Some(&[_, number, command, high, low, crc_low, crc_high]) = input.first_chunk() else { return };
+        if crc(&input[1..5]) != u16::from_le_bytes([crc_low, crc_high]) {
             input.drain(..1);
             continue;
         }
-        input.drain(..6);
+        input.drain(..7);
         servo.heard_s = plant.now_s();
         let (mark, word) = match execute(servo, command, u16::from_be_bytes([high, low]), plant) {
             Ok(word) => (0, word),
@@ -33,10 +34,9 @@ pub fn receive(servo: &mut Puma, input: &mut Vec<u8>, plant: &Plant, output: &mu
         let fresh = if servo.fresh { 0x40 } else { 0 };
         let [high, low] = word.to_be_bytes();
         let content = [number, command & 0x3F | mark | fresh, high, low];
-        let sum = content.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)).wrapping_neg();
         output.push(0x5A);
         output.extend(content);
-        output.push(sum);
+        output.extend(crc(&content).to_le_bytes());
     }
 }
 

@@ -64,7 +64,7 @@ proptest! {
     #[test]
     fn a_servo_is_back_after_one_frame(garbage in pieces()) {
         // Garbage may have begun a frame that takes the first of these with it.
-        let ask = |servo: &mut Puma| ask(servo, &garbage, &[0; 6], &[0xA5, 0x09, 0x0B, 0x00, 0x00, 0xEC]);
+        let ask = |servo: &mut Puma| ask(servo, &garbage, &[0; 7], &[0xA5, 0x09, 0x0B, 0x00, 0x00, 0x72, 0x7A]);
         let reply = ask(&mut Puma::new());
         prop_assert!(reply.starts_with(&[0x5A, 0x09]) && reply[3..5] == [0x05, 0x60], "{:02X?}", reply);
     }

@@ -1,5 +1,6 @@
 //! The servo board, byte for byte. Its frames are ours; memory map, interpolation and defaults are the document's.
 
+use super::super::adam::crc;
 use super::super::{Firmware, Puma};
 use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant};
@@ -24,10 +25,10 @@ impl Bench {
     /// Command and word of the reply.
     fn ask(&mut self, command: u8, word: i16) -> (u8, i16) {
         let [high, low] = word.to_be_bytes();
-        let sum = 9u8.wrapping_add(command).wrapping_add(high).wrapping_add(low).wrapping_neg();
-        let reply = self.say(&[0xA5, 9, command, high, low, sum]);
-        let [0x5A, 9, command, high, low, sum] = reply[..] else { panic!("{reply:02X?}") };
-        assert_eq!([9, command, high, low, sum].iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)), 0);
+        let [crc_low, crc_high] = crc(&[9, command, high, low]).to_le_bytes();
+        let reply = self.say(&[0xA5, 9, command, high, low, crc_low, crc_high]);
+        let [0x5A, 9, command, high, low, crc_low, crc_high] = reply[..] else { panic!("{reply:02X?}") };
+        assert_eq!(crc(&[9, command, high, low]).to_le_bytes(), [crc_low, crc_high]);
         (command, i16::from_be_bytes([high, low]))
     }
 
@@ -52,11 +53,17 @@ impl Bench {
 fn bytes_in_and_bytes_out() {
     let mut bench = Bench::new();
     // From power-up on, every reply is marked until that is acknowledged.
-    assert_eq!(bench.say(&[0xA5, 0x07, 0x01, 0x00, 0x00, 0xF8]), [0x5A, 0x07, 0x41, 0x00, 0x00, 0xB8]);
-    assert_eq!(bench.say(&[0xA5, 0x08, 0x09, 0x00, 0x00, 0xEF]), [0x5A, 0x08, 0x09, 0x00, 0x00, 0xEF]);
-    assert_eq!(bench.say(&[0xA5, 0x09, 0x0B, 0x00, 0x00, 0xEC]), [0x5A, 0x09, 0x0B, 0x05, 0x60, 0x87]);
-    assert_eq!(bench.say(&[0xA5, 0x0A, 0x03, 0x00, 0x64, 0x8F]), [0x5A, 0x0A, 0x83, 0x00, 0x02, 0x71], "no arm power");
-    assert_eq!(bench.say(&[0xA5, 0x07, 0x01, 0x00, 0x00, 0xF9]), [0; 0], "a wrong sum is not answered");
+    for (request, reply) in [
+        ([0xA5, 0x07, 0x01, 0x00, 0x00, 0x50, 0x90], [0x5A, 0x07, 0x41, 0x00, 0x00, 0x51, 0x44]),
+        ([0xA5, 0x08, 0x09, 0x00, 0x00, 0xD2, 0x46], [0x5A, 0x08, 0x09, 0x00, 0x00, 0xD2, 0x46]),
+        ([0xA5, 0x09, 0x0B, 0x00, 0x00, 0x72, 0x7A], [0x5A, 0x09, 0x0B, 0x05, 0x60, 0x71, 0x02]),
+        // No arm power.
+        ([0xA5, 0x0A, 0x03, 0x00, 0x64, 0xF2, 0x17], [0x5A, 0x0A, 0x83, 0x00, 0x02, 0x73, 0xD5]),
+    ] {
+        assert_eq!(bench.say(&request), reply);
+    }
+    let wrong = bench.say(&[0xA5, 0x07, 0x01, 0x00, 0x00, 0x50, 0x91]);
+    assert_eq!(wrong, [0; 0], "a wrong checksum is not answered");
 }
 
 #[test]

@@ -1,0 +1,3 @@
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|noise: &[u8]| jointbench_fuzz::encoder_status(noise));
