@@ -220,6 +220,7 @@ impl Instruments {
             test_encoder: self.test_encoder,
             stage: self.stage,
             thermometer: self.thermometer,
+            power: None,
         })
     }
 }

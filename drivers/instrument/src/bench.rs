@@ -1,7 +1,7 @@
 //! One bench: the instruments in their roles, one clock, one set of limits. Owned by exactly one thread.
 
 use crate::roles::{
-    AlignmentStage, CurrentSource, Instrument, JointController, PositionCounter, Thermometer, TorqueSensor,
+    AlignmentStage, CurrentSource, Instrument, JointController, PositionCounter, PowerSwitch, Thermometer, TorqueSensor,
 };
 use crate::{Clock, Fault, Limits};
 use serde::{Deserialize, Serialize};
@@ -45,6 +45,8 @@ pub struct Bench {
     /// Holds the sensor of the encoder under test.
     pub stage: Option<Box<dyn AlignmentStage>>,
     pub thermometer: Option<Box<dyn Thermometer>>,
+    /// Switches instruments off and on. Empty: a person does.
+    pub power: Option<Box<dyn PowerSwitch>>,
 }
 
 impl Bench {

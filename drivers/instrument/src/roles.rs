@@ -172,10 +172,19 @@ pub struct CounterReading {
 pub trait PositionCounter: Instrument {
     /// The position is 0 here.
     fn zero(&mut self) -> Result<(), Fault>;
+    /// Looks for the encoder's index while the shaft turns: begins with the first call, and tells by `true`, once, that it was
+    /// passed. From there on the position is 0 at the index; readings before it mean nothing.
+    fn seek_index(&mut self) -> Result<bool, Fault>;
     fn read(&mut self) -> Result<CounterReading, Fault>;
     fn resolution(&self) -> Radians;
     /// `None`: nobody has wired the encoder's own status to this counter.
     fn status(&mut self) -> Option<&mut dyn EncoderStatus>;
+}
+
+/// Takes the power of one of a bench's instruments away and gives it back.
+pub trait PowerSwitch: Send {
+    /// Returns when it is back; the instrument may need a moment more until it answers, and says that its state is lost.
+    fn cycle(&mut self, instrument: &str) -> Result<(), Fault>;
 }
 
 /// Tells whether a magnetic encoder's sensor sits well enough on its ring to count its periods.

@@ -62,6 +62,8 @@ pub enum Before {
     AsLeft,
     /// The brake demagnetised while turning, its current 0.
     Demagnetised,
+    /// The encoder under test switched off and on again, counting from its index: each attempt is another power-up.
+    PoweredAnew,
 }
 
 /// What the drive holds beside or instead of the velocity of a step.

@@ -35,7 +35,8 @@ pub enum Widest {
 pub struct Comparison {
     pub table: &'static str,
     pub found: Quantity,
-    pub document: f64,
+    /// `None`: it has none.
+    pub document: Option<f64>,
     /// `None`: nobody knows, or the bench was not given such a figure.
     pub given: Option<f64>,
     pub widest: Option<Widest>,
@@ -77,8 +78,8 @@ pub struct Chapter {
     pub duration_s: f64,
 }
 
-/// A figure of the document: table, quantity, what the document says, widest interval.
-type Figure = (&'static str, &'static str, f64, Option<Widest>);
+/// A figure to compare: table, quantity, what the document says, widest interval.
+type Figure = (&'static str, &'static str, Option<f64>, Option<Widest>);
 
 /// One procedure with its choices, and the figures that the document has of it.
 type Part = (&'static str, Value, Vec<Figure>);
@@ -86,11 +87,11 @@ type Part = (&'static str, Value, Vec<Figure>);
 fn friction([tau_c, c_v, tau_h, omega_s, delta_s]: [f64; 5]) -> Vec<Figure> {
     let table = "4.5, 4.6";
     vec![
-        (table, "tau_c", tau_c, Some(Widest::Share(0.02))),
-        (table, "c_v", c_v, Some(Widest::Share(0.03))),
-        (table, "tau_h", tau_h, Some(Widest::Share(0.05))),
-        (table, "omega_s", omega_s, Some(Widest::Share(0.15))),
-        (table, "delta_s", delta_s, None),
+        (table, "tau_c", Some(tau_c), Some(Widest::Share(0.02))),
+        (table, "c_v", Some(c_v), Some(Widest::Share(0.03))),
+        (table, "tau_h", Some(tau_h), Some(Widest::Share(0.05))),
+        (table, "omega_s", Some(omega_s), Some(Widest::Share(0.15))),
+        (table, "delta_s", Some(delta_s), None),
     ]
 }
 
@@ -103,14 +104,14 @@ fn compensation(figures: [f64; 6]) -> Vec<Figure> {
         "rho_max_none",
         "rho_max_observer",
     ];
-    names.into_iter().zip(figures).map(|(name, figure)| ("4.7", name, figure, None)).collect()
+    names.into_iter().zip(figures).map(|(name, figure)| ("4.7", name, Some(figure), None)).collect()
 }
 
 fn stiffness([inverse_k, k, beta_0]: [f64; 3]) -> Vec<Figure> {
     vec![
-        ("4.8", "inverse_k", inverse_k, None),
-        ("4.8", "k", k, Some(Widest::Share(0.01))),
-        ("4.8", "beta_0", beta_0, Some(Widest::Share(0.03))),
+        ("4.8", "inverse_k", Some(inverse_k), None),
+        ("4.8", "k", Some(k), Some(Widest::Share(0.01))),
+        ("4.8", "beta_0", Some(beta_0), Some(Widest::Share(0.03))),
     ]
 }
 
@@ -137,14 +138,15 @@ const ROTATION_STEP: Widest = Widest::To(2e-4);
 fn encoder() -> Vec<Part> {
     let point_rad = TAU / f64::from(1 << 18);
     let degree = TAU / 360.0;
-    let edge = |name, at, step| ("4.4", name, at, Some(step));
+    let edge = |name, at, step| ("4.4", name, Some(at), Some(step));
     vec![
-        ("encoder_offset", json!({}), vec![("eq. 4.3", "offset", 1437.0 * point_rad, Some(Widest::To(point_rad)))]),
-        ("encoder_delay", json!({}), vec![("4.2", "delay", 64.34e-6, Some(Widest::To(1e-6)))]),
+        ("encoder_offset", json!({}), vec![("eq. 4.3", "offset", Some(1437.0 * point_rad), Some(Widest::To(point_rad)))]),
+        ("encoder_startup", json!({}), vec![("section 4.1", "startup_spread", None, None)]),
+        ("encoder_delay", json!({}), vec![("4.2", "delay", Some(64.34e-6), Some(Widest::To(1e-6)))]),
         (
             "encoder_linearity",
             json!({}),
-            vec![("figs 4.4–4.11", "bits_before", 10.0, None), ("figs 4.4–4.11", "bits_velocity", 14.0, None)],
+            vec![("figs 4.4–4.11", "bits_before", Some(10.0), None), ("figs 4.4–4.11", "bits_velocity", Some(14.0), None)],
         ),
         (
             "encoder_alignment",
@@ -164,7 +166,7 @@ fn encoder() -> Vec<Part> {
 
 /// Figure 3.2 of the chapter on the Puma, joint 2: volts, and volts over degrees each second at the link.
 fn puma() -> Vec<Part> {
-    let line = |name, figure, widest: Option<f64>| ("3.2", name, figure, widest.map(Widest::Share));
+    let line = |name, figure, widest: Option<f64>| ("3.2", name, Some(figure), widest.map(Widest::Share));
     let figures = vec![
         line("b_positive", 0.007581, Some(0.03)),
         line("f_positive", 0.545064, Some(0.02)),
@@ -279,7 +281,7 @@ mod tests {
         let found = found(&[("tau_c", 0.0300), ("c_v", 1.6e-4)]);
         let given = |name: &str| (name == "tau_c").then_some(0.0302);
         let comparisons = compare(&found, &friction([0.030, 1.512e-4, 0.039, 0.06, 0.8]), &given);
-        assert_eq!(comparisons.iter().map(|c| c.document).collect::<Vec<_>>(), [0.030, 1.512e-4]);
+        assert_eq!(comparisons.iter().map(|c| c.document).collect::<Vec<_>>(), [Some(0.030), Some(1.512e-4)]);
         assert_eq!((comparisons[0].is_inside(), comparisons[0].is_narrow()), (Some(true), Some(true)));
         assert_eq!((comparisons[1].is_inside(), comparisons[1].is_narrow()), (None, Some(true)));
     }

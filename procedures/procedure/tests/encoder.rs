@@ -6,7 +6,9 @@ use jointbench_instrument::{Bench, RunTable, Trace};
 use jointbench_procedure::conduct::{ConductFault, conduct};
 use jointbench_procedure::identification::{Identification, Verdict};
 use jointbench_procedure::parameter::Values;
-use jointbench_procedure::{BenchFacts, Commit, Control, Live, Recorder, RecorderFault, RunState, Safe, procedure};
+use jointbench_procedure::{
+    BenchFacts, Commit, Control, EventKind, Live, Recorder, RecorderFault, RunState, Safe, procedure,
+};
 use serde_json::{Value, json};
 use std::sync::mpsc::{Sender, channel};
 
@@ -128,6 +130,71 @@ fn a_stage_that_lost_its_power_ends_the_run_too() {
     };
     assert_eq!((end.state, end.safe), (RunState::Failed, Safe::SafeVerified), "{:?}", end.reason);
     assert!(end.reason.as_ref().unwrap().contains("stage"), "{:?}", end.reason);
+}
+
+#[test]
+fn every_power_up_moves_the_zero_and_the_bench_switches_by_itself() {
+    let (truth, _mock, mut bench) = open(2, false);
+    let found = run(&mut bench, "encoder_startup", json!({"power_ups": 10}));
+    let [low, high] = found.quantity("startup_spread").unwrap().ci95.unwrap();
+    assert!((low..=high).contains(&truth.startup_spread_rad), "{low:e} to {high:e}");
+    let value = |name: &str| found.quantity(name).unwrap().value;
+    assert!(value("repeatability") < 0.1 * value("startup_spread"), "{}", found.summary);
+    // The joint is where it was read from, but for whole turns: offsets stay within what a start-up can do.
+    assert!(value("startup_range") < 60.5 * POINT_RAD, "{}", found.summary);
+}
+
+/// Switches the encoder off and on whenever the run asks for it; the first time it only says so.
+struct Hand {
+    mock: MockBench,
+    controls: Sender<Control>,
+    asked: usize,
+    rows: Option<Trace>,
+}
+
+impl Recorder for Hand {
+    fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
+        Ok(None)
+    }
+
+    fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
+        let waits = EventKind::State { state: RunState::Paused };
+        if commit.events.iter().any(|event| event.kind == waits) {
+            self.asked += 1;
+            if self.asked > 1 {
+                self.mock.trouble(MockInstrument::CounterS2, Trouble::PowerCycled);
+                self.mock.trouble(MockInstrument::CounterS2, Trouble::None);
+            }
+            self.controls.send(Control::Resume).unwrap();
+        }
+        if !commit.rows.channels().is_empty() {
+            match &mut self.rows {
+                Some(rows) => rows.append(commit.rows),
+                None => self.rows = Some(commit.rows),
+            }
+        }
+        Ok(())
+    }
+
+    fn live(&mut self, _: Live<'_>) {}
+}
+
+#[test]
+fn a_bench_without_a_switch_waits_for_a_hand_and_notices_when_it_did_nothing() {
+    let (_, mock, bench) = open(4, false);
+    let mut bench = Bench { power: None, ..bench };
+    let startup = procedure("encoder_startup").unwrap();
+    let given = json!({"power_ups": 3});
+    let plan = startup.plan(given.as_object().unwrap(), &BenchFacts::of(&bench)).unwrap();
+    let (controls, heard) = channel();
+    let mut hand = Hand { mock, controls, asked: 0, rows: None };
+    let end = jointbench_procedure::run(&mut bench, &plan, 1, &heard, &mut hand);
+    assert_eq!((end.state, end.safe), (RunState::Completed, Safe::SafeVerified), "{:?}", end.reason);
+    assert_eq!(hand.asked, 4, "once more than there are power-ups");
+    let table = RunTable::new(plan.meta.clone(), hand.rows.unwrap()).unwrap();
+    let values = Values::parse(startup.schema(), given.as_object().unwrap()).unwrap();
+    let found = startup.identify(&values, &table).unwrap();
+    assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
 }
 
 const POINT_RAD: f64 = std::f64::consts::TAU / 262_144.0;

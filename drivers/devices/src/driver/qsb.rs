@@ -14,10 +14,13 @@ use std::time::Duration;
 
 /// Four counts a period, running freely over 32 bits, the index ignored. The factory's setting wraps at 500 counts.
 const FREE_RUNNING_X4: u32 = 0x03;
+/// The same, but the count is 0 at every index that is passed.
+const ZERO_AT_INDEX: u32 = FREE_RUNNING_X4 | 0x60;
 const DOWNWARDS: u32 = 1 << 8;
 const CLEAR_COUNT: u32 = 2;
 const CLEAR_STATUS: u32 = 3;
 const POWER_WAS_LOST: u32 = 1 << 2;
+const INDEX_WAS_PASSED: u32 = 1 << 4;
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -40,6 +43,7 @@ pub struct QsbCounter {
     clock: Arc<dyn Clock>,
     identity: Option<Identity>,
     configured: bool,
+    seeks_index: bool,
     /// The last count as it came, and without the wraps at 32 bits.
     last: u32,
     total: i64,
@@ -53,7 +57,8 @@ impl QsbCounter {
             let what = "counts_per_turn = 0: expected the counts of one turn, four for each line".into();
             return Err(link.fault(FaultKind::Refused { what }));
         }
-        let mut counter = Self { settings, link, clock, identity: None, configured: false, last: 0, total: 0 };
+        let (identity, configured, seeks_index) = (None, false, false);
+        let mut counter = Self { settings, link, clock, identity, configured, seeks_index, last: 0, total: 0 };
         counter.ready()?;
         Ok(counter)
     }
@@ -68,10 +73,14 @@ impl QsbCounter {
         ] {
             self.link.probe(&WriteRegister(register, value))?;
         }
-        self.last = self.link.probe(&ReadRegister(Register::Encoder))?.value;
-        self.total = i64::from(self.last as i32);
-        self.configured = true;
+        let value = self.link.probe(&ReadRegister(Register::Encoder))?.value;
+        self.count_from(value);
+        (self.configured, self.seeks_index) = (true, false);
         Ok(())
+    }
+
+    fn count_from(&mut self, value: u32) {
+        (self.last, self.total) = (value, i64::from(value as i32));
     }
 
     fn read_register(&mut self, register: Register) -> Result<Held, Fault> {
@@ -133,6 +142,23 @@ impl PositionCounter for QsbCounter {
         self.ready()?.request(&WriteRegister(Register::Clear, CLEAR_COUNT))?;
         (self.last, self.total) = (0, 0);
         Ok(())
+    }
+
+    fn seek_index(&mut self) -> Result<bool, Fault> {
+        if !self.seeks_index {
+            self.ready()?.request(&WriteRegister(Register::Clear, CLEAR_STATUS))?;
+            self.ready()?.request(&WriteRegister(Register::CounterMode, ZERO_AT_INDEX))?;
+            self.seeks_index = true;
+            return Ok(false);
+        }
+        if self.read_register(Register::Status)?.value & INDEX_WAS_PASSED == 0 {
+            return Ok(false);
+        }
+        self.ready()?.request(&WriteRegister(Register::CounterMode, FREE_RUNNING_X4))?;
+        self.seeks_index = false;
+        let value = self.read_register(Register::Encoder)?.value;
+        self.count_from(value);
+        Ok(true)
     }
 
     fn read(&mut self) -> Result<CounterReading, Fault> {

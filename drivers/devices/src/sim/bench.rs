@@ -15,7 +15,8 @@ use crate::driver::{
 };
 use crate::instruments::{InstrumentSettings, JointSettings, TorqueSensorSettings};
 use crate::transport::{Address, PortSettings};
-use jointbench_instrument::{Bench, Clock, Fault};
+use jointbench_instrument::roles::PowerSwitch;
+use jointbench_instrument::{Bench, Clock, Fault, FaultKind};
 use std::io;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -257,7 +258,13 @@ impl MockBench {
         }
         let (limits, constants) =
             (self.settings.joint.limits(self.settings.load), self.settings.joint.constants(self.settings.load));
-        Ok(opened.into_bench(name, true, self.clock(), limits, constants).expect("every instrument answers"))
+        let bench = opened.into_bench(name, true, self.clock(), limits, constants).expect("every instrument answers");
+        Ok(Bench { power: Some(self.power_switch()), ..bench })
+    }
+
+    /// Takes the power of an encoder away, with its counter's, and gives it back; by the names of [`MockBench::instruments`].
+    pub fn power_switch(&self) -> Box<dyn PowerSwitch> {
+        Box::new(Switch(Arc::clone(&self.rig)))
     }
 
     /// Every instrument by its name, and where it answers now.
@@ -268,6 +275,25 @@ impl MockBench {
     /// Where an instrument answers now. `None`: this bench does not have it.
     pub fn address(&self, wanted: MockInstrument) -> Option<Address> {
         self.ports.iter().find(|(instrument, _)| *instrument == wanted).map(|(_, port)| port.address())
+    }
+}
+
+struct Switch(Arc<Mutex<Rig>>);
+
+impl PowerSwitch for Switch {
+    fn cycle(&mut self, instrument: &str) -> Result<(), Fault> {
+        let found = match instrument {
+            "s1" => MockInstrument::CounterS1,
+            "s2" => MockInstrument::CounterS2,
+            other => {
+                let what = format!("no instrument {other} is on this switch");
+                return Err(FaultKind::Refused { what }.at("power switch", ""));
+            }
+        };
+        let mut rig = lock(&self.0);
+        rig.afflict(found, Trouble::PowerCycled);
+        rig.afflict(found, Trouble::None);
+        Ok(())
     }
 }
 

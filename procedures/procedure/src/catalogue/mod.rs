@@ -75,6 +75,7 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &identify_joint::IdentifyJoint,
         &puma_friction::PumaFriction,
         &encoder::EncoderOffset,
+        &encoder::EncoderStartup,
         &encoder::EncoderDelay,
         &encoder::EncoderLinearity,
         &encoder::EncoderAlignment,

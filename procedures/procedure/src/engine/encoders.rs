@@ -33,7 +33,7 @@ impl Session<'_> {
         Ok(Some(Encoders { reference, test, consistent }))
     }
 
-    fn ask_encoder<T>(
+    pub(super) fn ask_encoder<T>(
         &mut self,
         under_test: bool,
         request: impl FnMut(&mut (dyn PositionCounter + 'static)) -> Result<T, Fault>,

@@ -8,6 +8,7 @@ mod ending;
 mod journal;
 mod pace;
 mod pause;
+mod power;
 mod safe_state;
 mod securing;
 mod session;

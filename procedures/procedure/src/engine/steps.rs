@@ -5,7 +5,7 @@ use super::ending::Ending;
 use super::session::{Asked, Session, Wish};
 use crate::event::EventKind;
 use crate::place::Place;
-use crate::plan::{Drive, Phase, Step};
+use crate::plan::{Before, Drive, Phase, Step};
 
 /// How a step was left.
 pub(super) enum Left {
@@ -45,6 +45,9 @@ impl Session<'_> {
     }
 
     fn attempt(&mut self, index: usize, step: &Step, segment: u32, mut least_brake_a: f64) -> Result<Left, Ending> {
+        if step.before == Before::PoweredAnew {
+            self.power_anew()?;
+        }
         if let Place::At(pose) = step.place {
             self.place(pose)?;
         }

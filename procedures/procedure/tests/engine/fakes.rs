@@ -131,6 +131,7 @@ impl Fakes {
             test_encoder: None,
             stage: None,
             thermometer: None,
+            power: None,
         };
         (fakes, bench)
     }

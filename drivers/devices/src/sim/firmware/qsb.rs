@@ -2,7 +2,7 @@
 
 use super::Firmware;
 use super::qsb_registers::{self as register, Registers};
-use crate::sim::plant::{Plant, STEP_S};
+use crate::sim::plant::{Plant, S1_COUNTS, S2_COUNTS, STEP_S};
 use crate::sim::trouble::Trouble;
 
 /// The unit of intervals and of time stamps.
@@ -10,12 +10,34 @@ const TICK_S: f64 = 1.0 / 512.0;
 const LONGEST_LINE: usize = 256;
 const GREETING: &[u8] = b"QSB-D  0E!\r\n";
 const POWER_LOST: u32 = 1 << 2;
+const INDEX_SEEN: u32 = 1 << 4;
+/// Of MDR0: what the index does, and that it sets the count to 0.
+const INDEX_MODE: u32 = 3 << 4;
+const INDEX_RESETS: u32 = 2 << 4;
 
 /// Which encoder is wired to a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoder {
     S1,
     S2,
+}
+
+impl Encoder {
+    /// Quarter periods since the encoder's own zero, where its index lies.
+    fn quarters(self, plant: &Plant) -> i64 {
+        match self {
+            Encoder::S1 => plant.s1_counts(),
+            Encoder::S2 => plant.s2_counts(),
+        }
+    }
+
+    /// Quarter periods of a turn.
+    fn counts(self) -> i64 {
+        match self {
+            Encoder::S1 => S1_COUNTS as i64,
+            Encoder::S2 => S2_COUNTS as i64,
+        }
+    }
 }
 
 struct Streamed {
@@ -28,6 +50,8 @@ pub struct Qsb {
     registers: Registers,
     /// Counts of the encoder at which the counter shows 0.
     origin: i64,
+    /// Turns of the encoder since its own zero: with every change its index goes by.
+    turn: i64,
     status: u32,
     stamp_from_s: f64,
     streams: Vec<Streamed>,
@@ -42,6 +66,7 @@ impl Qsb {
             encoder,
             registers: Registers::factory(),
             origin: 0,
+            turn: 0,
             status: POWER_LOST,
             stamp_from_s: 0.0,
             streams: Vec::new(),
@@ -51,18 +76,32 @@ impl Qsb {
         }
     }
 
-    /// Quarter periods seen at the wires, by the factor that MDR0 sets and the direction of MDR1.
     fn seen(&self, plant: &Plant) -> i64 {
-        let quarters = match self.encoder {
-            Encoder::S1 => plant.s1_counts(),
-            Encoder::S2 => plant.s2_counts(),
-        };
+        self.counted(self.encoder.quarters(plant))
+    }
+
+    /// Quarter periods at the wires, by the factor that MDR0 sets and the direction of MDR1.
+    fn counted(&self, quarters: i64) -> i64 {
         let counted = match self.registers.get(register::MDR0) & 3 {
             0 | 1 => quarters.div_euclid(4),
             2 => quarters.div_euclid(2),
             _ => quarters,
         };
         if self.registers.get(register::MDR1) & 1 << 8 == 0 { counted } else { -counted }
+    }
+
+    /// The count begins anew at the index.
+    fn pass_index(&mut self, plant: &Plant) {
+        let turn = self.turn_of(plant);
+        let before = std::mem::replace(&mut self.turn, turn);
+        if turn != before {
+            self.origin = self.counted(turn.max(before) * self.encoder.counts());
+            self.status |= INDEX_SEEN;
+        }
+    }
+
+    fn turn_of(&self, plant: &Plant) -> i64 {
+        self.encoder.quarters(plant).div_euclid(self.encoder.counts())
     }
 
     fn count(&self, plant: &Plant) -> u32 {
@@ -151,6 +190,7 @@ impl Qsb {
                 let shown = self.seen(plant) - self.origin;
                 self.registers.set(register, data);
                 self.origin = self.seen(plant) - shown;
+                self.turn = self.turn_of(plant);
             }
             _ if self.registers.is_writable(register) => self.registers.set(register, data),
             _ => return ('x', data),
@@ -211,6 +251,9 @@ impl Firmware for Qsb {
     }
 
     fn step(&mut self, plant: &mut Plant) {
+        if self.registers.get(register::MDR0) & INDEX_MODE == INDEX_RESETS {
+            self.pass_index(plant);
+        }
         let interval = self.registers.get(register::INTERVAL);
         if self.streams.is_empty() || interval == 0xFFFF || plant.now_s() + 0.5 * STEP_S < self.due_s {
             return;

@@ -25,6 +25,8 @@ const POLE_PAIRS: f64 = 64.0;
 const HYSTERESIS_POINTS: f64 = 6.0;
 /// After power-up the zero is off by up to this (assumed).
 const STARTUP_POINTS: f64 = 30.0;
+/// Standard deviation of a normal deviate that is cut off at ±1: √(0.19875 + 0.31731).
+const STARTUP_SPREAD: f64 = 0.71837;
 
 /// Where an error of the period consistency appears: table 4.4, in m and rad, of radial shift, axial shift, rotation about
 /// the chip's normal, tilt. The vertical shift brings none.
@@ -46,6 +48,8 @@ pub struct EncoderTruth {
     pub delay_s: f64,
     /// Off by this since power-up.
     pub startup_rad: f64,
+    /// Standard deviation of that from power-up to power-up.
+    pub startup_spread_rad: f64,
     /// Half the width between both directions.
     pub hysteresis_rad: f64,
     /// Once a turn, twice a turn, and inside each of so many pole pairs.
@@ -121,6 +125,7 @@ impl Encoders {
         EncoderTruth {
             delay_s: self.delay_s(),
             startup_rad: rad(self.startup_points),
+            startup_spread_rad: rad(STARTUP_SPREAD * STARTUP_POINTS),
             hysteresis_rad: rad(HYSTERESIS_POINTS),
             eccentricity_rad: rad(ECCENTRIC_POINTS),
             tilt_rad: rad(TILT_POINTS),

@@ -13,7 +13,7 @@ mod line;
 mod noise;
 mod thermal;
 
-pub use encoders::EncoderTruth;
+pub use encoders::{EncoderTruth, S1_COUNTS, S2_COUNTS};
 pub use hidden::{HIDDEN_EFFECTS, HiddenEffect, Truth};
 
 use super::data_sheet::{DataSheet, Joint, Load};

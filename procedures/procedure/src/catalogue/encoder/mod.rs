@@ -6,6 +6,7 @@ mod edges;
 mod linearity;
 mod offset;
 mod say;
+mod startup;
 mod sweeps;
 mod table;
 
@@ -13,6 +14,7 @@ pub(super) use alignment::EncoderAlignment;
 pub(super) use delay::EncoderDelay;
 pub(super) use linearity::EncoderLinearity;
 pub(super) use offset::EncoderOffset;
+pub(super) use startup::EncoderStartup;
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use crate::place::Place;

@@ -128,7 +128,7 @@ fn mean(values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// One point of the encoder under test.
-fn step_rad(run: &RunTable) -> f64 {
+pub(super) fn step_rad(run: &RunTable) -> f64 {
     let channel = run.trace().channels().iter().find(|channel| channel.name == "test_position_rad");
     channel.and_then(|channel| channel.resolution).unwrap_or(TAU / 262_144.0)
 }

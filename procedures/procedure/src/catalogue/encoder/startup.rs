@@ -1,0 +1,188 @@
+//! How far the zero of the encoder under test lies elsewhere after each power-up (its start-up initialisation error).
+
+use super::offset::step_rad;
+use super::say::{histogram, quantity, too_little};
+use super::sweeps::{Sweep, sweeps};
+use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
+use crate::catalogue::Procedure;
+use crate::catalogue::legs::Legs;
+use crate::findings::{Mean, scatter};
+use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::place::Place;
+use crate::plan::{Before, BenchFacts, Plan, PlanFault};
+use jointbench_instrument::{Kind, RunTable};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+pub struct EncoderStartup;
+
+/// Pairs of ways at each power-up: their scatter is what the zero repeats to without one.
+const PAIRS: u32 = 2;
+/// A spread beyond so many times that of one power-up is no scatter of the measurement.
+const APART: f64 = 3.0;
+
+impl Procedure for EncoderStartup {
+    fn id(&self) -> &'static str {
+        "encoder_startup"
+    }
+
+    fn title(&self) -> &'static str {
+        "Encoder start-up"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Switches the encoder under test off and on again many times and measures its offset from its index each time. A \
+         bench that has no switch for it waits for a hand before each."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Encoder
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::count("power_ups", "Power-ups", 12, [3, 200]),
+                Parameter::number("speed_rad_s", "Speed", "rad/s", 4.0, [0.5, 50.0]),
+                Parameter::number("turns", "Turns each way", "", 1.2, [1.2, 100.0]),
+                ACCELERATION,
+                sample_rate(250.0),
+            ]
+        }
+    }
+
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Err("its offsets share one zero of the reference, which an instrument that was off has lost")
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        let counts = counts(bench)?;
+        let rate_hz = values.number("sample_rate_hz");
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        for power_up in 0..values.count("power_ups") {
+            legs.repeat = power_up;
+            let first = legs.steps.len();
+            for _ in 0..PAIRS {
+                both_ways(&mut legs, values.number("speed_rad_s"), values.number("turns"), Place::AsLeft);
+            }
+            legs.steps[first].before = Before::PoweredAnew;
+        }
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta: meta(counts, rate_hz),
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        let (mut zeros, mut within, mut pairs) = (Vec::new(), 0.0, 0.0);
+        for power_up in sweeps(run).chunk_by(|a, b| a.repeat == b.repeat) {
+            // Forwards and back together: delay and hysteresis fall out of their mean.
+            let of_pair = |pair: &[Sweep]| match pair {
+                [out, back] => Some(0.5 * (out.shape()?.mean_rad + back.shape()?.mean_rad)),
+                _ => None,
+            };
+            let offsets: Vec<f64> = power_up.chunks(2).filter_map(of_pair).collect();
+            let Some(zero) = mean(&offsets) else { continue };
+            within += offsets.iter().map(|offset| (offset - zero).powi(2)).sum::<f64>();
+            pairs += offsets.len() as f64 - 1.0;
+            zeros.push(zero);
+        }
+        let (Some(offset), true) = (Mean::of(&zeros), zeros.len() >= 3 && pairs > 0.0) else {
+            let what = "Fewer than three power-ups were measured to their end: their spread is not known.";
+            return too_little(what, "Let the run come to its end.");
+        };
+        let freedom = zeros.len() as f64 - 1.0;
+        let spread = (zeros.iter().map(|zero| (zero - offset.value).powi(2)).sum::<f64>() / freedom).sqrt();
+        let repeats_to = (within / pairs).sqrt();
+        let ends = |pick: fn(f64, f64) -> f64| zeros.iter().copied().reduce(pick).unwrap_or(0.0);
+        let range = ends(f64::max) - ends(f64::min);
+        let point_rad = step_rad(run);
+        let differs = spread > APART * repeats_to.max(point_rad / 12_f64.sqrt());
+        let summary = match differs {
+            true => format!(
+                "The zero lies elsewhere after each power-up, by {:.1} points of the encoder (standard deviation of {} \
+                 power-ups) and {:.1} at most; without one it repeats to {:.2}.",
+                spread / point_rad,
+                zeros.len(),
+                range / point_rad,
+                repeats_to / point_rad
+            ),
+            false => format!("The zero is the same after each of {} power-ups.", zeros.len()),
+        };
+        let advice = "Measure the offset after each power-up, or take the position at start from another source.";
+        Some(Identification {
+            verdict: Verdict::Identified,
+            summary,
+            advice: differs.then(|| advice.into()),
+            quantities: vec![
+                quantity(["offset", "ξ", "Offset from index to zero, mean", "rad"], offset.value, Some(offset.ci95)),
+                quantity(
+                    ["startup_spread", "σ_ξ", "Standard deviation from power-up to power-up", "rad"],
+                    spread,
+                    spread_ci95(spread, freedom),
+                ),
+                quantity(["startup_range", "", "Between the furthest two of them", "rad"], range, None),
+                quantity(["repeatability", "", "Standard deviation without a power-up", "rad"], repeats_to, None),
+                quantity(["power_ups", "n", "Power-ups", ""], zeros.len() as f64, None),
+            ],
+            figures: figures(&zeros),
+        })
+    }
+}
+
+fn mean(values: &[f64]) -> Option<f64> {
+    (values.len() > 1).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// Of a standard deviation, for deviations that are normal.
+fn spread_ci95(spread: f64, freedom: f64) -> Option<[f64; 2]> {
+    let squares = ChiSquared::new(freedom).ok()?;
+    Some([0.975, 0.025].map(|share| spread * (freedom / squares.inverse_cdf(share)).sqrt()))
+}
+
+fn figures(zeros: &[f64]) -> Vec<Figure> {
+    let numbered = zeros.iter().enumerate().map(|(i, zero)| (i as f64 + 1.0, *zero));
+    let figure = |name: &str, title: &str, x: Axis, y: Axis, series| Figure {
+        name: name.into(),
+        title: title.into(),
+        form: Form::Cartesian,
+        x,
+        y,
+        series: vec![series],
+    };
+    let offset = || Axis::of("Test − reference", "rad");
+    vec![
+        figure(
+            "offset_over_power_ups",
+            "Offset after each power-up",
+            Axis::of("Power-up", ""),
+            offset(),
+            scatter("offset", numbered),
+        ),
+        figure(
+            "histogram",
+            "Histogram of the offset",
+            offset(),
+            Axis::of("Share", ""),
+            histogram("power-ups", zeros, 12),
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twelve deviations: √(11/21.920) and √(11/3.816), as tables of χ² have it.
+    #[test]
+    fn a_spread_has_the_interval_of_its_distribution() {
+        let [low, high] = spread_ci95(1.0, 11.0).unwrap();
+        assert!((low - 0.70840).abs() < 1e-4 && (high - 1.69788).abs() < 1e-4, "{low} {high}");
+    }
+}

@@ -1,0 +1,91 @@
+//! An encoder that loses its power on purpose: by the bench's own switch, or by a person's hand while the run waits.
+
+use super::ending::Ending;
+use super::session::{Session, Wish, reported};
+use crate::event::EventKind;
+use crate::profile::Profile;
+use crate::state::Transition;
+use jointbench_instrument::{Fault, FaultKind};
+use std::f64::consts::TAU;
+
+/// A counter that is switched on again answers within this.
+const BOOT_S: f64 = 20.0;
+const LOOK_EVERY_S: f64 = 0.2;
+/// How fast (motor), and how far at most, an index is looked for.
+const SEEK_RAD_S: f64 = TAU;
+const SEEK_TURNS: f64 = 2.5;
+
+impl Session<'_> {
+    /// Ends with the encoder under test on, and counting from its index.
+    pub(super) fn power_anew(&mut self) -> Result<(), Ending> {
+        self.drive(&self.ramp_to(0.0), &Profile::constant(self.commanded.brake_a))?;
+        // What has no power is not read.
+        self.lost.sensor = true;
+        loop {
+            let name = self.bench.test_encoder.as_ref().map_or("", |encoder| encoder.name()).to_owned();
+            let by_hand = match &mut self.bench.power {
+                Some(switch) => switch.cycle(&name).map(|()| false).map_err(Ending::OtherFault)?,
+                None => self.ask_for_hand(&name).map(|()| true)?,
+            };
+            if self.meet_again()? {
+                break;
+            }
+            let what = "it has kept its power: its state is not lost";
+            match &self.bench.test_encoder {
+                Some(encoder) if !by_hand => return Err(Ending::OtherFault(reported(encoder.as_ref(), what))),
+                _ => self.note(format!("{name}: {what}")),
+            }
+        }
+        self.lost.sensor = false;
+        self.seek_index()
+    }
+
+    /// Waits in standstill until a person says that it is done.
+    fn ask_for_hand(&mut self, name: &str) -> Result<(), Ending> {
+        self.note(format!("switch {name} and its counter off and on again, then resume"));
+        self.enter(Transition::Pause)?;
+        while self.wish.take() != Some(Wish::Resume) {
+            let now_s = self.wait();
+            self.tick(now_s, 0.0, self.commanded.brake_a)?;
+        }
+        self.enter(Transition::Resume)
+    }
+
+    /// Asks the encoder under test who it is until it answers. `true` where it said that its state is lost.
+    fn meet_again(&mut self) -> Result<bool, Ending> {
+        let give_up_s = self.bench.clock.now_s() + BOOT_S;
+        let mut lost = false;
+        loop {
+            let Some(encoder) = &mut self.bench.test_encoder else { return Ok(lost) };
+            match encoder.identify() {
+                Ok(identity) => {
+                    let (instrument, port) = (encoder.name().to_owned(), encoder.port().to_owned());
+                    let now_s = self.bench.clock.now_s();
+                    self.journal.tell(now_s, EventKind::Identified { instrument, port, identity });
+                    return Ok(lost);
+                }
+                Err(Fault { kind: FaultKind::Reported { .. }, .. }) if !lost => lost = true,
+                Err(fault) if self.bench.clock.now_s() > give_up_s => return Err(Ending::OtherFault(fault)),
+                Err(_) => {}
+            }
+            let here = Profile::from(0.0).hold(LOOK_EVERY_S);
+            self.drive(&here, &Profile::constant(self.commanded.brake_a))?;
+        }
+    }
+
+    /// Turns until the index of the encoder under test has gone by.
+    fn seek_index(&mut self) -> Result<(), Ending> {
+        let brake_a = self.commanded.brake_a;
+        self.drive(&self.ramp_to(SEEK_RAD_S), &Profile::constant(brake_a))?;
+        let give_up_s = self.bench.clock.now_s() + SEEK_TURNS * TAU / SEEK_RAD_S;
+        while !self.ask_encoder(true, |encoder| encoder.seek_index())? {
+            let now_s = self.wait();
+            if let Some(encoder) = self.bench.test_encoder.as_ref().filter(|_| now_s > give_up_s) {
+                let what = format!("no index went by in {SEEK_TURNS} turns: is it wired to the counter?");
+                return Err(Ending::OtherFault(reported(encoder.as_ref(), what)));
+            }
+            self.tick(now_s, SEEK_RAD_S, brake_a)?;
+        }
+        self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))
+    }
+}
