@@ -14,6 +14,7 @@ mod securing;
 mod session;
 mod steps;
 mod tick;
+mod warmth;
 
 use crate::event::{Control, EventKind, Safe};
 use crate::plan::Plan;

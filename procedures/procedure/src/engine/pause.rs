@@ -1,4 +1,4 @@
-//! A pause: ramp to rest, hold, go back to where the interrupted step began.
+//! A pause: ramp to rest, hold, go back to where the interrupted step began; behind a long one, warm up again.
 
 use super::ending::Ending;
 use super::session::{Session, Wish};
@@ -18,21 +18,25 @@ impl Session<'_> {
     pub(super) fn pause(&mut self, step: &Step, start_rad: Option<f64>) -> Result<f64, Ending> {
         // A constant current through standstill and restart leaves no cogging behind (bench-physics, section 3).
         let mut brake_a = self.commanded.brake_a;
+        let mut rested_s = 0.0;
         loop {
             self.enter(Transition::Pause)?;
+            let since_s = self.bench.clock.now_s();
             self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))?;
             while self.wish.take() != Some(Wish::Resume) {
                 let now_s = self.wait();
                 self.tick(now_s, 0.0, brake_a)?;
             }
             self.enter(Transition::Resume)?;
-            if step.before == Before::Demagnetised {
+            rested_s += self.bench.clock.now_s() - since_s;
+            if self.warm_after(rested_s, step)? {
+                brake_a = self.commanded.brake_a;
+            } else if step.before == Before::Demagnetised {
                 self.unload()?;
                 brake_a = self.commanded.brake_a;
             }
-            if let Some(start_rad) = start_rad {
-                self.go_back(step, start_rad, brake_a)?;
-            }
+            let speed_rad_s = step.velocity.largest().max(0.25 * self.plan.top_speed_rad_s());
+            self.go_back(speed_rad_s, start_rad, brake_a)?;
             if self.wish.take() != Some(Wish::Pause) {
                 return Ok(brake_a);
             }
@@ -60,9 +64,9 @@ impl Session<'_> {
         Profile::from(from_rad_s).to(velocity_rad_s, seconds)
     }
 
-    /// The step's travel was planned from its start, and so was the range that it needs.
-    fn go_back(&mut self, step: &Step, start_rad: f64, brake_a: f64) -> Result<(), Ending> {
-        let speed_rad_s = step.velocity.largest().max(0.25 * self.plan.top_speed_rad_s());
+    /// A step's travel was planned from its start, and so was the range that it needs.
+    pub(super) fn go_back(&mut self, speed_rad_s: f64, start_rad: Option<f64>, brake_a: f64) -> Result<(), Ending> {
+        let Some(start_rad) = start_rad else { return Ok(()) };
         let away_rad = |session: &Self| session.joint.map_or(0.0, |reading| start_rad - reading.motor_position.0);
         let give_up_s = self.bench.clock.now_s() + 2.0 * away_rad(self).abs() / speed_rad_s + RETURN_GRACE_S;
         let change_rad_s = self.plan.acceleration_rad_s2 * self.beat.period_s;

@@ -60,7 +60,7 @@ impl Session<'_> {
     }
 
     /// No faster than the plan was allowed to be; towards the middle of the range where there is one.
-    fn unload_speed_rad_s(&self) -> f64 {
+    pub(super) fn unload_speed_rad_s(&self) -> f64 {
         let constants = &self.bench.constants;
         let speed_rad_s = self.plan.top_speed_rad_s().min(UNLOAD_LINK_RAD_S * constants.gear_ratio);
         let position_rad = self.joint.map_or(0.0, |reading| reading.motor_position.0);

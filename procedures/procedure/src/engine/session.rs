@@ -34,6 +34,8 @@ pub(super) struct Session<'a> {
     pub armed: bool,
     /// The latest reading of the joint.
     pub joint: Option<JointReading>,
+    /// Where the motor stood when the run began.
+    pub home_rad: Option<f64>,
     /// The latest reading of the torque sensor.
     pub link_torque_nm: Option<f64>,
     /// Time of the newest row, which the next one has to exceed.
@@ -123,6 +125,7 @@ impl<'a> Session<'a> {
             wish: None,
             armed: false,
             joint: None,
+            home_rad: None,
             link_torque_nm: None,
             row_s: f64::NEG_INFINITY,
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),

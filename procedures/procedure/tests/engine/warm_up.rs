@@ -1,9 +1,11 @@
 //! Procedures of the catalogue, carried out.
 
 use crate::fakes::{Fakes, World};
-use crate::ledger::{Done, play};
+use crate::ledger::{Done, middles_s, play, play_with};
+use jointbench_procedure::plan::Phase;
 use jointbench_procedure::*;
 use serde_json::json;
+use std::sync::mpsc::channel;
 
 fn carried_out(id: &str, parameters: serde_json::Value, heat: fn(&mut World)) -> (Plan, Done) {
     let (fakes, mut bench) = Fakes::new(move |_, world| {
@@ -46,4 +48,52 @@ fn friction_runs_from_warm_up_to_the_last_leg() {
         table.column("brake_torque_command_nm").unwrap().iter().map(|nm| (nm * 1e3).round() as u64).collect();
     assert!(loads.contains(&0) && loads.len() > 3);
     assert!(done.world.position_rad.abs() < 1.0, "ends {} rad from where it began", done.world.position_rad);
+}
+
+/// Friction with a pause in the middle of a loaded step; the plan, that step, and what was left.
+fn paused_under_load(pause_s: f64) -> (Plan, usize, Done) {
+    let (sender, controls) = channel();
+    let held = sender.clone();
+    let mut due: Vec<(f64, Control)> = Vec::new();
+    let (_, bench) = Fakes::quiet();
+    let given = json!({"warm_up_s": 30.0, "load_levels": 2, "repeats": 2});
+    let plan = procedure("friction").unwrap().plan(given.as_object().unwrap(), &BenchFacts::of(&bench)).unwrap();
+    let loaded = plan.steps.iter().position(|step| step.brake.at(0.0) > 0.1).unwrap();
+    // All of the warm-up but the first three cycles is left out, which are steady.
+    let skipped = plan.steps.iter().filter(|step| step.phase == Phase::WarmUp).skip(12);
+    let at_s = middles_s(&plan)[loaded] - skipped.map(|step| step.duration_s()).sum::<f64>();
+    due.extend([(at_s + pause_s, Control::Resume), (at_s, Control::Pause)]);
+    let (fakes, mut bench) = Fakes::new(move |_, world| {
+        while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
+            // A run that has ended listens no more.
+            let _ = sender.send(control);
+        }
+        Ok(())
+    });
+    let done = play_with(&fakes, &mut bench, &plan, &controls, |_| {});
+    drop(held);
+    done.check_safe(RunState::Completed).check_no_cogging();
+    (plan, loaded, done)
+}
+
+#[test]
+fn a_joint_that_rested_for_long_is_warmed_up_again() {
+    let warmed = |done: &Done| done.ledger.notes().iter().any(|note| note.ends_with("it is warmed up again"));
+    let (plan, loaded, done) = paused_under_load(100.0);
+    assert!(warmed(&done), "{:?}", done.ledger.notes());
+    // None of it is kept: the table has the planned steps, the interrupted one twice.
+    let table = done.ledger.table();
+    let mut segments = table.column("segment").unwrap().to_vec();
+    segments.dedup();
+    assert_eq!(segments.last(), plan.steps.last().map(|step| f64::from(step.segment)).as_ref());
+    let again = plan.steps.len() as f64;
+    assert_eq!(segments.iter().filter(|segment| **segment == again).count(), 1);
+    assert!(segments.contains(&f64::from(plan.steps[loaded].segment)));
+    // The step begins under the load that it had, approached from none.
+    let first = table.column("segment").unwrap().iter().position(|segment| *segment == again).unwrap();
+    let nm = table.column("brake_torque_command_nm").unwrap()[first];
+    assert!((nm / 13.0 * 0.6 - plan.steps[loaded].brake.at(0.0)).abs() < 1e-3, "{nm} Nm");
+
+    let (_, _, done) = paused_under_load(20.0);
+    assert!(!warmed(&done), "{:?}", done.ledger.notes());
 }

@@ -1,0 +1,80 @@
+//! A joint that rested for long has cooled down: what was warmed up for is warmed up for again.
+
+use super::ending::Ending;
+use super::session::{Session, Wish};
+use crate::plan::{Phase, Step};
+use crate::profile::Profile;
+use crate::steady::SteadyWatch;
+
+/// A shorter rest is forgiven: gears cool in minutes.
+const COOLS_S: f64 = 60.0;
+/// A rising brake current, and what supply and coil lag behind it (bench-physics, section 2).
+const RAISE_S: f64 = 0.8;
+const LAG_S: f64 = 0.6;
+
+impl Session<'_> {
+    /// After a pause of so long, in the middle of `step`. `true`: the history of the brake is a new one, which ends at the
+    /// current that the step begins with, approached from below.
+    pub(super) fn warm_after(&mut self, rested_s: f64, step: &Step) -> Result<bool, Ending> {
+        if rested_s < COOLS_S {
+            return Ok(false);
+        }
+        if step.phase == Phase::WarmUp {
+            // Cycles from before and after the pause are not of one warm-up.
+            self.warm = self.plan.steady.map(SteadyWatch::new);
+            return Ok(false);
+        }
+        let plan = self.plan;
+        if plan.steps.iter().all(|step| step.phase != Phase::WarmUp) {
+            return Ok(false);
+        }
+        self.note(format!("the joint rested for {rested_s:.0} s: it is warmed up again"));
+        self.unload()?;
+        // Its way was planned from where the run began.
+        self.go_back(plan.top_speed_rad_s(), self.home_rad, 0.0)?;
+        let mut watch = plan.steady.map(SteadyWatch::new);
+        for step in plan.steps.iter().filter(|step| step.phase == Phase::WarmUp) {
+            if self.wish == Some(Wish::Pause) || watch.as_ref().is_some_and(SteadyWatch::is_steady) {
+                break;
+            }
+            self.work(step, watch.as_mut())?;
+        }
+        self.load(step.brake.at(0.0))?;
+        Ok(true)
+    }
+
+    /// A step of the warm-up whose rows are shown, not kept.
+    fn work(&mut self, step: &Step, mut watch: Option<&mut SteadyWatch>) -> Result<(), Ending> {
+        let plateau_rad_s = step.velocity.largest();
+        let start_s = self.beat.next_s.max(self.bench.clock.now_s());
+        loop {
+            let now_s = self.wait();
+            let velocity_rad_s = step.velocity.at(now_s - start_s);
+            self.tick(now_s, velocity_rad_s, 0.0)?;
+            if let (Some(watch), Some(joint)) = (&mut watch, self.joint)
+                && velocity_rad_s.abs() >= plateau_rad_s
+            {
+                watch.sample(now_s, joint.motor_current.0, self.held.temperature_c);
+            }
+            if now_s - start_s >= step.duration_s() {
+                break;
+            }
+        }
+        if let Some(watch) = watch {
+            watch.step_done();
+        }
+        Ok(())
+    }
+
+    /// Raises the brake current while the shaft turns, out and back.
+    fn load(&mut self, brake_a: f64) -> Result<(), Ending> {
+        if brake_a == 0.0 {
+            return Ok(());
+        }
+        let speed_rad_s = self.unload_speed_rad_s();
+        let up = self.ramp_to(speed_rad_s);
+        let brake = Profile::from(0.0).hold(up.duration_s()).to(brake_a, RAISE_S);
+        self.drive(&up.hold(RAISE_S + LAG_S), &brake)?;
+        self.drive(&self.ramp_to(0.0), &Profile::constant(brake_a))
+    }
+}
