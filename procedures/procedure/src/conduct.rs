@@ -39,8 +39,18 @@ pub fn conduct(
     parameters: &Map<String, Value>,
 ) -> Result<Conducted, ConductFault> {
     let facts = BenchFacts::of(bench);
-    let plan = procedure.plan(parameters, &facts)?;
-    let preview = plan.preview(&facts);
+    conduct_knowing(bench, &facts, procedure, parameters)
+}
+
+/// The same, where more is known of the bench than it tells of itself.
+pub fn conduct_knowing(
+    bench: &mut Bench,
+    facts: &BenchFacts,
+    procedure: &dyn Procedure,
+    parameters: &Map<String, Value>,
+) -> Result<Conducted, ConductFault> {
+    let plan = procedure.plan(parameters, facts)?;
+    let preview = plan.preview(facts);
     if let Some(broken) = preview.checks.iter().find(|check| !check.ok) {
         return Err(ConductFault::NotAllowed { procedure: procedure.id(), why: broken.detail.clone() });
     }

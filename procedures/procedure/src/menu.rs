@@ -147,6 +147,7 @@ impl BenchFacts {
             encoder_counts: None,
             has_stage: false,
             amperes_per_volt: None,
+            brake_model: None,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a procedure decides: a list of steps with their set-points over time. Pure data; the engine acts on it.
 
+use crate::catalogue::BrakeModel;
 use crate::place::Place;
 use crate::profile::Profile;
 use jointbench_instrument::bench::JointConstants;
@@ -22,6 +23,8 @@ pub struct BenchFacts {
     pub has_stage: bool,
     /// Motor current for each volt, where the joint's servo reads it as the voltage at a shunt.
     pub amperes_per_volt: Option<f64>,
+    /// What an earlier run has found of the brake, where a procedure asks for it ([`crate::Procedure::brake_model`]).
+    pub brake_model: Option<BrakeModel>,
 }
 
 impl BenchFacts {
@@ -38,6 +41,7 @@ impl BenchFacts {
                 .map(|(reference, test)| [reference, test]),
             has_stage: bench.stage.is_some(),
             amperes_per_volt: bench.joint.amperes_per_volt(),
+            brake_model: None,
         }
     }
 }

@@ -22,5 +22,5 @@ pub async fn preview(
     Path(id): Path<String>,
     Json(request): Json<PreviewRequest>,
 ) -> Answer<Preview> {
-    Ok(Json(lab.preview(&request.bench, &id, &request.parameters)?))
+    Ok(Json(lab.preview(&request.bench, &id, &request.parameters).await?))
 }

@@ -79,6 +79,7 @@ impl BenchHandle {
             encoder_counts: has.encoder_counts,
             has_stage: has.stage,
             amperes_per_volt: has.amperes_per_volt,
+            brake_model: None,
         }
     }
 

@@ -44,7 +44,7 @@ impl Lab {
             return Err(LabError::Invalid("bench_time_s: expected a time above 0 s".into()));
         }
         // A first run that cannot be made is refused now, not later.
-        let (_, plan) = self.plan(&new.bench, &new.procedure, &new.parameters)?;
+        let (_, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
         let planned_s = plan.duration_s();
         if let Some(failed) = plan.preview(&handle.facts()).checks.into_iter().find(|check| !check.ok) {
             return Err(LabError::Invalid(format!("the first run is refused: {}", failed.detail)));

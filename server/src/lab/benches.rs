@@ -3,10 +3,15 @@
 use super::convert::bench_view;
 use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
+use crate::store::RunFilter;
 use crate::view::{self, Bench, BenchState};
-use jointbench_procedure::parameter::{Parameter, ParameterKind};
-use jointbench_procedure::{Plan, Procedure, catalogue, procedure};
+use jointbench_procedure::catalogue::{BrakeModel, brake_model};
+use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
+use jointbench_procedure::{Plan, PlanFault, Procedure, catalogue, procedure};
 use serde_json::{Map, Value};
+
+/// So many of the latest runs are looked at for one of this bench.
+const RECENT: u32 = 100;
 
 impl Lab {
     pub fn benches(&self) -> Vec<Bench> {
@@ -51,20 +56,57 @@ impl Lab {
     }
 
     /// Dry run. Nothing moves.
-    pub fn preview(&self, bench: &str, id: &str, parameters: &Map<String, Value>) -> Answer<view::Preview> {
-        let (bench, plan) = self.plan(bench, id, parameters)?;
+    pub async fn preview(&self, bench: &str, id: &str, parameters: &Map<String, Value>) -> Answer<view::Preview> {
+        let (bench, plan) = self.plan(bench, id, parameters).await?;
         let mut preview: view::Preview = super::reread(&plan.preview(&bench.facts()))?;
         preview.checks.extend(readiness(bench));
         Ok(preview)
     }
 
-    pub(super) fn plan(&self, bench: &str, id: &str, parameters: &Map<String, Value>) -> Answer<(&BenchHandle, Plan)> {
+    pub(super) async fn plan(
+        &self,
+        bench: &str,
+        id: &str,
+        parameters: &Map<String, Value>,
+    ) -> Answer<(&BenchHandle, Plan)> {
         let bench = self.handle(bench)?;
         let procedure = procedure(id).ok_or_else(|| {
             let known: Vec<&str> = catalogue().iter().map(|procedure| procedure.id()).collect();
             LabError::NotFound(format!("there is no procedure {id}; there are {}", known.join(", ")))
         })?;
-        Ok((bench, procedure.plan(parameters, &bench.facts())?))
+        let mut facts = bench.facts();
+        let values = Values::parse(procedure.schema(), parameters).map_err(PlanFault::from)?;
+        if let Some(run) = procedure.brake_model(&values) {
+            facts.brake_model = self.brake_model(bench.name(), i64::from(run)).await?;
+        }
+        Ok((bench, procedure.plan(parameters, &facts)?))
+    }
+
+    /// What a run of `brake_hysteresis` has found of this bench's brake; run 0 is the last one that was completed. `None`
+    /// where there is none yet.
+    async fn brake_model(&self, bench: &str, run: i64) -> Answer<Option<BrakeModel>> {
+        const SOURCE: &str = "brake_hysteresis";
+        let record = match run {
+            0 => {
+                let search = Some(format!("procedure:{SOURCE} state:completed"));
+                let (_, runs) = self.inner.store.runs(&RunFilter { limit: RECENT, offset: 0, search }).await?;
+                runs.into_iter().find(|run| run.bench == bench)
+            }
+            id => Some(self.inner.store.run(id).await?),
+        };
+        let Some(record) = record else { return Ok(None) };
+        let id = record.id;
+        if record.bench != bench || record.procedure != SOURCE {
+            return Err(LabError::Invalid(format!(
+                "run {id} is no {SOURCE} of bench {bench}: name one, or 0 for the last"
+            )));
+        }
+        let table = self.measurement(id).await?;
+        let model = tokio::task::spawn_blocking(move || brake_model(&table))
+            .await
+            .map_err(|fault| LabError::Internal(format!("the brake model of run {id} failed: {fault}")))?;
+        let missing = || LabError::Invalid(format!("run {id} ended before it had a model: make {SOURCE} again"));
+        model.map(Some).ok_or_else(missing)
     }
 
     pub(super) async fn wait_until_secured(&self) {

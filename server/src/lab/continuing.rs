@@ -29,7 +29,7 @@ impl Lab {
         procedure
             .goes_on()
             .map_err(|why| LabError::Invalid(format!("run {id} cannot be gone on with: {why}; {again}")))?;
-        let (bench, plan) = self.plan(&record.bench, name, &record.parameters)?;
+        let (bench, plan) = self.plan(&record.bench, name, &record.parameters).await?;
         let done = self.done(&record, Some(&plan)).await?;
         let rest = plan.rest(id, done.steps, done.next_segment, &bench.facts()).ok_or_else(|| {
             LabError::Invalid(format!("run {id} has finished no step that could be gone on from: {again}"))

@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 impl Lab {
     /// Plans, checks against the limits, and hands the plan to the thread of the bench.
     pub async fn start_run(&self, bench: &str, procedure: &str, parameters: &Map<String, Value>) -> Answer<Run> {
-        let (bench, plan) = self.plan(bench, procedure, parameters)?;
+        let (bench, plan) = self.plan(bench, procedure, parameters).await?;
         self.launch(bench, plan).await
     }
 

@@ -18,7 +18,9 @@ use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
-pub use everett::{Everett, History};
+pub use everett::Everett as BrakeModel;
+pub(super) use everett::{Everett, History};
+pub(super) use identify::{BOUND, SETTLED};
 use jointbench_instrument::{Kind, RunTable};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -26,7 +28,7 @@ use rand_chacha::ChaCha8Rng;
 pub(super) struct BrakeHysteresis;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::count("levels", "Currents of the grid", 14, [4, 40]),
+    Parameter::count("levels", "Currents of the grid", 20, [4, 40]),
     Parameter::count("loops", "Major loops", 2, [1, 20]),
     Parameter::count("random_turns", "Turns of the random history", 16, [4, 100]),
     Parameter::number("top_current", "Highest current, share of rated", "", 1.0, [0.2, 1.0]),
@@ -89,6 +91,8 @@ impl Procedure for BrakeHysteresis {
             legs.sweep(label.clone(), sign * speed_rad_s, currents, dwell_s);
             way_rad += legs.way_of_last();
         }
+        legs.repeat = Part::Demagnetise as u32;
+        legs.way_back(way_rad, speed_rad_s);
         Ok(Plan {
             procedure: self.id(),
             parameters: values.to_json(),
@@ -104,6 +108,12 @@ impl Procedure for BrakeHysteresis {
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
         verdict(identify::identify(run))
     }
+}
+
+/// The model that a run of this procedure has found; `None` where it did not come so far.
+pub fn brake_model(run: &RunTable) -> Option<BrakeModel> {
+    run.column("brake_torque_nm")?;
+    identify::model(run).ok()
 }
 
 /// The currents of every sweep, each from 0 and back to it.

@@ -135,6 +135,8 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     if absolute.is_empty() {
         return Err(Unusable::TooLittle("no current was held over three speeds: make the run again"));
     }
+    let title = "Largest change over the speeds of any current, share";
+    quantities.push(quantity(["change_max", "ΔT/T", title, ""], worst, None));
     let bound = values.number("bound");
     let words = if worst <= bound { "does not depend on speed" } else { "depends on speed" };
     let share = 100.0 * worst;

@@ -94,6 +94,14 @@ impl Legs {
         self.leg(-speed_rad_s, ramp_s + LAG_S, 0.0);
     }
 
+    /// Back to where a way began, without brake current.
+    pub fn way_back(&mut self, way_rad: f64, top_rad_s: f64) {
+        if way_rad != 0.0 {
+            let velocity = stroke(-way_rad, top_rad_s, self.acceleration_rad_s2);
+            self.push("back".into(), velocity, Profile::constant(0.0));
+        }
+    }
+
     /// The plan of a friction procedure without a warm-up of its own.
     pub fn friction_plan(self, procedure: &dyn Procedure, values: &Values, bench: &BenchFacts, rate_hz: f64) -> Plan {
         Plan {
@@ -201,6 +209,7 @@ pub(super) mod testing {
             encoder_counts: None,
             has_stage: false,
             amperes_per_volt: None,
+            brake_model: None,
         }
     }
 

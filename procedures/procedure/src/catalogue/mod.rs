@@ -3,6 +3,7 @@
 mod brake_hysteresis;
 mod brake_run;
 mod brake_speed_independence;
+mod brake_torque;
 mod breakaway;
 mod compensation;
 mod demagnetise;
@@ -19,6 +20,8 @@ mod stiffness;
 mod strokes;
 mod torque_sensor_zero;
 mod warm_up;
+
+pub use brake_hysteresis::{BrakeModel, brake_model};
 
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -44,6 +47,11 @@ pub trait Procedure: Sync {
         None
     }
 
+    /// The run of `brake_hysteresis` whose model it needs, 0 for the last one of the bench. `None`: it needs none.
+    fn brake_model(&self, _values: &Values) -> Option<u32> {
+        None
+    }
+
     /// Whether what is left of a run that did not come to its end may be made in another one later. `Err` says what of the
     /// first run's history cannot be had again.
     fn goes_on(&self) -> Result<(), &'static str> {
@@ -64,6 +72,7 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &friction_temperature::FrictionTemperature,
         &brake_speed_independence::BrakeSpeedIndependence,
         &brake_hysteresis::BrakeHysteresis,
+        &brake_torque::BrakeTorque,
         &demagnetise::Demagnetise,
         &torque_sensor_zero::TorqueSensorZero,
         &stiffness::Stiffness,

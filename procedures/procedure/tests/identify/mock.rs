@@ -1,9 +1,10 @@
 //! Short runs on the mock bench. Its truth is read only to be compared with.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
-use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::catalogue::brake_model;
+use jointbench_procedure::conduct::{conduct, conduct_knowing};
 use jointbench_procedure::identification::{Identification, Verdict};
-use jointbench_procedure::procedure;
+use jointbench_procedure::{BenchFacts, procedure};
 use serde_json::{Value, json};
 
 fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Identification) {
@@ -28,6 +29,29 @@ fn the_inverse_of_the_hysteresis_holds_on_a_history_that_it_has_not_seen() {
     let [error, line] = ["error_max", "error_line"].map(|name| found.quantity(name).unwrap().value);
     assert!(error < 0.04 && 3.0 * error < line, "{error} {line}");
     assert!(found.quantity("width").unwrap().value > 0.2, "{}", found.summary);
+}
+
+#[test]
+fn torque_is_commanded_through_the_model_of_an_earlier_run() {
+    let mock = MockBench::start(MockSettings::new(Joint::JointB, 3)).unwrap();
+    let mut bench = mock.open_bench("mock").unwrap();
+    let mut facts = BenchFacts::of(&bench);
+    let brake_torque = procedure("brake_torque").unwrap();
+    let given = json!({"histories": 2, "torques": 8, "speed_rad_s": 3.0});
+    let given = given.as_object().unwrap();
+    let without = brake_torque.plan(given, &facts).unwrap_err().to_string();
+    assert!(without.contains("run brake_hysteresis first"), "{without}");
+
+    let hysteresis = json!({"levels": 8, "loops": 1, "random_turns": 4, "speed_rad_s": 3.0});
+    let measured =
+        conduct(&mut bench, procedure("brake_hysteresis").unwrap(), hysteresis.as_object().unwrap()).unwrap();
+    facts.brake_model = brake_model(&measured.table);
+    let done = conduct_knowing(&mut bench, &facts, brake_torque, given).unwrap();
+    let found = done.identification.unwrap();
+    // Eight levels are coarse; 20, the default, keep 1 %.
+    assert!(found.quantity("error_max").unwrap().value < 0.03, "{}", found.summary);
+    assert_eq!(found.quantity("torques").unwrap().value, 16.0);
+    assert!(brake_model(&done.table).is_none(), "no reversal curves in it");
 }
 
 #[test]

@@ -64,7 +64,8 @@ impl Everett {
         Some(Self { grid_a: grid_a.to_vec(), falls_nm, drag_nm })
     }
 
-    fn top_a(&self) -> f64 {
+    /// The highest current that was measured.
+    pub fn top_a(&self) -> f64 {
         self.grid_a[self.grid_a.len() - 1]
     }
 

@@ -7,9 +7,9 @@ use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Ve
 use jointbench_instrument::RunTable;
 
 /// The settled end of a hold.
-const SETTLED: f64 = 0.35;
+pub(in super::super) const SETTLED: f64 = 0.35;
 /// A torque commanded through the model may be off by this share of the rated one.
-const BOUND: f64 = 0.01;
+pub(in super::super) const BOUND: f64 = 0.01;
 
 /// One sweep as it was measured: currents and torques, from no current to none.
 struct Sweep {
@@ -17,16 +17,30 @@ struct Sweep {
     points: Vec<(f64, f64)>,
 }
 
-pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
-    const LITTLE: Unusable =
-        Unusable::TooLittle("the run did not reach the last of its reversal curves: make it again");
-    let sweeps = sweeps(run);
-    let of = |part: Part| sweeps.iter().filter(move |sweep| sweep.part == part as i64);
-    let major: Vec<&Sweep> = of(Part::Major).collect();
+const LITTLE: Unusable = Unusable::TooLittle("the run did not reach the last of its reversal curves: make it again");
+
+pub(super) fn model(run: &RunTable) -> Result<Everett, Unusable> {
+    model_of(&sweeps(run))
+}
+
+fn part(sweeps: &[Sweep], part: Part) -> impl Iterator<Item = &Sweep> {
+    sweeps.iter().filter(move |sweep| sweep.part == part as i64)
+}
+
+fn model_of(sweeps: &[Sweep]) -> Result<Everett, Unusable> {
+    let major: Vec<&Sweep> = part(sweeps, Part::Major).collect();
     let first = major.first().ok_or(LITTLE)?;
     let top = first.points.iter().map(|p| p.0).fold(0.0, f64::max);
-    let (grid, curves) = reversals(&major, of(Part::Reversal), top).ok_or(LITTLE)?;
-    let everett = Everett::from_reversals(&grid, &curves).ok_or(LITTLE)?;
+    let (grid, curves) = reversals(&major, part(sweeps, Part::Reversal), top).ok_or(LITTLE)?;
+    Everett::from_reversals(&grid, &curves).ok_or(LITTLE)
+}
+
+pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    let sweeps = sweeps(run);
+    let of = |wanted: Part| part(&sweeps, wanted);
+    let major: Vec<&Sweep> = of(Part::Major).collect();
+    let everett = model_of(&sweeps)?;
+    let top = everett.top_a();
     let rated = rated_nm(run).unwrap_or_else(|| everett.torque_nm(&History::default().after(top)));
 
     // The inverse is asked for the current that gave what was measured.

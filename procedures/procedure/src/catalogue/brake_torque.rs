@@ -1,0 +1,200 @@
+//! Torque commanded through the inverse of the brake's hysteresis, after random histories, held against the sensor.
+//!
+//! The model is that of an earlier run of `brake_hysteresis`. Each history begins at a demagnetised brake and goes through
+//! torques drawn evenly from all that the brake can give; for each the inverse says the current, from what the current has
+//! gone through so far. What the sensor then feels is compared with what was asked for.
+
+use super::Procedure;
+use super::brake_run;
+use super::demagnetise::rated_nm;
+use super::legs::{ACCELERATION, Legs, sample_rate};
+use crate::catalogue::brake_hysteresis::{BOUND, Everett, History, SETTLED};
+use crate::findings::{Unusable, holds, quantity, scatter, verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::parameter::{Parameter, Values};
+use crate::plan::{BenchFacts, Plan, PlanFault};
+use jointbench_instrument::{Kind, RunTable};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde_json::{Value, json};
+
+pub(super) struct BrakeTorque;
+
+const SCHEMA: &[Parameter] = &[
+    Parameter::count("model_run", "Run of brake_hysteresis with the model, 0: the last one", 0, [0, 2_000_000_000]),
+    Parameter::count("histories", "Random histories", 12, [1, 100]),
+    Parameter::count("torques", "Torques of each", 20, [2, 200]),
+    Parameter::number("dwell_s", "Time at each torque", "s", 0.9, [0.5, 20.0]),
+    Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+    ACCELERATION,
+    sample_rate(100.0),
+    Parameter::count("order_seed", "Seed of the histories", 1, [0, 1_000_000]),
+];
+
+/// Name of the fact that tells which torque each current was meant to give: a list for each history, of pairs.
+const COMMANDED: &str = "commanded_a_nm";
+/// A current that was read back from the table is the commanded one within this.
+const SAME_A: f64 = 1e-3;
+
+impl Procedure for BrakeTorque {
+    fn id(&self) -> &'static str {
+        "brake_torque"
+    }
+
+    fn title(&self) -> &'static str {
+        "Brake torque by its model"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Commands random torques through the inverse of the brake's hysteresis model, after random histories, and tells how far the sensor's reading is off. Needs a run of brake_hysteresis."
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Brake
+    }
+
+    fn schema(&self) -> &'static [Parameter] {
+        SCHEMA
+    }
+
+    fn brake_model(&self, values: &Values) -> Option<u32> {
+        Some(values.count("model_run"))
+    }
+
+    fn goes_on(&self) -> Result<(), &'static str> {
+        Err("the model may be another one by now")
+    }
+
+    fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
+        brake_run::check(bench)?;
+        let model = bench.brake_model.as_ref().ok_or_else(|| PlanFault::Contradiction {
+            what: "the brake of this bench has no model yet".into(),
+            cure: "run brake_hysteresis first",
+        })?;
+        let rate_hz = values.number("sample_rate_hz");
+        let dwell_s = values.number("dwell_s");
+        // Half the room is enough: a run may begin beside the middle.
+        let longest_s = 2.0 * f64::from(values.count("torques") + 2) * dwell_s;
+        let wanted_rad_s =
+            (values.number("speed_rad_s") * bench.constants.gear_ratio).min(0.95 * bench.limits.motor_velocity_rad_s);
+        let speed_rad_s = brake_run::speed_rad_s(wanted_rad_s, longest_s, bench);
+        let mut legs = Legs::new(values.number("acceleration_rad_s2"));
+        legs.demagnetise(wanted_rad_s, model.top_a(), 2.0, bench);
+        let mut rng = ChaCha8Rng::seed_from_u64(u64::from(values.count("order_seed")));
+        let (mut way_rad, mut commanded) = (0.0, Vec::new());
+        for history in 1..=values.count("histories") {
+            let pairs = random(model, values.count("torques"), &mut rng);
+            let currents_a: Vec<f64> = pairs.iter().map(|(current_a, _)| *current_a).collect();
+            legs.repeat = history;
+            let sign = if way_rad > 0.0 { -1.0 } else { 1.0 };
+            legs.sweep(format!("history {history}"), sign * speed_rad_s, &currents_a, dwell_s);
+            way_rad += legs.way_of_last();
+            commanded.push(json!(pairs));
+        }
+        legs.repeat = 0;
+        legs.way_back(way_rad, speed_rad_s);
+        let mut meta = brake_run::meta(bench, rate_hz);
+        meta.other.insert(COMMANDED.into(), Value::Array(commanded));
+        Ok(Plan {
+            procedure: self.id(),
+            parameters: values.to_json(),
+            kind: self.kind(),
+            meta,
+            rate_hz,
+            acceleration_rad_s2: legs.acceleration_rad_s2,
+            steps: legs.steps,
+            steady: None,
+        })
+    }
+
+    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify(run))
+    }
+}
+
+/// Currents with the torques that they are to give, one after the other from a demagnetised brake.
+fn random(model: &Everett, torques: u32, rng: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
+    let mut history = History::default();
+    let (drag_nm, most_nm) = (model.torque_nm(&history), model.torque_nm(&history.after(model.top_a())));
+    // A current that the supply cannot tell from none is no command.
+    let least_nm = drag_nm + 0.02 * (most_nm - drag_nm);
+    let mut pairs = Vec::new();
+    while pairs.len() < torques as usize {
+        let torque_nm = rng.random_range(least_nm..most_nm);
+        // The lowest torques are not reached by every fall.
+        let Some(current_a) = model.current_a(&history, torque_nm) else { continue };
+        history.go(current_a);
+        pairs.push((current_a, torque_nm));
+    }
+    pairs
+}
+
+/// One torque that was asked for, and what the sensor felt.
+struct Point {
+    asked_nm: f64,
+    felt_nm: f64,
+}
+
+fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+    const FOREIGN: Unusable = Unusable::TooLittle("the run does not say which torques it commanded: make it again");
+    let commanded = run.meta().other.get(COMMANDED).cloned().ok_or(FOREIGN)?;
+    let commanded: Vec<Vec<(f64, f64)>> = serde_json::from_value(commanded).map_err(|_| FOREIGN)?;
+    let rated_nm = rated_nm(run).ok_or(FOREIGN)?;
+    let torque = run.column("brake_torque_nm").unwrap_or_default();
+    let held: Vec<_> = holds(run, 0.3).into_iter().filter(|hold| hold.repeat > 0 && hold.brake > 0.0).collect();
+    let mut points = Vec::new();
+    for history in held.chunk_by(|a, b| a.segment == b.segment) {
+        let Some(pairs) = commanded.get(history[0].repeat as usize - 1) else { continue };
+        for (hold, (current_a, asked_nm)) in history.iter().zip(pairs) {
+            if (hold.brake - current_a).abs() > SAME_A {
+                break;
+            }
+            points.push(Point { asked_nm: *asked_nm, felt_nm: hold.mean(torque, SETTLED) });
+        }
+    }
+    if points.len() < 2 {
+        return Err(Unusable::TooLittle("no history was gone through: make the run again"));
+    }
+    let errors: Vec<f64> = points.iter().map(|point| (point.felt_nm - point.asked_nm) / rated_nm).collect();
+    let worst = errors.iter().map(|error| error.abs()).fold(0.0, f64::max);
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+    let good = worst <= BOUND;
+    let count = points.len();
+    Ok(Identification {
+        verdict: if good { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!(
+            "Of {count} torques commanded through the model after {} random histories none is off by more than {:.2} % of \
+             the rated torque.",
+            commanded.len(),
+            100.0 * worst
+        ),
+        advice: (!good).then(|| {
+            "Make brake_hysteresis again with more levels or a longer dwell_s, at this brake's temperature.".into()
+        }),
+        quantities: vec![
+            quantity(["error_max", "e_max", "Largest error against the sensor, share of rated", ""], worst, None),
+            quantity(["error_rms", "e_rms", "The same, root mean square", ""], rms, None),
+            quantity(["error_mean", "ē", "The same, mean with its sign", ""], mean, None),
+            quantity(["torques", "n", "Torques", ""], count as f64, None),
+        ],
+        figures: figures(&points),
+    })
+}
+
+fn figures(points: &[Point]) -> Vec<Figure> {
+    let figure = |name: &str, title: &str, label: &str, y: fn(&Point) -> f64| Figure {
+        name: name.into(),
+        title: title.into(),
+        form: Form::Cartesian,
+        x: Axis::of("torque asked for", "Nm"),
+        y: Axis::of(label, "Nm"),
+        series: vec![scatter("sensor", points.iter().map(|point| (point.asked_nm, y(point))))],
+    };
+    vec![
+        figure("felt_over_asked", "Torque felt over torque asked for", "torque felt", |point| point.felt_nm),
+        figure("error_over_asked", "Error of the torque asked for", "felt less asked", |point| {
+            point.felt_nm - point.asked_nm
+        }),
+    ]
+}
