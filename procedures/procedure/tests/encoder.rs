@@ -96,6 +96,57 @@ fn a_hunt_that_is_paused_finds_the_same_edges() {
     check(&found, "best_radial_shift", truth.best_radial_m, 3e-6);
 }
 
+/// Gives one control with the third commit of a running run.
+struct Interrupter {
+    controls: Sender<Control>,
+    control: Control,
+    commits: u32,
+    rows: u64,
+}
+
+impl Recorder for Interrupter {
+    fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
+        Ok(None)
+    }
+
+    fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
+        self.commits += u32::from(commit.state == RunState::Running);
+        if self.commits == 3 {
+            self.controls.send(self.control).unwrap();
+        }
+        self.rows += commit.rows.len() as u64;
+        Ok(())
+    }
+
+    fn live(&mut self, _live: Live<'_>) {}
+}
+
+#[test]
+fn however_a_run_of_the_stage_is_ended_shaft_and_stage_stand_still() {
+    for (control, state) in
+        [(Control::Stop, RunState::Stopped), (Control::Abort, RunState::Aborted), (Control::EStop, RunState::Aborted)]
+    {
+        let (_, mock, mut bench) = open(11, false);
+        let plan = procedure("encoder_alignment").unwrap().plan(&Default::default(), &BenchFacts::of(&bench)).unwrap();
+        let (controls, heard) = channel();
+        let mut recorder = Interrupter { controls, control, commits: 0, rows: 0 };
+        let end = jointbench_procedure::run(&mut bench, &plan, 1, &heard, &mut recorder);
+        assert_eq!((end.state, end.safe), (state, Safe::SafeVerified), "{control:?}: {:?}", end.reason);
+        assert_eq!(end.rows, recorder.rows, "{control:?}");
+        assert!(!bench.joint.health().unwrap().armed);
+        let stage = bench.stage.as_mut().unwrap();
+        let here = stage.pose().unwrap();
+        let clock = mock.clock();
+        clock.sleep_until_s(clock.now_s() + 1.0);
+        let stage = bench.stage.as_mut().unwrap();
+        let moved_m = (stage.pose().unwrap().shift_m[0] - here.shift_m[0]).abs();
+        assert!(stage.is_referenced().unwrap() && moved_m < 1e-6, "{control:?}: {moved_m} m");
+        // The next run starts.
+        let offset = conduct(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();
+        assert_eq!(offset.identification.unwrap().verdict, Verdict::Identified);
+    }
+}
+
 #[test]
 fn an_encoder_that_falls_silent_ends_the_run_and_the_bench_is_safe() {
     let silent =

@@ -6,16 +6,17 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// A mock bench that takes its time, so that something can happen in mid-run.
-fn bench(folder: &Path, pace: f64) -> PathBuf {
+fn bench(folder: &Path, joint: &str, pace: f64) -> PathBuf {
     let config = folder.join("bench.toml");
-    let text =
-        format!("[[bench]]\nname = \"mock\"\n[bench.mock]\njoint = \"b\"\nseed = 4\neffects = []\npace = {pace:.1}\n");
+    let text = format!(
+        "[[bench]]\nname = \"mock\"\n[bench.mock]\njoint = \"{joint}\"\nseed = 4\neffects = []\npace = {pace:.1}\n"
+    );
     std::fs::write(&config, text).expect("the bench description is written");
     config
 }
 
-fn start(daemon: &Daemon) -> i64 {
-    let (status, run) = daemon.post("/runs", &json!({ "bench": "mock", "procedure": "friction", "parameters": {} }));
+fn start(daemon: &Daemon, procedure: &str) -> i64 {
+    let (status, run) = daemon.post("/runs", &json!({ "bench": "mock", "procedure": procedure, "parameters": {} }));
     assert_eq!(status, 201, "{run}");
     run["id"].as_i64().expect("the run has a number")
 }
@@ -26,12 +27,21 @@ fn rows(run: &Value) -> i64 {
 
 #[test]
 fn kill_9_loses_nothing_that_was_acknowledged() {
+    check_kill_9("b", "friction");
+}
+
+#[test]
+fn nor_does_it_on_an_encoder_bench() {
+    check_kill_9("encoder_shaft", "encoder_alignment");
+}
+
+fn check_kill_9(joint: &str, procedure: &str) {
     let folder = tempfile::tempdir().expect("a folder");
-    let config = bench(folder.path(), 20.0);
+    let config = bench(folder.path(), joint, 20.0);
     let data = folder.path().join("data");
 
     let daemon = Daemon::serve(&data, &config);
-    let id = start(&daemon);
+    let id = start(&daemon, procedure);
     let path = format!("/runs/{id}");
     let before = daemon.wait_for(&path, Duration::from_secs(60), |run| rows(run) > 1000);
     assert_eq!(before["state"], "running", "{before}");
@@ -58,7 +68,7 @@ fn kill_9_loses_nothing_that_was_acknowledged() {
     // Nothing restarts by itself, and the next run may start.
     assert_eq!(daemon.get("/bench")[0]["run"], Value::Null);
     assert_eq!(daemon.get("/runs")["total"], 1);
-    let next = start(&daemon);
+    let next = start(&daemon, procedure);
     let (status, _) = daemon.post(&format!("/runs/{next}/abort"), &json!({}));
     assert!((200..300).contains(&status), "{status}");
     let ended = daemon.wait_for(&format!("/runs/{next}"), Duration::from_secs(60), |run| run["safe"].is_string());
@@ -68,7 +78,7 @@ fn kill_9_loses_nothing_that_was_acknowledged() {
 #[test]
 fn a_second_daemon_on_the_same_folder_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
-    let config = bench(folder.path(), 20.0);
+    let config = bench(folder.path(), "b", 20.0);
     let data = folder.path().join("data");
     let _first = Daemon::serve(&data, &config);
     let second = crate::program::jointbench()

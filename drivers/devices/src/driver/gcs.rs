@@ -10,6 +10,8 @@ use std::path::Path;
 use std::time::Duration;
 
 const M_PER_MM: f64 = 1e-3;
+/// What every stop leaves in the error register.
+const STOPPED: u32 = 10;
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -60,7 +62,7 @@ impl Recovers for GcsStage {
         let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
         // What went wrong before belongs to nobody's next command.
         let error = self.link.probe(&QueryError)?;
-        if error != 0 {
+        if error != 0 && error != STOPPED {
             tracing::info!(instrument = self.link.instrument(), what = %error_text(error), "an old error is cleared");
         }
         let referenced = self.link.probe(&QueryAxes("FRF?"))?.iter().all(|flag| *flag == 1.0);

@@ -72,6 +72,17 @@ fn every_sample_comes_once_and_in_its_place() {
     }
 }
 
+/// The bench's clock is what the joint's readings are placed by, too: this is the skew between the two.
+#[test]
+fn in_ten_minutes_no_sample_is_lost_and_each_is_placed_within_half_a_millisecond() {
+    let mut world = World::streaming(Transport::Inside);
+    world.collect(600.0).unwrap();
+    assert!(world.gaps.is_empty() && world.samples.len() >= 599_900, "{} samples", world.samples.len());
+    assert!(world.samples.iter().zip(0..).all(|(sample, expected)| sample.number == expected));
+    let widest_s = world.samples.iter().map(|sample| sample.uncertainty_s).fold(0.0, f64::max);
+    assert!(widest_s < 0.5e-3, "{widest_s} s");
+}
+
 #[test]
 fn a_gap_is_named_with_its_length_and_no_sample_stands_in_it() {
     let mut world = World::streaming(Transport::Terminal);

@@ -24,8 +24,11 @@ const INVALID_NUMBER: u32 = 25;
 const LEVEL_TOO_LOW: u32 = 60;
 const BUSY: u32 = 1005;
 
-/// First word of the line, and what follows it, for HLP?.
-const HELP: [&str; 18] = [
+/// First word of the line, and what follows it, for HLP?. A client (PIPython) takes what is not here for not there.
+pub(super) const HELP: [&str; 26] = [
+    "#5 request motion status",
+    "#7 request controller ready status",
+    "#24 stop all axes",
     "*IDN? get device identification",
     "CSV? get current syntax version",
     "CST? [{<AxisID>}] get assignment of stages to axes",
@@ -42,7 +45,12 @@ const HELP: [&str; 18] = [
     "SAI? [ALL] get list of axis identifiers",
     "STP stop all axes",
     "SVO {<AxisID> <Mode>} set servo mode",
+    "SVO? [{<AxisID>}] get servo mode",
+    "TMN? [{<AxisID>}] get minimum commandable position",
+    "TMX? [{<AxisID>}] get maximum commandable position",
+    "VER? get versions of firmware and drivers",
     "VLS <Velocity> set system velocity",
+    "VLS? get system velocity",
     "VMO? {<AxisID> <Position>} ask whether a move is possible",
 ];
 

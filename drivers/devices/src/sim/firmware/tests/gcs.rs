@@ -1,5 +1,6 @@
 //! The stage, byte for byte.
 
+use super::super::gcs::HELP;
 use super::super::{Firmware, Gcs};
 use crate::sim::data_sheet::{Joint, Load};
 use crate::sim::plant::{Hidden, Plant, STEP_S};
@@ -58,6 +59,17 @@ fn published_conversation() {
     assert_eq!(stage.say(b"PO\x05S? "), b"0\n", "in the middle of a line");
     let help = String::from_utf8(stage.say(b"HLP?\n")).unwrap();
     assert!(help.ends_with(" \nend of help\n") && help.contains(" \nMOV {"), "{help}");
+}
+
+#[test]
+fn every_query_that_the_help_names_is_answered() {
+    let mut stage = Stage::new();
+    for query in HELP.iter().filter_map(|line| line.split(' ').next()).filter(|word| word.ends_with('?')) {
+        let request = if query == "VMO?" { "VMO? X 0".to_owned() } else { query.to_owned() };
+        assert!(!stage.say(format!("{request}\n").as_bytes()).is_empty(), "{query}");
+        stage.check("ERR?", "0\n");
+    }
+    stage.check("XYZ?\nERR?", "2\n");
 }
 
 #[test]
