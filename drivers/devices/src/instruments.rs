@@ -47,6 +47,11 @@ impl JointSettings {
         }
     }
 
+    /// Whether the drive takes a motor current beside a velocity.
+    pub fn feeds_forward(&self) -> bool {
+        matches!(self, JointSettings::Odrive(_))
+    }
+
     fn open(self, clock: Arc<dyn Clock>) -> Result<Box<dyn JointController>, Fault> {
         Ok(match self {
             JointSettings::Odrive(settings) => Box::new(OdriveJoint::open(settings, clock)?),

@@ -76,6 +76,10 @@ pub trait JointController: Instrument {
     fn resolution(&self) -> JointResolution;
     /// Motor current for each volt, where the drive reads it as the voltage at a shunt.
     fn amperes_per_volt(&self) -> Option<f64> {
+    /// Whether the drive takes a motor current beside a velocity.
+    fn feeds_forward(&self) -> bool {
+        true
+    }
         None
     }
 }

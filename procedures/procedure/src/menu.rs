@@ -148,6 +148,7 @@ impl BenchFacts {
             has_stage: false,
             amperes_per_volt: None,
             brake_model: None,
+            feeds_forward: true,
         }
     }
 }

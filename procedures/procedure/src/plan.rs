@@ -25,6 +25,8 @@ pub struct BenchFacts {
     pub amperes_per_volt: Option<f64>,
     /// What an earlier run has found of the brake, where a procedure asks for it ([`crate::Procedure::brake_model`]).
     pub brake_model: Option<BrakeModel>,
+    /// Whether the joint's drive takes a motor current beside a velocity.
+    pub feeds_forward: bool,
 }
 
 impl BenchFacts {
@@ -42,6 +44,7 @@ impl BenchFacts {
             has_stage: bench.stage.is_some(),
             amperes_per_volt: bench.joint.amperes_per_volt(),
             brake_model: None,
+            feeds_forward: bench.joint.feeds_forward(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The dry run: what a plan would do to a bench, before anything moves.
 
-use crate::plan::{BenchFacts, Plan};
+use crate::plan::{BenchFacts, Drive, Plan};
 use jointbench_instrument::limits::Limited;
 use serde::Serialize;
 
@@ -125,6 +125,8 @@ impl Plan {
             .map(|e| format!("{} {:.3} {} over {:.3}", e.quantity, e.value, e.unit, e.limit.unwrap_or(f64::INFINITY)))
             .collect();
         let needs_brake = self.top_brake_current_a() > 0.0;
+        let feeds = self.steps.iter().any(|step| matches!(step.drive, Drive::Fed(_)));
+        let cannot_feed = feeds && !facts.feeds_forward;
         vec![
             Check {
                 name: "limits",
@@ -142,6 +144,17 @@ impl Plan {
                 }
                 .into(),
                 cure: (needs_brake && !facts.has_brake).then(|| "connect a brake or plan without load".into()),
+            },
+            Check {
+                name: "feed-forward",
+                ok: !cannot_feed,
+                detail: match (feeds, cannot_feed) {
+                    (false, _) => "not needed",
+                    (true, false) => "taken by the drive",
+                    (true, true) => "this drive takes no motor current beside a velocity",
+                }
+                .into(),
+                cure: cannot_feed.then(|| "choose a bench whose drive does, or another procedure".into()),
             },
             Check {
                 name: "rest",

@@ -80,6 +80,7 @@ impl BenchHandle {
             has_stage: has.stage,
             amperes_per_volt: has.amperes_per_volt,
             brake_model: None,
+            feeds_forward: has.feeds_forward,
         }
     }
 

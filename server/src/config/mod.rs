@@ -62,6 +62,8 @@ pub struct Has {
     pub stage: bool,
     /// Motor current for each volt, where it is read as the voltage at a shunt.
     pub amperes_per_volt: Option<f64>,
+    /// The joint's drive takes a motor current beside a velocity.
+    pub feeds_forward: bool,
 }
 
 impl BenchDescription {
@@ -92,6 +94,7 @@ impl BenchDescription {
                     .then_some(ENCODER_COUNTS.map(f64::from)),
                 stage: settings.has(MockInstrument::Stage),
                 amperes_per_volt: settings.amperes_per_volt(),
+                feeds_forward: settings.feeds_forward(),
             },
             Source::Hardware(settings) => Has {
                 torque_sensor: settings.torque_sensor.is_some(),
@@ -103,6 +106,7 @@ impl BenchDescription {
                     .map(|(reference, test)| [reference, test].map(|counter| f64::from(counter.counts_per_turn))),
                 stage: settings.stage.is_some(),
                 amperes_per_volt: settings.joint.amperes_per_volt(),
+                feeds_forward: settings.joint.feeds_forward(),
             },
         }
     }

@@ -309,3 +309,8 @@ impl JointController for PumaAxis {
         Some(self.settings.amperes_per_volt)
     }
 }
+    /// It takes positions, or a current alone.
+    fn feeds_forward(&self) -> bool {
+        false
+    }
+

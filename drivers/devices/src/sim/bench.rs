@@ -95,6 +95,11 @@ impl MockSettings {
         (self.joint == Joint::Puma).then_some(AMPERES_PER_VOLT)
     }
 
+    /// Whether the joint's servo takes a motor current beside a velocity.
+    pub fn feeds_forward(&self) -> bool {
+        self.joint != Joint::Puma
+    }
+
     pub fn has(&self, instrument: MockInstrument) -> bool {
         self.instruments().contains(&instrument)
     }

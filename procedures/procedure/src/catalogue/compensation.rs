@@ -208,6 +208,15 @@ mod tests {
     }
 
     #[test]
+    fn a_drive_that_takes_no_current_beside_a_velocity_is_told_before_anything_moves() {
+        let bench = BenchFacts { feeds_forward: false, ..joint_a() };
+        let preview = Compensation.plan(json!({}).as_object().unwrap(), &bench).unwrap().preview(&bench);
+        let refused: Vec<_> = preview.checks.iter().filter(|check| !check.ok).collect();
+        assert_eq!(refused.len(), 1, "{refused:?}");
+        assert!(refused[0].detail.contains("no motor current beside a velocity") && refused[0].cure.is_some());
+    }
+
+    #[test]
     fn friction_that_falls_towards_standstill_is_refused() {
         let fault = Compensation.plan(json!({"tau_h_nm": 0.02}).as_object().unwrap(), &joint_a()).unwrap_err();
         assert!(fault.to_string().contains("tau_h_nm is below"), "{fault}");

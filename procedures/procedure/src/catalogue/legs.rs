@@ -210,6 +210,7 @@ pub(super) mod testing {
             has_stage: false,
             amperes_per_volt: None,
             brake_model: None,
+            feeds_forward: true,
         }
     }
 

@@ -13,7 +13,13 @@ fn puma() -> BenchFacts {
     facts.constants.gear_ratio = 107.815;
     facts.constants.rotor_inertia_kg_m2 = 2e-4;
     facts.constants.link_range_rad = Some(1.6);
-    BenchFacts { has_torque_sensor: false, has_brake: false, amperes_per_volt: Some(1.0), ..facts }
+    BenchFacts {
+        has_torque_sensor: false,
+        has_brake: false,
+        amperes_per_volt: Some(1.0),
+        feeds_forward: false,
+        ..facts
+    }
 }
 
 #[test]
