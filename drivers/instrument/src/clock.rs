@@ -10,6 +10,11 @@ pub trait Clock: Send + Sync {
     fn sleep_until_s(&self, t_s: f64);
 }
 
+/// A moment of which is known only that it lay between two: their middle, and how far it may be off either way.
+pub fn between(from_s: f64, until_s: f64) -> (f64, f64) {
+    (0.5 * (from_s + until_s), 0.5 * (until_s - from_s))
+}
+
 /// Wall time, for real instruments.
 pub struct SystemClock {
     opened: Instant,

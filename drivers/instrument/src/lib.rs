@@ -10,6 +10,7 @@ mod join;
 pub mod limits;
 pub mod meta;
 pub mod roles;
+pub mod skew;
 pub mod table;
 pub mod trace;
 pub mod units;

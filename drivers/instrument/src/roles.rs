@@ -37,8 +37,10 @@ pub trait Instrument: Send {
 /// One reading of a joint, taken together. Positions and velocity in output units of the encoders: motor side, link side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointReading {
-    /// Moment of the reading on the bench's clock.
+    /// The middle of the reading on the bench's clock.
     pub at_s: f64,
+    /// No part of it was taken further from there.
+    pub uncertainty_s: f64,
     pub motor_position: Radians,
     pub motor_velocity: RadPerSec,
     pub motor_current: Amperes,
@@ -74,12 +76,12 @@ pub trait JointController: Instrument {
     fn disarm(&mut self) -> Result<(), Fault>;
     /// The smallest steps of the readings.
     fn resolution(&self) -> JointResolution;
-    /// Motor current for each volt, where the drive reads it as the voltage at a shunt.
-    fn amperes_per_volt(&self) -> Option<f64> {
     /// Whether the drive takes a motor current beside a velocity.
     fn feeds_forward(&self) -> bool {
         true
     }
+    /// Motor current for each volt, where the drive reads it as the voltage at a shunt.
+    fn amperes_per_volt(&self) -> Option<f64> {
         None
     }
 }
@@ -167,6 +169,8 @@ pub trait CurrentSource: Instrument {
 pub struct CounterReading {
     /// Moment of the reading on the bench's clock.
     pub at_s: f64,
+    /// How far it may be off, either way.
+    pub uncertainty_s: f64,
     pub position: Radians,
     /// The counter's own time stamp, in its own units.
     pub stamp: u32,

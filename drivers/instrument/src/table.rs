@@ -1,5 +1,6 @@
 //! A run table: one run's samples with the facts about the set-up, checked once at the door.
 
+use crate::skew::align;
 use crate::{Kind, Meta, Trace};
 
 /// One run, ready for a model: the required columns are there, all values of the time are finite and rising.
@@ -80,7 +81,8 @@ impl TableFault {
 impl RunTable {
     /// Checks a trace against its kind: required columns, units, finite values, rising time, whole segment numbers.
     ///
-    /// Unknown columns may hold anything finite. Cost: one pass over the columns.
+    /// Unknown columns may hold anything finite. Columns that were felt later than their rows are moved to them
+    /// ([`crate::skew`]). Cost: one pass over the columns.
     pub fn new(meta: Meta, trace: Trace) -> Result<Self, TableFault> {
         let kind = meta.kind.ok_or(TableFault::UnknownKind)?;
         check_names(kind, &trace)?;
@@ -102,7 +104,7 @@ impl RunTable {
             return Err(TableFault::TimeNotRising { row: row + 1, before: time_s[row], after: time_s[row + 1] });
         }
         check_facts(&meta, time_s)?;
-        Ok(Self { kind, meta, trace })
+        Ok(Self { kind, meta, trace: align(trace) })
     }
 
     pub fn kind(&self) -> Kind {

@@ -4,6 +4,7 @@ use crate::encoder_columns::{self, Encoders};
 use crate::plan::Plan;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{DriveHealth, JointReading, Pose};
+use jointbench_instrument::skew::TORQUE_SKEW;
 use jointbench_instrument::{Bench, Channel, Kind, Trace};
 
 /// Time is kept in whole microseconds: finer than any serial instrument can tell, and exact to store.
@@ -17,6 +18,8 @@ pub(crate) struct Moment {
     pub time_s: f64,
     pub joint: JointReading,
     pub link_torque_nm: Option<f64>,
+    /// By how much later than the joint it was felt.
+    pub torque_skew_s: f64,
     pub temperature_c: Option<f64>,
     /// Measured, and commanded.
     pub brake_a: Option<(f64, f64)>,
@@ -31,8 +34,12 @@ pub(crate) struct Moment {
 
 /// The columns that this bench can fill. An instrument that is not there has no column.
 ///
-/// Twelve where all are there: time_s, motor_position_rad, motor_velocity_rad_s, motor_current_a, link_position_rad,
-/// link_torque_nm, temperature_c, brake_current_a, brake_torque_command_nm, velocity_setpoint_rad_s, segment, repeat.
+/// Thirteen where all are there: time_s, motor_position_rad, motor_velocity_rad_s, motor_current_a, link_position_rad,
+/// link_torque_nm, torque_skew_s (it was felt so much later than its row), temperature_c, brake_current_a,
+/// brake_torque_command_nm, velocity_setpoint_rad_s, segment, repeat.
+///
+/// A thermometer adds thermometer_1_c, thermometer_2_c, … in the order in which the bench description names its channels. Of
+/// a joint that tells no temperature the first of them is temperature_c instead.
 ///
 /// A run of a brake names what it feels after the brake: brake_torque_nm is the sensor's reading against the commanded
 /// way (positive while the brake brakes), position_rad and velocity_rad_s are those of its shaft, the link's, and
@@ -47,12 +54,21 @@ pub(crate) struct Columns {
     told_gear_ratio: Option<f64>,
     /// The plan commands motor current: motor_current_setpoint_a tells it.
     commands_current: bool,
+    /// Channels of the thermometer that stand for the joint's temperature: 0 or 1.
+    standing_in: usize,
     row: Vec<f64>,
 }
 
 impl Columns {
-    /// `placed`: the plan moves the stage.
-    pub fn of(plan: &Plan, placed: bool, bench: &Bench, reading: &JointReading, health: &DriveHealth) -> Self {
+    /// `placed`: the plan moves the stage. `felt`: channels of the thermometer.
+    pub fn of(
+        plan: &Plan,
+        placed: bool,
+        bench: &Bench,
+        reading: &JointReading,
+        health: &DriveHealth,
+        felt: usize,
+    ) -> Self {
         let steps = bench.joint.resolution();
         let is_brake = plan.kind == Kind::Brake;
         let commands_current = plan.commands_current();
@@ -69,10 +85,15 @@ impl Columns {
         if let Some(sensor) = &bench.torque_sensor {
             let name = if is_brake { "brake_torque_nm" } else { "link_torque_nm" };
             channels.push(channel(name, sensor.resolution().map(|step| step.0)));
+            channels.push(channel(TORQUE_SKEW, Some(TIME_STEP_S)));
         }
-        if health.temperature.is_some() {
-            channels.push(channel("temperature_c", steps.temperature.map(|step| step.0)));
+        let felt_step_c = bench.thermometer.as_ref().map(|thermometer| thermometer.resolution().0);
+        let standing_in = usize::from(health.temperature.is_none() && felt > 0);
+        if health.temperature.is_some() || felt > 0 {
+            let own_step_c = steps.temperature.map(|step| step.0);
+            channels.push(channel("temperature_c", if standing_in == 0 { own_step_c } else { felt_step_c }));
         }
+        channels.extend((standing_in..felt).map(|at| channel(&format!("thermometer_{}_c", at + 1), felt_step_c)));
         let brake_nm_per_a = if is_brake { 1.0 } else { nominal_brake_nm_per_a(&bench.constants) };
         if let Some(source) = &bench.brake {
             let step_a = source.resolution().map(|step| step.0);
@@ -104,6 +125,7 @@ impl Columns {
             // An encoder bench's encoders sit on the motor's shaft.
             told_gear_ratio: told.map(|_| if plan.kind == Kind::Encoder { 1.0 } else { bench.constants.gear_ratio }),
             commands_current,
+            standing_in,
         }
     }
 
@@ -111,8 +133,8 @@ impl Columns {
         Trace::new(self.channels.clone())
     }
 
-    /// The row of a moment, in the order of the channels.
-    pub fn row(&mut self, moment: &Moment, segment: u32, repeat: u32) -> &[f64] {
+    /// The row of a moment, in the order of the channels. `felt_c`: the thermometer's.
+    pub fn row(&mut self, moment: &Moment, felt_c: &[f64], segment: u32, repeat: u32) -> &[f64] {
         if let Some(way) = &mut self.braked_way
             && moment.velocity_setpoint_rad_s != 0.0
         {
@@ -124,8 +146,11 @@ impl Columns {
         row.extend([moment.time_s, moment.joint.motor_position.0, moment.joint.motor_velocity.0]);
         row.push(moment.joint.motor_current.0);
         row.extend(moment.joint.link_position.map(|position| position.0));
-        row.extend(moment.link_torque_nm.map(|torque_nm| way * torque_nm));
+        if let Some(torque_nm) = moment.link_torque_nm {
+            row.extend([way * torque_nm, to_time_step(moment.torque_skew_s)]);
+        }
         row.extend(moment.temperature_c);
+        row.extend(felt_c.iter().skip(self.standing_in));
         if let Some((measured_a, commanded_a)) = moment.brake_a {
             row.extend([measured_a, commanded_a * self.brake_nm_per_a]);
         }

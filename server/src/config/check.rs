@@ -6,7 +6,7 @@ use super::mistake::{Collector, Mistakes};
 use super::raw::{RawBench, RawFile, RawMock};
 use super::values::{choice, positive};
 use super::{BenchDescription, Source};
-use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, Supply, Transport};
+use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, MockInstrument, Supply, Transport};
 use jointbench_devices::{Joint, MockSettings};
 
 pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
@@ -94,7 +94,10 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
         raw.supply.as_ref().map_or(Some(Supply::default()), |supply| choice(supply, "supply", &supplies, wrong));
     let pace = raw.pace.as_ref().and_then(|pace| positive(pace, "pace", wrong));
     let effects = raw.effects.iter().map(|effect| effect.get_ref().clone()).collect();
-    let settings = MockSettings::new(joint?, raw.seed.unwrap_or(1));
+    let mut settings = MockSettings::new(joint?, raw.seed.unwrap_or(1));
+    if raw.thermometer && !settings.has(MockInstrument::Thermometer) {
+        settings.others.push(MockInstrument::Thermometer);
+    }
     let load = load.unwrap_or(Some(settings.load))?;
     let (filter, supply, troubles) = (raw.filter, supply?, raw.troubles.clone());
     // A bench that keeps time is one that other programs may listen to; in a time-lapse they could not follow.

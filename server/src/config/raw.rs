@@ -54,6 +54,9 @@ pub struct RawMock {
     /// Whether the interpolation filter of the encoder under test is on.
     #[serde(default)]
     pub filter: bool,
+    /// A thermometer, which an encoder bench has anyway.
+    #[serde(default)]
+    pub thermometer: bool,
     #[serde(default)]
     pub troubles: Vec<PlannedTrouble>,
 }

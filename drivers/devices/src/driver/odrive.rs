@@ -6,6 +6,7 @@ use crate::protocol::odrive::{
     RequestState, Set, SetTorque, SetVelocity, StandDown,
 };
 use crate::transport::{Link, PortSettings};
+use jointbench_instrument::clock::between;
 use jointbench_instrument::roles::{DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution};
 use jointbench_instrument::units::{Amperes, Celsius, RadPerSec, Radians, Volts};
 use jointbench_instrument::{Clock, Fault, FaultKind};
@@ -219,16 +220,19 @@ impl JointController for OdriveJoint {
 
     fn read(&mut self) -> Result<JointReading, Fault> {
         let link_encoder = self.settings.link_encoder;
-        let at_s = self.clock.now_s();
-        let link = self.ready()?;
+        self.ready()?;
+        let asked_s = self.clock.now_s();
+        let link = &mut self.link;
         let Feedback { position_micro_turns, velocity_micro_turns_s } = link.request(&ReadFeedback { axis: 0 })?;
         let link_position = match link_encoder {
             true => Some(link.request(&ReadFeedback { axis: 1 })?.position_micro_turns),
             false => None,
         };
         let current_a = link.request(&ReadNumber { path: "axis0.motor.current_control.Iq_measured" })?;
+        let (at_s, uncertainty_s) = between(asked_s, self.clock.now_s());
         Ok(JointReading {
             at_s,
+            uncertainty_s,
             motor_position: Radians(position_micro_turns as f64 * MICRO_TURN_RAD),
             motor_velocity: RadPerSec(velocity_micro_turns_s as f64 * MICRO_TURN_RAD),
             motor_current: Amperes(current_a),

@@ -10,6 +10,7 @@ use crate::protocol::puma::{
     ReadCurrent, ReadPosition, ReadStatus, Reply, SetInterval, Stop, VOLTS_PER_COUNT, memory,
 };
 use crate::transport::{Command, Link, PortSettings};
+use jointbench_instrument::clock::between;
 use jointbench_instrument::roles::{DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution};
 use jointbench_instrument::units::{Amperes, RadPerSec, Radians};
 use jointbench_instrument::{Clock, Fault, FaultKind};
@@ -273,10 +274,13 @@ impl JointController for PumaAxis {
             self.look()?;
             self.clock.sleep_until_s(self.clock.now_s() + GLANCE_S);
         }
-        let Seen { at_s, counts, velocity_rad_s } = self.look()?;
+        let asked_s = self.clock.now_s();
+        let Seen { counts, velocity_rad_s, .. } = self.look()?;
         let volts = self.ask(ReadCurrent)?;
+        let (at_s, uncertainty_s) = between(asked_s, self.clock.now_s());
         Ok(JointReading {
             at_s,
+            uncertainty_s,
             motor_position: Radians(counts as f64 * self.step_rad()),
             motor_velocity: RadPerSec(velocity_rad_s),
             motor_current: Amperes(volts.0 * self.settings.amperes_per_volt),
@@ -305,12 +309,12 @@ impl JointController for PumaAxis {
         }
     }
 
-    fn amperes_per_volt(&self) -> Option<f64> {
-        Some(self.settings.amperes_per_volt)
-    }
-}
     /// It takes positions, or a current alone.
     fn feeds_forward(&self) -> bool {
         false
     }
 
+    fn amperes_per_volt(&self) -> Option<f64> {
+        Some(self.settings.amperes_per_volt)
+    }
+}

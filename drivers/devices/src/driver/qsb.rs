@@ -3,6 +3,7 @@
 use super::{Recovers, same};
 use crate::protocol::qsb::{Held, Quieten, ReadRegister, Register, Version, WriteRegister};
 use crate::transport::{Command, Link, PortSettings};
+use jointbench_instrument::clock::between;
 use jointbench_instrument::roles::{CounterReading, EncoderStatus, Identity, Instrument, PositionCounter};
 use jointbench_instrument::units::Radians;
 use jointbench_instrument::{Clock, Fault, FaultKind};
@@ -162,12 +163,15 @@ impl PositionCounter for QsbCounter {
     }
 
     fn read(&mut self) -> Result<CounterReading, Fault> {
+        self.ready()?;
+        let asked_s = self.clock.now_s();
         let Held { value, stamp } = self.read_register(Register::Encoder)?;
+        let (at_s, uncertainty_s) = between(asked_s, self.clock.now_s());
         // Differences are right across the wrap at 32 bits.
         self.total += i64::from(value.wrapping_sub(self.last) as i32);
         self.last = value;
         let turns = self.total as f64 / f64::from(self.settings.counts_per_turn);
-        Ok(CounterReading { at_s: self.clock.now_s(), position: Radians(TAU * turns), stamp })
+        Ok(CounterReading { at_s, uncertainty_s, position: Radians(TAU * turns), stamp })
     }
 
     fn resolution(&self) -> Radians {

@@ -250,7 +250,7 @@ impl MockBench {
                 port,
                 deadline_ms,
                 slave: 1,
-                channels: vec![0, 1, 5],
+                channels: if self.settings.joint == Joint::Puma { vec![1, 5] } else { vec![0, 1, 5] },
             }),
         }
     }

@@ -39,11 +39,12 @@ impl Session<'_> {
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
 
-        let columns = Columns::of(self.plan, self.pose.is_some(), self.bench, &reading, &health);
+        self.feel_warmth()?;
+        let columns = Columns::of(self.plan, self.pose.is_some(), self.bench, &reading, &health, self.felt_c.len());
         self.journal.set_columns(columns.empty_trace());
         self.columns = Some(columns);
-        if health.temperature.is_none() {
-            self.note("the joint reports no temperature: its limit is not watched");
+        if health.temperature.is_none() && self.felt_c.is_empty() {
+            self.note("the joint reports no temperature, and there is no thermometer: its limit is not watched");
         }
         if self.bench.torque_sensor.is_none() {
             self.note("no torque sensor: link torque and brake power are not watched");
@@ -74,6 +75,10 @@ impl Session<'_> {
         if let Some(identity) = self.ask_brake(|brake| brake.identify())? {
             let brake = self.bench.brake.as_ref();
             found.extend(brake.map(|brake| (brake.name().to_owned(), brake.port().to_owned(), identity)));
+        }
+        if let Some(identity) = self.ask_thermometer(|thermometer| thermometer.identify())? {
+            let felt = self.bench.thermometer.as_ref();
+            found.extend(felt.map(|felt| (felt.name().to_owned(), felt.port().to_owned(), identity)));
         }
         let now_s = self.bench.clock.now_s();
         for (instrument, port, identity) in found {

@@ -12,6 +12,7 @@ mod power;
 mod safe_state;
 mod securing;
 mod session;
+mod skew;
 mod steps;
 mod tick;
 mod warmth;
@@ -24,6 +25,7 @@ use ending::Ending;
 use jointbench_instrument::Bench;
 pub use safe_state::{Secured, secure};
 use session::Session;
+use skew::Skews;
 use std::sync::mpsc::Receiver;
 
 /// How a run ended.
@@ -74,6 +76,9 @@ impl Session<'_> {
             && matches!(ending, Ending::Completed)
         {
             ending = unkept;
+        }
+        if let Some(told) = self.skews.and_then(Skews::told) {
+            self.note(told);
         }
         let safe = self.make_safe(&ending);
         let now_s = self.bench.clock.now_s();

@@ -4,6 +4,7 @@ use super::ask::{Trouble, ask};
 use super::ending::Ending;
 use super::journal::Journal;
 use super::pace::Pace;
+use super::skew::Skews;
 use crate::columns::Columns;
 use crate::event::{Control, EventKind};
 use crate::guard::Guard;
@@ -11,7 +12,9 @@ use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::Transition;
 use crate::steady::SteadyWatch;
-use jointbench_instrument::roles::{CurrentSource, Instrument, JointController, JointReading, Pose, TorqueSensor};
+use jointbench_instrument::roles::{
+    CurrentSource, Instrument, JointController, JointReading, Pose, Thermometer, TorqueSensor,
+};
 use jointbench_instrument::{Bench, Fault};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Receiver;
@@ -28,6 +31,9 @@ pub(super) struct Session<'a> {
     pub columns: Option<Columns>,
     pub commanded: Commanded,
     pub held: Held,
+    /// The latest reading of the thermometer, its channels in the order of the bench description, and when the next is due.
+    pub felt_c: Vec<f64>,
+    pub felt_next_s: f64,
     pub beat: Beat,
     pub wish: Option<Wish>,
     /// Whether the drive may hold torque: securing has something to ramp down.
@@ -38,6 +44,7 @@ pub(super) struct Session<'a> {
     pub home_rad: Option<f64>,
     /// The latest reading of the torque sensor.
     pub link_torque_nm: Option<f64>,
+    pub skews: Option<Skews>,
     /// Time of the newest row, which the next one has to exceed.
     pub row_s: f64,
     pub next_segment: u32,
@@ -93,6 +100,7 @@ pub(super) struct Beat {
 pub(super) struct Lost {
     pub sensor: bool,
     pub brake: bool,
+    pub thermometer: bool,
 }
 
 /// What a person asked for that a step cannot do by itself.
@@ -121,12 +129,15 @@ impl<'a> Session<'a> {
             columns: None,
             commanded: Commanded::default(),
             held: Held::default(),
+            felt_c: Vec::new(),
+            felt_next_s: now_s,
             beat: Beat { period_s: 1.0 / plan.rate_hz, next_s: now_s, late: 0 },
             wish: None,
             armed: false,
             joint: None,
             home_rad: None,
             link_torque_nm: None,
+            skews: None,
             row_s: f64::NEG_INFINITY,
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
             lost: Lost::default(),
@@ -187,6 +198,22 @@ impl<'a> Session<'a> {
             lost.sensor = true;
             Ending::OtherFault(fault)
         })
+    }
+
+    /// `None` where the bench has no thermometer.
+    pub fn ask_thermometer<T>(
+        &mut self,
+        request: impl FnMut(&mut (dyn Thermometer + 'static)) -> Result<T, Fault>,
+    ) -> Result<Option<T>, Ending> {
+        let now_s = self.bench.clock.now_s();
+        let Self { bench, journal, recoveries, lost, .. } = self;
+        let Some(thermometer) = &mut bench.thermometer else { return Ok(None) };
+        ask(thermometer.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(
+            |fault| {
+                lost.thermometer = true;
+                Ending::OtherFault(fault)
+            },
+        )
     }
 }
 

@@ -3,6 +3,7 @@
 use super::arm::link_position_rad;
 use super::ending::Ending;
 use super::session::{Asked, Session, Wish, reported};
+use super::skew::{self, Skews};
 use crate::columns::{Moment, VELOCITY_STEP_RAD_S, to_time_step};
 use crate::event::{Control, EventKind};
 use crate::guard::Sample;
@@ -16,6 +17,8 @@ use std::sync::mpsc::TryRecvError;
 const BRAKE_EVERY_S: f64 = 0.1;
 /// Temperature and supply are read this often and held in between.
 const SLOW_EVERY_S: f64 = 0.5;
+/// A resistance thermometer in a housing takes 10 to 30 s to follow, and its reply several ticks.
+const WARMTH_EVERY_S: f64 = 2.0;
 /// Readings in a row that find the supply out of regulation before it counts: CV for more than 0.5 s at a commanded
 /// CC (bench-physics, section 5); a rising current needs the full voltage for a moment.
 const UNREGULATED_READINGS: u32 = 3;
@@ -137,13 +140,16 @@ impl Session<'_> {
         let joint = self.ask_joint(|joint| joint.read())?;
         self.trust_joint(recovered_before)?;
         self.joint = Some(joint);
+        let asked_s = self.bench.clock.now_s();
         let link_torque_nm = if self.lost.sensor {
             None
         } else {
             self.ask_torque_sensor(|sensor| sensor.read())?.map(|torque| torque.0)
         };
+        let torque_skew = skew::of(&joint, asked_s, self.bench.clock.now_s());
         let encoders = self.feel_encoders()?;
         self.link_torque_nm = link_torque_nm;
+        self.skews = link_torque_nm.map(|_| Skews::add(self.skews, torque_skew)).or(self.skews);
         if now_s >= self.held.next_s {
             self.held.next_s = now_s + SLOW_EVERY_S;
             self.check_drive()?;
@@ -151,10 +157,14 @@ impl Session<'_> {
                 self.feel_brake()?;
             }
         }
+        if now_s >= self.felt_next_s {
+            self.feel_warmth()?;
+        }
         Ok(Moment {
             time_s: to_time_step(encoders.map_or(joint.at_s, |both| both.test.at_s) - self.journal.started_s),
             joint,
             link_torque_nm,
+            torque_skew_s: torque_skew.s,
             temperature_c: self.held.temperature_c,
             brake_a: self.held.brake_a.map(|measured_a| (measured_a, self.commanded.brake_a)),
             velocity_setpoint_rad_s: self.commanded.velocity_rad_s,
@@ -162,6 +172,18 @@ impl Session<'_> {
             pose: self.pose,
             motor_current_setpoint_a: self.commanded.motor_current_a,
         })
+    }
+
+    /// The thermometer's channels, where there is one. The first stands for the joint's temperature where the joint tells none.
+    pub(super) fn feel_warmth(&mut self) -> Result<(), Ending> {
+        if self.lost.thermometer {
+            return Ok(());
+        }
+        if let Some(felt) = self.ask_thermometer(|thermometer| thermometer.read())? {
+            self.felt_next_s = self.bench.clock.now_s() + WARMTH_EVERY_S;
+            self.felt_c = felt.iter().map(|felt| felt.0).collect();
+        }
+        Ok(())
     }
 
     fn feel_brake(&mut self) -> Result<(), Ending> {
@@ -190,7 +212,8 @@ impl Session<'_> {
             let what = format!("the drive gave up in mid-run: {}", health.errors.join(", "));
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
-        self.held.temperature_c = health.temperature.map(|temperature| temperature.0);
+        let own_c = health.temperature.map(|temperature| temperature.0);
+        self.held.temperature_c = own_c.or(self.felt_c.first().copied());
         Ok(())
     }
 
@@ -230,7 +253,7 @@ impl Session<'_> {
         let Some(columns) = self.columns.as_mut().filter(|_| is_row) else { return };
         self.row_s = moment.time_s;
         let (segment, repeat) = keep.unwrap_or_default();
-        let row = columns.row(moment, segment, repeat);
+        let row = columns.row(moment, &self.felt_c, segment, repeat);
         if keep.is_some() {
             self.journal.keep(row);
         }

@@ -3,7 +3,7 @@
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{
     CurrentSource, DriveHealth, Identity, Instrument, JointController, JointReading, JointResolution, Regulation,
-    SupplyReading, TorqueSensor,
+    SupplyReading, Thermometer, TorqueSensor,
 };
 use jointbench_instrument::units::{Amperes, Celsius, NewtonMetres, RadPerSec, Radians, Volts};
 use jointbench_instrument::{Bench, Clock, Fault, FaultKind, Limits};
@@ -25,6 +25,7 @@ pub enum Call {
     SetCurrent(f64),
     ReadBrake,
     OutputOff,
+    ReadWarmth,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +33,7 @@ pub enum Role {
     Joint,
     Torque,
     Brake,
+    Thermometer,
 }
 
 impl Call {
@@ -39,6 +41,7 @@ impl Call {
         match self {
             Call::Identify(role) | Call::Recover(role) => role,
             Call::ReadTorque => Role::Torque,
+            Call::ReadWarmth => Role::Thermometer,
             Call::Prepare | Call::SetCurrent(_) | Call::ReadBrake | Call::OutputOff => Role::Brake,
             _ => Role::Joint,
         }
@@ -55,7 +58,10 @@ pub struct World {
     pub position_rad: f64,
     pub current_a: f64,
     pub torque_nm: f64,
-    pub temperature_c: f64,
+    /// As the joint tells it, if it does.
+    pub temperature_c: Option<f64>,
+    /// At the thermometer's two places.
+    pub warmth_c: [f64; 2],
     pub brake_a: f64,
     pub brake_on: bool,
     pub regulation: Regulation,
@@ -93,7 +99,8 @@ impl Fakes {
             position_rad: 0.0,
             current_a: 0.0,
             torque_nm: 0.0,
-            temperature_c: 25.0,
+            temperature_c: Some(25.0),
+            warmth_c: [30.0, 20.0],
             brake_a: 0.0,
             brake_on: false,
             regulation: Regulation::ConstantCurrent,
@@ -136,6 +143,11 @@ impl Fakes {
         (fakes, bench)
     }
 
+    /// Gives the bench a thermometer.
+    pub fn feel_warmth(&self, bench: &mut Bench) {
+        bench.thermometer = Some(Box::new(FakeThermometer(self.clone())));
+    }
+
     pub fn quiet() -> (Fakes, Bench) {
         Self::new(|_, _| Ok(()))
     }
@@ -160,14 +172,15 @@ impl Fakes {
             let (name, port) = NAMES[call.role() as usize];
             script(call, &mut stage.world).map_err(|kind| kind.at(name, port))?;
         }
-        if !matches!(call, Call::ReadJoint | Call::ReadTorque | Call::ReadBrake | Call::Health) {
+        if !matches!(call, Call::ReadJoint | Call::ReadTorque | Call::ReadBrake | Call::Health | Call::ReadWarmth) {
             stage.world.log.push((stage.world.now_s, call));
         }
         Ok(act(&mut stage.world))
     }
 }
 
-const NAMES: [(&str, &str); 3] = [("joint", "pty0"), ("torque_sensor", "pty1"), ("brake_a", "pty2")];
+const NAMES: [(&str, &str); 4] =
+    [("joint", "pty0"), ("torque_sensor", "pty1"), ("brake_a", "pty2"), ("thermometer", "pty3")];
 
 impl World {
     /// Velocity follows at once; friction is plain, the brake proportional, both by their signs.
@@ -245,6 +258,7 @@ macro_rules! instrument {
 instrument!(FakeJoint, Role::Joint);
 instrument!(FakeTorqueSensor, Role::Torque);
 instrument!(FakeBrake, Role::Brake);
+instrument!(FakeThermometer, Role::Thermometer);
 
 impl JointController for FakeJoint {
     fn arm(&mut self, _: RadPerSec, _: Amperes) -> Result<(), Fault> {
@@ -266,6 +280,7 @@ impl JointController for FakeJoint {
     fn read(&mut self) -> Result<JointReading, Fault> {
         self.0.call(Call::ReadJoint, |world| JointReading {
             at_s: world.stuck_at_s.unwrap_or(world.now_s),
+            uncertainty_s: 0.0,
             motor_position: Radians(world.position_rad),
             motor_velocity: RadPerSec(world.velocity_rad_s),
             motor_current: Amperes(world.current_a),
@@ -278,7 +293,7 @@ impl JointController for FakeJoint {
             armed: world.armed,
             errors: world.errors.clone(),
             bus_voltage: Some(Volts(48.0)),
-            temperature: Some(Celsius(world.temperature_c)),
+            temperature: world.temperature_c.map(Celsius),
         })
     }
 
@@ -334,5 +349,15 @@ impl CurrentSource for FakeBrake {
 
     fn resolution(&self) -> Option<Amperes> {
         Some(Amperes(1e-4))
+    }
+}
+
+impl Thermometer for FakeThermometer {
+    fn read(&mut self) -> Result<Vec<Celsius>, Fault> {
+        self.0.call(Call::ReadWarmth, |world| world.warmth_c.map(Celsius).to_vec())
+    }
+
+    fn resolution(&self) -> Celsius {
+        Celsius(0.01)
     }
 }

@@ -27,6 +27,7 @@ fn a_whole_run_is_kept_once_and_in_order() {
             "motor_current_a",
             "link_position_rad",
             "link_torque_nm",
+            "torque_skew_s",
             "temperature_c",
             "brake_current_a",
             "brake_torque_command_nm",

@@ -31,7 +31,7 @@ fn every_limit_trips_in_mid_run() {
         (Limited::MotorVelocity, |world| world.velocity_rad_s = 210.0),
         (Limited::MotorCurrent, |world| world.current_a = -8.1),
         (Limited::LinkTorque, |world| world.torque_nm = f64::NAN),
-        (Limited::Temperature, |world| world.temperature_c = 81.0),
+        (Limited::Temperature, |world| world.temperature_c = Some(81.0)),
     ];
     for (quantity, show) in cases {
         let done = check_trips(quantity.name(), show);

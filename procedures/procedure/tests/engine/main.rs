@@ -10,3 +10,4 @@ mod limits;
 mod pauses;
 mod securing;
 mod warm_up;
+mod warmth;

@@ -19,7 +19,7 @@ fn carried_out(id: &str, parameters: serde_json::Value, heat: fn(&mut World)) ->
 
 /// A joint that warms up by 20 °C with a time constant of a minute.
 fn warming(world: &mut World) {
-    world.temperature_c = 45.0 - 20.0 * (-(world.now_s - 100.0) / 60.0).exp();
+    world.temperature_c = Some(45.0 - 20.0 * (-(world.now_s - 100.0) / 60.0).exp());
 }
 
 #[test]

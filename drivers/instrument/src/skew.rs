@@ -1,0 +1,112 @@
+//! Readings of different instruments on one grid.
+//!
+//! A run's rows are placed by the joint: `time_s` is the moment of its reading. What another instrument felt in the same tick
+//! was felt a little later, by what the bench's clock says, and stands in the row as it was felt, with that skew beside it.
+//! Before anything is computed from a run, such columns are moved to the rows' moments, along the straight line between the
+//! readings before and behind.
+
+use crate::{Channel, Trace};
+
+/// How much later one instrument felt than another, and how far that may be off either way.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Skew {
+    pub s: f64,
+    pub uncertainty_s: f64,
+}
+
+/// The columns that have a skew, and the one that tells it.
+const SKEWED: [&str; 2] = ["link_torque_nm", "brake_torque_nm"];
+pub const TORQUE_SKEW: &str = "torque_skew_s";
+
+/// The value at each moment of the grid, on the straight line between the readings around it. `None` where there is no reading
+/// on one side: none is invented.
+///
+/// Both times rise. Cost: one pass over both.
+fn on_grid(at_s: &[f64], values: &[f64], grid_s: &[f64]) -> Vec<Option<f64>> {
+    let mut behind = 0;
+    let at = |moment_s: &f64| {
+        while behind < at_s.len() && at_s[behind] < *moment_s {
+            behind += 1;
+        }
+        if at_s.get(behind) == Some(moment_s) {
+            return Some(values[behind]);
+        }
+        let before = behind.checked_sub(1)?;
+        let share = (moment_s - at_s[before]) / (at_s.get(behind)? - at_s[before]);
+        Some(values[before] + share * (values[behind] - values[before]))
+    };
+    grid_s.iter().map(at).collect()
+}
+
+/// Moves every column with a skew to the moments of its rows; the skew is 0 then. Within a segment only: between two of them
+/// time was not kept. Where there is no reading on one side a value stays as it was felt.
+pub(crate) fn align(trace: Trace) -> Trace {
+    let Some(skew_s) = trace.column(TORQUE_SKEW).filter(|skew| skew.iter().any(|s| *s != 0.0)) else { return trace };
+    let time_s = trace.column("time_s").unwrap_or_default();
+    let felt_s: Vec<f64> = time_s.iter().zip(skew_s).map(|(at_s, skew_s)| at_s + skew_s).collect();
+    if felt_s.windows(2).any(|pair| pair[1] <= pair[0]) {
+        return trace;
+    }
+    let ends: Vec<usize> = match trace.column("segment") {
+        Some(segment) => (1..=time_s.len()).filter(|at| segment.get(*at) != Some(&segment[at - 1])).collect(),
+        None => vec![time_s.len()],
+    };
+    let moved = |column: &[f64]| {
+        let mut start = 0;
+        let mut out = Vec::with_capacity(column.len());
+        for end in &ends {
+            let rows = start..*end;
+            let grid = on_grid(&felt_s[rows.clone()], &column[rows.clone()], &time_s[rows.clone()]);
+            out.extend(grid.into_iter().zip(&column[rows]).map(|(value, felt)| value.unwrap_or(*felt)));
+            start = *end;
+        }
+        out
+    };
+    let columns = trace.channels().iter().zip(trace.columns()).map(|(channel, column)| match channel.name.as_str() {
+        TORQUE_SKEW => vec![0.0; column.len()],
+        name if SKEWED.contains(&name) => moved(column),
+        _ => column.clone(),
+    });
+    let columns = columns.collect();
+    // A value between two counts is no count any more.
+    let channels = trace.channels().iter().map(|channel| match channel.name.as_str() {
+        name if SKEWED.contains(&name) => Channel::new(name),
+        _ => channel.clone(),
+    });
+    Trace::from_columns(channels.collect(), columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn between_readings_is_a_straight_line_and_beyond_them_nothing() {
+        let grid = on_grid(&[0.0, 1.0, 2.0], &[0.0, 10.0, 0.0], &[-0.1, 0.0, 0.25, 1.5, 2.0, 2.1]);
+        assert_eq!(grid, [None, Some(0.0), Some(2.5), Some(5.0), Some(0.0), None]);
+        assert_eq!(on_grid(&[], &[], &[1.0]), [None]);
+    }
+
+    #[test]
+    fn a_column_that_was_felt_later_is_moved_to_its_rows_within_its_segment() {
+        let channels = ["time_s", "link_torque_nm", "torque_skew_s", "motor_current_a", "segment"].map(Channel::new);
+        let rows: Vec<[f64; 5]> = (0..8)
+            .map(|i| {
+                let (at_s, segment) = (f64::from(i) * 0.01, f64::from(i / 4));
+                // Rises by 100 Nm/s, and begins anew with the segment.
+                [at_s, 100.0 * (at_s + 2e-3) + 50.0 * segment, 2e-3, 1.0, segment]
+            })
+            .collect();
+        let mut trace = Trace::new(channels.into());
+        rows.iter().for_each(|row| trace.push_row(row));
+        let aligned = align(trace.clone());
+        let torque_nm = aligned.column("link_torque_nm").unwrap();
+        for (i, row) in rows.iter().enumerate() {
+            // The first of a segment has nothing before it: it stays.
+            let expected = if i % 4 == 0 { row[1] } else { row[1] - 0.2 };
+            assert!((torque_nm[i] - expected).abs() < 1e-9, "row {i}: {}", torque_nm[i]);
+        }
+        assert_eq!(aligned.column("motor_current_a"), trace.column("motor_current_a"));
+        assert_eq!(align(aligned.clone()), aligned, "once is enough");
+    }
+}
