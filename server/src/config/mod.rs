@@ -125,7 +125,9 @@ pub fn read(path: &Path) -> Result<Vec<BenchDescription>, Mistakes> {
     match std::fs::read_to_string(path) {
         Ok(text) => parse(&file, &text),
         Err(fault) => {
-            let what = format!("cannot be read ({fault}): give the path of a bench description");
+            let ready_made = READY_MADE.map(|(name, _)| name).join(", ");
+            let what =
+                format!("cannot be read ({fault}): give the path of a bench description, or one of {ready_made}");
             Err(Mistakes { file, mistakes: vec![Mistake { line: 1, what }] })
         }
     }
