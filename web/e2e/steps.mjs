@@ -152,6 +152,17 @@ export async function brush(page) {
 	return Number(/([\d,]+) chosen/.exec(note)[1].replaceAll(',', ''));
 }
 
+/** Takes the chosen samples out of the fit with a reason, and goes back; says what the page calls excluded. */
+export async function excludeAndUndo(page, reason) {
+	await page.getByRole('button', { name: 'Exclude …' }).click();
+	await page.getByRole('form', { name: 'Exclude the chosen samples' }).getByRole('textbox').fill(reason);
+	await toAnotherVersion(page, () => page.keyboard.press('Enter'));
+	const said = await page.getByRole('list', { name: 'What the fit does not look at' }).innerText();
+	await page.locator('figcaption').getByText('excluded').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'excluded samples are not marked in the plots'));
+	await toAnotherVersion(page, () => page.keyboard.press('z'));
+	return said;
+}
+
 /** Has the run made that would tell, and waits for the same model on both runs; says what the card promised. */
 export async function measureNext(page) {
 	const card = page.locator('[data-experiment]');

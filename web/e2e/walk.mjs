@@ -1,13 +1,15 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Start the procedure, watch it finish, read its result by keyboard, open the workbench, have the run made that would tell more, see where the model fails on
-// both, add the first suggestion, see the error fall, undo, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table; the software stop by key;
+// both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { BARE, brush, flyAndStop, importForeign, measureNext, observe, readResult, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
+import { BARE, brush, excludeAndUndo, flyAndStop, importForeign, measureNext, observe, readResult, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
+/** With typeset formulas; without them there would be still less. */
+const BUNDLE_BYTES = 150_000;
 const rest = async (path) => {
 	const answer = await fetch(`${where.base}/api/v1${path}`);
 	expect(answer.ok, `GET ${path} answers ${answer.status}`);
@@ -20,6 +22,9 @@ await tell('walk', async () => {
 	await observe(watcher, where.base);
 	const run = await startRun(page, where.base, BARE);
 	await watcher.getByText('RUNNING').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the observer does not see the run'));
+	const bytes = await page.evaluate(() => performance.getEntriesByType('resource').filter((one) => one.name.includes('/assets/')).reduce((sum, one) => sum + one.encodedBodySize, 0));
+	expect(bytes > 0 && bytes <= BUNDLE_BYTES, `scripts and styles are ${bytes} bytes as they are sent, ${BUNDLE_BYTES} is the most`);
+	console.log(`scripts and styles: ${bytes} bytes as they are sent`);
 	const toWorkbench = await watchRun(page);
 	const result = await readResult(page);
 	expect(result.verdict !== 'failed' && result.quantities > 2 && result.rows > 10, `the result says too little: ${JSON.stringify(result)}`);
@@ -44,7 +49,8 @@ await tell('walk', async () => {
 	const chosen = await brush(page);
 	expect(chosen > 0, 'the brush chose no sample');
 	expect((await page.locator('svg line[stroke="var(--oi-purple)"]').count()) > 0, 'the chosen samples are not marked along the axes');
-	await page.keyboard.press('c');
+	const without = await excludeAndUndo(page, 'walked over the cable');
+	expect(/without .* s: walked over the cable/.test(without), `the page does not say what is excluded: ${without}`);
 
 	const held = await page.evaluate(() => document.querySelector('rect.held.here').dataset.held);
 	const said = await tryAndDrop(page);

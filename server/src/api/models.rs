@@ -1,10 +1,12 @@
 //! Effects, model versions and what they leave unexplained.
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
-use super::problem::Refusals;
+use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
 use crate::view::{Diagnosis, Effect, Fit, Model, NewDiagnosis, NewModel, ResidualSet};
 use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -27,7 +29,7 @@ pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -
 #[utoipa::path(post, path = "/models", tag = "models", request_body = NewModel,
     responses((status = 201, description = "The version", body = Model), Refusals))]
 pub async fn create(State(lab): State<Lab>, Json(new): Json<NewModel>) -> Created<Model> {
-    created(lab.create_model(&new.runs(), &new.effects, new.parent).await?)
+    created(lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude).await?)
 }
 
 #[derive(Debug, Clone, Deserialize, IntoParams)]
@@ -63,8 +65,9 @@ pub async fn fit(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Fit> {
 #[utoipa::path(get, path = "/models/{id}/residuals", tag = "models",
     params(("id" = i64, Path, description = "Model version")),
     responses((status = 200, description = "The residuals", body = ResidualSet), Refusals))]
-pub async fn residuals(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<ResidualSet> {
-    Ok(Json(lab.residuals(id).await?))
+pub async fn residuals(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Response, Problem> {
+    let json = lab.residuals(id).await?;
+    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
 }
 
 /// Finds where a model version fails and what it lacks, and keeps the answer

@@ -142,6 +142,7 @@ pub(super) fn model(record: ModelRecord) -> Result<view::Model, LabError> {
         id: record.id,
         run: record.run,
         more_runs: record.more_runs,
+        excluded: reread(&record.excluded)?,
         kind: record.kind,
         parent: record.parent,
         added: record.added,

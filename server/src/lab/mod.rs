@@ -6,6 +6,7 @@ mod benches;
 mod continuing;
 mod convert;
 mod error;
+mod excluding;
 mod experiment;
 mod identifications;
 mod models;
@@ -47,6 +48,8 @@ struct Inner {
     hub: Hub,
     benches: Vec<BenchHandle>,
     flights: Flights,
+    /// Whose turn it is to work out what effects are worth.
+    worth: tokio::sync::Mutex<()>,
 }
 
 impl Lab {
@@ -76,14 +79,24 @@ impl Lab {
                 store.end_run(run, jointbench_procedure::Safe::UnsafeUnknown, Some(reason)).await?;
             }
         }
-        let lab = Lab { inner: Arc::new(Inner { store, hub, benches, flights: Flights::default() }) };
+        let lab = Lab {
+            inner: Arc::new(Inner { store, hub, benches, flights: Flights::default(), worth: Default::default() }),
+        };
         lab.wait_until_secured().await;
         Ok(lab)
     }
 
     /// The store alone, to bring runs in and out while no daemon has it. No bench, and nothing is ended.
     pub fn of_store(store: Store) -> Lab {
-        Lab { inner: Arc::new(Inner { store, hub: Hub::new(), benches: Vec::new(), flights: Flights::default() }) }
+        Lab {
+            inner: Arc::new(Inner {
+                store,
+                hub: Hub::new(),
+                benches: Vec::new(),
+                flights: Flights::default(),
+                worth: Default::default(),
+            }),
+        }
     }
 
     pub fn hub(&self) -> &Hub {

@@ -1,39 +1,61 @@
 //! Effects, model versions and diagnoses.
 
+use super::excluding;
 use super::{Answer, Lab, LabError, Offer, convert, next_run, reread};
-use crate::store::NewModel;
-use crate::view::{self, Diagnosis, Effect, LiveMessage, Model, ResidualSet, finite};
+use crate::store::{ModelRecord, NewModel};
+use crate::view::{self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ResidualSet, finite};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options};
 
+/// What is kept of a version under which name.
+const RESIDUALS: &str = "residuals";
+
 impl Lab {
     /// Fits effects to runs of one joint, looked at together, and keeps the fit as a version of the first, with its
-    /// diagnosis.
-    pub async fn create_model(&self, runs: &[i64], effects: &[String], parent: Option<i64>) -> Answer<Model> {
+    /// diagnosis. What is not to be looked at is what the parent does not look at, where nothing is said of it.
+    pub async fn create_model(
+        &self,
+        runs: &[i64],
+        effects: &[String],
+        parent: Option<i64>,
+        exclude: Option<Vec<Exclusion>>,
+    ) -> Answer<Model> {
         let Some((&run, more_runs)) = runs.split_first() else {
             return Err(LabError::Invalid("name the run that the model is fitted to".into()));
         };
-        if let Some(parent) = parent
-            && self.inner.store.model(parent).await?.run != run
-        {
-            return Err(LabError::Invalid(format!("model version {parent} belongs to another run than {run}")));
+        let mut excluded = exclude;
+        if let Some(parent) = parent {
+            let before = self.inner.store.model(parent).await?;
+            if before.run != run {
+                return Err(LabError::Invalid(format!("model version {parent} belongs to another run than {run}")));
+            }
+            excluded = Some(excluded.map_or_else(|| reread(&before.excluded), Ok)?);
         }
+        let excluded = excluded.unwrap_or_default();
+        excluding::check(&excluded)?;
         for run in runs {
             if !self.inner.store.run(*run).await?.state.is_final() {
                 return Err(LabError::Conflict(format!("run {run} is still on: fit a model when it has ended")));
             }
         }
-        let table = self.tables(runs).await?;
+        let whole = self.tables(runs).await?;
+        let table = excluding::without(whole.clone(), &excluded)?;
         let spec = self.spec(table.kind(), effects).await?;
         let options = Options::default();
         let chosen = reread(&options)?;
         let offer = self.offer(&table, runs, None).await?;
-        let (fit, diagnosis) = blocking(move || fit_and_diagnose(&table, &spec, &options, &offer)).await?;
+        let (fit, diagnosis, left) = blocking(move || {
+            let (fit, diagnosis) = fit_and_diagnose(&table, &spec, &options, &offer)?;
+            let left = jointbench_model::residuals(&whole, &fit, &options).ok();
+            Ok((fit, diagnosis, left))
+        })
+        .await?;
         let noise_floor_rms = diagnosis.as_ref().and_then(|diagnosis| diagnosis.noise_floor_rms).and_then(finite);
         let checked: view::Fit = reread(&fit)?;
         let new = NewModel {
             run,
             more_runs: more_runs.to_vec(),
+            excluded: reread(&excluded)?,
             parent,
             kind: fit.kind.to_string(),
             effects: fit.effects.clone(),
@@ -45,6 +67,10 @@ impl Lab {
             fit: reread(&fit)?,
         };
         let record = self.inner.store.save_model(&new).await?;
+        // Without them the version stands all the same; whoever asks for them is told why.
+        if let Some(json) = left.and_then(|left| written(&left, &excluded).ok()) {
+            self.inner.store.keep(record.id, RESIDUALS, &json).await?;
+        }
         if let Some(diagnosis) = &diagnosis {
             self.inner.store.save_diagnosis(record.id, &reread(diagnosis)?).await?;
         }
@@ -67,12 +93,23 @@ impl Lab {
         convert::model(self.inner.store.model(id).await?)
     }
 
-    pub async fn residuals(&self, id: i64) -> Answer<ResidualSet> {
+    /// What a version was fitted to.
+    pub(super) async fn fitted_table(&self, record: &ModelRecord) -> Answer<RunTable> {
+        excluding::without(self.tables(&record.runs()).await?, &reread::<_, Vec<Exclusion>>(&record.excluded)?)
+    }
+
+    /// What the version leaves of its runs, as JSON ([`ResidualSet`]). Kept with the version; worked out where it is not.
+    pub async fn residuals(&self, id: i64) -> Answer<Vec<u8>> {
+        if let Some(kept) = self.inner.store.kept(id, RESIDUALS).await? {
+            return Ok(kept);
+        }
         let model = self.inner.store.model(id).await?;
         let fit: Fit = reread(&model.fit)?;
         let table = self.tables(&model.runs()).await?;
-        let set = blocking(move || jointbench_model::residuals(&table, &fit, &Options::default())).await?;
-        reread(&set)
+        let left = blocking(move || jointbench_model::residuals(&table, &fit, &Options::default())).await?;
+        let json = written(&left, &reread::<_, Vec<Exclusion>>(&model.excluded)?)?;
+        self.inner.store.keep(id, RESIDUALS, &json).await?;
+        Ok(json)
     }
 
     /// The diagnosis of a version. Data and version never change: the answer is made once, and again where users' effects
@@ -88,7 +125,7 @@ impl Lab {
                 return convert::diagnosis(kept, record.run);
             }
         }
-        let table = self.tables(&record.runs()).await?;
+        let table = self.fitted_table(&record).await?;
         let spec = ModelSpec::with_own(table.kind(), &record.effects, own)?;
         let offer = self.offer(&table, &record.runs(), None).await?;
         let diagnosis = blocking(move || diagnose(&table, &spec, &Options::default(), &offer)).await?;
@@ -107,6 +144,20 @@ impl Lab {
         let records = self.inner.store.diagnoses(model).await?;
         records.into_iter().map(|record| convert::diagnosis(record, run)).collect()
     }
+}
+
+/// The residuals as the API tells them. Lists as long as these take a while as values of any kind: they are read from
+/// text, which refuses what is not finite.
+fn written(left: &jointbench_model::ResidualSet, excluded: &[Exclusion]) -> Answer<Vec<u8>> {
+    let unfit =
+        |fault: serde_json::Error| LabError::Internal(format!("the residuals are not finite or not whole: {fault}"));
+    let mut set: ResidualSet = serde_json::from_slice(&serde_json::to_vec(left).map_err(unfit)?).map_err(unfit)?;
+    if !excluded.is_empty()
+        && let Some(time) = set.axes.iter().find(|axis| axis.name == "time_s")
+    {
+        set.excluded = excluding::marked(&time.values, excluded);
+    }
+    serde_json::to_vec(&set).map_err(unfit)
 }
 
 /// The diagnosis with the run to make next.

@@ -212,7 +212,7 @@ impl Pilot {
             Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
             None => None,
         };
-        let model = self.lab.create_model(&self.runs, effects, parent).await?;
+        let model = self.lab.create_model(&self.runs, effects, parent, None).await?;
         let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
         let found = self.diagnosed(&model, step).await?;
         Ok((model, found))
@@ -220,7 +220,7 @@ impl Pilot {
 
     async fn add(&mut self, before: &Model, best: &Suggestion) -> Answer<(Model, Finding)> {
         let effects: Vec<String> = before.effects.iter().cloned().chain([best.effect.clone()]).collect();
-        let model = self.lab.create_model(&self.runs, &effects, Some(before.id)).await?;
+        let model = self.lab.create_model(&self.runs, &effects, Some(before.id), None).await?;
         let tied = match best.confounded_with.as_slice() {
             [] => String::new(),
             rivals => format!(" (these runs cannot tell it from {})", rivals.join(", ")),

@@ -7,6 +7,9 @@ use crate::view::{Comparison, Evaluation, LiveMessage, Model, ModelImport, Worth
 use jointbench_model::transfer::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options};
 
+/// What is kept of a version under which name.
+const WORTH: &str = "worth";
+
 impl Lab {
     /// `run`: where both are evaluated; the run of the first where left out.
     pub async fn compare(&self, first: i64, second: i64, run: Option<i64>) -> Answer<Comparison> {
@@ -20,10 +23,15 @@ impl Lab {
     }
 
     /// The error outside the fit without each effect in turn. The order in which effects were added says nothing of it.
+    /// Kept; worked out for one version at a time, so that a page that is opened again does not have it done twice.
     pub async fn worth(&self, model: i64) -> Answer<Vec<Worth>> {
+        let _turn = self.inner.worth.lock().await;
+        if let Some(kept) = self.inner.store.kept(model, WORTH).await? {
+            return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
+        }
         let record = self.inner.store.model(model).await?;
         let fit: Fit = reread(&record.fit)?;
-        let table = self.tables(&record.runs()).await?;
+        let table = self.fitted_table(&record).await?;
         let refit = move |effect: &str| {
             let others = record.effects.iter().filter(|one| *one != effect);
             let spec = ModelSpec::with_own(table.kind(), others, fit.own.clone())?;
@@ -37,7 +45,10 @@ impl Lab {
             };
             Worth { effect, without_rms, reason }
         };
-        blocking(move || Ok(effects.into_iter().map(said).collect())).await
+        let worth: Vec<Worth> = blocking(move || Ok(effects.into_iter().map(said).collect())).await?;
+        let json = serde_json::to_vec(&worth).map_err(|fault| LabError::Internal(fault.to_string()))?;
+        self.inner.store.keep(model, WORTH, &json).await?;
+        Ok(worth)
     }
 
     pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {
@@ -60,6 +71,7 @@ impl Lab {
         let new = NewModel {
             run: import.run,
             more_runs: Vec::new(),
+            excluded: serde_json::Value::Array(Vec::new()),
             parent: None,
             kind: kept.kind.to_string(),
             effects: kept.effects.clone(),

@@ -11,6 +11,7 @@ use jointbench_model::words;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use number::with_interval;
 use serde_json::{Map, Value};
+use std::collections::BTreeSet;
 
 /// What is told of a run.
 pub struct Report {
@@ -160,7 +161,10 @@ fn change(version: &Model) -> String {
         None => "start".to_owned(),
         Some(_) => {
             let added = version.added.iter().map(|id| format!("+ {id}"));
-            added.chain(version.removed.iter().map(|id| format!("− {id}"))).collect::<Vec<_>>().join(", ")
+            let removed = version.removed.iter().map(|id| format!("− {id}"));
+            let reasons: BTreeSet<&str> = version.excluded.iter().map(|one| one.reason.as_str()).collect();
+            let without = reasons.into_iter().map(|reason| format!("without samples: {reason}"));
+            added.chain(removed).chain(without).collect::<Vec<_>>().join(", ")
         }
     }
 }

@@ -8,6 +8,7 @@ mod autopilots;
 pub mod codec;
 mod commit;
 mod error;
+mod kept;
 mod migrations;
 mod models;
 mod notes;

@@ -12,6 +12,7 @@ fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
         id: row.try_get("id")?,
         run: row.try_get("run")?,
         more_runs: json(row, "more_runs")?,
+        excluded: json(row, "excluded")?,
         parent: row.try_get("parent")?,
         kind: row.try_get("kind")?,
         effects: json(row, "effects")?,
@@ -48,11 +49,12 @@ impl Store {
             these.iter().filter(|effect| !those.contains(effect)).cloned().collect::<Vec<String>>()
         };
         let row = sqlx::query(
-            "INSERT INTO models (run, more_runs, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
-             noise_floor_rms, options, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
+            "INSERT INTO models (run, more_runs, excluded, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
+             noise_floor_rms, options, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
         )
         .bind(new.run)
         .bind(serde_json::to_string(&new.more_runs)?)
+        .bind(serde_json::to_string(&new.excluded)?)
         .bind(new.parent)
         .bind(&new.kind)
         .bind(serde_json::to_string(&new.effects)?)

@@ -91,6 +91,8 @@ pub struct NewModel {
     pub run: RunId,
     /// Further runs of the same joint that the fit looks at, in order.
     pub more_runs: Vec<RunId>,
+    /// Stretches that the fit does not look at.
+    pub excluded: Value,
     pub parent: Option<i64>,
     pub kind: String,
     pub effects: Vec<String>,
@@ -108,6 +110,7 @@ pub struct ModelRecord {
     pub id: i64,
     pub run: RunId,
     pub more_runs: Vec<RunId>,
+    pub excluded: Value,
     pub parent: Option<i64>,
     pub kind: String,
     pub effects: Vec<String>,

@@ -45,6 +45,20 @@ pub struct NewModel {
     /// The version that this one grew from.
     #[serde(default)]
     pub parent: Option<i64>,
+    /// Stretches that the fit must not look at; those of the parent where left out.
+    #[serde(default)]
+    pub exclude: Option<Vec<Exclusion>>,
+}
+
+/// A stretch of a measurement that a model version was not fitted to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Exclusion {
+    /// Since the first sample of the runs that are looked at together, both ends included.
+    pub from_s: f64,
+    pub to_s: f64,
+    /// What a person knows of it.
+    pub reason: String,
 }
 
 impl NewModel {
@@ -61,6 +75,8 @@ pub struct Model {
     pub run: i64,
     /// Further runs that the fit looked at together with the first.
     pub more_runs: Vec<i64>,
+    /// What the fit did not look at.
+    pub excluded: Vec<Exclusion>,
     pub kind: String,
     pub parent: Option<i64>,
     /// Effects that the parent did not have; all of them where there is no parent.
@@ -206,6 +222,10 @@ pub struct ResidualSet {
     pub error: Vec<f64>,
     /// Points that are not part of the fit (ramps, reversals): shown, not judged.
     pub held_out: Vec<bool>,
+    /// Points that a person took out of the fit; empty where there are none.
+    #[serde(default)]
+    #[schema(required)]
+    pub excluded: Vec<bool>,
     pub segment: Vec<i64>,
     pub repeat: Vec<i64>,
 }

@@ -48,12 +48,31 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     let (status, set) = daemon.get(&format!("/api/v1/models/{}/residuals", model["id"]));
     assert_eq!(status, 200, "{set}");
     assert_eq!(set["measured"].as_array().unwrap().len(), set["error"].as_array().unwrap().len());
+    assert_eq!(daemon.get(&format!("/api/v1/models/{}/residuals", model["id"])).1, set, "asked again, the same");
 
     let body = json!({ "run": id, "parent": model["id"],
         "effects": ["inertia", "load_transmission", "coulomb", "viscous", "direction_offset"] });
-    let (_, child) = daemon.post("/api/v1/models", &body.to_string());
+    let body_of_child = body.to_string();
+    let (_, child) = daemon.post("/api/v1/models", &body_of_child);
     assert_eq!((&child["parent"], &child["added"]), (&model["id"], &json!(["direction_offset"])), "{child}");
     assert_eq!(daemon.get(&format!("/api/v1/models?run={id}")).1.as_array().unwrap().len(), 2);
+    let mut body = json!({ "run": id, "parent": model["id"], "effects": model["effects"],
+        "exclude": [{ "from_s": 0.0, "to_s": 0.5, "reason": "the cable was touched" }] });
+    let (status, without) = daemon.post("/api/v1/models", &body.to_string());
+    assert_eq!((status, &without["excluded"], &without["added"]), (201, &body["exclude"], &json!([])), "{without}");
+    let (_, set) = daemon.get(&format!("/api/v1/models/{}/residuals", without["id"]));
+    let marks = set["excluded"].as_array().unwrap();
+    assert_eq!(marks.len(), set["error"].as_array().unwrap().len());
+    assert!(marks.contains(&true.into()) && marks.contains(&false.into()), "shown, and marked");
+    let child = json!({ "run": id, "parent": without["id"], "effects": ["coulomb", "viscous"] });
+    assert_eq!(daemon.post("/api/v1/models", &child.to_string()).1["excluded"], body["exclude"], "as its parent");
+    body["exclude"][0]["reason"] = " ".into();
+    assert_eq!(daemon.post("/api/v1/models", &body.to_string()).0, 422, "nothing goes without a reason");
+
+    let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
+    assert!(page.contains("without samples: the cable was touched"), "{page}");
+    let (_, child) = daemon.post("/api/v1/models", &body_of_child);
+    assert_eq!(child["excluded"], json!([]));
     let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
     assert!(
         page.contains("+ direction_offset") && page.contains("noise floor"),
@@ -96,6 +115,7 @@ fn what_is_left_of_a_stopped_run_is_made_later_and_both_are_one_measurement() {
     assert_eq!(daemon.post(&format!("/api/v1/runs/{id}/continue"), "").0, 409, "it is still on");
     daemon.post(&format!("/api/v1/runs/{id}/abort"), "");
     assert_eq!(daemon.wait_for_end(id)["state"], "aborted");
+    daemon.wait_for("/api/v1/bench/joint-a-mock", |bench| bench["run"].is_null());
     let (status, rest) = daemon.post(&format!("/api/v1/runs/{id}/continue"), "");
     assert_eq!(status, 201, "{rest}");
     let rest = daemon.wait_for_end(rest["id"].as_i64().unwrap());

@@ -2,7 +2,7 @@ import createClient from 'openapi-fetch';
 import type { paths } from '../../gen/schema';
 import { Refusal, asRefusal } from './problem';
 import { authorization } from './token';
-import type { EffectDefinition, NewAutopilot } from './types';
+import type { EffectDefinition, Exclusion, NewAutopilot } from './types';
 
 export const BASE = '/api/v1';
 
@@ -75,8 +75,9 @@ export const api = {
 	forgetEffect: (kind: string, id: string) =>
 		body<undefined>(client.DELETE('/api/v1/effects/{kind}/{id}', { params: { path: { kind, id } } })),
 	models: (run: number, signal?: Signal) => body(client.GET('/api/v1/models', { params: { query: { run } }, signal })),
-	fit: (run: number, effects: string[], parent?: { id: number; more_runs: number[] }) =>
-		body(client.POST('/api/v1/models', { body: { run, effects, parent: parent?.id, more_runs: parent?.more_runs } })),
+	/** Without `exclude` the version looks away where its parent does. */
+	fit: (run: number, effects: string[], parent?: { id: number; more_runs: number[] }, exclude?: Exclusion[]) =>
+		body(client.POST('/api/v1/models', { body: { run, effects, parent: parent?.id, more_runs: parent?.more_runs, exclude } })),
 	worth: (id: number, signal?: Signal) => body(client.GET('/api/v1/models/{id}/worth', { params: { path: { id } }, signal })),
 	compare: (first: number, second: number, run: number, signal?: Signal) =>
 		body(client.GET('/api/v1/models/{id}/compare/{other}', { params: { path: { id: first, other: second }, query: { run } }, signal })),

@@ -1,14 +1,8 @@
 import { expect, it } from 'vitest';
-import { scaled, speedScale } from './speed';
+import { spokenSpeeds } from './speed';
 
-it('reads speeds in rpm, and nothing else', () => {
-	expect(speedScale('rad/s', true).factor * 2 * Math.PI).toBeCloseTo(60, 12);
-	expect(speedScale('rad/s²', true)).toEqual({ factor: 1, unit: 'rad/s²' });
-	expect(speedScale('rad/s', false)).toEqual({ factor: 1, unit: 'rad/s' });
-});
-
-it('leaves gaps as they are, and a column that stays in its unit untouched', () => {
-	const column = Float32Array.of(1, 2);
-	expect(scaled(column, { factor: 1, unit: 'Nm' })).toBe(column);
-	expect(scaled([1, null], { factor: 2, unit: 'rpm' })).toEqual([2, null]);
+it('says the speeds of a sentence in rpm, and leaves everything else', () => {
+	const said = 'the model is 12 mNm too low at a motor velocity between 0.5 rad/s and 170 rad/s, −20 mrad/s, 3 rad/s²';
+	expect(spokenSpeeds(said, true)).toBe('the model is 12 mNm too low at a motor velocity between 4.77 rpm and 1620 rpm, −0.191 rpm, 3 rad/s²');
+	expect(spokenSpeeds(said, false)).toBe(said);
 });

@@ -7,6 +7,17 @@ export function speedScale(unit: string, rpm: boolean): Scale {
 	return rpm && unit === 'rad/s' ? { factor: RPM_PER_RAD_S, unit: 'rpm' } : { factor: 1, unit };
 }
 
+const PREFIX: Record<string, number> = { '': 1, m: 1e-3, µ: 1e-6, k: 1e3 };
+
+/** A sentence of the daemon, with its speeds as they are read. */
+export function spokenSpeeds(sentence: string, rpm: boolean): string {
+	if (!rpm) return sentence;
+	return sentence.replace(/([-−]?)(\d[\d.]*) ([mµk]?)rad\/s(?![\w²^])/g, (_all, sign: string, figure: string, prefix: string) => {
+		const turns = Number(figure) * PREFIX[prefix]! * RPM_PER_RAD_S;
+		return `${sign}${Number(turns.toPrecision(3))} rpm`;
+	});
+}
+
 /** A column in the shown unit; the same column where there is nothing to do. */
 export function scaled<T extends ArrayLike<number | null>>(column: T, { factor }: Scale): ArrayLike<number | null> {
 	if (factor === 1) return column;

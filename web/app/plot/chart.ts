@@ -1,6 +1,7 @@
 import uPlot from 'uplot';
 import { colour } from './colour';
 import { type Asked, type View, gestures } from './gestures';
+import { dashes, points } from './marks';
 import { type Cursors, type Moved, rulers } from './measure';
 import { trace } from './trace';
 
@@ -136,11 +137,7 @@ function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 		return { stroke, width: 2, points: { show: false }, paths, fill: () => `color-mix(in srgb, ${stroke()} 22%, transparent)` };
 	}
 	const filled = curve.mark === 'dot';
-	return {
-		stroke,
-		paths: () => null,
-		points: { show: true, size: filled ? 5 : 6, width: 1, stroke, fill: filled ? stroke : () => 'transparent' },
-	};
+	return { stroke, width: 1, fill: stroke, points: { show: false }, paths: (u, i, from, to) => points(u, i, from, to, filled) };
 }
 
 function chord(u: uPlot, index: number): uPlot.Series.Paths {
@@ -152,26 +149,6 @@ function chord(u: uPlot, index: number): uPlot.Series.Paths {
 		else path.lineTo(...at);
 	}
 	return { stroke: path };
-}
-
-/** A short level stroke at each point: where the model says the point should be, and the box that repeats would fill. */
-function dashes(u: uPlot, index: number, from: number, to: number, spread: number): uPlot.Series.Paths {
-	const path = new Path2D();
-	const boxes = new Path2D();
-	const half = 5 * devicePixelRatio;
-	for (let i = from; i <= to; i++) {
-		const value = u.data[index]![i];
-		if (value == null) continue;
-		const x = u.valToPos(u.data[0]![i]!, 'x', true);
-		const y = u.valToPos(value, 'y', true);
-		path.moveTo(x - half, y);
-		path.lineTo(x + half, y);
-		if (spread > 0) {
-			const top = u.valToPos(value + spread, 'y', true);
-			boxes.rect(x - half, top, 2 * half, 2 * (y - top));
-		}
-	}
-	return { stroke: path, fill: boxes };
 }
 
 function paintBackdrop(u: uPlot, { region, band }: Backdrop): void {

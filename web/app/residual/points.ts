@@ -3,12 +3,13 @@ import type { ResidualSet } from '../api/types';
 export type Side = 'both' | 'positive' | 'negative';
 
 /**
- * Which points count: those of the fit, in the chosen direction of motion. Ramps and reversals took no part in the fit;
+ * Which points count: none that a person excluded; those of the fit, in the chosen direction of motion. Ramps and reversals took no part in the fit;
  * they count only where they are asked for.
  */
 export function keep(set: ResidualSet, side: Side, ramps = false): Uint8Array {
 	const direction = directionOf(set);
 	return Uint8Array.from(set.error, (_, i) => {
+		if (set.excluded[i]) return 0;
 		if (set.held_out[i] && !ramps) return 0;
 		if (side === 'both' || !direction) return 1;
 		const sign = direction[i]!;

@@ -35,7 +35,8 @@ class Keys {
 
 function isTyping(target: EventTarget | null): boolean {
 	const element = target instanceof HTMLElement ? target : null;
-	return !!element && (element.isContentEditable || ['INPUT', 'TEXTAREA', 'SELECT'].includes(element.tagName));
+	// A box to tick takes no letters.
+	return !!element && (element.isContentEditable || element.matches('textarea, select, input:not([type=checkbox], [type=radio], [type=range])'));
 }
 
 export const keys = new Keys();

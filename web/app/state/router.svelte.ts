@@ -1,18 +1,26 @@
 import { type Route, parseRoute, withQuery } from './route';
 
+/** A browser takes 200 changes of the address in ten seconds; a wheel makes more. The last one of a while is enough. */
+const REST_MS = 120;
+
 class Router {
 	path = $state(location.pathname);
 	search = $state(location.search);
 	route: Route = $derived(parseRoute(this.path));
 	query = $derived(new URLSearchParams(this.search));
 
+	private late: ReturnType<typeof setTimeout> | undefined;
+	private replaced_ms = Number.NEGATIVE_INFINITY;
+
 	constructor() {
 		addEventListener('popstate', () => this.read());
+		addEventListener('pagehide', () => this.write());
 		document.addEventListener('click', (click) => this.follow(click));
 	}
 
 	/** Goes to an address of the dashboard. */
 	go(address: string, how: 'push' | 'replace' = 'push'): void {
+		this.write();
 		if (how === 'push') history.pushState(null, '', address);
 		else history.replaceState(null, '', address);
 		this.read();
@@ -21,10 +29,26 @@ class Router {
 	/** Changes how the present view is set. */
 	set(changes: Record<string, string | number | null>, how: 'push' | 'replace' = 'replace'): void {
 		const next = withQuery(this.query, changes);
-		if (next !== this.search) this.go(this.path + next, how);
+		if (next === this.search) return;
+		if (how === 'push') return this.go(this.path + next);
+		this.search = next;
+		const wait_ms = this.replaced_ms + REST_MS - performance.now();
+		if (wait_ms <= 0) this.write();
+		else this.late ??= setTimeout(() => this.write(), wait_ms);
+	}
+
+	/** The view as it is becomes the address. */
+	private write(): void {
+		clearTimeout(this.late);
+		this.late = undefined;
+		if (location.search === this.search || location.pathname !== this.path) return;
+		history.replaceState(null, '', this.path + this.search);
+		this.replaced_ms = performance.now();
 	}
 
 	private read(): void {
+		clearTimeout(this.late);
+		this.late = undefined;
 		const left = this.path;
 		this.path = location.pathname;
 		this.search = location.search;

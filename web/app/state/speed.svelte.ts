@@ -1,5 +1,5 @@
 import { axisTitle, label } from '../format/label';
-import { speedScale } from '../format/speed';
+import { speedScale, spokenSpeeds } from '../format/speed';
 import type { Scale } from '../format/number';
 
 const KEPT = 'jointbench.speed';
@@ -15,6 +15,11 @@ class Speed {
 
 	scale(unit: string): Scale {
 		return speedScale(unit, this.rpm);
+	}
+
+	/** A sentence with its speeds in the unit that is shown. */
+	said(sentence: string): string {
+		return spokenSpeeds(sentence, this.rpm);
 	}
 
 	/** The title of an axis in the unit that is shown. */

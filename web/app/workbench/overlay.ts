@@ -8,18 +8,20 @@ export interface OverlayData {
 	measured: Column;
 	measuredInside: Column;
 	measuredOutside: Column;
+	measuredExcluded: Column;
 	predicted: Column;
 	predictedInside: Column;
 	predictedOutside: Column;
 	residual: Column;
 	residualInside: Column;
 	residualOutside: Column;
+	residualExcluded: Column;
 	/** Prediction and residual of the version beside; empty without one. */
 	other: Column;
 	otherResidual: Column;
 }
 
-/** `Inside`: chosen points. `Outside`: points that took no part in the fit. */
+/** `Inside`: chosen points. `Outside`: points that took no part in the fit. `Excluded`: those that a person took out of it. */
 export function overlay(
 	set: ResidualSet,
 	xs: readonly number[],
@@ -30,7 +32,7 @@ export function overlay(
 ): OverlayData {
 	const order = xs.flatMap((value, i) => (Number.isFinite(value) && (ramps || !set.held_out[i]) ? [i] : []));
 	order.sort((a, b) => xs[a]! - xs[b]!);
-	const kind = order.map((i) => (chosen?.[i] ? 1 : set.held_out[i] ? 2 : 0));
+	const kind = order.map((i) => (set.excluded[i] ? 3 : chosen?.[i] ? 1 : set.held_out[i] ? 2 : 0));
 	const pick = (values: readonly number[], which: number, factor = 1): Column =>
 		order.map((i, k) => (kind[k] === which ? values[i]! * factor : null));
 	return {
@@ -38,12 +40,14 @@ export function overlay(
 		measured: pick(set.measured, 0),
 		measuredInside: pick(set.measured, 1),
 		measuredOutside: pick(set.measured, 2),
+		measuredExcluded: pick(set.measured, 3),
 		predicted: order.map((i) => set.predicted[i]!),
 		predictedInside: pick(set.predicted, 1),
 		predictedOutside: pick(set.predicted, 2),
 		residual: pick(set.error, 0, residualFactor),
 		residualInside: pick(set.error, 1, residualFactor),
 		residualOutside: pick(set.error, 2, residualFactor),
+		residualExcluded: pick(set.error, 3, residualFactor),
 		other: other ? order.map((i) => other.predicted[i]!) : [],
 		otherResidual: other ? order.map((i) => other.error[i]! * residualFactor) : [],
 	};

@@ -16,21 +16,25 @@ export function childWith(models: readonly Model[], parent: Model | null, effect
 	return models.find(
 		(model) =>
 			(model.parent ?? null) === (parent?.id ?? null) &&
-			(parent ? sameData(parent, model) : model.more_runs.length === 0) &&
+			(parent ? sameData(parent, model) : model.more_runs.length + model.excluded.length === 0) &&
 			[...model.effects].sort().join() === wanted,
 	);
 }
 
 /** Only errors on the same data can be set against each other. */
 export function sameData(one: Model, other: Model): boolean {
-	return one.run === other.run && one.more_runs.join() === other.more_runs.join();
+	const away = ({ excluded }: Model) => excluded.map(({ from_s, to_s }) => `${from_s}:${to_s}`).join();
+	return one.run === other.run && one.more_runs.join() === other.more_runs.join() && away(one) === away(other);
 }
 
 /** What a version did to its parent, in a few words. */
-export function stepName(model: Model): string {
+export function stepName(model: Model, before?: Model): string {
 	if (model.parent == null) return 'start';
 	const parts = [...model.added.map((id) => `+ ${id}`), ...model.removed.map((id) => `− ${id}`)];
 	if (parts.length > 0) return parts.join(', ').replaceAll('_', ' ');
+	if (before && before.excluded.length !== model.excluded.length) {
+		return before.excluded.length < model.excluded.length ? 'without some samples' : 'with samples again';
+	}
 	return model.more_runs.length > 0 ? `with run ${model.more_runs.join(', ')}` : 'same effects';
 }
 

@@ -19,7 +19,7 @@ export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' |
 		const before = path[i - 1];
 		return {
 			key: `v${model.id}`,
-			label: stepName(model),
+			label: stepName(model, before),
 			held: model.validation_rms,
 			training: model.rms,
 			change: before && sameData(before, model) ? model.validation_rms / before.validation_rms - 1 : null,

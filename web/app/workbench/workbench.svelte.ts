@@ -1,7 +1,7 @@
 import { untrack } from 'svelte';
 import { api } from '../api/client';
 import { type Refusal, asRefusal } from '../api/problem';
-import type { Model, Run } from '../api/types';
+import type { Exclusion, Model, Run } from '../api/types';
 import { percent, quantity } from '../format/number';
 import { words } from '../format/label';
 import { lab } from '../state/lab.svelte';
@@ -61,7 +61,9 @@ export function openWorkbench(id: number) {
 	);
 	const side = $derived((router.query.get('side') ?? 'both') as Side);
 	const ramps = $derived(router.query.has('ramps'));
-	const region = $derived(readRegion(router.query.get('region')));
+	/** As text first: a zoom changes the address too, and must not have everything counted again. */
+	const regionText = $derived(router.query.get('region'));
+	const region = $derived(readRegion(regionText));
 	const chosen = $derived(residuals.data ? selected(residuals.data.set, region, side, ramps) : null);
 	const diagnosis = resource(
 		() => (model ? `${model.id} ${lab.effects}` : null),
@@ -146,6 +148,28 @@ export function openWorkbench(id: number) {
 		}
 	}
 
+	/** The same effects fitted to other samples of the same runs. */
+	async function refitWithout(excluded: Exclusion[], what: string, told: string): Promise<void> {
+		const from = model;
+		if (!from || busy !== null) return;
+		busy = what;
+		refused = null;
+		try {
+			const made = await api.fit(id, from.effects, from, excluded);
+			models.put([...versions.filter((one) => one.id !== made.id), made]);
+			show(made, from);
+			notice = { text: `${told} Undo with z.`, good: true };
+		} catch (failure) {
+			refused = asRefusal(failure);
+		}
+		busy = null;
+	}
+	const exclude = (stretches: Exclusion[], reason: string) =>
+		refitWithout([...(model?.excluded ?? []), ...stretches], 'Refitting without the chosen samples', `Fitted without the chosen samples (${reason}).`);
+	/** Takes what was excluded for a reason in again. */
+	const include = (reason: string) =>
+		refitWithout((model?.excluded ?? []).filter((one) => one.reason !== reason), 'Refitting with the samples', `Fitted with the samples again that were excluded (${reason}).`);
+
 	const add = (effect: string) => model && refit([...model.effects, effect], model, `Refitting with ${words(effect)}`);
 	/** Adds a user's effect. Its formula may be new under a name that the model holds already: then all is fitted again. */
 	const addOwn = async (effect: string) =>
@@ -186,6 +210,8 @@ export function openWorkbench(id: number) {
 		addOwn,
 		attempt,
 		beside,
+		exclude,
+		include,
 		/** Makes the version beside the one at hand the one at hand. */
 		keep: () => other && model && show(other, model),
 		remove,

@@ -10,7 +10,7 @@ import { branches, chain, childWith, gain, stepName } from './tree';
 import { barsOf, lossesOf, markOf, topOf } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
-	({ id, parent, effects, added, removed: [], run: 1, more_runs: [], validation_rms: held, rms: held * 0.9 }) as unknown as Model;
+	({ id, parent, effects, added, removed: [], run: 1, more_runs: [], excluded: [], validation_rms: held, rms: held * 0.9 }) as unknown as Model;
 
 const models = [
 	version(1, null, ['coulomb'], 10),
@@ -37,6 +37,15 @@ describe('the tree of versions', () => {
 		expect(barsOf([models[1]!, more], null).map((bar) => bar.change)).toEqual([null, null]);
 	});
 
+	it('holds versions that look at other samples apart, and says so', () => {
+		const excluded = [{ from_s: 1, to_s: 2, reason: 'cable touched' }];
+		const less = { ...version(5, 2, ['coulomb', 'stribeck'], 5), added: [], excluded };
+		expect(childWith([...models, less], models[1]!, ['coulomb', 'stribeck'])).toBeUndefined();
+		expect(stepName(less, models[1])).toBe('without some samples');
+		expect(stepName({ ...less, id: 6, parent: 5, excluded: [] }, less)).toBe('with samples again');
+		expect(barsOf([models[1]!, less], null).map((bar) => bar.change)).toEqual([null, null]);
+	});
+
 	it('lists children under their parents', () => {
 		expect(branches(models).map(({ model, depth }) => [model.id, depth])).toEqual([
 			[1, 0],
@@ -47,7 +56,7 @@ describe('the tree of versions', () => {
 	});
 
 	it('names what a version did', () => {
-		expect(models.map(stepName)).toEqual(['start', '+ stribeck', '+ load linear', '+ load linear']);
+		expect(models.map((model) => stepName(model))).toEqual(['start', '+ stribeck', '+ load linear', '+ load linear']);
 		expect(gain(models[0]!, models[1]!)).toBeCloseTo(0.6, 12);
 	});
 });
@@ -99,6 +108,7 @@ describe('regions', () => {
 			measured: [1, 2, 2, 2],
 			error: [0, 0, 0, 0],
 			held_out: [false, false, false, false],
+			excluded: [],
 		} as unknown as ResidualSet;
 		const region = [
 			{ axis: 'load', from: 4, to: 6 },
@@ -121,6 +131,7 @@ describe('regions', () => {
 			predicted: [31, 11, 21],
 			error: [-1, -1, -1],
 			held_out: [false, true, false],
+			excluded: [],
 		} as unknown as ResidualSet;
 		const chosen = selected(set, [{ axis: 'load', from: 4, to: 6 }], 'both', true);
 		const times = set.axes[0]!.values;

@@ -175,6 +175,7 @@ fn model(run: RunId, parent: Option<i64>, effects: &[&str]) -> NewModel {
     NewModel {
         run,
         more_runs: Vec::new(),
+        excluded: json!([]),
         parent,
         kind: "friction".into(),
         effects: effects.iter().map(|effect| (*effect).to_owned()).collect(),
@@ -209,6 +210,12 @@ fn model_versions_are_a_tree() {
         let astray = store.save_model(&model(other, Some(root.id), &[])).await.unwrap_err();
         assert!(matches!(astray, StoreError::OtherRun { .. }), "{astray}");
         assert!(matches!(store.save_model(&model(run, Some(77), &[])).await, Err(StoreError::NoModel(77))));
+
+        assert_eq!(store.kept(left.id, "worth").await.unwrap(), None);
+        store.keep(left.id, "worth", b"[1]").await.unwrap();
+        store.keep(left.id, "worth", b"[2]").await.unwrap();
+        assert_eq!(store.kept(left.id, "worth").await.unwrap().as_deref(), Some(&b"[2]"[..]));
+        assert_eq!(store.kept(right.id, "worth").await.unwrap(), None);
 
         let told = store.save_diagnosis(left.id, &json!({"verdict": "adequate"})).await.unwrap();
         assert_eq!(store.diagnosis(told.id).await.unwrap(), told);

@@ -1,0 +1,59 @@
+import type uPlot from 'uplot';
+import { placesOf } from './trace';
+
+/** More points than this are drawn as squares, one for each place: the picture costs what it shows, not what it was made of. */
+const MANY = 1500;
+/** Width of such a square, and of half a dash. */
+const SIDE = 3;
+const HALF = 5;
+
+/** Calls back with the places of the points that are shown; of those that share a cell of `wide` × `high` pixels, with the first. */
+function each(u: uPlot, index: number, from: number, to: number, cell: readonly [number, number] | null, put: (x: number, y: number, value: number) => void): void {
+	const { left, top, x0, y1, kx, ky } = placesOf(u);
+	const [xs, ys] = [u.data[0]!, u.data[index]!];
+	const columns = cell ? Math.ceil(u.bbox.width / cell[0]) + 1 : 0;
+	const rows = cell ? Math.ceil(u.bbox.height / cell[1]) + 1 : 0;
+	const taken = new Uint8Array(columns * rows);
+	for (let i = from; i <= to; i++) {
+		const value = ys[i];
+		if (value == null) continue;
+		const [x, y] = [(xs[i]! - x0) * kx, (y1 - value) * ky];
+		if (cell) {
+			const [column, row] = [Math.floor(x / cell[0]), Math.floor(y / cell[1])];
+			if (column < 0 || row < 0 || column >= columns || row >= rows || taken[row * columns + column]) continue;
+			taken[row * columns + column] = 1;
+		}
+		put(left + x, top + y, value);
+	}
+}
+
+/** Each point by itself: circles, or squares where there are many. A point alone is seen in either. */
+export function points(u: uPlot, index: number, from: number, to: number, filled: boolean): uPlot.Series.Paths {
+	const path = new Path2D();
+	const ratio = devicePixelRatio;
+	if (to - from > MANY) {
+		const side = SIDE * ratio;
+		each(u, index, from, to, [2 * ratio, 2 * ratio], (x, y) => path.rect(Math.round(x - side / 2), Math.round(y - side / 2), side, side));
+		return { stroke: null, fill: path };
+	}
+	const radius = (filled ? 2.5 : 2.7) * ratio;
+	each(u, index, from, to, null, (x, y) => {
+		path.moveTo(x + radius, y);
+		path.arc(x, y, radius, 0, 2 * Math.PI);
+	});
+	return filled ? { stroke: null, fill: path } : { stroke: path };
+}
+
+/** A short level stroke at each point: where the model says the point should be, and the box that repeats would fill. */
+export function dashes(u: uPlot, index: number, from: number, to: number, spread: number): uPlot.Series.Paths {
+	const [path, boxes] = [new Path2D(), new Path2D()];
+	const half = HALF * devicePixelRatio;
+	const { ky } = placesOf(u);
+	const cell = to - from > MANY ? ([half, devicePixelRatio] as const) : null;
+	each(u, index, from, to, cell, (x, y) => {
+		path.moveTo(x - half, y);
+		path.lineTo(x + half, y);
+		if (spread > 0) boxes.rect(x - half, y - spread * ky, 2 * half, 2 * spread * ky);
+	});
+	return { stroke: path, fill: boxes };
+}
