@@ -98,21 +98,28 @@ pub(super) struct Onset {
     pub current_a: f64,
 }
 
-/// The ramps of a run at whose end the joint moved, and the number of those that reached `top_a` before it did.
+/// The ramps of a run at whose end the joint moved, and the number of those that reached `top_a` before it did. A ramp that
+/// a pause has cut off, with the joint still at rest, is neither.
 pub(super) fn onsets(run: &RunTable, setpoint_a: &[f64], increases: usize, top_a: f64) -> (Vec<Onset>, usize) {
     let (mut onsets, mut held, mut start) = (Vec::new(), 0, 0);
+    let position = run.column("motor_position_rad").unwrap_or_default();
     for rows in run.column("segment").unwrap_or_default().chunk_by(|a, b| a == b) {
         let end = start + rows.len();
         let last_a = setpoint_a[end - 1].abs();
-        let row = end - increases.min(rows.len());
+        let row = end - increases.min(rows.len() - 1);
         if last_a > 0.999 * top_a {
             held += 1;
-        } else if last_a > 0.0 {
+        } else if last_a > 0.0 && 2 * onward(&position[row - 1..end], setpoint_a[end - 1]) >= increases {
             onsets.push(Onset { row, end, current_a: setpoint_a[row] });
         }
         start = end;
     }
     (onsets, held)
+}
+
+/// How many of the steps from row to row go in the current's direction. One that runs away is caught before all of them do.
+fn onward(position_rad: &[f64], current_a: f64) -> usize {
+    position_rad.windows(2).filter(|pair| (pair[1] - pair[0]) * current_a > 0.0).count()
 }
 
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {

@@ -25,7 +25,6 @@ impl Session<'_> {
         let reading = self.ask_joint(|joint| joint.read())?;
         self.check_range(&reading)?;
         self.joint = Some(reading);
-        self.home_rad = Some(reading.motor_position.0);
 
         let compliance = Volts(self.bench.constants.brake_compliance_v);
         self.ask_brake(|brake| brake.prepare(compliance))?;

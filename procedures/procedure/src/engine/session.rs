@@ -40,8 +40,8 @@ pub(super) struct Session<'a> {
     pub armed: bool,
     /// The latest reading of the joint.
     pub joint: Option<JointReading>,
-    /// Where the motor stood when the run began.
-    pub home_rad: Option<f64>,
+    /// Where the motor stood when the warm-up began.
+    pub warm_from_rad: Option<f64>,
     /// The latest reading of the torque sensor.
     pub link_torque_nm: Option<f64>,
     pub skews: Option<Skews>,
@@ -135,7 +135,7 @@ impl<'a> Session<'a> {
             wish: None,
             armed: false,
             joint: None,
-            home_rad: None,
+            warm_from_rad: None,
             link_torque_nm: None,
             skews: None,
             row_s: f64::NEG_INFINITY,

@@ -32,6 +32,9 @@ impl Session<'_> {
     /// Once through the step, and again from its beginning after every pause.
     fn run_step(&mut self, index: usize, step: &Step) -> Result<(), Ending> {
         let start_rad = self.joint.map(|reading| reading.motor_position.0);
+        if step.phase == Phase::WarmUp {
+            self.warm_from_rad = self.warm_from_rad.or(start_rad);
+        }
         let mut segment = step.segment;
         // The brake keeps what a pause has left, until the repeated step asks for more: it is approached from below.
         let mut least_brake_a = 0.0;

@@ -30,8 +30,8 @@ impl Session<'_> {
         }
         self.note(format!("the joint rested for {rested_s:.0} s: it is warmed up again"));
         self.unload()?;
-        // Its way was planned from where the run began.
-        self.go_back(plan.top_speed_rad_s(), self.home_rad, 0.0)?;
+        // Its way was planned from there.
+        self.go_back(plan.top_speed_rad_s(), self.warm_from_rad, 0.0)?;
         let mut watch = plan.steady.map(SteadyWatch::new);
         for step in plan.steps.iter().filter(|step| step.phase == Phase::WarmUp) {
             if self.wish == Some(Wish::Pause) || watch.as_ref().is_some_and(SteadyWatch::is_steady) {

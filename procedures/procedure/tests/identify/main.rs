@@ -1,4 +1,5 @@
 //! What procedures identify: from tables that are written down here, and on the mock bench.
 
 mod mock;
+mod pauses;
 mod tables;

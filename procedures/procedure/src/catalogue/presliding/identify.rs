@@ -64,6 +64,8 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     let points: usize = held.iter().map(|swings| swings.points.len()).sum();
     let wide = |ci95: Option<[f64; 2]>, value: f64| ci95.is_none_or(|[low, high]| high - low > 2.0 * WIDEST * value);
     let (k, coulomb, reach) = (interval(Dahl::stiffness), interval(|d| d.coulomb_nm), interval(Dahl::reach_rad));
+    // A sensor's zero, over the ratio, passes for such a torque: it is the same in every step, and no scatter tells of it.
+    let bias = run.column("link_torque_nm").is_none().then(|| interval(|d| d.bias_nm)).flatten();
     let decided = !wide(k, dahl.stiffness()) && !wide(coulomb, dahl.coulomb_nm) && broke_away == 0;
     let mut quantities = vec![
         quantity(
@@ -73,7 +75,7 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         ),
         quantity(["tau_c", "τ_c", "Torque at which the contacts slide", "Nm"], dahl.coulomb_nm, coulomb),
         quantity(["reach", "τ_c/σ₀", "Presliding way", "rad"], dahl.reach_rad(), reach),
-        quantity(["bias", "τ₀", "Torque that something else holds", "Nm"], dahl.bias_nm, interval(|d| d.bias_nm)),
+        quantity(["bias", "τ₀", "Torque that something else holds", "Nm"], dahl.bias_nm, bias),
     ];
     for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
         let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
