@@ -115,5 +115,6 @@ fn facts() -> BenchFacts {
         has_stage: false,
         amperes_per_volt: None,
         brake_model: None,
+        feeds_forward: true,
     }
 }
