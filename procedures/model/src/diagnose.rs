@@ -4,11 +4,11 @@ use crate::assembly::Assembly;
 use crate::explore::{Advance, Exploration, Withdrawal};
 use crate::fit::report;
 use crate::linear::dot;
-use crate::maps::{Maps, spoken, yardstick};
+use crate::maps::{Maps, yardstick};
 use crate::prepare::{Prepared, prepare};
 use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Region, Silent, Step, Suggestion, Verdict};
 use crate::select::held_out;
-use crate::words::{figure, list, percent};
+use crate::words::{figure, list, percent, spoken};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
 
@@ -215,13 +215,14 @@ fn summary(
                 Some(share) => format!(", {} of it the same in every repeat", percent(share)),
                 None => String::new(),
             };
-            let shows = match structure {
-                Some(s) if s.removable_share > LEAST_SHOWN => format!(
-                    "it shows most over {} and {}, a function of which would take {} off the squared error that \
+            let pair = structure.map(|s| (format!("{} and {}", spoken(&s.x), spoken(&s.y)), s.removable_share));
+            let axis = found.maps.removable().map(|(axis, share)| (spoken(axis), share));
+            // A second axis cuts the first one's bins: what shows over one alone can be more.
+            let shows = match axis.into_iter().chain(pair).max_by(|a, b| a.1.total_cmp(&b.1)) {
+                Some((axes, share)) if share > LEAST_SHOWN => format!(
+                    "it shows most over {axes}, a function of which would take {} off the squared error that \
                      remains ({error}{repeats})",
-                    spoken(&s.x),
-                    spoken(&s.y),
-                    percent(s.removable_share),
+                    percent(share),
                 ),
                 _ => format!(
                     "no axis of this run shows where it comes from (the error that remains is {error}{repeats})"

@@ -93,8 +93,9 @@ impl Shape<'_> {
         }
     }
 
+    /// It is refined continuously, and not held where it is.
     pub fn is_smooth(&self) -> bool {
-        matches!(self.search, Search::Smooth | Search::Signed)
+        self.min < self.max && matches!(self.search, Search::Smooth | Search::Signed)
     }
 }
 

@@ -120,7 +120,7 @@ impl<'p> Exploration<'p> {
             && let Some(rival) = memory(now, options)
             && let after = now.with_memory(&rival.term)
             && let Some(moving) = &after.moving
-            && is_decided(&rival.term, &intervals(moving, prepared.motion).parameters)
+            && is_decided(&rival.term, moving, &intervals(moving, prepared.motion).parameters, prepared)
         {
             advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
             advances.last().into_iter().for_each(&mut *on_advance);
@@ -179,14 +179,18 @@ fn held_out_rms(terms: &Terms) -> f64 {
     (held_out(terms).iter().sum::<f64>() / terms.problem.rows() as f64).sqrt()
 }
 
-/// Whether the run decides the size and shape of an effect: not where its factors could all be zero, or where its shape
-/// lies at the edge of what the run can speak about.
-fn is_decided(term: &Term, parameters: &[Parameter]) -> bool {
-    let mut own = parameters.iter().filter(|p| p.effect == term.id());
-    let is_factor = |p: &&Parameter| term.form.linear.contains(&p.name.as_str());
-    let at_bound = own.clone().any(|p| p.state == ParameterState::AtBound);
+/// Whether the run decides that an effect is there: not where its factors could all be zero, or where its shape lies at
+/// the edge of what the run can speak about. A size that is open only because it trades off with the shape is no reason
+/// to doubt the effect.
+fn is_decided(term: &Term, terms: &Terms, parameters: &[Parameter], prepared: &Prepared) -> bool {
+    let own = |p: &&Parameter| p.effect == term.id();
+    let at_bound = parameters.iter().filter(own).any(|p| p.state == ParameterState::AtBound);
     // Of a wave's two factors one may well be zero.
-    !at_bound && own.by_ref().filter(is_factor).any(|p| p.state != ParameterState::Unidentified)
+    let is_there = |parameters: &[Parameter]| {
+        let mut factors = parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
+        factors.any(|p| p.state != ParameterState::Unidentified)
+    };
+    !at_bound && (is_there(parameters) || is_there(&intervals(&terms.held(term.id()), prepared.motion).parameters))
 }
 
 /// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Beside
@@ -197,7 +201,7 @@ fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str
     let more = |id| held_out(&search.without(id)).iter().sum::<f64>() / present - 1.0;
     let open = search
         .added()
-        .filter(|term| search.closed || !is_decided(term, &parameters))
+        .filter(|term| search.closed || !is_decided(term, &search.now, &parameters, prepared))
         .map(|term| (term.id(), more(term.id())));
     open.filter(|(_, more)| *more < CLEARLY_NEEDED).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }

@@ -1,11 +1,10 @@
 //! Fitting a model to a run, and holding a fit against another run.
 
 use crate::assembly::Assembly;
-use crate::formula::{NamedSignal, signals};
 use crate::intervals::intervals;
-use crate::linear::{dot, solve};
+use crate::linear::{condition, dot};
 use crate::prepare::{Prepared, Problem, prepare};
-use crate::report::{Evaluation, Fit, Parameter, ParameterState, Scope, SignalRange, Term as TermReport};
+use crate::report::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport};
 use crate::select::held_out;
 use crate::terms::Terms;
 use crate::view::View;
@@ -14,7 +13,7 @@ use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
 ///
-/// Linear parts by QR on scaled columns, shape parameters by variable projection, 95 % intervals by a jackknife over
+/// Linear parts by least squares on scaled columns, shape parameters by variable projection, 95 % intervals by a jackknife over
 /// blocks. Effects that the run cannot show stay in the model at zero and are named in the notes.
 /// [`ModelError::Collinear`] where two effects are proportional in this data.
 pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
@@ -83,39 +82,24 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         notes,
         preparation: prepared.about.clone(),
         terms,
-        scope: Some(scope(prepared)),
+        scope: Some(Scope::of(prepared)),
     })
-}
-
-fn scope(prepared: &Prepared) -> Scope {
-    let view = &prepared.main.view;
-    let range = |s: &NamedSignal| {
-        let values = view.find(s.signal)?;
-        let (min, max) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-        Some(SignalRange { name: s.name.into(), unit: prepared.motion.label(s.unit), min, max })
-    };
-    Scope {
-        motion: prepared.motion,
-        load_scale: prepared.load_scale,
-        sample_s: view.sample_s,
-        signals: signals(prepared.kind).iter().filter_map(range).collect(),
-    }
 }
 
 /// Condition of the scaled columns by QR; refuses columns that depend on each other.
 fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
     let columns = terms.columns();
-    let solution = solve(&columns, &terms.response());
+    let found = condition(&columns);
     let owner = |column: usize| {
         let mut names = terms.terms.iter().flat_map(|t| t.columns.iter().map(|_| t.id()));
         names.nth(column).unwrap_or_default().to_owned()
     };
-    match solution.dependent {
+    match found.dependent {
         Some((a, b)) if a == b => {
             Err(ModelError::NotVisible { effect: owner(a), why: "its signal never changes".into() })
         }
         Some((a, b)) => Err(ModelError::Collinear { first: owner(a), second: owner(b) }),
-        None => Ok(solution.condition),
+        None => Ok(found.number),
     }
 }
 
@@ -149,6 +133,7 @@ pub fn evaluate(fit: &Fit, run: &RunTable) -> Result<Evaluation, ModelError> {
         residual: prepared.about.residual,
         relative_error: (sse / dot(target, target)).sqrt(),
         rows: target.len(),
+        notes: fit.scope.iter().flat_map(|scope| scope.left_by(&prepared)).collect(),
     })
 }
 

@@ -20,6 +20,7 @@ mod plan;
 pub mod prepare;
 mod report;
 mod residuals;
+mod scope;
 mod select;
 mod spec;
 mod terms;

@@ -27,7 +27,7 @@ pub fn memory<'p>(now: &Assembly<'p>, options: &Options) -> Option<Rival<'p>> {
     let ground = Ground::new(Basis::default(), rest, problem);
     let shares = library.candidates.iter().map(|c| ground.own(&c.columns).share);
     let (best, _) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let mut term = [library.candidates[best].term()];
+    let mut term = [library.candidates[best].term(problem)];
     let share = 1.0 - polish(&mut term, &ground.basis, &ground.residual, problem) / ground.energy;
     let [term] = term;
     let p_value = significance(&term, &library, &ground, options);

@@ -31,16 +31,21 @@ impl<'e> Term<'e> {
 
     /// The factors are physically possible.
     pub fn allows(&self, factors: &[f64]) -> bool {
-        let info = self.effect.info();
-        self.form.linear.iter().zip(factors).all(|(name, value)| {
-            info.parameters.iter().find(|p| p.name == *name).is_none_or(|p| (p.min..=p.max).contains(value))
-        })
+        allows(self.effect, &self.form, factors)
     }
 
     /// Number of parameters, linear and shape, that the data decides.
     pub fn size(&self) -> usize {
         self.columns.len() + self.form.shape.iter().filter(|s| s.min < s.max).count()
     }
+}
+
+/// Factors of an effect in this form that are physically possible.
+pub fn allows(effect: &dyn Effect, form: &Form, factors: &[f64]) -> bool {
+    let info = effect.info();
+    form.linear.iter().zip(factors).all(|(name, value)| {
+        info.parameters.iter().find(|p| p.name == *name).is_none_or(|p| (p.min..=p.max).contains(value))
+    })
 }
 
 /// Columns of an effect at the rows of a problem.
@@ -71,6 +76,17 @@ impl<'p> Terms<'p> {
 
     pub fn contains(&self, id: &str) -> bool {
         self.terms.iter().any(|t| t.id() == id)
+    }
+
+    /// The same with the shape of one effect held where it is.
+    pub fn held(&self, id: &str) -> Self {
+        let mut held = self.clone();
+        for term in held.terms.iter_mut().filter(|t| t.id() == id) {
+            for (shape, value) in term.form.shape.iter_mut().zip(&term.shape) {
+                (shape.min, shape.max) = (*value, *value);
+            }
+        }
+        held
     }
 
     /// The response without what is given.

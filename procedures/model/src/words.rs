@@ -41,6 +41,13 @@ pub fn list(items: &[impl AsRef<str>]) -> String {
     }
 }
 
+/// A column's name without its unit, as it is spoken.
+pub fn spoken(column: &str) -> String {
+    let units = ["_rad_s2", "_rad_s3", "_rad_s", "_rad", "_nm", "_s", "_c", "_a"];
+    let suffix = units.into_iter().find(|u| column.ends_with(u)).unwrap_or_default();
+    column.trim_end_matches(suffix).replace('_', " ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,5 +59,12 @@ mod tests {
         assert_eq!(figure(0.226, "1"), "0.23");
         assert_eq!(percent(0.184), "18 %");
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
+    }
+
+    #[test]
+    fn columns_are_spoken_without_their_units() {
+        assert_eq!(spoken("motor_velocity_rad_s"), "motor velocity");
+        assert_eq!(spoken("time_since_reversal_s"), "time since reversal");
+        assert_eq!(spoken("repeat"), "repeat");
     }
 }

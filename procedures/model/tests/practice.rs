@@ -28,6 +28,9 @@ fn check_family(family: &str) {
                 assert_eq!(first.verdict, Verdict::UnexplainedStructure, "{name}: {}", first.summary);
                 assert_eq!(whole.verdict, Verdict::UnexplainedStructure, "{name}: {}", whole.summary);
                 assert!(first.suggestions.is_empty() && added.is_empty(), "{name}: {added:?}");
+                // What one direction hides from the other is shown by direction.
+                let map = first.structure.unwrap();
+                assert!(answer["notes"].get(&map.x).is_some() && map.y == "direction", "{name}: {}", first.summary);
             }
             _ => {
                 assert!(accept.iter().any(|g| g.contains(&first.suggestions[0].effect)), "{name}: {}", first.summary);

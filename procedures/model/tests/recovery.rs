@@ -3,7 +3,7 @@
 mod common;
 
 use common::bench::{Moment, Staircase};
-use jointbench_model::{Diagnosis, ModelSpec, Options, Verdict, diagnose, discover, fit};
+use jointbench_model::{Diagnosis, ModelSpec, Options, Verdict, diagnose, discover, evaluate, fit};
 
 const COULOMB: f64 = 0.030;
 const VISCOUS: f64 = 1.5e-4;
@@ -105,4 +105,16 @@ fn what_the_library_does_not_know_is_called_structure_and_shown() {
     assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
     let shown = |r: &jointbench_model::Region| r.axis == "motor_velocity_rad_s" && r.from < 21.0 && r.to > 19.0;
     assert!(found.regions.iter().any(shown), "{:?}", found.regions);
+}
+
+#[test]
+fn a_model_says_where_it_is_an_extrapolation() {
+    let light = bench(3).run_at(&[0.0, 2.0, 4.0], dry);
+    let model = fit(&light, &ModelSpec::baseline(&light).unwrap(), &Options::default()).unwrap();
+    assert_eq!(evaluate(&model, &light).unwrap().notes, Vec::<String>::new());
+    let notes = evaluate(&model, &bench(4).run_at(&[0.0, 4.0, 12.0], dry)).unwrap().notes;
+    assert!(
+        notes.len() == 1 && notes[0].contains("outside the load that the model was fitted to (-4.00 Nm"),
+        "{notes:?}"
+    );
 }

@@ -1,8 +1,8 @@
 //! Results as a person reads them.
 
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Options, Parameter, ParameterPair,
-    ParameterState, Region, ResidualKind, Suggestion, words,
+    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Options, PairMap, Parameter,
+    ParameterPair, ParameterState, Region, ResidualKind, Suggestion, words,
 };
 use std::path::Path;
 
@@ -41,6 +41,9 @@ pub fn evaluation(file: &Path, evaluation: &Evaluation) {
         100.0 * evaluation.relative_error,
         evaluation.rows
     );
+    for note in &evaluation.notes {
+        println!("note      {note}");
+    }
 }
 
 pub fn comparison(file: &Path, comparison: &Comparison) {
@@ -52,7 +55,7 @@ pub fn comparison(file: &Path, comparison: &Comparison) {
     let (effect, name) = (wide(|p| &p.effect).unwrap_or(0), wide(|p| &p.name).unwrap_or(0));
     let unit = wide(|p| &p.unit).unwrap_or(0);
     let side = |p: &Option<Parameter>| match p {
-        Some(p) => format!("{} [{} … {}]", figure(p.value), figure(p.ci95[0]), figure(p.ci95[1])),
+        Some(p) => format!("{} [{}]", figure(p.value), interval(p.ci95[0], p.ci95[1])),
         None => "–".to_owned(),
     };
     for p in &comparison.parameters {
@@ -80,6 +83,7 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!();
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
+    own_formula(diagnosis.structure.as_ref());
     suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
     next_run(diagnosis.experiment.as_ref());
     for hidden in &diagnosis.not_visible {
@@ -105,7 +109,20 @@ pub fn discovery(discovery: &Discovery) {
     println!();
     println!("{}", discovery.summary);
     regions(&discovery.regions, &discovery.fit.unit);
+    own_formula(discovery.structure.as_ref());
     next_run(discovery.experiment.as_ref());
+}
+
+/// What the library lacks, the user may know.
+fn own_formula(structure: Option<&PairMap>) {
+    let Some(map) = structure else { return };
+    println!();
+    println!(
+        "what you can do: write what you suspect as a formula of {} and {} with --own (see --help), and see whether the \
+         error falls",
+        words::spoken(&map.x),
+        words::spoken(&map.y)
+    );
 }
 
 /// As a command, so that it can be typed.
@@ -127,7 +144,7 @@ pub fn parameters(parameters: &[Parameter]) {
     println!("{:effect$}  {:name$}  {:>11}  {:unit$}  95 % interval", "effect", "parameter", "value", "unit");
     for parameter in parameters {
         let [low, high] = parameter.ci95;
-        let interval = format!("{} … {}", figure(low), figure(high));
+        let interval = interval(low, high);
         let state = match (parameter.state, &parameter.note) {
             (ParameterState::Ok, _) => String::new(),
             (_, Some(note)) => format!("  {note}"),
@@ -163,7 +180,8 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         return;
     }
     println!();
-    println!("what is missing, the most important first:");
+    let alone = if suggestions.len() > 1 { " (figures with that effect alone; discover adds them all)" } else { "" };
+    println!("what is missing, the most important first{alone}:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
         // Effects of reversals and ramps are judged there, and leave the settled motion as it was.
@@ -176,8 +194,8 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
             let [low, high] = parameter.ci95;
-            let (value, low, high) = (figure(parameter.value), figure(low), figure(high));
-            println!("     {} = {value} {}  [{low} … {high}]", parameter.name, shown(&parameter.unit));
+            let (value, interval) = (figure(parameter.value), interval(low, high));
+            println!("     {} = {value} {}  [{interval}]", parameter.name, shown(&parameter.unit));
         }
     }
 }
@@ -186,6 +204,15 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
 fn chance(p_value: f64) -> String {
     let least = 1.0 / (Options::default().flips + 1) as f64;
     if p_value <= 1.001 * least { format!("p ≤ {least:.3}") } else { format!("p = {p_value:.3}") }
+}
+
+/// A whole number that was chosen has no width, and neither has what the run cannot show.
+fn interval(low: f64, high: f64) -> String {
+    match (low == high, low == 0.0) {
+        (true, true) => "–".to_owned(),
+        (true, false) => "chosen".to_owned(),
+        (false, _) => format!("{} … {}", figure(low), figure(high)),
+    }
 }
 
 /// A number without a unit is not followed by one.

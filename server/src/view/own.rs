@@ -109,6 +109,8 @@ pub struct Evaluation {
     /// ‖residual‖ / ‖measured‖.
     pub relative_error: f64,
     pub rows: u64,
+    /// Signals that leave the ranges of the fit, in plain sentences: there the model is an extrapolation.
+    pub notes: Vec<String>,
 }
 
 /// Two model versions side by side.

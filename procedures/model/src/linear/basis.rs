@@ -9,14 +9,15 @@ pub struct Basis {
 /// A column is taken as dependent on the others where less than this share of its square is left.
 const DEPENDENT: f64 = 1e-10;
 
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// Σ ab, in double precision whatever the numbers are kept in.
+pub fn dot<A: Into<f64> + Copy, B: Into<f64> + Copy>(a: &[A], b: &[B]) -> f64 {
     // Eight sums that do not wait for each other let the compiler use whole registers.
     let mut sums = [0.0; 8];
     let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f64 = a8.remainder().iter().zip(b8.remainder()).map(|(x, y)| x * y).sum();
+    let rest: f64 = a8.remainder().iter().zip(b8.remainder()).map(|(x, y)| (*x).into() * (*y).into()).sum();
     for (x, y) in a8.zip(b8) {
         for i in 0..8 {
-            sums[i] += x[i] * y[i];
+            sums[i] += x[i].into() * y[i].into();
         }
     }
     sums.iter().sum::<f64>() + rest

@@ -6,7 +6,7 @@ mod regions;
 mod scale;
 
 pub use public::maps;
-pub use regions::{Yardstick, spoken, yardstick};
+pub use regions::{Yardstick, yardstick};
 
 use crate::Options;
 use crate::pieces::pieces;
@@ -78,8 +78,13 @@ impl Maps {
     /// The residual over the two axes where it shows most: of the pairs among the most telling axes, the one whose
     /// means take most off held-out rows.
     pub fn structure(&self, prepared: &Prepared) -> Option<PairMap> {
+        // An axis is as telling as its map, or as its map by direction: what one direction hides from the other cancels alone.
+        let telling = |axis: &Map| {
+            let sides = self.by_direction.iter().filter(|m| m.x.name == axis.x.name);
+            sides.map(|m| m.removable).fold(axis.removable, f64::max)
+        };
         let mut ranked: Vec<&Map> = self.axes.iter().filter(|m| m.x.name != "direction").collect();
-        ranked.sort_by(|a, b| b.removable.total_cmp(&a.removable));
+        ranked.sort_by(|a, b| telling(b).total_cmp(&telling(a)));
         ranked.truncate(PARTNERS);
         let direction = self.scales.iter().find(|s| s.name == "direction");
         let (mut best, mut cells): (Option<Map>, usize) = (None, self.cells);

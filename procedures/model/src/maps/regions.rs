@@ -4,7 +4,7 @@ use super::Maps;
 use super::map::{Cell, Map};
 use super::scale::Scale;
 use crate::report::{Fit, NoiseFloor, Region};
-use crate::words::{figure, percent};
+use crate::words::{figure, percent, spoken};
 
 /// More regions than these nobody reads.
 const MOST: usize = 8;
@@ -140,24 +140,5 @@ impl Stretch<'_> {
             (false, true) => format!("at a {what} above {}", say(from)),
             (false, false) => format!("at a {what} between {} and {}", say(from), say(to)),
         }
-    }
-}
-
-/// A column's name without its unit, as it is spoken.
-pub fn spoken(column: &str) -> String {
-    let units = ["_rad_s2", "_rad_s3", "_rad_s", "_rad", "_nm", "_s", "_c", "_a"];
-    let suffix = units.into_iter().find(|u| column.ends_with(u)).unwrap_or_default();
-    column.trim_end_matches(suffix).replace('_', " ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_are_spoken_without_their_units() {
-        assert_eq!(spoken("motor_velocity_rad_s"), "motor velocity");
-        assert_eq!(spoken("time_since_reversal_s"), "time since reversal");
-        assert_eq!(spoken("repeat"), "repeat");
     }
 }

@@ -156,4 +156,6 @@ pub struct Evaluation {
     /// ‖residual‖ / ‖measured‖.
     pub relative_error: f64,
     pub rows: usize,
+    /// Signals that leave the ranges of the fit, in plain sentences.
+    pub notes: Vec<String>,
 }

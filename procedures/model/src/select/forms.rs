@@ -5,7 +5,8 @@ use super::library::{Candidate, Library};
 use super::rivals::significance;
 use crate::Options;
 use crate::effect::Search;
-use crate::terms::{Term, Terms, polish};
+use crate::prepare::Problem;
+use crate::terms::{Term, Terms, allows, polish};
 
 /// Gives an effect of several parts another one, as long as that explains more than any effect that is not in the model
 /// and passes the same tests.
@@ -29,7 +30,7 @@ fn one_more<'p>(terms: &Terms<'p>, at: usize, library: &Library<'p>, options: &O
     let (share_of_part, part) = parts.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let others = library.candidates.iter().filter(|c| !terms.contains(c.id()));
     let enough = others.map(share).fold(options.practical_share, f64::max);
-    if share_of_part < enough || significance(&part.term(), library, &ground, options) > options.alpha {
+    if share_of_part < enough || significance(&part.term(terms.problem), library, &ground, options) > options.alpha {
         return None;
     }
     let shape = term.shape.iter().chain(&part.shape).copied().collect();
@@ -39,7 +40,8 @@ fn one_more<'p>(terms: &Terms<'p>, at: usize, library: &Library<'p>, options: &O
     longer.allows(&with.linear().factors[at]).then_some(longer)
 }
 
-/// Another form must take this share off the squared error, and again for each parameter that it has more.
+/// Another form must take this share off the squared error, and again for each parameter that it has more. For each that
+/// it has less it may leave as much.
 const BETTER_FORM: f64 = 0.01;
 
 /// Asks of every effect with several forms, or with an order that was found beside fewer effects, whether another one
@@ -68,12 +70,16 @@ pub fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
         let share = |c: &&&Candidate| ground.own(&c.columns).share;
         let start = |form: &str| {
             let of_form = same.iter().filter(|c| c.form.name == form);
-            of_form.max_by(|a, b| share(a).total_cmp(&share(b))).map(|c| c.term())
+            of_form.max_by(|a, b| share(a).total_cmp(&share(b))).map(|c| c.term(terms.problem))
         };
         let mut best = sse(&term);
-        for trial in forms.into_iter().filter_map(start).chain(two_parts(&same, &ground)) {
+        for trial in forms.into_iter().filter_map(start).chain(two_parts(&same, &ground, terms.problem)) {
             let trial = sse(&trial);
-            let more = trial.1.size().saturating_sub(best.1.size()).max(1) as f64;
+            // Beside an equally long form it stays; a shorter one may be a little worse.
+            let more = match trial.1.size() as f64 - best.1.size() as f64 {
+                0.0 => 1.0,
+                more => more,
+            };
             let possible = trial.1.allows(&ground.own(&trial.1.columns).factors());
             if possible && trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
                 best = trial;
@@ -88,22 +94,19 @@ pub fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
 
 /// The two parts of one kind that explain most together, where an effect is a sum of such parts. Two dry contacts look
 /// like one that yields little by little, and no third part added to that would make them out.
-fn two_parts<'p>(same: &[&Candidate<'p>], ground: &Ground) -> Option<Term<'p>> {
+fn two_parts<'p>(same: &[&Candidate<'p>], ground: &Ground, problem: &Problem) -> Option<Term<'p>> {
     let smooth = |c: &&&Candidate| c.form.shape.iter().all(|s| s.is_smooth());
     let extends = |c: &&Candidate<'p>| c.effect.extended(&c.form).filter(|(part, _)| *part == c.form.name);
     let (part, form) = same.iter().filter(smooth).find_map(extends)?;
     let parts: Vec<&&Candidate> = same.iter().filter(|c| c.form.name == part).collect();
-    let mut best: Option<(f64, Term)> = None;
+    let mut best: Option<(f64, Vec<f64>)> = None;
     for (i, one) in parts.iter().enumerate() {
         for other in &parts[..i] {
-            let shape = [&other.shape[..], &one.shape].concat();
-            let columns = [&other.columns[..], &one.columns].concat();
-            let own = ground.own(&columns);
-            let term = Term { effect: one.effect, form: form.clone(), shape, columns };
-            if best.as_ref().is_none_or(|b| own.share > b.0) && term.allows(&own.factors()) {
-                best = Some((own.share, term));
+            let own = ground.own(&[&other.columns[..], &one.columns].concat());
+            if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.factors()) {
+                best = Some((own.share, [&other.shape[..], &one.shape].concat()));
             }
         }
     }
-    best.map(|b| b.1)
+    best.map(|(_, shape)| Term::new(same[0].effect, form, shape, problem))
 }

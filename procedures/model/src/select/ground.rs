@@ -61,7 +61,7 @@ impl Ground {
         Self { energy: dot(&residual, &residual), basis, residual, groups, shared }
     }
 
-    pub fn own(&self, columns: &[Vec<f64>]) -> Own {
+    pub fn own<C: Into<f64> + Copy>(&self, columns: &[Vec<C>]) -> Own {
         let p = columns.len();
         let along: Vec<Vec<f64>> =
             columns.iter().map(|c| self.basis.vectors().iter().map(|q| dot(q, c)).collect()).collect();
@@ -88,7 +88,7 @@ impl Ground {
     }
 
     /// Products of what each kept column has of its own with the residual, group by group.
-    pub fn sums(&self, columns: &[Vec<f64>], own: &Own) -> Vec<Vec<f64>> {
+    pub fn sums<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Own) -> Vec<Vec<f64>> {
         let of = |a: &usize| {
             let mut sums = products(&columns[*a], &self.residual, &self.groups);
             for (shared, along) in self.shared.iter().zip(&own.along[*a]) {
@@ -120,7 +120,7 @@ impl Ground {
         Some(Normal::standard().inverse_cdf(1.0 - chance.max(1e-15))).filter(|z| z.is_finite())
     }
 
-    pub fn score(&self, columns: &[Vec<f64>], own: &Own) -> Score {
+    pub fn score<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Own) -> Score {
         Score::new(&self.sums(columns, own))
     }
 }
@@ -137,6 +137,6 @@ impl Own {
     }
 }
 
-fn products(a: &[f64], b: &[f64], groups: &[Range<usize>]) -> Vec<f64> {
+fn products<C: Into<f64> + Copy>(a: &[C], b: &[f64], groups: &[Range<usize>]) -> Vec<f64> {
     groups.iter().map(|rows| dot(&a[rows.clone()], &b[rows.clone()])).collect()
 }

@@ -11,7 +11,8 @@ pub struct Candidate<'e> {
     pub effect: &'e dyn Effect,
     pub form: Form<'e>,
     pub shape: Vec<f64>,
-    pub columns: Vec<Vec<f64>>,
+    /// In single precision: they are many, and choose only where to look closer.
+    pub columns: Vec<Vec<f32>>,
 }
 
 impl<'e> Candidate<'e> {
@@ -19,8 +20,8 @@ impl<'e> Candidate<'e> {
         self.effect.info().id
     }
 
-    pub fn term(&self) -> Term<'e> {
-        Term { effect: self.effect, form: self.form.clone(), shape: self.shape.clone(), columns: self.columns.clone() }
+    pub fn term(&self, problem: &Problem) -> Term<'e> {
+        Term::new(self.effect, self.form.clone(), self.shape.clone(), problem)
     }
 }
 
@@ -44,6 +45,7 @@ impl<'e> Library<'e> {
             for form in effect.forms(&problem.view) {
                 for shape in &form.grid {
                     let columns = columns(effect, form.name, shape, problem);
+                    let columns = columns.into_iter().map(|c| c.into_iter().map(|v| v as f32).collect()).collect();
                     library.candidates.push(Candidate { effect, form: form.clone(), shape: shape.clone(), columns });
                 }
             }

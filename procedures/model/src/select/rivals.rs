@@ -93,7 +93,7 @@ pub fn step<'p>(
     let mut rivals: Vec<Rival> = best
         .iter()
         .map(|b| {
-            let mut term = [library.candidates[open[*b]].term()];
+            let mut term = [library.candidates[open[*b]].term(problem)];
             let sse = polish(&mut term, basis, residual, problem);
             let [term] = term;
             let possible = term.allows(&ground.own(&term.columns).factors());
@@ -140,8 +140,8 @@ pub fn step<'p>(
 
 /// How often noise alone would bring any candidate of the library as far as this one: the family-wise p-value.
 pub fn significance(term: &Term, library: &Library, ground: &Ground, options: &Options) -> f64 {
-    let score = |columns: &[Vec<f64>]| ground.score(columns, &ground.own(columns));
-    family_wise(term, library.candidates.iter().map(|c| score(&c.columns)).collect(), ground, options)
+    let scores = library.candidates.iter().map(|c| ground.score(&c.columns, &ground.own(&c.columns)));
+    family_wise(term, scores.collect(), ground, options)
 }
 
 /// The same from scores that are there already.

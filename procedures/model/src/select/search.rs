@@ -45,6 +45,8 @@ pub struct Search<'l, 'p> {
     kept: Vec<&'p str>,
     /// Effects that were withdrawn and are not tried again.
     withdrawn: Vec<&'p str>,
+    /// Held-out squared errors, fold by fold, of the models that they were withdrawn from.
+    given_up: Vec<Vec<f64>>,
     left: usize,
     exchanges: usize,
     /// Something from outside the library was seen: whatever entered now would stand for it.
@@ -72,6 +74,7 @@ impl<'l, 'p> Search<'l, 'p> {
             plain,
             kept,
             withdrawn: Vec::new(),
+            given_up: Vec::new(),
             left: most,
             exchanges: EXCHANGES,
             closed: false,
@@ -85,6 +88,7 @@ impl<'l, 'p> Search<'l, 'p> {
     /// Takes an effect back that turned out not to be the answer.
     pub fn withdraw(&mut self, id: &'p str) -> Move<'p> {
         self.withdrawn.push(id);
+        self.given_up.push(held_out(&self.now));
         self.remove(id)
     }
 
@@ -138,7 +142,14 @@ impl<'p> Iterator for Search<'_, 'p> {
         if self.closed {
             return None;
         }
+        // What explains clearly less than an effect that was withdrawn only stands in for it.
+        let stands_in = |rival: &Rival| {
+            let clearly =
+                |losses: &Vec<f64>| losses.iter().sum::<f64>() < rival.held_out && !is_tie(losses, &rival.losses);
+            self.given_up.iter().any(clearly)
+        };
         let found = if self.left > 0 { self.step(&self.now) } else { None };
+        let found = found.filter(|(rival, _)| !stands_in(rival));
         let Some((rival, ties)) = found else {
             self.exchanges = self.exchanges.checked_sub(1)?;
             let id = self.misplaced()?;
