@@ -42,7 +42,7 @@ fn a_run_is_told_as_it_happens() {
             other => panic!("{other:?}"),
         }
     }
-    assert_eq!(channels, 12);
+    assert_eq!(channels, 13);
     assert!(rows > 500 && next > 2, "{rows} rows in {next} frames");
     for kind in ["bench", "state", "progress", "event", "channels"] {
         assert!(told.contains_key(kind), "{kind} in {told:?}");
