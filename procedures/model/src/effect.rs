@@ -136,6 +136,12 @@ pub trait Effect: Sync {
         Stage::Settled
     }
 
+    /// A shape parameter that says only how suddenly the effect comes and goes. At the edge of its range the effect is there
+    /// all the same.
+    fn suddenness(&self) -> Option<&'static str> {
+        None
+    }
+
     /// The effect enters with a factor of one and nothing to fit.
     fn is_given(&self) -> bool {
         false

@@ -184,7 +184,9 @@ fn held_out_rms(terms: &Terms) -> f64 {
 /// to doubt the effect.
 fn is_decided(term: &Term, terms: &Terms, parameters: &[Parameter], prepared: &Prepared) -> bool {
     let own = |p: &&Parameter| p.effect == term.id();
-    let at_bound = parameters.iter().filter(own).any(|p| p.state == ParameterState::AtBound);
+    let sudden = term.effect.suddenness();
+    let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
+    let at_bound = others.any(|p| p.state == ParameterState::AtBound);
     // Of a wave's two factors one may well be zero.
     let is_there = |parameters: &[Parameter]| {
         let mut factors = parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));

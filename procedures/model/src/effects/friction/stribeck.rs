@@ -56,4 +56,8 @@ impl Effect for Stribeck {
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         vec![view.map2(Signal::Velocity, Signal::Direction, |w, d| fading(w, shape) * d)]
     }
+
+    fn suddenness(&self) -> Option<&'static str> {
+        Some("delta")
+    }
 }

@@ -36,4 +36,8 @@ impl Effect for StribeckLoad {
         let fading = view.map2(Signal::Velocity, Signal::Direction, |w, d| super::stribeck::fading(w, shape) * d);
         vec![fading.iter().zip(view.get(Signal::Load)).map(|(f, l)| f * l.abs()).collect()]
     }
+
+    fn suddenness(&self) -> Option<&'static str> {
+        Some("delta")
+    }
 }
