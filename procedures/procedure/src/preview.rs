@@ -146,7 +146,7 @@ impl Plan {
                 cure: (needs_brake && !facts.has_brake).then(|| "connect a brake or plan without load".into()),
             },
             Check {
-                name: "feed-forward",
+                name: "Feed-forward",
                 ok: !cannot_feed,
                 detail: match (feeds, cannot_feed) {
                     (false, _) => "not needed",

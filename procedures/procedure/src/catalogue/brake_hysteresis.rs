@@ -93,16 +93,7 @@ impl Procedure for BrakeHysteresis {
         }
         legs.repeat = Part::Demagnetise as u32;
         legs.way_back(way_rad, speed_rad_s);
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: brake_run::meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, brake_run::meta(bench, rate_hz), rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -86,16 +86,7 @@ impl Procedure for BrakeSpeedIndependence {
             before_a = current_a;
         }
         legs.unload(gear * top, before_a, bench);
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: brake_run::meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, brake_run::meta(bench, rate_hz), rate_hz))
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

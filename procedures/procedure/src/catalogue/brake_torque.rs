@@ -95,16 +95,7 @@ impl Procedure for BrakeTorque {
         legs.way_back(way_rad, speed_rad_s);
         let mut meta = brake_run::meta(bench, rate_hz);
         meta.other.insert(COMMANDED.into(), Value::Array(commanded));
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta,
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, meta, rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

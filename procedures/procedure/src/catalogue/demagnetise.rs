@@ -60,16 +60,7 @@ impl Procedure for Demagnetise {
         legs.repeat = 1;
         legs.leg(speed_rad_s, turn_s(1.2, speed_rad_s, bench, 1.0), 0.0);
         legs.leg(-speed_rad_s, turn_s(1.2, speed_rad_s, bench, 1.0), 0.0);
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: brake_run::meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, brake_run::meta(bench, rate_hz), rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -104,11 +104,16 @@ impl Legs {
 
     /// The plan of a friction procedure without a warm-up of its own.
     pub fn friction_plan(self, procedure: &dyn Procedure, values: &Values, bench: &BenchFacts, rate_hz: f64) -> Plan {
+        self.plan(procedure, values, friction_meta(bench, rate_hz), rate_hz)
+    }
+
+    /// The plan that these legs make, with the facts about its run.
+    pub fn plan(self, procedure: &dyn Procedure, values: &Values, meta: Meta, rate_hz: f64) -> Plan {
         Plan {
             procedure: procedure.id(),
             parameters: values.to_json(),
             kind: procedure.kind(),
-            meta: friction_meta(bench, rate_hz),
+            meta,
             rate_hz,
             acceleration_rad_s2: self.acceleration_rad_s2,
             steps: self.steps,

@@ -87,16 +87,7 @@ impl Procedure for Stiffness {
             bearing_stiffness_nm_per_rad: (bearing > 0.0).then_some(bearing),
             ..Meta::default()
         };
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta,
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, meta, rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -97,16 +97,7 @@ impl Procedure for EncoderAlignment {
         }
         // Nobody should find the sensor where the map has ended.
         both_ways(&mut legs, speed_rad_s, 1.0, Place::At(Pose::default()));
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: meta(counts, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -63,16 +63,7 @@ impl Procedure for EncoderDelay {
                 both_ways(&mut legs, speed_rad_s, turns, Place::AsLeft);
             }
         }
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: meta(counts, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

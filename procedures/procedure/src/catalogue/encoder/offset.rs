@@ -57,16 +57,7 @@ impl Procedure for EncoderOffset {
             legs.repeat = repeat;
             both_ways(&mut legs, values.number("speed_rad_s"), values.number("turns"), Place::AsLeft);
         }
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: meta(counts, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -67,16 +67,7 @@ impl Procedure for EncoderStartup {
             }
             legs.steps[first].before = Before::PoweredAnew;
         }
-        Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: meta(counts, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
-            steady: None,
-        })
+        Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
