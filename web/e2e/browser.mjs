@@ -21,11 +21,11 @@ export function settings(usage) {
 	return { base: base.replace(/\/$/, ''), executablePath };
 }
 
-/** A page at `base`, a way to `another` in a browser of its own, and the list of what went wrong in it: console errors, exceptions, requests to another host. */
+/** A page at `base`, a way to `another` (elsewhere, with a record of its own, where it says so) in a browser of its own, and the list of what went wrong: console errors, exceptions, requests to another host. */
 export async function open({ base, executablePath }, context = {}) {
 	const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-dev-shm-usage'] });
 	const faults = [];
-	const watched = async (more = {}) => watch(await (await browser.newContext({ viewport: { width: 1440, height: 900 }, ...context, ...more })).newPage(), base, faults);
+	const watched = async (at = base, record = faults) => watch(await (await browser.newContext({ viewport: { width: 1440, height: 900 }, ...context })).newPage(), at, record);
 	return { browser, page: await watched(), faults, another: watched };
 }
 

@@ -4,7 +4,7 @@
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, open, settings, tell } from './browser.mjs';
-import { BARE, flyAndStop, makeRun, measureNext, readVersion, startRun, toAnotherVersion, watchRun } from './steps.mjs';
+import { BARE, flyAndStop, makeRun, measureNext, readVersion, startRun, toAnotherVersion, UNDECIDED, watchRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/screenshots.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const folder = process.env.JB_SCREENS ?? fileURLToPath(new URL('../../docs/screens', import.meta.url));
@@ -23,8 +23,6 @@ const GALLERY = {
 	encoder_linearity: {},
 	encoder_alignment: { halvings: 2, map_positions: 3 },
 };
-/** A run without repeats: nobody knows how small its error could become. */
-const UNDECIDED = { speeds: 2, repeats: 1 };
 
 async function shoot(page, name) {
 	for (const theme of ['light', 'dark']) {

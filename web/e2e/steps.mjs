@@ -1,11 +1,15 @@
 // What a person does on the pages, for the walk and for the pictures.
 import { expect } from './browser.mjs';
+import { lineTo } from './line.mjs';
 
 const RUN_MS = 180_000;
 const FIT_MS = 60_000;
 
 /** Short, and without load: what grows with the load cannot show in it, so a further run is suggested. */
 export const BARE = '?p.load_levels=1&p.warm_up_s=2&p.dwell_s=0.6&p.fast_speeds=4';
+
+/** A run without repeats: nobody knows how small its error could become. */
+export const UNDECIDED = { speeds: 2, repeats: 1 };
 
 /** Starts the procedure that is offered, as it is offered or with settings as the address carries them. Gives the run's number. */
 export async function startRun(page, base, settings = '') {
@@ -116,6 +120,29 @@ export async function observe(page, base) {
 	await page.getByRole('button', { name: 'Operator' }).click();
 	await page.getByText('this browser only observes').waitFor({ timeout: 30_000 });
 	expect(await page.getByRole('button', { name: 'Start' }).isDisabled(), 'an observer can start');
+}
+
+/** A page whose line to the daemon is cut and comes back: it says so, lets nothing start, and then knows what went on without it. Gives what it said. */
+export async function loseAndFind(another, base) {
+	const line = await lineTo(base);
+	const faults = [];
+	const page = await another(line.base, faults);
+	await page.goto(line.base);
+	const start = page.getByRole('button', { name: 'Start' });
+	await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 30_000 });
+	await line.cut();
+	await page.getByText('NO CONTACT').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the page does not say that the daemon is gone'));
+	expect(await start.isDisabled(), 'a run can be started without a daemon');
+	const said = await page.locator('#start-reason').innerText();
+	const run = await makeRun(base, 'strokes', UNDECIDED);
+	expect(await page.getByText('NO CONTACT').first().isVisible(), 'the page has contact over a line that is cut');
+	await line.mend();
+	await page.getByText('NO CONTACT').first().waitFor({ state: 'detached', timeout: 30_000 }).catch(() => expect(false, 'the page does not find the daemon again'));
+	await page.getByRole('link', { name: `#${run}` }).waitFor({ timeout: 30_000 }).catch(() => expect(false, `the page does not know run ${run}, which was made while it had no contact`));
+	expect(!faults.some((fault) => fault.startsWith('exception')), `the page did not bear the loss:\n  ${faults.join('\n  ')}`);
+	await line.cut();
+	await page.close();
+	return said;
 }
 
 /** The software stop by key alone; gives what the page says of it. */

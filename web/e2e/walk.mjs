@@ -1,12 +1,12 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Start the procedure, watch it finish, read its result by keyboard, open the workbench, have the run made that would tell more, see where the model fails on
+// Lose the daemon and find it again; start the procedure, watch it finish, read its result by keyboard, open the workbench, have the run made that would tell more, see where the model fails on
 // both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { BARE, brush, excludeAndUndo, flyAndStop, importForeign, measureNext, observe, readResult, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
+import { BARE, brush, excludeAndUndo, flyAndStop, importForeign, loseAndFind, measureNext, observe, readResult, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** With typeset formulas; without them there would be still less. */
@@ -21,6 +21,8 @@ await tell('walk', async () => {
 	const { browser, page, faults, another } = await open(where);
 	const watcher = await another();
 	await observe(watcher, where.base);
+	const without = await loseAndFind(another, where.base);
+	expect(/no contact with the daemon/.test(without), `Start does not say why it waits: ${without}`);
 	const run = await startRun(page, where.base, BARE);
 	await watcher.getByText('RUNNING').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the observer does not see the run'));
 	const assets = await page.evaluate(() => performance.getEntriesByType('resource').map((one) => one.name).filter((name) => name.includes('/assets/')));
@@ -52,8 +54,8 @@ await tell('walk', async () => {
 	const chosen = await brush(page);
 	expect(chosen > 0, 'the brush chose no sample');
 	expect((await page.locator('svg line[stroke="var(--oi-purple)"]').count()) > 0, 'the chosen samples are not marked along the axes');
-	const without = await excludeAndUndo(page, 'walked over the cable');
-	expect(/without .* s: walked over the cable/.test(without), `the page does not say what is excluded: ${without}`);
+	const excluded = await excludeAndUndo(page, 'walked over the cable');
+	expect(/without .* s: walked over the cable/.test(excluded), `the page does not say what is excluded: ${excluded}`);
 
 	const held = await page.evaluate(() => document.querySelector('rect.held.here').dataset.held);
 	const said = await tryAndDrop(page);

@@ -15,7 +15,7 @@ pub const CONTENT_SECURITY_POLICY: &str = "default-src 'none'; script-src 'self'
 pub struct Asset {
     pub bytes: Cow<'static, [u8]>,
     pub mime: String,
-    /// SHA-256 of the bytes as hex, unquoted. Holds for the uncompressed file only: a compressing layer must mark its own.
+    /// SHA-256 of the uncompressed bytes as hex, unquoted.
     pub sha256: String,
     /// The name carries a hash of the content, so that a browser may keep the file for ever.
     pub immutable: bool,

@@ -22,7 +22,8 @@ pub async fn serve(request: Request) -> Response {
 }
 
 fn answer(asset: Asset, request: &Request) -> Response {
-    let etag = format!("\"{}\"", asset.sha256);
+    // Weak: it marks the same file compressed and not.
+    let etag = format!("W/\"{}\"", asset.sha256);
     let cache = if asset.immutable { "public, max-age=31536000, immutable" } else { "no-cache" };
     let known = request.headers().get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok());
     let headers = [

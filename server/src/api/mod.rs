@@ -26,8 +26,9 @@ pub use problem::Problem;
 use crate::lab::Lab;
 use crate::view::LiveMessage;
 use axum::extract::DefaultBodyLimit;
-use axum::routing::get;
+use axum::routing::{any, get};
 use axum::{Router, middleware};
+use tower_http::compression::CompressionLayer;
 use tower_http::trace::TraceLayer;
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::{Modify, OpenApi};
@@ -136,9 +137,9 @@ pub fn specification() -> utoipa::openapi::OpenApi {
 pub fn router(lab: Lab, door: Door) -> Router {
     let (rest, _) = operations().split_for_parts();
     rest.route("/api", get(health::no_such_route))
-        .route("/api/{*rest}", axum::routing::any(health::no_such_route))
+        .route("/api/{*rest}", any(health::no_such_route))
         .method_not_allowed_fallback(health::no_such_method)
-        .fallback(dashboard::serve)
+        .fallback_service(any(dashboard::serve).layer(CompressionLayer::new()))
         .with_state(lab)
         .layer(middleware::from_fn_with_state(door, door::guard))
         .layer(middleware::from_fn(problem::name_instance))

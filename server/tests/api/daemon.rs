@@ -65,15 +65,19 @@ impl TestDaemon {
     }
 
     pub fn get_with(&self, path: &str, headers: &[(&str, &str)]) -> (u16, Value) {
+        read(self.get_raw_with(path, headers))
+    }
+
+    pub fn get_raw(&self, path: &str) -> ureq::http::Response<ureq::Body> {
+        self.get_raw_with(path, &[])
+    }
+
+    pub fn get_raw_with(&self, path: &str, headers: &[(&str, &str)]) -> ureq::http::Response<ureq::Body> {
         let mut request = self.agent.get(self.url(path));
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
-        read(request.call().unwrap())
-    }
-
-    pub fn get_raw(&self, path: &str) -> ureq::http::Response<ureq::Body> {
-        self.agent.get(self.url(path)).call().unwrap()
+        request.call().unwrap()
     }
 
     pub fn delete(&self, path: &str) -> (u16, Value) {

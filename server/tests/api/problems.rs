@@ -52,13 +52,26 @@ fn every_refusal_is_a_problem_document() {
 #[test]
 fn the_dashboard_answers_every_other_address() {
     let daemon = TestDaemon::start();
-    let page = daemon.get_raw("/workbench/1");
-    let header = |name: &str| page.headers().get(name).map(|value| value.to_str().unwrap().to_owned());
+    let mut page = daemon.get_raw("/workbench/1");
+    let html = page.body_mut().read_to_string().unwrap();
     assert_eq!(page.status().as_u16(), 200);
-    assert!(header("content-type").unwrap().starts_with("text/html"));
-    assert_eq!(header("vary").as_deref(), Some("Accept-Encoding"));
-    assert!(header("content-security-policy").unwrap().contains("default-src 'none'"));
-    let etag = header("etag").unwrap();
+    assert!(header(&page, "content-type").unwrap().starts_with("text/html"));
+    assert!(header(&page, "content-security-policy").unwrap().contains("default-src 'none'"));
+    let etag = header(&page, "etag").unwrap();
     assert_eq!(daemon.get_with("/", &[("if-none-match", &etag)]).0, 304);
     assert_eq!(daemon.get("/assets/none.js").0, 404);
+
+    let Some(style) = html.split('"').find(|part| part.starts_with("/assets/") && part.ends_with(".css")) else {
+        return println!("skipped: {}", jointbench_ui::missing().expect("the page names its style"));
+    };
+    let (plain, packed) = (daemon.get_raw(style), daemon.get_raw_with(style, &[("accept-encoding", "gzip")]));
+    assert_eq!([&plain, &packed].map(|answer| header(answer, "content-encoding")), [None, Some("gzip".to_owned())]);
+    assert_eq!([&plain, &packed].map(|answer| header(answer, "vary").is_some()), [true, true]);
+    assert_eq!(header(&plain, "etag"), header(&packed, "etag"));
+    let [plain, packed] = [plain, packed].map(|answer| answer.into_body().read_to_vec().unwrap().len());
+    assert!(packed > 0 && 2 * packed < plain, "{packed} of {plain} bytes");
+}
+
+fn header(answer: &ureq::http::Response<ureq::Body>, name: &str) -> Option<String> {
+    answer.headers().get(name).map(|value| value.to_str().unwrap().to_owned())
 }

@@ -134,9 +134,8 @@ fn run_c(fit: &Fit) -> Option<Vec<f64>> {
         return None;
     };
     assert!(version.status.success());
-    let folder = std::env::temp_dir().join(format!("jointbench-c-{}-{}", std::process::id(), fit.terms.len()));
-    let folder = folder.join(format!("{}-{}", fit.kind, fit.terms.iter().map(|t| t.form.as_str()).collect::<String>()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
     let header = export(fit, Format::C).unwrap();
     assert!(header.is_ascii());
     let (name, moments) = (format!("joint_{}", fit.kind), moments(fit.kind));
@@ -171,7 +170,6 @@ fn run_c(fit: &Fit) -> Option<Vec<f64>> {
     let built = Command::new("cc").args(flags).arg(&program).arg(folder.join("main.c")).arg("-lm").output().unwrap();
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
     let told = Command::new(&program).output().unwrap();
-    let _ = std::fs::remove_dir_all(&folder);
     Some(String::from_utf8(told.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect())
 }
 

@@ -1,0 +1,33 @@
+// A line to the daemon that can be cut, as a pulled cable or a killed daemon cuts it.
+import { once } from 'node:events';
+import { connect, createServer } from 'node:net';
+
+/** Listens on a free port of its own and passes everything on to `base`. */
+export async function lineTo(base) {
+	const { hostname, port } = new URL(base);
+	const ends = new Set();
+	const server = createServer((here) => {
+		const there = connect(port, hostname);
+		for (const end of [here, there]) {
+			ends.add(end);
+			end.on('error', () => {});
+			end.on('close', () => {
+				ends.delete(end);
+				here.destroy();
+				there.destroy();
+			});
+		}
+		here.pipe(there).pipe(here);
+	});
+	const listen = async (at) => once(server.listen(at, '127.0.0.1'), 'listening');
+	await listen(0);
+	const own = server.address().port;
+	return {
+		base: `http://127.0.0.1:${own}`,
+		async cut() {
+			server.close();
+			for (const end of ends) end.destroy();
+		},
+		mend: () => listen(own),
+	};
+}
