@@ -3,9 +3,9 @@
 use crate::effect::Stage;
 use crate::prepare::{Prepared, Problem};
 use crate::report::Invisible;
-use crate::select::Ground;
-use crate::terms::{Term, Terms, columns, polish};
-use crate::{Effect, ModelError, ModelSpec};
+use crate::select::{Library, enter, lay};
+use crate::terms::{Term, Terms, columns};
+use crate::{Effect, ModelError, ModelSpec, Options, memory};
 
 #[derive(Clone)]
 pub struct Assembly<'p> {
@@ -21,8 +21,9 @@ pub struct Assembly<'p> {
 }
 
 impl<'p> Assembly<'p> {
-    /// Finds forms and starting shapes of every effect and refines them.
-    pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec) -> Result<Self, ModelError> {
+    /// Finds forms and shapes of every effect: the same set of effects is laid out in one way only, whether it was asked
+    /// for or found.
+    pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec, options: &Options) -> Result<Self, ModelError> {
         if spec.kind != prepared.kind {
             return Err(ModelError::WrongKind { run: prepared.kind, model: spec.kind });
         }
@@ -34,6 +35,7 @@ impl<'p> Assembly<'p> {
             moving: prepared.moving.as_ref().map(Terms::new),
             hidden: Vec::new(),
         };
+        let mut settled = Vec::new();
         for id in &spec.effects {
             let effect = spec.find(id)?;
             if let Some(own) = spec.own.iter().find(|own| own.id() == id) {
@@ -45,29 +47,18 @@ impl<'p> Assembly<'p> {
                 let given = columns(effect, "linear", &[], assembly.main.problem);
                 add(&mut assembly.main.given, &given, &[1.0]);
             } else if !assembly.is_apart(effect) {
-                enter(&mut assembly.main, effect);
+                settled.push(effect.info().id);
             }
         }
-        choose_again(&mut assembly.main);
-        assembly.main.refine();
+        let library = Library::for_layout(spec, &prepared.main, prepared.stages(), &settled);
+        assembly.main = lay(&assembly.main, &settled, &library, options);
         assembly.enter_moving();
         Ok(assembly)
     }
 
     /// Plateaus say nothing about the effect: it is judged where the motion changes.
     pub fn is_apart(&self, effect: &dyn Effect) -> bool {
-        effect.stage() != Stage::Settled && self.prepared.about.residual == crate::ResidualKind::PlateauMean
-    }
-
-    /// The same model with an effect that was found where the motion changes.
-    pub fn with_memory(&self, term: &Term<'p>) -> Self {
-        let mut next = self.clone();
-        next.effects.push(term.id().into());
-        if let Some(moving) = &mut next.moving {
-            moving.terms.push(Term::new(term.effect, term.form.clone(), term.shape.clone(), moving.problem));
-            moving.refine();
-        }
-        next
+        !self.prepared.stages().contains(&effect.stage())
     }
 
     /// What the model predicts at the rows of another problem of the same run.
@@ -87,10 +78,11 @@ impl<'p> Assembly<'p> {
         sum
     }
 
-    /// Lays the settled part under the moving problem.
+    /// Lays the settled part under the moving problem, which then holds nothing else.
     fn relay(&mut self) {
         let Some(moving) = &mut self.moving else { return };
         moving.given.fill(0.0);
+        moving.terms.clear();
         for id in &self.effects {
             let Ok(effect) = self.spec.find(id) else { continue };
             if effect.is_given() && !self.hidden.iter().any(|h| h.effect == *id) {
@@ -101,33 +93,38 @@ impl<'p> Assembly<'p> {
             let columns = columns(term.effect, term.form.name, &term.shape, moving.problem);
             add(&mut moving.given, &columns, &factors);
         }
-        moving.refine();
     }
 
     /// Enters the effects that are judged where the motion changes.
     fn enter_moving(&mut self) {
-        let apart: Vec<&'p dyn Effect> = self
-            .spec
-            .effects
-            .iter()
-            .filter_map(|id| self.spec.find(id).ok())
-            .filter(|e| self.is_apart(*e) && !self.hidden.iter().any(|h| h.effect == e.info().id))
-            .collect();
+        let is_in = |id: &str| self.effects.iter().any(|e| e == id) && !self.hidden.iter().any(|h| h.effect == id);
+        let apart = self.spec.known().filter(|e| self.is_apart(*e) && is_in(e.info().id));
+        let (remembering, ramps): (Vec<&'p dyn Effect>, Vec<_>) = apart.partition(|e| e.stage() == Stage::Memory);
         if self.moving.is_none() {
             let why = "the run has no ramps or reversals that could show it".to_owned();
-            self.hidden.extend(apart.iter().map(|e| Invisible { effect: e.info().id.into(), why: why.clone() }));
+            let apart = ramps.iter().chain(&remembering);
+            self.hidden.extend(apart.map(|e| Invisible { effect: e.info().id.into(), why: why.clone() }));
             return;
         }
         self.relay();
         let Some(moving) = &mut self.moving else { return };
-        apart.into_iter().for_each(|effect| enter(moving, effect));
+        ramps.into_iter().for_each(|effect| enter(moving, effect));
         moving.refine();
+        for effect in remembering {
+            let form = memory::form_of(self, effect.info().id);
+            let Some(moving) = &mut self.moving else { return };
+            match form {
+                Some(term) => moving.terms.push(Term::new(effect, term.form, term.shape, moving.problem)),
+                None => enter(moving, effect),
+            }
+            moving.refine();
+        }
     }
 
-    /// The same model with another settled part.
-    pub fn with_main(&self, main: Terms<'p>, effects: Vec<String>) -> Self {
+    /// The model of other effects, whose settled part is laid out already.
+    pub fn of(&self, main: Terms<'p>, effects: Vec<String>) -> Self {
         let mut next = Self { main, effects, ..self.clone() };
-        next.relay();
+        next.enter_moving();
         next
     }
 }
@@ -135,54 +132,5 @@ impl<'p> Assembly<'p> {
 fn add(sum: &mut [f64], columns: &[Vec<f64>], factors: &[f64]) {
     for (column, factor) in columns.iter().zip(factors) {
         sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
-    }
-}
-
-/// A form must take this share off the squared error for each parameter that it has more than a simpler one.
-const BETTER_FORM: f64 = 0.01;
-
-/// Enters an effect in the form that explains most of what is left, each form at its own best shape.
-fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
-    let problem: &Problem = terms.problem;
-    let forms = effect.forms(&problem.view);
-    if let [form] = &forms[..]
-        && form.grid.len() == 1
-    {
-        terms.terms.push(Term::new(effect, form.clone(), form.grid[0].clone(), problem));
-        return;
-    }
-    let basis = terms.tangent();
-    let residual = basis.rest(&terms.response());
-    let ground = Ground::new(basis, residual, problem);
-    let mut best: Vec<Term<'p>> = Vec::new();
-    for form in forms {
-        let shapes = form.grid.iter().map(|shape| Term::new(effect, form.clone(), shape.clone(), problem));
-        let shares = shapes.map(|term| (ground.own(&term.columns).share, term));
-        best.extend(shares.max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1));
-    }
-    best.sort_by_key(Term::size);
-    let mut chosen: Option<(f64, Term<'p>)> = None;
-    for term in best {
-        let mut term = [term];
-        let sse = polish(&mut term, &ground.basis, &ground.residual, problem);
-        let [term] = term;
-        let needed = |(least, simple): &(f64, Term)| {
-            least * (1.0 - BETTER_FORM * term.size().saturating_sub(simple.size()) as f64)
-        };
-        if chosen.as_ref().is_none_or(|c| sse < needed(c)) {
-            chosen = Some((sse, term));
-        }
-    }
-    terms.terms.extend(chosen.map(|c| c.1));
-}
-
-/// Chooses the forms again, each beside all other effects of the model: the first to enter did not know of the last.
-fn choose_again<'p>(terms: &mut Terms<'p>) {
-    let problem: &Problem = terms.problem;
-    let several = |e: &&'p dyn Effect| e.forms(&problem.view).len() > 1;
-    let effects: Vec<&'p dyn Effect> = terms.terms.iter().map(|t| t.effect).filter(several).collect();
-    for effect in effects {
-        terms.terms.retain(|t| t.id() != effect.info().id);
-        enter(terms, effect);
     }
 }

@@ -23,7 +23,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let prepared = prepare(run, options)?;
     let found = Exploration::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
     let fit = report(&found.start)?;
-    let suggestions = suggestions(&found, &fit, spec)?;
+    let suggestions = suggestions(&found, &fit, spec, options)?;
     let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
     let regions = if verdict == Verdict::MissingEffect {
         let start = &found.start.main;
@@ -74,7 +74,7 @@ pub fn discover(
     mut on_step: impl FnMut(&Step),
 ) -> Result<Discovery, ModelError> {
     let prepared = prepare(run, options)?;
-    let mut steps = vec![step(&Assembly::new(&prepared, spec)?, None)];
+    let mut steps = vec![step(&Assembly::new(&prepared, spec, options)?, None)];
     on_step(&steps[0]);
     let found = Exploration::new(&prepared, spec, options, max_effects, &mut |advance| {
         let step = step(&advance.after, Some(advance));
@@ -118,13 +118,19 @@ fn step(model: &Assembly, advance: Option<&Advance>) -> Step {
     }
 }
 
-fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<Suggestion>, ModelError> {
+fn suggestions(
+    found: &Exploration,
+    fit: &Fit,
+    spec: &ModelSpec,
+    options: &Options,
+) -> Result<Vec<Suggestion>, ModelError> {
     let mut out = Vec::new();
+    let complete = report(found.end())?;
     for (advance, importance) in found.ranking() {
         let Some(rival) = &advance.added else { continue };
         let id = rival.term.id();
         let with = spec.with(id)?;
-        let alone = Assembly::new(found.start.prepared, &with)?;
+        let alone = Assembly::new(found.start.prepared, &with, options)?;
         let with = report(&alone)?;
         let apart = alone.is_apart(rival.term.effect);
         let reduction = if apart {
@@ -152,7 +158,8 @@ fn suggestions(found: &Exploration, fit: &Fit, spec: &ModelSpec) -> Result<Vec<S
             validation_rms: with.validation_rms,
             error_reduction: reduction,
             p_value: rival.p_value,
-            parameters: with.parameters.into_iter().filter(|p| p.effect == id).collect(),
+            error_reduction_together: found.lost_without(rival.term.id()),
+            parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
             confounded_with,
             why,
         });

@@ -10,7 +10,7 @@ use crate::prepare::Prepared;
 use crate::report::{Invisible, NoiseFloor, Parameter, ParameterState, Verdict};
 use crate::select::{Library, Move, Rival, Search, Silence, held_out};
 use crate::terms::{Term, Terms};
-use crate::{ModelError, ModelSpec, Options, ResidualKind, floor};
+use crate::{ModelError, ModelSpec, Options, floor};
 
 /// What was added or removed, and the model after it.
 pub struct Advance<'p> {
@@ -71,11 +71,8 @@ impl<'p> Exploration<'p> {
         most: usize,
         on_advance: &mut dyn FnMut(&Advance),
     ) -> Result<Self, ModelError> {
-        let start = Assembly::new(prepared, spec)?;
-        let all = [Stage::Settled, Stage::Ramp, Stage::Memory];
-        let apart = prepared.about.residual == ResidualKind::PlateauMean;
-        let stages = if apart { &all[..1] } else { &all[..] };
-        let library = Library::new(spec, &prepared.main, stages);
+        let start = Assembly::new(prepared, spec, options)?;
+        let library = Library::new(spec, &prepared.main, prepared.stages());
         let mut search = Search::new(start.main.clone(), &library, &prepared.baseline, most, options);
         let mut advances: Vec<Advance> = Vec::new();
         let mut effects = start.effects.clone();
@@ -109,7 +106,7 @@ impl<'p> Exploration<'p> {
                     (None, Some(id), Vec::new())
                 }
             };
-            let after = start.with_main(search.now.clone(), effects.clone());
+            let after = start.of(search.now.clone(), effects.clone());
             advances.push(Advance { added, removed, ties, after });
             advances.last().into_iter().for_each(&mut *on_advance);
         };
@@ -118,7 +115,8 @@ impl<'p> Exploration<'p> {
         if now.effects.len() < start.effects.len() + most
             && !search.closed
             && let Some(rival) = memory(now, options)
-            && let after = now.with_memory(&rival.term)
+            && let effects = now.effects.iter().map(String::as_str).chain([rival.term.id()]).map(String::from).collect()
+            && let after = now.of(now.main.clone(), effects)
             && let Some(moving) = &after.moving
             && is_decided(&rival.term, moving, &intervals(moving, prepared.motion).parameters, prepared)
         {
@@ -175,6 +173,15 @@ impl<'p> Exploration<'p> {
     }
 }
 
+impl Exploration<'_> {
+    /// Share of the held-out error that the last model has less than the same model without an effect.
+    pub fn lost_without(&self, id: &str) -> f64 {
+        let end = self.end();
+        let part = std::iter::once(&end.main).chain(&end.moving).find(|part| part.contains(id));
+        part.map_or(0.0, |part| 1.0 - held_out_rms(part) / held_out_rms(&part.without(id)))
+    }
+}
+
 fn held_out_rms(terms: &Terms) -> f64 {
     (held_out(terms).iter().sum::<f64>() / terms.problem.rows() as f64).sqrt()
 }
@@ -200,7 +207,7 @@ fn is_decided(term: &Term, terms: &Terms, parameters: &[Parameter], prepared: &P
 fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
     let present: f64 = held_out(&search.now).iter().sum();
-    let more = |id| held_out(&search.without(id)).iter().sum::<f64>() / present - 1.0;
+    let more = |id| held_out(&search.now.without(id)).iter().sum::<f64>() / present - 1.0;
     let open = search
         .added()
         .filter(|term| search.closed || !is_decided(term, &search.now, &parameters, prepared))
@@ -225,7 +232,7 @@ fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, 
         for (column, factor) in term.columns.iter().zip(&factors[at]) {
             contribution.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
         }
-        let residual = search.without(term.id()).linear().residual;
+        let residual = search.now.without(term.id()).linear().residual;
         let own = 1.0 - full / dot(&residual, &residual);
         let any =
             Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;
@@ -239,13 +246,7 @@ fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, 
 
 /// Share of the squared error without an effect that the effect takes away.
 fn importance(end: &Assembly, id: &str) -> f64 {
-    let loss = |terms: &Terms| {
-        let mut less = terms.clone();
-        less.terms.retain(|t| t.id() != id);
-        less.refine();
-        let (with, without) = (terms.linear(), less.linear());
-        1.0 - dot(&with.residual, &with.residual) / without.sse
-    };
+    let loss = |terms: &Terms| 1.0 - terms.linear().sse / terms.without(id).linear().sse;
     let parts = std::iter::once(&end.main).chain(&end.moving);
     parts.filter(|t| t.contains(id)).map(loss).fold(0.0, f64::max)
 }

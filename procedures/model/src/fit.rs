@@ -18,7 +18,7 @@ use jointbench_instrument::RunTable;
 /// [`ModelError::Collinear`] where two effects are proportional in this data.
 pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
     let prepared = prepare(run, options)?;
-    let assembly = Assembly::new(&prepared, spec)?;
+    let assembly = Assembly::new(&prepared, spec, options)?;
     report(&assembly)
 }
 

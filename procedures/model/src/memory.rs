@@ -9,27 +9,50 @@ use crate::Options;
 use crate::assembly::Assembly;
 use crate::effect::Stage;
 use crate::linear::Basis;
+use crate::prepare::Problem;
 use crate::select::{Ground, Library, Rival, significance};
-use crate::terms::{Terms, polish};
+use crate::terms::{Term, Terms, polish};
 
 /// An effect with a memory must take this share of the squared error around reversals.
 const MOST: f64 = 0.72;
 
+/// What the rest of the model leaves around reversals, and the effects with a memory that may explain it.
+struct Reversals<'p> {
+    problem: &'p Problem,
+    ground: Ground,
+    library: Library<'p>,
+}
+
+impl<'p> Reversals<'p> {
+    fn new(now: &Assembly<'p>, wanted: impl Fn(&str) -> bool) -> Option<Self> {
+        let problem = now.prepared.memory.as_ref()?;
+        let mut terms = Terms::new(problem);
+        terms.given = now.predict(problem);
+        let mut library = Library::new(now.spec, problem, &[Stage::Memory]);
+        library.candidates.retain(|c| wanted(c.id()));
+        Some(Self { problem, ground: Ground::new(Basis::default(), terms.response(), problem), library })
+    }
+
+    /// The effect in the form that explains most, and its share.
+    fn best(&self) -> Option<(Term<'p>, f64)> {
+        let shares = self.library.candidates.iter().map(|c| self.ground.own(&c.columns).share);
+        let (best, _) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let mut term = [self.library.candidates[best].term(self.problem)];
+        let left = polish(&mut term, &self.ground.basis, &self.ground.residual, self.problem);
+        let [term] = term;
+        Some((term, 1.0 - left / self.ground.energy))
+    }
+}
+
 /// The memory effect that this run shows beyond the model, if one does.
 pub fn memory<'p>(now: &Assembly<'p>, options: &Options) -> Option<Rival<'p>> {
-    let prepared = now.prepared;
-    let problem = prepared.memory.as_ref()?;
-    let mut terms = Terms::new(problem);
-    terms.given = now.predict(problem);
-    let rest = terms.response();
-    let mut library = Library::new(now.spec, problem, &[Stage::Memory]);
-    library.candidates.retain(|c| !now.effects.iter().any(|e| e == c.id()));
-    let ground = Ground::new(Basis::default(), rest, problem);
-    let shares = library.candidates.iter().map(|c| ground.own(&c.columns).share);
-    let (best, _) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let mut term = [library.candidates[best].term(problem)];
-    let share = 1.0 - polish(&mut term, &ground.basis, &ground.residual, problem) / ground.energy;
-    let [term] = term;
-    let p_value = significance(&term, &library, &ground, options);
+    let reversals = Reversals::new(now, |id| !now.effects.iter().any(|e| e == id))?;
+    let (term, share) = reversals.best()?;
+    let p_value = significance(&term, &reversals.library, &reversals.ground, options);
     (share >= MOST && p_value <= options.alpha).then(|| Rival::alone(term, share, p_value))
+}
+
+/// A memory effect of the model in its best form. `None` where there is nothing to choose it by.
+pub fn form_of<'p>(now: &Assembly<'p>, id: &str) -> Option<Term<'p>> {
+    Some(Reversals::new(now, |other| other == id)?.best()?.0)
 }

@@ -78,6 +78,14 @@ impl<'p> Terms<'p> {
         self.terms.iter().any(|t| t.id() == id)
     }
 
+    /// The same without one effect.
+    pub fn without(&self, id: &str) -> Self {
+        let mut less = self.clone();
+        less.terms.retain(|t| t.id() != id);
+        less.refine();
+        less
+    }
+
     /// The same with the shape of one effect held where it is.
     pub fn held(&self, id: &str) -> Self {
         let mut held = self.clone();

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{read, shared};
-use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover};
+use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover, fit};
 use serde_json::Value;
 
 fn check_family(family: &str) {
@@ -19,6 +19,8 @@ fn check_family(family: &str) {
         let whole = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();
         let added: Vec<&String> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
         let name = case.file_name().unwrap().to_string_lossy().into_owned();
+        let same = fit(&run, &ModelSpec::new(spec.kind, &whole.model).unwrap(), &Options::default()).unwrap();
+        assert_eq!(same.parameters, whole.fit.parameters, "{name}: a fit of the same effects is the same model");
         match answer["verdict"].as_str().unwrap() {
             "adequate" => {
                 assert_eq!(first.verdict, Verdict::Adequate, "{name}: {}", first.summary);

@@ -53,6 +53,14 @@ fn check_found(name: &str, seed: u64, friction: impl Fn(Moment) -> f64) {
     let whole = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
     let added: Vec<_> = whole.model.iter().filter(|e| !spec.contains(e)).collect();
     assert_eq!(added, [name], "{}", whole.summary);
+    // One answer: what is suggested is what the search ends with, and what a fit of the same effects gives in any order.
+    let mut effects = whole.model.clone();
+    effects.reverse();
+    let same = fit(&run, &ModelSpec::new(spec.kind, effects).unwrap(), &Options::default()).unwrap();
+    for parameter in whole.fit.parameters.iter().filter(|p| p.effect == name) {
+        assert!(same.parameters.contains(parameter), "{parameter:?} is not among {:?}", same.parameters);
+        assert!(first.suggestions[0].parameters.contains(parameter), "{:?}", first.suggestions);
+    }
     let last = whole.steps.last().unwrap().validation_rms;
     assert!(last < 1.1 * whole.noise_floor_rms.unwrap(), "{last} against the floor {:?}", whole.noise_floor_rms);
 }

@@ -180,8 +180,9 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         return;
     }
     println!();
-    let alone = if suggestions.len() > 1 { " (figures with that effect alone; discover adds them all)" } else { "" };
-    println!("what is missing, the most important first{alone}:");
+    let several = suggestions.len() > 1;
+    let beside = if several { " (parameters beside all of these, as discover ends with them)" } else { "" };
+    println!("what is missing, the most important first{beside}:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
         // Effects of reversals and ramps are judged there, and leave the settled motion as it was.
@@ -190,7 +191,11 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
             true => format!("error {:+.1} % where it acts, settled motion stays as it is", -100.0 * share),
             false => format!("error {:+.1} % to {}", -100.0 * share, words::figure(rms, unit)),
         };
-        println!("  {}. {}: {gain}, {}", i + 1, suggestion.effect, chance(suggestion.p_value));
+        let together = match several {
+            true => format!(" alone, {:+.1} % beside the others", -100.0 * suggestion.error_reduction_together),
+            false => String::new(),
+        };
+        println!("  {}. {}: {gain}{together}, {}", i + 1, suggestion.effect, chance(suggestion.p_value));
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
             let [low, high] = parameter.ci95;

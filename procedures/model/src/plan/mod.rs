@@ -97,7 +97,7 @@ pub fn next_run(
     let prepared = prepare(run, options)?;
     let spec = |effects: &[String]| ModelSpec::with_own(run.kind(), effects, open.own.clone());
     let with_all = spec(&open.model)?;
-    let model = Assembly::new(&prepared, &with_all)?;
+    let model = Assembly::new(&prepared, &with_all, options)?;
     let noise = Noise::of(&model.main);
     let imagined: Vec<_> = menu.iter().map(|choice| imagine(choice, &prepared, &model)).collect();
 
@@ -108,7 +108,8 @@ pub fn next_run(
             let effects: Vec<String> = open.model.iter().map(|e| if e == effect { rival } else { e }.clone()).collect();
             specs.push(spec(&effects)?);
         }
-        let others: Vec<Assembly> = specs.iter().map(|s| Assembly::new(&prepared, s)).collect::<Result<_, _>>()?;
+        let others: Vec<Assembly> =
+            specs.iter().map(|s| Assembly::new(&prepared, s, options)).collect::<Result<_, _>>()?;
         let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
         let best = menu.iter().zip(&imagined).map(|(choice, problem)| {
             let apart: Vec<f64> = others.iter().map(|other| side.separation(other, problem, &noise)).collect();

@@ -10,9 +10,10 @@ mod segments;
 mod stiffness;
 mod sweeps;
 
+use crate::effect::Stage;
 use crate::report::Preparation;
 use crate::view::{Signal, View};
-use crate::{ModelError, Options};
+use crate::{ModelError, Options, ResidualKind};
 use filter::LowPass;
 use jointbench_instrument::{Kind, Motion, RunTable};
 
@@ -95,6 +96,14 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// Effects that the main problem can judge: of settled motion those alone that show there.
+    pub fn stages(&self) -> &'static [Stage] {
+        match self.about.residual {
+            ResidualKind::PlateauMean => &[Stage::Settled],
+            ResidualKind::Raw => &[Stage::Settled, Stage::Ramp, Stage::Memory],
+        }
+    }
+
     /// The column that a signal was, for people.
     pub fn column_name(&self, signal: Signal) -> &'static str {
         match (signal, self.kind) {

@@ -87,8 +87,13 @@ pub struct Suggestion {
     pub validation_rms: f64,
     /// 1 − validation_rms / validation_rms of the present model.
     pub error_reduction: f64,
+    /// Share of the held-out error that the effect takes away beside all other suggestions: what the complete model is
+    /// better by than the complete model without it. Effects that mask each other show little alone.
+    #[serde(default)]
+    pub error_reduction_together: f64,
     /// Family-wise, from sign flips of whole blocks.
     pub p_value: f64,
+    /// As they are in the complete model, where `discover` ends: beside all other suggestions.
     pub parameters: Vec<Parameter>,
     /// Effects that explain this data as well.
     pub confounded_with: Vec<String>,

@@ -45,8 +45,9 @@ fn one_more<'p>(terms: &Terms<'p>, at: usize, library: &Library<'p>, options: &O
 const BETTER_FORM: f64 = 0.01;
 
 /// Asks of every effect with several forms, or with an order that was found beside fewer effects, whether another one
-/// fits better beside the effects that came in since.
-pub fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
+/// fits better beside the effects that came in since. Says whether one does.
+pub fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) -> bool {
+    let mut changed = false;
     for i in 0..terms.terms.len() {
         let mut others = terms.clone();
         let term = others.terms.remove(i);
@@ -88,8 +89,10 @@ pub fn reform<'p>(terms: &mut Terms<'p>, library: &Library<'p>) {
         if best.1.form.name != term.form.name || of_order && best.1.shape != term.shape {
             terms.terms[i] = best.1;
             terms.refine();
+            changed = true;
         }
     }
+    changed
 }
 
 /// The two parts of one kind that explain most together, where an effect is a sum of such parts. Two dry contacts look

@@ -26,6 +26,8 @@ impl<'e> Candidate<'e> {
 }
 
 pub struct Library<'e> {
+    /// Every effect of the kind, in the order of the contract.
+    pub effects: Vec<&'e dyn Effect>,
     pub candidates: Vec<Candidate<'e>>,
     pub invisible: Vec<Invisible>,
 }
@@ -33,9 +35,22 @@ pub struct Library<'e> {
 impl<'e> Library<'e> {
     /// All candidates of the stages that this problem can judge.
     pub fn new(spec: &'e ModelSpec, problem: &Problem, stages: &[Stage]) -> Self {
-        let mut library = Self { candidates: Vec::new(), invisible: Vec::new() };
+        Self::of(spec, problem, stages, |_| true)
+    }
+
+    /// Only what it takes to lay these effects out: their own forms, and those of all where one of these may get another
+    /// part, which is held against all.
+    pub fn for_layout(spec: &'e ModelSpec, problem: &Problem, stages: &[Stage], effects: &[&str]) -> Self {
+        let is_in = |effect: &dyn Effect| effects.contains(&effect.info().id);
+        let grows = |effect: &dyn Effect| effect.forms(&problem.view).iter().any(|f| effect.extended(f).is_some());
+        let one_grows = spec.known().any(|effect| is_in(effect) && grows(effect));
+        Self::of(spec, problem, stages, |effect| one_grows || is_in(effect))
+    }
+
+    fn of(spec: &'e ModelSpec, problem: &Problem, stages: &[Stage], wanted: impl Fn(&dyn Effect) -> bool) -> Self {
+        let mut library = Self { effects: spec.known().collect(), candidates: Vec::new(), invisible: Vec::new() };
         for effect in spec.known() {
-            if effect.is_given() || !stages.contains(&effect.stage()) {
+            if effect.is_given() || !stages.contains(&effect.stage()) || !wanted(effect) {
                 continue;
             }
             if let Some(why) = effect.hidden(&problem.view) {

@@ -3,11 +3,13 @@
 mod flips;
 mod forms;
 mod ground;
+mod layout;
 mod library;
 mod rivals;
 mod search;
 
 pub use ground::Ground;
+pub use layout::{enter, lay};
 pub use library::Library;
 pub use rivals::{Rival, significance};
 pub use search::{Move, Search, Silence, held_out};

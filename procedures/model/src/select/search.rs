@@ -1,7 +1,7 @@
 //! From a model to the model that is left when nothing more can be named.
 
-use super::forms::{extend, reform};
 use super::ground::Ground;
+use super::layout::lay;
 use super::library::Library;
 use super::rivals::{Bar, Rival, is_tie, step};
 use crate::Options;
@@ -47,6 +47,8 @@ pub struct Search<'l, 'p> {
     withdrawn: Vec<&'p str>,
     /// Held-out squared errors, fold by fold, of the models that they were withdrawn from.
     given_up: Vec<Vec<f64>>,
+    /// The effect that was added last.
+    last: Option<&'p str>,
     left: usize,
     exchanges: usize,
     /// Something from outside the library was seen: whatever entered now would stand for it.
@@ -75,6 +77,7 @@ impl<'l, 'p> Search<'l, 'p> {
             kept,
             withdrawn: Vec::new(),
             given_up: Vec::new(),
+            last: None,
             left: most,
             exchanges: EXCHANGES,
             closed: false,
@@ -93,8 +96,13 @@ impl<'l, 'p> Search<'l, 'p> {
     }
 
     fn remove(&mut self, id: &'p str) -> Move<'p> {
-        self.now = self.without(id);
         self.left += 1;
+        self.drop(id)
+    }
+
+    fn drop(&mut self, id: &'p str) -> Move<'p> {
+        let rest: Vec<&str> = self.now.terms.iter().map(Term::id).filter(|other| *other != id).collect();
+        self.now = lay(&self.now, &rest, self.library, self.options);
         Move::Removed(id)
     }
 
@@ -105,7 +113,7 @@ impl<'l, 'p> Search<'l, 'p> {
         let present: f64 = losses.iter().sum();
         let ids: Vec<&'p str> = self.added().map(Term::id).collect();
         ids.into_iter().filter(|_| self.now.terms.len() > self.kept.len() + 1).find(|id| {
-            let better = self.step(&self.without(id));
+            let better = self.step(&self.now.without(id));
             better.is_some_and(|(rival, _)| {
                 let clearly = rival.held_out < (1.0 - self.options.practical_share) * present;
                 rival.term.id() != *id && clearly && !is_tie(&rival.losses, &losses)
@@ -113,12 +121,13 @@ impl<'l, 'p> Search<'l, 'p> {
         })
     }
 
-    /// The model without one of its effects.
-    pub fn without(&self, id: &str) -> Terms<'p> {
-        let mut less = self.now.clone();
-        less.terms.retain(|t| t.id() != id);
-        less.refine();
-        less
+    /// The added effect without which the model is as good. What came last has just shown its reason.
+    fn needless(&self) -> Option<&'p str> {
+        let full = self.now.linear().sse;
+        let ids = self.added().map(Term::id).filter(|id| self.last != Some(id));
+        let shares = ids.map(|id| (id, 1.0 - full / self.now.without(id).linear().sse));
+        let open = shares.filter(|(_, share)| *share < self.options.practical_share);
+        open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
     }
 
     /// Effects that were added and are still there.
@@ -135,9 +144,8 @@ impl<'p> Iterator for Search<'_, 'p> {
     type Item = Move<'p>;
 
     fn next(&mut self) -> Option<Move<'p>> {
-        if let Some((id, less)) = drop_one(&self.now, &self.kept, self.options) {
-            self.now = less;
-            return Some(Move::Removed(id));
+        if let Some(id) = self.needless() {
+            return Some(self.drop(id));
         }
         if self.closed {
             return None;
@@ -156,10 +164,10 @@ impl<'p> Iterator for Search<'_, 'p> {
             return Some(self.remove(id));
         };
         self.left -= 1;
-        self.now.terms.push(rival.term.clone());
-        self.now.refine();
-        reform(&mut self.now, self.library);
-        extend(&mut self.now, self.library, self.options);
+        let id = rival.term.id();
+        let with: Vec<&str> = self.now.terms.iter().map(Term::id).chain([id]).collect();
+        self.now = lay(&self.now, &with, self.library, self.options);
+        self.last = Some(id);
         Some(Move::Added { rival: rival.into(), ties })
     }
 }
@@ -185,24 +193,4 @@ fn silences<'p>(end: &Terms<'p>, library: &Library<'p>, withdrawn: &[&'p str], o
     }
     out.retain(|s| s.detectable_rms < f64::MAX);
     out
-}
-
-/// The added term without which the model is as good, with the model without it.
-fn drop_one<'p>(now: &Terms<'p>, kept: &[&'p str], options: &Options) -> Option<(&'p str, Terms<'p>)> {
-    let full = now.linear().sse;
-    let mut worst: Option<(f64, usize, Terms)> = None;
-    for i in 0..now.terms.len() {
-        if kept.contains(&now.terms[i].id()) || i + 1 == now.terms.len() {
-            continue;
-        }
-        let mut less = now.clone();
-        less.terms.remove(i);
-        less.refine();
-        let sse = less.linear().sse;
-        let share = 1.0 - full / sse;
-        if share < options.practical_share && worst.as_ref().is_none_or(|w| share < w.0) {
-            worst = Some((share, i, less));
-        }
-    }
-    worst.map(|(_, i, less)| (now.terms[i].id(), less))
 }

@@ -1,0 +1,82 @@
+//! How a set of effects becomes a model: in one way only, whatever order they came together in.
+
+use super::forms::{extend, reform};
+use super::ground::Ground;
+use super::library::Library;
+use crate::Options;
+use crate::effect::Effect;
+use crate::prepare::Problem;
+use crate::terms::{Term, Terms, polish};
+
+/// How often the forms are chosen again, each beside all others.
+const PASSES: usize = 3;
+
+/// A form must take this share off the squared error for each parameter that it has more than a simpler one.
+const BETTER_FORM: f64 = 0.01;
+
+/// Lays effects out on the problem of `bare`: those of one form first, then always the one that explains most.
+pub fn lay<'p>(bare: &Terms<'p>, effects: &[&str], library: &Library<'p>, options: &Options) -> Terms<'p> {
+    let mut laid = Terms { terms: Vec::new(), ..bare.clone() };
+    let wanted = library.effects.iter().copied().filter(|e| effects.contains(&e.info().id));
+    let (fixed, mut open): (Vec<_>, Vec<_>) = wanted.partition(|e| is_fixed(*e, laid.problem));
+    fixed.into_iter().for_each(|effect| enter(&mut laid, effect));
+    while !open.is_empty() {
+        let ground = Ground::of(&laid);
+        let share = |effect: &dyn Effect| {
+            let own = library.candidates.iter().filter(|c| c.id() == effect.info().id);
+            own.map(|c| ground.own(&c.columns).share).fold(0.0, f64::max)
+        };
+        let shares = open.iter().map(|effect| share(*effect)).enumerate();
+        let most = shares.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |most| most.0);
+        enter(&mut laid, open.remove(most));
+        laid.refine();
+    }
+    for _ in 0..PASSES {
+        if !reform(&mut laid, library) {
+            break;
+        }
+    }
+    extend(&mut laid, library, options);
+    laid
+}
+
+/// There is nothing to choose about the effect.
+fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
+    matches!(&effect.forms(&problem.view)[..], [form] if form.grid.len() == 1)
+}
+
+/// Enters an effect in the form that explains most of what is left, each form at its own best shape. What is physically
+/// impossible enters only where nothing else does.
+pub fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
+    let problem: &Problem = terms.problem;
+    let forms = effect.forms(&problem.view);
+    if let [form] = &forms[..]
+        && form.grid.len() == 1
+    {
+        terms.terms.push(Term::new(effect, form.clone(), form.grid[0].clone(), problem));
+        return;
+    }
+    let ground = Ground::of(terms);
+    let mut best: Vec<Term<'p>> = Vec::new();
+    for form in forms {
+        let shapes = form.grid.iter().map(|shape| Term::new(effect, form.clone(), shape.clone(), problem));
+        let shares = shapes.map(|term| (ground.own(&term.columns).share, term));
+        best.extend(shares.max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1));
+    }
+    best.sort_by_key(Term::size);
+    let mut chosen: Option<(bool, f64, Term<'p>)> = None;
+    for term in best {
+        let mut term = [term];
+        let sse = polish(&mut term, &ground.basis, &ground.residual, problem);
+        let [term] = term;
+        let possible = term.allows(&ground.own(&term.columns).factors());
+        let is_better = chosen.as_ref().is_none_or(|(as_possible, least, simple)| {
+            let more = term.size().saturating_sub(simple.size()) as f64;
+            possible == *as_possible && sse < least * (1.0 - BETTER_FORM * more) || possible && !as_possible
+        });
+        if is_better {
+            chosen = Some((possible, sse, term));
+        }
+    }
+    terms.terms.extend(chosen.map(|c| c.2));
+}
