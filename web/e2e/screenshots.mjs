@@ -4,7 +4,7 @@
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, open, settings, tell } from './browser.mjs';
-import { BARE, flyAndStop, makeRun, measureNext, readVersion, startRun, toAnotherVersion, UNDECIDED, watchRun } from './steps.mjs';
+import { BARE, chooseForeign, flyAndStop, FOREIGN, makeRun, measureNext, readVersion, startRun, toAnotherVersion, UNDECIDED, watchRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/screenshots.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const folder = process.env.JB_SCREENS ?? fileURLToPath(new URL('../../docs/screens', import.meta.url));
@@ -22,6 +22,7 @@ const GALLERY = {
 	compensation: {},
 	encoder_linearity: {},
 	encoder_alignment: { halvings: 2, map_positions: 3 },
+	puma_friction: {},
 };
 
 async function shoot(page, name) {
@@ -102,6 +103,23 @@ await tell(`screens in ${folder}`, async () => {
 	await page.locator('[data-measured]').first().waitFor();
 	await page.locator('.uplot').first().scrollIntoViewIfNeeded();
 	await shoot(page, 'run-measured');
+
+	await page.goto(`${where.base}/runs?compare=${run},${run + 1}`);
+	await page.getByRole('heading', { name: 'Compare 2 runs' }).waitFor();
+	await page.locator('.uplot').first().waitFor();
+	await shoot(page, 'compare');
+	await chooseForeign(page, where.base, FOREIGN);
+	await shoot(page, 'import');
+	for (const path of ['log', 'settings']) {
+		await page.goto(`${where.base}/${path}`);
+		await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
+		await shoot(page, path);
+	}
+	await page.goto(where.base);
+	await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 20_000 });
+	await page.keyboard.press('?');
+	await page.getByRole('dialog').waitFor();
+	await shoot(page, 'help');
 	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
 	await browser.close();
 });

@@ -154,12 +154,21 @@ export async function stopByKey(page, who) {
 	await page.getByRole('button', { name: 'The bench stands still' }).click({ timeout: 500 }).catch(() => {});
 }
 
-/** Brings in a table with foreign names and units, in three clicks from the file to the workbench. */
-export async function importForeign(page, base, table) {
+/** A table with foreign names and units. */
+export const FOREIGN = ['Time [ms],pos_deg,Iq [A]', ...Array.from({ length: 200 }, (_, i) => `${i * 4},${i % 90},0.${i % 9}`)].join('\n');
+
+/** Gives the page a table to import; the form that asks what its columns are. */
+export async function chooseForeign(page, base, table) {
 	await page.goto(`${base}/runs`);
 	await page.setInputFiles('input[type=file]', { name: 'foreign.csv', mimeType: 'text/csv', buffer: Buffer.from(table) });
 	const form = page.getByRole('form', { name: /foreign.csv/ });
 	await form.waitFor({ timeout: 30_000 });
+	return form;
+}
+
+/** Brings the table in, in three clicks from the file to the workbench. */
+export async function importForeign(page, base, table) {
+	const form = await chooseForeign(page, base, table);
 	for (const [name, value] of [['torque constant', '0.08'], ['gear ratio', '50'], ['rotor inertia', '4e-5']]) await form.getByLabel(name).fill(value);
 	await form.getByRole('button', { name: 'Import' }).click();
 	await page.getByRole('link', { name: 'open in the workbench' }).waitFor({ timeout: 30_000 });

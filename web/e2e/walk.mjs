@@ -6,7 +6,7 @@
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { BARE, brush, excludeAndUndo, flyAndStop, importForeign, loseAndFind, measureNext, observe, readResult, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
+import { BARE, brush, excludeAndUndo, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, observe, readResult, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** With typeset formulas; without them there would be still less. */
@@ -97,8 +97,7 @@ await tell('walk', async () => {
 	}
 	await stopByKey(watcher, 'observer');
 	await stopByKey(page, 'operator');
-	const rows = Array.from({ length: 200 }, (_, i) => `${i * 4},${i % 90},0.${i % 9}`);
-	await importForeign(page, where.base, ['Time [ms],pos_deg,Iq [A]', ...rows].join('\n'));
+	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
 	await page.getByLabel(`Compare run ${run + 3}`).check();
 	await page.getByRole('heading', { name: 'Compare 2 runs' }).waitFor({ timeout: 30_000 });

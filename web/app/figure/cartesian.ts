@@ -24,12 +24,16 @@ export interface Frame {
 
 const LEFT = 62;
 const LETTER = 6.1;
+/** How far a slanted name goes down for each of its letters. */
+export const SLANT_DEG = 32;
+const DOWN = LETTER * Math.sin((SLANT_DEG * Math.PI) / 180);
 
 export function cartesian(figure: Figure, width: number, height: number, factor: { x: number; y: number }): Frame {
 	const names = figure.x.names?.length ? figure.x.names : null;
 	const slot = names ? (width - LEFT - 10) / names.length : 0;
-	const slanted = names !== null && Math.max(...names.map((name) => name.length)) * LETTER > slot - 6;
-	const [left, right, top, bottom] = [LEFT, width - 10, 8, height - (slanted ? 84 : 38)];
+	const longest = Math.max(0, ...(names ?? []).map((name) => name.length));
+	const slanted = longest * LETTER > slot - 6 && names !== null;
+	const [left, right, top, bottom] = [LEFT, width - 10, 8, height - (slanted ? 36 + longest * DOWN : 38)];
 	const bars = figure.series.filter((one) => one.mark === 'bars');
 	const step = names ? 1 : narrowest(bars);
 	const [xLow, xHigh] = names ? [-0.5, names.length - 0.5] : widened(spanOf(figure.series.flatMap((one) => one.x)), bars.length ? step * 0.6 : 0, 0.02);

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { axisTitle, label, prose } from './label';
+import { axisTitle, cut, label, prose } from './label';
 
 it('reads the unit from the suffix', () => {
 	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
@@ -18,4 +18,9 @@ it('trusts a unit that is given', () => {
 it('says ids of a sentence as words', () => {
 	expect(prose('it would show load_linear and stribeck_load, at 5 mNm')).toBe('It would show load linear and stribeck load, at 5 mNm');
 	expect(prose('repeat with a lower stribeck_speed_rad_s, for tau_c')).toBe('Repeat with a lower stribeck speed, for tau c');
+});
+
+it('cuts what has no room', () => {
+	expect(cut('friction ripple', 200)).toBe('friction ripple');
+	expect(cut('friction ripple', 62)).toBe('friction…');
 });

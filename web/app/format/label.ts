@@ -60,3 +60,12 @@ export function prose(sentence: string): string {
 	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, (id) => words(id.replace(SPELT_UNIT, '')));
 	return spoken.charAt(0).toUpperCase() + spoken.slice(1);
 }
+
+/** Width of a letter of the small print, on average [px]. */
+const LETTER_PX = 6.1;
+
+/** As much of a text as has room, for drawings that cannot wrap; give the whole text in a title. */
+export function cut(text: string, width_px: number): string {
+	const letters = Math.max(2, Math.floor(width_px / LETTER_PX));
+	return text.length <= letters ? text : `${text.slice(0, letters - 1).trimEnd()}…`;
+}

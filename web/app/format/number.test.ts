@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { bounds, chance, estimate, figure, percent, quantity, scaleFor } from './number';
+import { bounds, chance, estimate, figure, percent, quantity, scaleFor, written } from './number';
 
 describe('numbers as an instrument shows them', () => {
 	it.each([
@@ -12,6 +12,14 @@ describe('numbers as an instrument shows them', () => {
 		[Number.NaN, '–'],
 		[null, '–'],
 	])('%s is %s', (value, text) => expect(figure(value)).toBe(text));
+
+	it('leaves a figure that somebody wrote down as it is', () => {
+		expect([0.0406, 177.8, 1.2e-5, 45, -0.5, 31.41592653589793].map(written)).toEqual(['0.0406', '177.8', '1.2·10⁻⁵', '45', '−0.5', '31.41593']);
+	});
+
+	it('has no minus before a share of nothing', () => {
+		expect([-0.0004, 0.0004, -0.04].map((share) => percent(share, 1))).toEqual(['0.0 %', '0.0 %', '−4.0 %']);
+	});
 
 	it('chooses one prefix by the largest magnitude', () => {
 		expect(scaleFor('Nm', 0.0214)).toEqual({ factor: 1e3, unit: 'mNm' });

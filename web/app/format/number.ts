@@ -17,6 +17,15 @@ function exponent(value: number, decimals: number): string {
 	return `${mantissa.replace('-', MINUS)}·10${superscript(Number(power))}`;
 }
 
+/** A figure as somebody wrote it down: its own digits, seven at most. */
+export function written(value: number): string {
+	const own = Number(value.toPrecision(7));
+	const size = Math.abs(own);
+	if (size === 0 || (size >= 1e-4 && size < 1e6)) return String(own).replace('-', MINUS);
+	const [mantissa = '', power = ''] = own.toExponential().split('e');
+	return `${mantissa.replace('-', MINUS)}·10${superscript(Number(power))}`;
+}
+
 const RAISED = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
 export function superscript(power: number): string {
@@ -49,7 +58,8 @@ export function quantity(value: number | null | undefined, unit: string, digits 
 }
 
 export function percent(share: number, digits = 0): string {
-	return `${(share * 100).toFixed(digits).replace('-', MINUS)} %`;
+	const text = (share * 100).toFixed(digits);
+	return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS)} %`;
 }
 
 /** `p < 10⁻⁹` rather than a row of zeros. */

@@ -4,7 +4,7 @@ import { asRefusal } from '../api/problem';
 import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
 import type { Frame } from '../api/frame';
 import { Tape } from '../plot/tape';
-import { router } from './router.svelte';
+import { renewed } from './benches';
 
 /** With nothing heard for so long, the page asks. */
 const QUIET_MS = 1500;
@@ -37,10 +37,9 @@ class LabState {
 	/** Samples of the run that is on. The columns grow in place; `frames` tells of it. */
 	tape: Tape | null = $state.raw(null);
 
-	bench: Bench | null = $derived.by(() => {
-		const wanted = router.query.get('bench');
-		return this.benches?.find((bench) => bench.name === wanted) ?? this.benches?.[0] ?? null;
-	});
+	/** The bench that the pages are about: as the address says, or the run that is looked at, or a person. */
+	chosen: string | null = $state(null);
+	bench: Bench | null = $derived(this.benches?.find((bench) => bench.name === this.chosen) ?? this.benches?.[0] ?? null);
 	/** Milliseconds since the daemon was last heard. */
 	silence_ms = $derived(Math.max(0, this.now_ms - this.heard_ms));
 	lost = $derived(!this.line || this.silence_ms > STALE_MS);
@@ -97,8 +96,7 @@ class LabState {
 		this.hear();
 		switch (message.type) {
 			case 'bench': {
-				const others = (this.benches ?? []).filter((bench) => bench.name !== message.bench.name);
-				this.benches = [...others, message.bench].sort((a, b) => a.name.localeCompare(b.name));
+				this.benches = renewed(this.benches ?? [], message.bench);
 				break;
 			}
 			case 'state':
