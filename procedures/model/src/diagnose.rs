@@ -1,29 +1,29 @@
 //! Which effect is missing, and what is left when all that can be named is in the model.
 
+mod summary;
+
 use crate::assembly::Assembly;
-use crate::explore::{Advance, Exploration, Withdrawal};
+use crate::explore::{Advance, Exploration};
 use crate::fit::report;
 use crate::linear::dot;
 use crate::maps::{Maps, yardstick};
 use crate::prepare::{Prepared, prepare};
 use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Region, Silent, Step, Suggestion, Verdict};
 use crate::select::held_out;
-use crate::words::{figure, list, percent, spoken};
+use crate::words::{list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
 
 /// How far the search looks ahead for a diagnosis.
 const MOST_EFFECTS: usize = 6;
 
-/// A picture that takes less than this off held-out squared error shows nothing.
-const LEAST_SHOWN: f64 = 0.02;
-
 /// Compares a model with a run: where it fails, which effects are missing, how sure that is.
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     let prepared = prepare(run, options)?;
     let found = Exploration::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
     let fit = report(&found.start)?;
-    let suggestions = suggestions(&found, &fit, spec, options)?;
+    let complete = report(found.end())?;
+    let suggestions = suggestions(&found, &fit, &complete, spec, options)?;
     let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
     let regions = if verdict == Verdict::MissingEffect {
         let start = &found.start.main;
@@ -33,8 +33,6 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         regions(&found.maps, &fit, &found, verdict)
     };
     let structure = structure(&found, verdict);
-    let mut not_visible = found.start.hidden.clone();
-    not_visible.extend(found.invisible.iter().cloned());
     Ok(Diagnosis {
         kind: prepared.kind,
         model: found.start.effects.clone(),
@@ -43,12 +41,11 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        undecided: undecided(&found, verdict, options),
-        summary: format!(
-            "{}{}",
-            summary(&found, &fit, verdict, &suggestions, structure.as_ref(), options),
-            taken_back(&found, &fit.unit)
-        ),
+        undecided: summary::undecided(&found, verdict, options),
+        summary: match verdict {
+            Verdict::MissingEffect => summary::missing(&found, &fit, &complete, &suggestions),
+            _ => summary::end(&found, &complete, structure.as_ref(), options),
+        },
         regions,
         structure,
         experiment: experiment(&found, &prepared),
@@ -57,7 +54,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
             .iter()
             .map(|s| Silent { effect: s.effect.into(), minimum_detectable_rms: s.detectable_rms })
             .collect(),
-        not_visible,
+        not_visible: found.not_visible(),
         suggestions,
         fit,
     })
@@ -81,6 +78,11 @@ pub fn discover(
         on_step(&step);
         steps.push(step);
     })?;
+    // Of a tie only what is still open.
+    for step in &mut steps {
+        let added = step.added.clone().unwrap_or_default();
+        step.confounded_with.retain(|rival| found.is_open_tie(&added, rival));
+    }
     let fit = report(found.end())?;
     let verdict = found.end_verdict();
     let structure = structure(&found, verdict);
@@ -91,16 +93,13 @@ pub fn discover(
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        undecided: undecided(&found, verdict, options),
-        summary: format!(
-            "{}{}",
-            summary(&found, &fit, verdict, &[], structure.as_ref(), options),
-            taken_back(&found, &fit.unit)
-        ),
+        undecided: summary::undecided(&found, verdict, options),
+        summary: summary::end(&found, &fit, structure.as_ref(), options),
         model: found.end().effects.clone(),
         regions: regions(&found.maps, &fit, &found, verdict),
         structure,
         experiment: experiment(&found, &prepared),
+        not_visible: found.not_visible(),
         fit,
     })
 }
@@ -121,11 +120,11 @@ fn step(model: &Assembly, advance: Option<&Advance>) -> Step {
 fn suggestions(
     found: &Exploration,
     fit: &Fit,
+    complete: &Fit,
     spec: &ModelSpec,
     options: &Options,
 ) -> Result<Vec<Suggestion>, ModelError> {
     let mut out = Vec::new();
-    let complete = report(found.end())?;
     for (advance, importance) in found.ranking() {
         let Some(rival) = &advance.added else { continue };
         let id = rival.term.id();
@@ -139,11 +138,12 @@ fn suggestions(
             1.0 - with.validation_rms / fit.validation_rms
         };
         let info = rival.term.effect.info();
-        let confounded_with: Vec<String> = advance.ties.iter().map(|t| (*t).into()).collect();
+        let confounded_with: Vec<String> =
+            advance.ties.iter().filter(|t| found.is_open_tie(id, t)).map(|t| (*t).into()).collect();
         let tie = if confounded_with.is_empty() {
             String::new()
         } else {
-            format!(" This run cannot tell it from {}.", list(&confounded_with))
+            format!(" This run cannot tell it from {}, in its place.", list(&confounded_with))
         };
         let evidence = if apart {
             format!("Around reversals it takes {} off the squared error.", percent(rival.share))
@@ -177,104 +177,6 @@ fn regions(maps: &Maps, fit: &Fit, found: &Exploration, verdict: Verdict) -> Vec
 
 fn structure(found: &Exploration, verdict: Verdict) -> Option<PairMap> {
     (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(found.start.prepared))?
-}
-
-fn summary(
-    found: &Exploration,
-    fit: &Fit,
-    verdict: Verdict,
-    suggestions: &[Suggestion],
-    structure: Option<&PairMap>,
-    options: &Options,
-) -> String {
-    let error = figure(fit.validation_rms, &fit.unit);
-    let floor = match found.floor.rms {
-        Some(floor) => format!("the run repeats itself to {}", figure(floor, &fit.unit)),
-        None => "how well the run repeats itself is not known".into(),
-    };
-    match verdict {
-        Verdict::Adequate => match undecided(found, verdict, options) {
-            None => format!("The model explains this run: its held-out error is {error}, and {floor}."),
-            Some(why) => format!(
-                "Nothing more can be named in this run, whose held-out error is {error}; whether the model is adequate \
-                 cannot be decided: {why}."
-            ),
-        },
-        Verdict::MissingEffect => {
-            let first = &suggestions[0];
-            let more: Vec<&str> = suggestions[1..].iter().map(|s| s.effect.as_str()).collect();
-            let more = if more.is_empty() { String::new() } else { format!(", then {}", list(&more)) };
-            let with = figure(first.validation_rms, &fit.unit);
-            let effect = &first.effect;
-            if with == error {
-                format!(
-                    "{effect} is missing{more}: it acts around reversals; settled motion has a held-out error of {error} \
-                     with it and without it, and {floor}."
-                )
-            } else {
-                format!(
-                    "{effect} is missing{more}: with {effect} the held-out error falls from {error} to {with}; {floor}."
-                )
-            }
-        }
-        Verdict::UnexplainedStructure => {
-            let repeats = match found.floor.repeatable_share {
-                Some(share) => format!(", {} of it the same in every repeat", percent(share)),
-                None => String::new(),
-            };
-            let pair = structure.map(|s| (format!("{} and {}", spoken(&s.x), spoken(&s.y)), s.removable_share));
-            let axis = found.maps.removable().map(|(axis, share)| (spoken(axis), share));
-            // A second axis cuts the first one's bins: what shows over one alone can be more.
-            let shows = match axis.into_iter().chain(pair).max_by(|a, b| a.1.total_cmp(&b.1)) {
-                Some((axes, share)) if share > LEAST_SHOWN => format!(
-                    "it shows most over {axes}, a function of which would take {} off the squared error that \
-                     remains ({error}{repeats})",
-                    percent(share),
-                ),
-                _ => format!(
-                    "no axis of this run shows where it comes from (the error that remains is {error}{repeats})"
-                ),
-            };
-            format!("Structure remains that no effect of the library explains: {shows}; {floor}.")
-        }
-    }
-}
-
-/// What too short a run cannot decide, however well the model fits it.
-fn undecided(found: &Exploration, verdict: Verdict, options: &Options) -> Option<String> {
-    let blocks = found.start.main.problem.blocks;
-    // The smallest p-value that flipping the signs of so many blocks can give.
-    let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
-    match verdict {
-        Verdict::Adequate if smallest > options.alpha => {
-            Some(format!("{blocks} independent stretches of motion are too few to name anything"))
-        }
-        Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
-        _ => None,
-    }
-}
-
-/// Effects that came in and were taken back, and what that cost.
-fn taken_back(found: &Exploration, unit: &str) -> String {
-    let of = |why: Withdrawal| found.withdrawn.iter().filter(move |w| w.why == why);
-    let is_out = |e: &&str| !found.end().effects.iter().any(|f| f == e);
-    let named = |why: Withdrawal| {
-        let mut names: Vec<&str> = of(why).map(|w| w.effect).filter(is_out).collect();
-        names.reverse();
-        (!names.is_empty()).then(|| list(&names))
-    };
-    let open = named(Withdrawal::Undecided).map(|names| {
-        let with = of(Withdrawal::Undecided).map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
-        format!(
-            " Left out: {names}. With it all the held-out error would be {} instead of {}, but this run does not \
-             decide how large these effects are.",
-            figure(with, unit),
-            figure(found.end_held_out_rms(), unit)
-        )
-    });
-    let half = named(Withdrawal::HalfExplains)
-        .map(|names| format!(" Taken back: {names}, because it explains only a part of what shows over its own axis."));
-    open.into_iter().chain(half).collect()
 }
 
 /// What to measure next.

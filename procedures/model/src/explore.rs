@@ -137,6 +137,17 @@ impl<'p> Exploration<'p> {
         held_out_rms(&self.end().main)
     }
 
+    /// Effects that this run cannot show, those of the model first.
+    pub fn not_visible(&self) -> Vec<Invisible> {
+        self.start.hidden.iter().chain(&self.invisible).cloned().collect()
+    }
+
+    /// Whether a rival that tied with an effect when it came in is still one: not where both are in the model now.
+    pub fn is_open_tie(&self, effect: &str, rival: &str) -> bool {
+        let is_in = |id: &str| self.end().effects.iter().any(|e| e == id);
+        is_in(effect) && !is_in(rival)
+    }
+
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
         if structured(&self.maps).is_some() || self.repeats_itself() {

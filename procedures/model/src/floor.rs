@@ -41,7 +41,8 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
         rms: Some(variance.sqrt()),
         ci95: Some(interval(noise, pairs, &of_piece)),
         source: format!(
-            "{} pairs of moments of the same condition and phase in different repeats ({})",
+            "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
+             different repeats ({})",
             problem.twins.len(),
             if prepared.about.repeats_from == "column" { "as numbered" } else { "found by the period of the motion" }
         ),

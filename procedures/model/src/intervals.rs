@@ -54,7 +54,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
     for (k, slot) in slots.iter().enumerate() {
         let freedom = (resting_pieces(&grams, &spd, k) - 1.0).max(1.0);
         let t = StudentsT::new(0.0, 1.0, freedom).map_or(2.0, |t| t.inverse_cdf(0.975));
-        let reach = t * covariance(k, k).sqrt();
+        let reach = if spd.is_dead(k) { f64::INFINITY } else { t * covariance(k, k).sqrt() };
         let ci95 = match slot.shape {
             Some(shape) => [
                 shape.moved(slot.value, (-reach).max(-50.0)).max(shape.min.min(slot.value)),

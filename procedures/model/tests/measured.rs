@@ -31,6 +31,8 @@ fn emps_gives_the_published_parameters() {
     let diagnosis = diagnose(&train, &spec, &Options::default()).unwrap();
     assert_eq!(diagnosis.suggestions[0].effect, "viscous_asymmetry");
     assert!(diagnosis.suggestions[0].confounded_with.iter().any(|e| e == "viscous_quadratic"), "|v| and v² tie here");
+    // What discover ends with, diagnose says at once: all that can be named leaves something.
+    assert!(diagnosis.summary.contains("structure remains"), "{}", diagnosis.summary);
     let asymmetric = fit(&train, &spec.with("viscous_asymmetry").unwrap(), &Options::default()).unwrap();
     let unseen = evaluate(&asymmetric, &pulses).unwrap();
     assert!(unseen.relative_error < 0.055, "pulses with asymmetry: {}", unseen.relative_error);
@@ -45,6 +47,7 @@ fn emps_goes_on_to_the_flexibility() {
     let unseen = evaluate(&found.fit, &read(&data.join("emps-pulses"))).unwrap();
     assert!(unseen.relative_error < 0.028, "{:?}: {}", found.model, unseen.relative_error);
     assert_eq!(found.verdict, Verdict::UnexplainedStructure);
+    assert!(found.not_visible.iter().any(|n| n.effect == "load_linear"), "the run has no load");
     // Dry friction below the 20 N of the symmetric model, whose rest comes with the first centimetre per second.
     let coulomb = found.fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
     assert!(coulomb.ci95[0] > 5.0 && coulomb.ci95[1] < 22.0, "{coulomb:?}");

@@ -1,7 +1,7 @@
 //! Results as a person reads them.
 
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Options, PairMap, Parameter,
+    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Options, PairMap, Parameter,
     ParameterPair, ParameterState, Region, ResidualKind, Suggestion, words,
 };
 use std::path::Path;
@@ -86,8 +86,12 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     own_formula(diagnosis.structure.as_ref());
     suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
     next_run(diagnosis.experiment.as_ref());
-    for hidden in &diagnosis.not_visible {
-        println!("cannot be seen here: {} ({})", hidden.effect, hidden.why);
+    not_visible(&diagnosis.not_visible);
+}
+
+fn not_visible(hidden: &[Invisible]) {
+    for effect in hidden {
+        println!("cannot be seen here: {} ({})", effect.effect, effect.why);
     }
 }
 
@@ -108,9 +112,16 @@ pub fn discovery(discovery: &Discovery) {
     floor(&discovery.noise_floor, &discovery.fit.unit);
     println!();
     println!("{}", discovery.summary);
+    for (added, rivals) in discovery.steps.iter().filter_map(|step| Some((step.added.as_ref()?, &step.confounded_with)))
+    {
+        if !rivals.is_empty() {
+            println!("tie: this run cannot tell {added} from {}, in its place", words::list(rivals));
+        }
+    }
     regions(&discovery.regions, &discovery.fit.unit);
     own_formula(discovery.structure.as_ref());
     next_run(discovery.experiment.as_ref());
+    not_visible(&discovery.not_visible);
 }
 
 /// What the library lacks, the user may know.
@@ -145,12 +156,7 @@ pub fn parameters(parameters: &[Parameter]) {
     for parameter in parameters {
         let [low, high] = parameter.ci95;
         let interval = interval(low, high);
-        let state = match (parameter.state, &parameter.note) {
-            (ParameterState::Ok, _) => String::new(),
-            (_, Some(note)) => format!("  {note}"),
-            (ParameterState::AtBound, None) => "  at its bound".to_owned(),
-            (ParameterState::Unidentified, None) => "  not decided by this data".to_owned(),
-        };
+        let state = state(parameter);
         println!(
             "{:effect$}  {:name$}  {:>11}  {:unit$}  {interval}{state}",
             parameter.effect,
@@ -158,6 +164,16 @@ pub fn parameters(parameters: &[Parameter]) {
             figure(parameter.value),
             shown(&parameter.unit)
         );
+    }
+}
+
+/// What is wrong with a parameter, in words.
+fn state(parameter: &Parameter) -> String {
+    match (parameter.state, &parameter.note) {
+        (ParameterState::Ok, _) => String::new(),
+        (_, Some(note)) => format!("  {note}"),
+        (ParameterState::AtBound, None) => "  at its bound".to_owned(),
+        (ParameterState::Unidentified, None) => "  not decided by this data".to_owned(),
     }
 }
 
@@ -200,7 +216,8 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         for parameter in &suggestion.parameters {
             let [low, high] = parameter.ci95;
             let (value, interval) = (figure(parameter.value), interval(low, high));
-            println!("     {} = {value} {}  [{interval}]", parameter.name, shown(&parameter.unit));
+            let state = state(parameter);
+            println!("     {} = {value} {}  [{interval}]{state}", parameter.name, shown(&parameter.unit));
         }
     }
 }
@@ -227,7 +244,10 @@ fn shown(unit: &str) -> &str {
 
 fn floor(floor: &NoiseFloor, unit: &str) {
     match floor.rms {
-        Some(rms) => println!("noise     {}: {}", words::figure(rms, unit), floor.source),
+        Some(rms) => {
+            let [low, high] = floor.ci95.unwrap_or([rms, rms]).map(|edge| words::figure(edge, unit));
+            println!("noise     {} [{low} … {high}]: {}", words::figure(rms, unit), floor.source);
+        }
         None => println!("noise     {}", floor.source),
     }
 }

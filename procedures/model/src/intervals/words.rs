@@ -10,14 +10,16 @@ const WIDE: f64 = 10.0;
 
 /// State of a parameter, with words where it is not well determined.
 pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {
-    if dead {
-        return (ParameterState::Unidentified, Some("this data says nothing about it".into()));
-    }
+    let nothing =
+        || (ParameterState::Unidentified, Some("not identified by this run: it says nothing about it".into()));
     let say = |value: f64| figure(value, &slot.unit);
     let Some(shape) = slot.shape else {
         let (least, most) = slot.possible;
+        if dead {
+            return nothing();
+        }
         if ci95[0] < 0.0 && ci95[1] > 0.0 {
-            return (ParameterState::Unidentified, Some("the interval holds zero".into()));
+            return (ParameterState::Unidentified, Some("not identified by this run: it may be zero".into()));
         }
         if slot.value < least || slot.value > most {
             let words = "is physically impossible: another effect is missing, or a column has the wrong sign";
@@ -31,9 +33,12 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
         let words = format!("lies at the edge of what this data can speak about, {} to {}", say(min), say(max));
         return (ParameterState::AtBound, Some(words));
     }
+    if dead {
+        return nothing();
+    }
     let wide = shape.search == Search::Smooth && ci95[1] > WIDE * ci95[0].abs();
     if wide || (edge(ci95[0], min) && edge(ci95[1], max)) {
-        let words = format!("hardly identified: anything from {} to {} fits", say(ci95[0]), say(ci95[1]));
+        let words = format!("not identified by this run: anything from {} to {} fits", say(ci95[0]), say(ci95[1]));
         return (ParameterState::Unidentified, Some(words));
     }
     (ParameterState::Ok, None)

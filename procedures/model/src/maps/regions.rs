@@ -9,23 +9,35 @@ use crate::words::{figure, percent, spoken};
 /// More regions than these nobody reads.
 const MOST: usize = 8;
 
-/// Regions that share more of their rows than this tell the same failure twice.
-const SAME: f64 = 0.8;
+/// A region of which this share lies in another, and that is not much worse there, tells the same failure twice.
+const SAME: f64 = 0.7;
+const MUCH_WORSE: f64 = 1.5;
 
 /// What an error is measured against in words.
 pub struct Yardstick {
     value: f64,
-    /// `of the Coulomb friction`, `of the noise`.
-    of: &'static str,
+    /// `the Coulomb friction`, `the noise`.
+    what: &'static str,
+}
+
+impl Yardstick {
+    /// `18 % of the Coulomb friction`, `35 times the noise`.
+    fn says(&self, size: f64) -> String {
+        match size / self.value {
+            times if times >= 9.95 => format!("{times:.0} times {}", self.what),
+            times if times >= 1.995 => format!("{times:.1} times {}", self.what),
+            share => format!("{} of {}", percent(share), self.what),
+        }
+    }
 }
 
 /// Coulomb friction where the model has it, how well the run repeats itself else.
 pub fn yardstick(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<Yardstick> {
     let coulomb = fit.parameters.iter().find(|p| p.effect == "coulomb" && p.value > 0.0);
-    let coulomb = coulomb.map(|p| Yardstick { value: p.value, of: "of the Coulomb friction" });
+    let coulomb = coulomb.map(|p| Yardstick { value: p.value, what: "the Coulomb friction" });
     coulomb.or_else(|| {
         let value = floor?.rms.filter(|rms| *rms > 0.0)?;
-        Some(Yardstick { value, of: "of the noise" })
+        Some(Yardstick { value, what: "the noise" })
     })
 }
 
@@ -46,17 +58,21 @@ pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Re
     let mut told: Vec<(&Stretch, Vec<usize>)> = Vec::new();
     for stretch in &stretches {
         let rows = stretch.rows();
-        if told.len() < MOST && told.iter().all(|(_, other)| overlap(other, &rows) < SAME) {
+        let again = |(other, known): &(&Stretch, Vec<usize>)| {
+            let no_worse = stretch.mean / other.mean < MUCH_WORSE && stretch.mean * other.mean > 0.0;
+            no_worse && inside(&rows, known) >= SAME
+        };
+        if told.len() < MOST && !told.iter().any(again) {
             told.push((stretch, rows));
         }
     }
     told.iter().map(|(stretch, _)| stretch.region(unit, yardstick)).collect()
 }
 
-/// Rows that two rising lists share, of all rows that are in either.
-fn overlap(one: &[usize], other: &[usize]) -> f64 {
-    let shared = one.iter().filter(|row| other.binary_search(row).is_ok()).count();
-    shared as f64 / (one.len() + other.len() - shared).max(1) as f64
+/// Share of the rows that are among others in rising order.
+fn inside(rows: &[usize], others: &[usize]) -> f64 {
+    let shared = rows.iter().filter(|row| others.binary_search(row).is_ok()).count();
+    shared as f64 / rows.len().max(1) as f64
 }
 
 /// Joins what lies beside each other: the mean of means lies within the mean of their bands.
@@ -103,8 +119,7 @@ impl Stretch<'_> {
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         let direction = self.map.y.as_ref().map(|y| if y.bins[self.y].centre > 0.0 { "positive" } else { "negative" });
         let side = if self.mean > 0.0 { "low" } else { "high" };
-        let measure =
-            yardstick.map_or_else(String::new, |y| format!(", {} {}", percent(self.mean.abs() / y.value), y.of));
+        let measure = yardstick.map_or_else(String::new, |y| format!(", {}", y.says(self.mean.abs())));
         let motion = direction.map_or_else(String::new, |d| format!(" in {d} motion"));
         Region {
             axis: x.name.clone(),
@@ -128,6 +143,9 @@ impl Stretch<'_> {
             return if x.bins[self.first].centre > 0.0 { "in positive motion" } else { "in negative motion" }.into();
         }
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
+        if x.name == "repeat" {
+            return if from == to { format!("in repeat {from}") } else { format!("in repeats {from} to {to}") };
+        }
         let say = |value: f64| figure(value, &x.unit);
         let what = spoken(&x.name);
         let end = x.bins.len() - 1;

@@ -156,7 +156,7 @@ fn tie(bid: Bid, effect: &str, rivals: &[String]) -> Experiment {
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "it tells {effect} from {}: their predictions are expected to lie {:.1} standard deviations apart{enough}",
+            "this run tells {effect} from {}: their predictions are expected to lie {:.1} standard deviations apart{enough}",
             list(rivals),
             bid.z,
         ),

@@ -62,8 +62,8 @@ pub fn unseen(model: &Assembly, noise: &Noise, menu: &[Choice], imagined: &[Prob
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "it would show {}, which this data could not: {} % of the torque there would stand out by {:.1} standard \
-             deviations or more",
+            "this run would show {}, which the data so far could not: {} % of the torque there would stand out by {:.1} \
+             standard deviations or more",
             list(&effects),
             100.0 * WORTH_SEEING,
             bid.z,

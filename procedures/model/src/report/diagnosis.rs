@@ -139,7 +139,7 @@ pub struct Step {
     /// An effect that lost its reason when others came in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub removed: Option<String>,
-    /// Effects that explain this data as well as the one that was added.
+    /// Effects that explain this data as well as the one that was added, and did not turn out otherwise later.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub confounded_with: Vec<String>,
     pub model: Vec<String>,
@@ -168,4 +168,7 @@ pub struct Discovery {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub structure: Option<PairMap>,
     pub experiment: Option<Experiment>,
+    /// Effects that this data cannot show.
+    #[serde(default)]
+    pub not_visible: Vec<Invisible>,
 }

@@ -1,0 +1,145 @@
+//! A diagnosis in plain sentences.
+
+use crate::explore::{Exploration, Withdrawal};
+use crate::report::{PairMap, Suggestion, Verdict};
+use crate::words::{figure, list, percent, spoken};
+use crate::{Fit, Options};
+
+/// A picture that takes less than this off held-out squared error shows nothing.
+const LEAST_SHOWN: f64 = 0.02;
+
+/// Less than this share of the squared error in common is nothing in common.
+const NOTHING_IN_COMMON: f64 = 0.01;
+
+/// What is missing, and what is left when it is there. `fit` is the model at hand, `complete` the one with all suggestions.
+pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
+    let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, complete));
+    let first = &suggestions[0];
+    let more: Vec<&str> = suggestions[1..].iter().map(|s| s.effect.as_str()).collect();
+    let then = if more.is_empty() { String::new() } else { format!(", then {}", list(&more)) };
+    let with = figure(first.validation_rms, &fit.unit);
+    let effect = &first.effect;
+    let all = match more.is_empty() {
+        true => String::new(),
+        false => format!(" and with all of them to {}", figure(complete.validation_rms, &fit.unit)),
+    };
+    let gain = if with == error {
+        format!(
+            "{effect} is missing{then}: it acts around reversals; settled motion has a held-out error of {error} with it \
+             and without it, and {floor}."
+        )
+    } else {
+        format!(
+            "{effect} is missing{then}: with {effect} the held-out error falls from {error} to {with}{all}; {floor}."
+        )
+    };
+    let beyond = match found.end_verdict() {
+        Verdict::UnexplainedStructure => {
+            let them = if more.is_empty() { "it" } else { "them" };
+            let shown = found.maps.structure(found.start.prepared);
+            format!(
+                " Even with {them} structure remains that no effect of the library explains: {}.",
+                structure(found, complete, shown.as_ref())
+            )
+        }
+        _ => String::new(),
+    };
+    format!("{gain}{beyond}{}", taken_back(found, &fit.unit))
+}
+
+/// What is left when nothing more can be named. `fit` is the model at the end of the search.
+pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Options) -> String {
+    let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, fit));
+    let verdict = found.end_verdict();
+    let said = match (verdict, undecided(found, verdict, options)) {
+        (Verdict::UnexplainedStructure, _) => format!(
+            "Structure remains that no effect of the library explains: {}; {floor}.",
+            structure(found, fit, shown)
+        ),
+        (_, None) => format!("The model explains this run: its held-out error is {error}, and {floor}."),
+        (_, Some(why)) => format!(
+            "Nothing more can be named in this run, whose held-out error is {error}; whether the model is adequate \
+             cannot be decided: {why}."
+        ),
+    };
+    said + &taken_back(found, &fit.unit)
+}
+
+/// How well the run repeats itself, and why an error may be smaller than that.
+fn floor(found: &Exploration, end: &Fit) -> String {
+    let Some(floor) = found.floor.rms else { return "how well the run repeats itself is not known".into() };
+    let below = match end.validation_rms < floor {
+        true => {
+            " (counted only at moments that come again in another repeat; the error over all moments may be smaller)"
+        }
+        false => "",
+    };
+    format!("the run repeats itself to {}{below}", figure(floor, &end.unit))
+}
+
+/// Where what is left shows most.
+fn structure(found: &Exploration, end: &Fit, shown: Option<&PairMap>) -> String {
+    let error = figure(end.validation_rms, &end.unit);
+    let repeats = match found.floor.repeatable_share {
+        Some(share) if share < NOTHING_IN_COMMON => {
+            ", which does not come again at the same moments of other repeats: it goes with the axis, or differs from \
+             repeat to repeat"
+                .to_owned()
+        }
+        Some(share) => format!(", {} of it the same in every repeat", percent(share)),
+        None => String::new(),
+    };
+    let pair = shown.map(|s| (format!("{} and {}", spoken(&s.x), spoken(&s.y)), s.removable_share));
+    let axis = found.maps.removable().map(|(axis, share)| (spoken(axis), share));
+    // A second axis cuts the first one's bins: what shows over one alone can be more.
+    match axis.into_iter().chain(pair).max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((axes, share)) if share > LEAST_SHOWN => format!(
+            "it shows most over {axes}, a function of which would take {} off the squared error that remains \
+             ({error}{repeats})",
+            percent(share),
+        ),
+        _ => format!("no axis of this run shows where it comes from (the error that remains is {error}{repeats})"),
+    }
+}
+
+/// What too short a run cannot decide, however well the model fits it.
+pub fn undecided(found: &Exploration, verdict: Verdict, options: &Options) -> Option<String> {
+    let blocks = found.start.main.problem.blocks;
+    // The smallest p-value that flipping the signs of so many blocks can give.
+    let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
+    match verdict {
+        Verdict::Adequate if smallest > options.alpha => {
+            Some(format!("{blocks} independent stretches of motion are too few to name anything"))
+        }
+        Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
+        _ => None,
+    }
+}
+
+/// Effects that came in and were taken back, and what that cost.
+fn taken_back(found: &Exploration, unit: &str) -> String {
+    let of = |why: Withdrawal| found.withdrawn.iter().filter(move |w| w.why == why);
+    let is_out = |e: &&str| !found.end().effects.iter().any(|f| f == e);
+    let named = |why: Withdrawal| {
+        let mut names: Vec<&str> = of(why).map(|w| w.effect).filter(is_out).collect();
+        names.reverse();
+        let several = names.len() > 1;
+        (!names.is_empty()).then(|| (list(&names), several))
+    };
+    let open = named(Withdrawal::Undecided).map(|(names, several)| {
+        let with = of(Withdrawal::Undecided).map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
+        let (object, are) = if several { ("them", "they are") } else { ("it", "it is") };
+        format!(
+            " Left out: {names}. With {object} the held-out error would be {} instead of {}, but this run does not decide \
+             how large {are}.",
+            figure(with, unit),
+            figure(found.end_held_out_rms(), unit)
+        )
+    });
+    let half = named(Withdrawal::HalfExplains).map(|(names, several)| {
+        let (explains, own) =
+            if several { ("they explain", "their own axes") } else { ("it explains", "its own axis") };
+        format!(" Taken back: {names}, because {explains} only a part of what shows over {own}.")
+    });
+    open.into_iter().chain(half).collect()
+}
