@@ -1,0 +1,36 @@
+import { expect, it } from 'vitest';
+import type { RunSummary } from '../api/types';
+import { readHidden, readViews, runsCsv, toggleColumn, toggleView } from './look';
+
+function storage() {
+	const kept = new Map<string, string>();
+	return { getItem: (key: string) => kept.get(key) ?? null, setItem: (key: string, value: string) => void kept.set(key, value) };
+}
+
+it('remembers the columns, and lets the address have the last word', () => {
+	const kept = storage();
+	expect(readHidden(null, kept)).toEqual([]);
+	expect(toggleColumn([], 'safe', kept)).toBe('safe');
+	expect(readHidden(null, kept)).toEqual(['safe']);
+	expect(readHidden('rows,bench,nonsense', kept)).toEqual(['bench', 'rows']);
+	expect(toggleColumn(['safe'], 'safe', kept)).toBe('none');
+	expect(readHidden(null, kept)).toEqual([]);
+});
+
+it('keeps searches and forgets them again', () => {
+	const kept = storage();
+	toggleView('tag:oil -state:failed', kept);
+	toggleView('rows>1000', kept);
+	expect(readViews(kept)).toEqual(['tag:oil -state:failed', 'rows>1000']);
+	toggleView('tag:oil -state:failed', kept);
+	expect(readViews(kept)).toEqual(['rows>1000']);
+});
+
+it('writes the list as a table', () => {
+	const run = { id: 3, state: 'failed', procedure: 'friction', kind: 'friction', bench: 'a', simulated: true, created_at: '2026-01-02T03:04:05Z', duration_s: 1.5, rows: 7, safe: null, reason: 'no "contact", twice', tags: ['cold', 'new oil'] };
+	expect(runsCsv([run as unknown as RunSummary]).split('\n')).toEqual([
+		'id,state,procedure,kind,bench,simulated,created_at,duration_s,rows,safe,reason,tags',
+		'3,failed,friction,friction,a,true,2026-01-02T03:04:05Z,1.5,7,,"no ""contact"", twice",cold new oil',
+		'',
+	]);
+});

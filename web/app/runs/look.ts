@@ -1,0 +1,41 @@
+import type { RunSummary } from '../api/types';
+
+/** What the list can show of a run beside its number and its state; a person chooses, and the browser remembers. */
+export const COLUMNS = ['procedure', 'bench', 'started', 'duration', 'rows', 'safe'] as const;
+export type Column = (typeof COLUMNS)[number];
+
+const HIDDEN = 'jointbench.runs.hidden';
+const VIEWS = 'jointbench.runs.views';
+
+/** Columns that are not shown: as the address says, or as this browser was left; `none` hides nothing. */
+export function readHidden(address: string | null, kept: Pick<Storage, 'getItem'>): Column[] {
+	const names = (address ?? kept.getItem(HIDDEN) ?? '').split(',');
+	return COLUMNS.filter((one) => names.includes(one));
+}
+
+/** Shows or hides a column and remembers it; what the address is to say. */
+export function toggleColumn(hidden: readonly Column[], column: Column, kept: Pick<Storage, 'setItem'>): string {
+	const next = hidden.includes(column) ? hidden.filter((one) => one !== column) : [...hidden, column];
+	const text = next.join(',') || 'none';
+	kept.setItem(HIDDEN, text);
+	return text;
+}
+
+/** Searches that were kept, in the order in which they were. */
+export const readViews = (kept: Pick<Storage, 'getItem'>): string[] => (kept.getItem(VIEWS) ?? '').split('\n').filter(Boolean);
+
+export function toggleView(search: string, kept: Pick<Storage, 'getItem' | 'setItem'>): void {
+	const views = readViews(kept);
+	kept.setItem(VIEWS, (views.includes(search) ? views.filter((one) => one !== search) : [...views, search]).join('\n'));
+}
+
+const FIELDS = ['id', 'state', 'procedure', 'kind', 'bench', 'simulated', 'created_at', 'duration_s', 'rows', 'safe', 'reason', 'tags'] as const;
+
+/** The list as a table for other programs. */
+export function runsCsv(runs: readonly RunSummary[]): string {
+	const cell = (value: unknown) => {
+		const text = Array.isArray(value) ? value.join(' ') : String(value ?? '');
+		return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+	};
+	return [FIELDS.join(','), ...runs.map((run) => FIELDS.map((field) => cell(run[field])).join(','))].join('\n') + '\n';
+}
