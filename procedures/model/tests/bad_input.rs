@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::bench::meta;
+use common::bench::{Staircase, meta};
 use common::tables::{Shape, scatter, try_table};
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, TableFault, Trace};
 use jointbench_model::{Diagnosis, ModelError, ModelSpec, Options, Verdict, diagnose, fit, maps};
@@ -41,7 +41,7 @@ fn one_direction_at_one_speed_names_what_cannot_be_told_apart() {
 
 #[test]
 fn a_model_of_another_kind_or_an_unknown_effect_is_refused() {
-    let run = table(500, |_| 1.0, |i| (i as f64 * 0.05).sin());
+    let run = table(500, |i| (i as f64 * 0.3).cos(), |i| (i as f64 * 0.05).sin());
     let spec = ModelSpec::new(Kind::Brake, ["drag"]).unwrap();
     assert!(matches!(fit(&run, &spec, &Options::default()), Err(ModelError::WrongKind { .. })));
     assert!(matches!(ModelSpec::parse(Kind::Friction, "coulomb,stickslip"), Err(ModelError::UnknownEffect { .. })));
@@ -85,6 +85,27 @@ fn a_column_that_never_changes_is_a_clear_error_or_nothing_to_say() {
             }
         }
     }
+}
+
+#[test]
+fn a_response_that_never_changes_is_an_error_that_names_it() {
+    for (kind, column) in [(Kind::Friction, "motor_current_a"), (Kind::Brake, "brake_torque_nm")] {
+        for value in [0.0, 0.7] {
+            let run = try_table(kind, &Shape::default(), |name, _, v| if name == column { value } else { v }).unwrap();
+            match diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()) {
+                Err(ModelError::Constant { column: named }) => assert_eq!(named, column),
+                other => panic!("{kind} {column} = {value}: {other:?}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_load_that_never_changes_is_told_before_all_else() {
+    let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 1 }.run_at(&[0.0], |m| 0.03 * m.velocity.signum());
+    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    assert!(found.summary.starts_with("Attention: link_torque_nm never changes"), "{}", found.summary);
+    assert!(found.suggestions.is_empty());
 }
 
 #[test]

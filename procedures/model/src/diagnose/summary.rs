@@ -44,7 +44,7 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         }
         _ => String::new(),
     };
-    format!("{gain}{beyond}{}", taken_back(found, &fit.unit))
+    format!("{}{gain}{beyond}{}", dead_signal(found), taken_back(found, &fit.unit))
 }
 
 /// What is left when nothing more can be named. `fit` is the model at the end of the search.
@@ -62,7 +62,18 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
              cannot be decided: {why}."
         ),
     };
-    said + &taken_back(found, &fit.unit)
+    dead_signal(found) + &said + &taken_back(found, &fit.unit)
+}
+
+/// What the model takes as given and the run shows as a constant may not have been connected: then all else bears it.
+fn dead_signal(found: &Exploration) -> String {
+    let spec = found.start.spec;
+    let view = &found.start.main.problem.view;
+    let is_dead = |id: &str| spec.find(id).is_ok_and(|e| e.is_given() && e.missing(view).is_none());
+    let dead = found.start.hidden.iter().find(|h| is_dead(&h.effect));
+    dead.map_or_else(String::new, |h| {
+        format!("Attention: {}; if something did act there, what follows is wrong. ", h.why)
+    })
 }
 
 /// How well the run repeats itself, and why an error may be smaller than that.

@@ -153,12 +153,22 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     if run.len() < 16 {
         return Err(ModelError::TooFewSamples { usable: run.len(), needed: 16, what: "samples" });
     }
-    match run.kind() {
-        Kind::Friction => friction::prepare(run, options),
-        Kind::Encoder => encoder::prepare(run, options),
-        Kind::Stiffness => stiffness::prepare(run, options),
-        Kind::Brake => brake::prepare(run, options),
+    let (prepared, response) = match run.kind() {
+        Kind::Friction => (friction::prepare(run, options)?, "motor_current_a"),
+        Kind::Encoder => (encoder::prepare(run, options)?, "test_position_rad − reference_position_rad"),
+        Kind::Stiffness => (stiffness::prepare(run, options)?, "motor_position_rad / gear_ratio − link_position_rad"),
+        Kind::Brake => (brake::prepare(run, options)?, "brake_torque_nm"),
+    };
+    match is_constant(&prepared.main.target) {
+        true => Err(ModelError::Constant { column: response.into() }),
+        false => Ok(prepared),
     }
+}
+
+/// Nothing but rounding changes: a channel that was not connected.
+fn is_constant(values: &[f64]) -> bool {
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    high - low <= 1e-9 * high.abs().max(low.abs())
 }
 
 /// The middle value of the step from sample to sample.
