@@ -3,7 +3,7 @@
 mod common;
 
 use common::{read, shared};
-use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover, fit};
+use jointbench_model::{ModelSpec, Options, ParameterState, Verdict, diagnose, discover, fit};
 use serde_json::Value;
 
 fn check_family(family: &str) {
@@ -63,4 +63,16 @@ fn stiffness() {
 #[test]
 fn brake() {
     check_family("brake");
+}
+
+/// As few numbers as the loops need: bands up to the largest current were mostly undecided.
+#[test]
+fn a_brake_decides_the_bands_of_its_hysteresis() {
+    let Some(folder) = shared("hidden-effects") else { return };
+    let run = read(&folder.join("brake-hysteresis"));
+    let spec = ModelSpec::new(run.kind(), ["drag", "torque_per_current", "hysteresis"]).unwrap();
+    let found = fit(&run, &spec, &Options::default()).unwrap();
+    let bands = found.parameters.iter().filter(|p| p.effect == "hysteresis");
+    let open: Vec<&str> = bands.filter(|p| p.state != ParameterState::Ok).map(|p| p.name.as_str()).collect();
+    assert!(open.len() <= 1, "{open:?}");
 }

@@ -114,7 +114,7 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
             }
             ("saturation", "tanh") => formula("tanh(current / i_s)"),
             ("saturation", _) => formula("tanh((current - i_0) / i_s) + tanh(i_0 / i_s)"),
-            ("hysteresis", "bands") => {
+            ("hysteresis", "bands" | "bands_3" | "bands_5") => {
                 let bands = term.linear.len();
                 Some((0..bands).map(|band| Column::Band { stops: 6 * bands, bands, band }).collect())
             }

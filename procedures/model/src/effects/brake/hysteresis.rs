@@ -7,17 +7,19 @@ use jointbench_instrument::Kind;
 
 pub struct Hysteresis;
 
-/// Bands of stops, evenly up to the largest current.
+/// Bands of stops, evenly up to the largest reach.
 const BANDS: [&str; 8] = ["h_1", "h_2", "h_3", "h_4", "h_5", "h_6", "h_7", "h_8"];
-/// Stops that make up the bands: a smooth density of a few numbers instead of many loose weights.
-const STOPS: usize = 48;
+/// Forms by their number of bands: fewer where they suffice.
+const FORMS: [(&str, usize); 3] = [("bands_3", 3), ("bands_5", 5), ("bands", 8)];
+/// Stops that make up a band: a smooth density of a few numbers instead of many loose weights.
+const STOPS: usize = 6;
 
 static INFO: EffectInfo = EffectInfo {
     id: "hysteresis",
     kind: Kind::Brake,
     title: "Hysteresis",
     sentence: "At the same current the brake holds more on the way down than on the way up.",
-    formula: "h·z, stop dz = di/r within ±1 or Dahl; or Σ h_k·z_k over bands of stops with reaches up to the largest current",
+    formula: "h·z, stop dz = di/r within ±1 or Dahl; or Σ h_k·z_k over bands of stops with reaches up to i_max, half of the range of the current",
     source: "Prandtl–Ishlinskii model: Kuhnen 2003",
     looks: "loops over current",
     parameters: &[
@@ -51,13 +53,19 @@ impl Effect for Hysteresis {
         }
         let one = |name| Form { name, linear: vec!["h"], shape: shape.clone(), grid: grid.clone() };
 
-        // Where the bands lie belongs to the fit: another run has another largest current.
-        let reach = Shape { name: "i_max", min: peak, max: peak, search: Search::Whole };
-        vec![
-            one("stop"),
-            one("dahl"),
-            Form { name: "bands", linear: BANDS.to_vec(), shape: vec![reach], grid: vec![vec![peak]] },
-        ]
+        // A stop that reaches farther than half of the range never slips on the way back: no run can tell it from a
+        // straight line. Where the bands lie belongs to the fit: another run has another range.
+        let current = view.samples.find(Signal::Current).unwrap_or_default();
+        let ends = current.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), i| (l.min(*i), h.max(*i)));
+        let most = (ends.1 - ends.0) / 2.0;
+        let reach = Shape { name: "i_max", min: most, max: most, search: Search::Whole };
+        let several = |(name, bands): (&'static str, usize)| Form {
+            name,
+            linear: BANDS[..bands].to_vec(),
+            shape: vec![reach],
+            grid: vec![vec![most]],
+        };
+        [one("stop"), one("dahl")].into_iter().chain(FORMS.map(several)).collect()
     }
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
@@ -65,17 +73,21 @@ impl Effect for Hysteresis {
         match form {
             "stop" => vec![view.average(memory::stop(current, shape[0], &view.starts))],
             "dahl" => vec![view.average(memory::dahl(current, shape[0], &view.starts))],
-            _ => bands(current, shape[0], view),
+            _ => {
+                let bands = FORMS.iter().find(|known| known.0 == form).map_or(BANDS.len(), |known| known.1);
+                density(current, shape[0], bands, view)
+            }
         }
     }
 }
 
 /// Stops weighted by hats over their reach: each band rises to its knot and falls to the next.
-fn bands(current: &[f64], peak: f64, view: &View) -> Columns {
-    let mut columns = vec![vec![0.0; view.len()]; BANDS.len()];
-    for k in 1..=STOPS {
-        let place = (k * BANDS.len()) as f64 / STOPS as f64;
-        let stop = view.average(memory::stop(current, peak * k as f64 / STOPS as f64, &view.starts));
+fn density(current: &[f64], reach: f64, bands: usize, view: &View) -> Columns {
+    let mut columns = vec![vec![0.0; view.len()]; bands];
+    let stops = STOPS * bands;
+    for k in 1..=stops {
+        let place = k as f64 / STOPS as f64;
+        let stop = view.average(memory::stop(current, reach * k as f64 / stops as f64, &view.starts));
         for (band, column) in columns.iter_mut().enumerate() {
             let weight = (1.0 - (place - (band + 1) as f64).abs()).max(0.0);
             if weight > 0.0 {
