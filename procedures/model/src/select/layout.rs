@@ -2,7 +2,7 @@
 
 use super::forms::{extend, reform};
 use super::ground::Ground;
-use super::library::Library;
+use super::library::{Candidate, Library};
 use crate::Options;
 use crate::effect::Effect;
 use crate::prepare::Problem;
@@ -22,13 +22,12 @@ pub fn lay<'p>(bare: &Terms<'p>, effects: &[&str], library: &Library<'p>, option
     fixed.into_iter().for_each(|effect| enter(&mut laid, effect));
     while !open.is_empty() {
         let ground = Ground::of(&laid);
-        let share = |effect: &dyn Effect| {
-            let own = library.candidates.iter().filter(|c| c.id() == effect.info().id);
-            own.map(|c| ground.own(&c.columns).share).fold(0.0, f64::max)
-        };
-        let shares = open.iter().map(|effect| share(*effect)).enumerate();
-        let most = shares.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |most| most.0);
-        enter(&mut laid, open.remove(most));
+        let best: Vec<Vec<(f64, &Candidate)>> = open.iter().map(|e| best_of_forms(*e, library, &ground)).collect();
+        let share = |forms: &Vec<(f64, &Candidate)>| forms.iter().map(|f| f.0).fold(0.0, f64::max);
+        let most = best.iter().map(share).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |most| most.0);
+        open.remove(most);
+        let terms = best[most].iter().map(|(_, candidate)| candidate.term(laid.problem)).collect();
+        laid.terms.extend(choose(terms, &ground, laid.problem));
         laid.refine();
     }
     for _ in 0..PASSES {
@@ -45,8 +44,25 @@ fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
     matches!(&effect.forms(&problem.view)[..], [form] if form.grid.len() == 1)
 }
 
-/// Enters an effect in the form that explains most of what is left, each form at its own best shape. What is physically
-/// impossible enters only where nothing else does.
+/// The shape of each form of an effect that explains most of what is left, with its share.
+fn best_of_forms<'l, 'p>(
+    effect: &dyn Effect,
+    library: &'l Library<'p>,
+    ground: &Ground,
+) -> Vec<(f64, &'l Candidate<'p>)> {
+    let mut best: Vec<(f64, &Candidate)> = Vec::new();
+    for candidate in library.candidates.iter().filter(|c| c.id() == effect.info().id) {
+        let share = ground.own(&candidate.columns).share;
+        match best.iter_mut().find(|b| b.1.form.name == candidate.form.name) {
+            Some(b) if share > b.0 => *b = (share, candidate),
+            Some(_) => {}
+            None => best.push((share, candidate)),
+        }
+    }
+    best
+}
+
+/// Enters an effect in the form that explains most of what is left, each form at its own best shape.
 pub fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
     let problem: &Problem = terms.problem;
     let forms = effect.forms(&problem.view);
@@ -63,9 +79,15 @@ pub fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
         let shares = shapes.map(|term| (ground.own(&term.columns).share, term));
         best.extend(shares.max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1));
     }
-    best.sort_by_key(Term::size);
+    terms.terms.extend(choose(best, &ground, problem));
+}
+
+/// The form that explains most, a longer one only where it is worth it. What is physically impossible is chosen only where
+/// nothing else is possible.
+fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &Ground, problem: &Problem) -> Option<Term<'p>> {
+    forms.sort_by_key(Term::size);
     let mut chosen: Option<(bool, f64, Term<'p>)> = None;
-    for term in best {
+    for term in forms {
         let mut term = [term];
         let sse = polish(&mut term, &ground.basis, &ground.residual, problem);
         let [term] = term;
@@ -78,5 +100,5 @@ pub fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
             chosen = Some((possible, sse, term));
         }
     }
-    terms.terms.extend(chosen.map(|c| c.2));
+    chosen.map(|c| c.2)
 }
