@@ -3,6 +3,7 @@
 use jointbench_devices::sim::{EncoderTruth, MockInstrument, PlannedTrouble, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
+use jointbench_procedure::catalogue::can_find;
 use jointbench_procedure::conduct::{ConductFault, conduct};
 use jointbench_procedure::identification::{Identification, Verdict};
 use jointbench_procedure::parameter::Values;
@@ -24,6 +25,7 @@ fn run(bench: &mut Bench, id: &str, parameters: Value) -> Identification {
     println!("{id}: {} in {:.0} s of the bench", found.summary, conducted.duration_s);
     for quantity in &found.quantities {
         println!("  {} = {:.6e} {} {:?}", quantity.name, quantity.value, quantity.unit, quantity.ci95);
+        assert!(can_find(id, &quantity.name), "{id} does not say that it finds {}", quantity.name);
     }
     assert_eq!(found.verdict, Verdict::Identified);
     found

@@ -55,6 +55,10 @@ impl Requirement {
         &self.text
     }
 
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     pub fn check(&self, found: &Identification) -> Kept {
         let quantities = &found.result.quantities;
         let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {

@@ -32,6 +32,9 @@ const SCHEMA: &[Parameter] = &[
 /// Name of the fact that tells which rows are whose.
 const PARTS: &str = "parts";
 
+/// What the campaign consists of.
+pub(super) const PARTS_IN_ORDER: [&str; 4] = ["friction", "breakaway", "friction_load", "stiffness"];
+
 /// One procedure of the campaign with the choices that it gets.
 fn parts(values: &Values) -> Vec<(&'static dyn Procedure, Value)> {
     let number = |name: &str| json!(values.number(name));
@@ -220,7 +223,7 @@ mod tests {
             assert!(plan.steps.iter().enumerate().all(|(i, step)| step.segment as usize == i));
             let parts = plan.meta.other[PARTS].as_array().unwrap();
             let ids: Vec<&str> = parts.iter().filter_map(|part| part["procedure"].as_str()).collect();
-            assert_eq!(ids, ["friction", "breakaway", "friction_load", "stiffness"]);
+            assert_eq!(ids, PARTS_IN_ORDER);
             let steps: i64 = parts.iter().filter_map(|part| part["segments"].as_i64()).sum();
             assert_eq!(steps as usize, plan.steps.len());
             // Every part leaves the brake without current.

@@ -16,12 +16,14 @@ mod legs;
 mod presliding;
 mod puma_friction;
 mod rest;
+mod results;
 mod stiffness;
 mod strokes;
 mod torque_sensor_zero;
 mod warm_up;
 
 pub use brake_hysteresis::{BrakeModel, brake_model};
+pub use results::{can_find, results};
 
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};

@@ -1,7 +1,7 @@
 //! Short runs on the mock bench. Its truth is read only to be compared with.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
-use jointbench_procedure::catalogue::brake_model;
+use jointbench_procedure::catalogue::{brake_model, can_find};
 use jointbench_procedure::conduct::{conduct, conduct_knowing};
 use jointbench_procedure::identification::{Identification, Verdict};
 use jointbench_procedure::{BenchFacts, procedure};
@@ -11,7 +11,11 @@ fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Ide
     let mock = MockBench::start(settings).unwrap();
     let mut bench = mock.open_bench("mock").unwrap();
     let done = conduct(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
-    (mock, done.identification.unwrap())
+    let found = done.identification.unwrap();
+    for quantity in &found.quantities {
+        assert!(can_find(id, &quantity.name), "{id} does not say that it finds {}", quantity.name);
+    }
+    (mock, found)
 }
 
 #[test]
