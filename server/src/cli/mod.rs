@@ -17,6 +17,7 @@ mod progress;
 mod reproduce;
 mod require;
 mod run;
+mod runs;
 mod serve;
 mod transfer;
 
@@ -42,6 +43,8 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Ports(arguments) => ports::ports(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Stop(arguments) => runs::stop(&arguments),
+        Command::Runs(arguments) => runs::runs(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
         Command::Diagnose(arguments) => offline::diagnose(&arguments),
         Command::Discover(arguments) => offline::discover(&arguments),

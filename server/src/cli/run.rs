@@ -7,6 +7,7 @@ use super::identify;
 use super::progress::RunProgress;
 use super::require::{Kept, Requirement};
 use crate::view::{Bench, Identification, NewRun, Run, RunState, word};
+use jointbench_procedure::catalogue::{can_find, results};
 use serde_json::{Map, Value};
 use std::time::Duration;
 
@@ -14,7 +15,7 @@ pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach);
-    let ended = start(&client, arguments);
+    let ended = demand_what_can_be_found(arguments).and_then(|()| start(&client, arguments));
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
     let demands: Vec<(&Requirement, Kept)> = match &found {
@@ -39,6 +40,21 @@ pub fn run(arguments: &Arguments) -> Done {
     match is_over(run.summary.state) && run.summary.state != RunState::Completed {
         true => Err(Exit::failed(if arguments.json { said } else { String::new() })),
         false => judge(&demands, arguments.json),
+    }
+}
+
+/// A demand that no run of the procedure could keep is refused before anything moves.
+fn demand_what_can_be_found(arguments: &Arguments) -> Done {
+    let Some(procedure) = &arguments.procedure else { return Ok(()) };
+    let known = results(procedure);
+    match arguments.require.iter().find(|demand| !known.is_empty() && !can_find(procedure, demand.name())) {
+        None => Ok(()),
+        Some(demand) => Err(Exit::bad_input(format!(
+            "--require '{}': {procedure} finds no {}; it finds {}",
+            demand.text(),
+            demand.name(),
+            known.join(", ")
+        ))),
     }
 }
 
@@ -132,7 +148,7 @@ pub(super) fn parameters(set: &[String]) -> Result<Map<String, Value>, Exit> {
     Ok(parameters)
 }
 
-fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
+pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
     let mut shown = RunProgress::begin();
     loop {
         let run: Run = client.get(&format!("/runs/{id}"))?;

@@ -1,6 +1,6 @@
 //! The daemon on a bad day, through REST.
 
-use crate::program::Daemon;
+use crate::program::{Daemon, run, stderr, stdout};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -73,6 +73,30 @@ fn check_kill_9(joint: &str, procedure: &str) {
     assert!((200..300).contains(&status), "{status}");
     let ended = daemon.wait_for(&format!("/runs/{next}"), Duration::from_secs(60), |run| run["safe"].is_string());
     assert_eq!((&ended["state"], &ended["safe"]), (&json!("aborted"), &json!("safe_verified")));
+}
+
+#[test]
+fn runs_are_listed_and_ended_from_the_command_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = bench(folder.path(), "b", 20.0);
+    let daemon = Daemon::serve(&folder.path().join("data"), &config);
+    let said = |arguments: &[&str]| run(&[arguments, &["--daemon", daemon.base.as_str()]].concat());
+    let idle = said(&["stop"]);
+    assert_eq!(idle.status.code(), Some(2));
+    assert!(stderr(&idle).contains("no run is on"), "{}", stderr(&idle));
+    let vain = said(&["run", "friction", "--require", "tau_x < 1 Nm"]);
+    assert_eq!(vain.status.code(), Some(2));
+    assert!(stderr(&vain).contains("finds no tau_x"), "{}", stderr(&vain));
+    assert_eq!(daemon.get("/runs")["total"], 0, "nothing has moved");
+
+    let id = start(&daemon, "friction");
+    daemon.wait_for(&format!("/runs/{id}"), Duration::from_secs(60), |run| rows(run) > 100);
+    let stopped = said(&["stop"]);
+    assert!(stopped.status.success(), "{}", stderr(&stopped));
+    assert!(stdout(&stopped).contains(&format!("run {id} stopped")), "{}", stdout(&stopped));
+    let listed = stdout(&said(&["runs", "state:stopped"]));
+    assert!(listed.lines().count() == 1 && listed.contains("friction"), "{listed}");
+    assert!(stdout(&said(&["runs", "state:failed"])).contains("no run matches"));
 }
 
 #[test]

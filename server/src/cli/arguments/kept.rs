@@ -6,6 +6,22 @@ use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
+pub struct Runs {
+    /// Words, and terms such as kind:friction, state:failed or rows>1000; all must hold. What must not, such as -tag:oil,
+    /// comes last, behind --
+    #[arg(value_name = "TERM")]
+    pub search: Vec<String>,
+    /// At most so many, the newest first
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
+    pub limit: u32,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub store: StorePlace,
+}
+
+#[derive(Debug, Args)]
 pub struct Import {
     /// Run tables: .csv, .csv.gz, .parquet or .arrow
     #[arg(required = true, value_name = "FILE")]

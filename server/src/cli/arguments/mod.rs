@@ -3,7 +3,7 @@
 mod kept;
 mod model;
 
-pub use kept::{Export, Identify, Import, Report, Reproduce, StorePlace};
+pub use kept::{Export, Identify, Import, Report, Reproduce, Runs, StorePlace};
 pub use model::{Model, ModelCommand};
 
 use super::log::LogForm;
@@ -42,8 +42,15 @@ pub enum Command {
     Check(Check),
     /// List this computer's serial ports: what is behind them, and what may not be opened and why
     Ports(Ports),
-    /// Start a procedure on a running daemon
+    /// Start a procedure on a running daemon, or make what is left of a run (--continue)
+    #[command(
+        override_usage = "jointbench run <PROCEDURE> [OPTIONS]\n       jointbench run --continue <RUN> [OPTIONS]"
+    )]
     Run(Run),
+    /// End a run that is on: the brake is unloaded while the shaft turns, and what was measured is kept
+    Stop(Stop),
+    /// List the runs of a daemon or of a folder
+    Runs(Runs),
     /// Measure, diagnose and measure again on a running daemon, until nothing is missing
     #[command(after_help = AUTOPILOT)]
     Autopilot(Autopilot),
@@ -161,6 +168,17 @@ pub struct Run {
     /// Write how the run ended as a JUnit report, a case for each demand; waits for the end
     #[arg(long, value_name = "REPORT.XML")]
     pub junit: Option<PathBuf>,
+    #[command(flatten)]
+    pub reach: Reach,
+}
+
+#[derive(Debug, Args)]
+pub struct Stop {
+    /// Number of the run [default: the one that is on]
+    pub run: Option<i64>,
+    /// End it at once: shaft and brake come down together
+    #[arg(long)]
+    pub now: bool,
     #[command(flatten)]
     pub reach: Reach,
 }
