@@ -22,6 +22,11 @@ impl Lab {
             }
             _ => {}
         }
+        if let Some(later) = self.inner.store.continued_by(id).await? {
+            return Err(LabError::Conflict(format!(
+                "run {id} was gone on with already, by run {later}: go on with that one, or look at it"
+            )));
+        }
         let again = format!("start {name} again instead");
         let procedure = jointbench_procedure::procedure(name).ok_or_else(|| {
             LabError::Invalid(format!("run {id} is of {name}, which no procedure here can go on with"))
@@ -37,12 +42,23 @@ impl Lab {
         self.launch(bench, rest).await
     }
 
-    /// All that was measured: of a run that goes on with others, theirs too.
-    pub(super) async fn measurement(&self, id: i64) -> Answer<RunTable> {
+    /// A run behind those that it goes on with, the last first.
+    async fn parts(&self, id: i64) -> Answer<Vec<RunRecord>> {
         let mut parts = vec![self.inner.store.run(id).await?];
         while let Some(before) = continues(&parts[parts.len() - 1])? {
             parts.push(self.inner.store.run(before.run).await?);
         }
+        Ok(parts)
+    }
+
+    /// The runs that one measurement is made of, in their order.
+    pub(super) async fn together(&self, id: i64) -> Answer<Vec<i64>> {
+        Ok(self.parts(id).await?.iter().rev().map(|part| part.id).collect())
+    }
+
+    /// All that was measured: of a run that goes on with others, theirs too.
+    pub(super) async fn measurement(&self, id: i64) -> Answer<RunTable> {
+        let mut parts = self.parts(id).await?;
         let (Some(first), later) = (parts.pop(), parts.into_iter().rev()) else { unreachable!("one part at least") };
         let mut whole = self.table(first.id).await?;
         let mut done = self.done(&first, None).await?;

@@ -19,11 +19,18 @@ impl Lab {
         let values = Values::parse(procedure.schema(), &record.parameters)
             .map_err(|fault| LabError::Invalid(format!("run {id} was made by another version: {fault}")))?;
         let table = self.measurement(id).await?;
-        let found = tokio::task::spawn_blocking(move || procedure.identify(&values, &table))
+        let runs = self.together(id).await?;
+        let mut found = tokio::task::spawn_blocking(move || procedure.identify(&values, &table))
             .await
             .map_err(|fault| LabError::Internal(format!("the identification of run {id} failed: {fault}")))?
             .ok_or_else(none)?
             .of_run_in(record.state);
+        if let [before @ .., last] = runs.as_slice()
+            && !before.is_empty()
+        {
+            let before: Vec<String> = before.iter().map(i64::to_string).collect();
+            found.summary = format!("Runs {} and {last} together: {}", before.join(", "), found.summary);
+        }
         Ok(Identification {
             run: id,
             procedure: record.procedure,

@@ -81,6 +81,12 @@ impl Store {
         Ok((total as u64, runs))
     }
 
+    /// The last run that went on with this one.
+    pub async fn continued_by(&self, run: RunId) -> Result<Option<RunId>, StoreError> {
+        let query = "SELECT MAX(id) FROM runs WHERE json_extract(meta, '$.continues.run') = ?";
+        Ok(sqlx::query_scalar(query).bind(run).fetch_one(&self.readers).await?)
+    }
+
     /// The journal behind `after`, in order.
     pub async fn events(&self, run: RunId, after: u64) -> Result<Vec<EventRecord>, StoreError> {
         let mut reader = self.readers.begin().await?;

@@ -137,7 +137,12 @@ fn what_is_left_of_a_stopped_run_is_made_later_and_both_are_one_measurement() {
         assert_eq!(name, same);
         assert!(whole[0] <= rest[1] && rest[0] <= whole[1], "{name}: {rest:?} does not meet {whole:?}");
     }
+    let both = format!("Runs {id} and {} together", rest["id"]);
+    assert!(resumed["summary"].as_str().unwrap().starts_with(&both), "{resumed}");
     assert_eq!(daemon.post(&format!("/api/v1/runs/{}/continue", rest["id"]), "").0, 409, "nothing is left");
+    let (status, twice) = daemon.post(&format!("/api/v1/runs/{id}/continue"), "");
+    assert_eq!(status, 409, "{twice}");
+    assert!(twice["detail"].as_str().unwrap().contains("already"), "{twice}");
 }
 
 #[test]
