@@ -99,6 +99,14 @@ pub struct JointResolution {
 /// Feels the torque between the joint and its load.
 pub trait TorqueSensor: Instrument {
     fn read(&mut self) -> Result<NewtonMetres, Fault>;
+    /// Whether the sensor has another range beside the one in use.
+    fn has_two_ranges(&self) -> bool {
+        false
+    }
+    /// The same with the other range's word for the same moment, where there is one.
+    fn read_both(&mut self) -> Result<(NewtonMetres, Option<NewtonMetres>), Fault> {
+        Ok((self.read()?, None))
+    }
     /// Full scale of the range in use; a reading beyond it is a fault, never a number.
     fn range(&self) -> NewtonMetres;
     fn resolution(&self) -> Option<NewtonMetres>;

@@ -110,6 +110,7 @@ fn facts() -> BenchFacts {
             link_range_rad: None,
         },
         has_torque_sensor: true,
+        has_two_ranges: true,
         has_brake: true,
         encoder_counts: None,
         has_stage: false,

@@ -12,12 +12,17 @@ const TIME_STEP_S: f64 = 1e-6;
 /// Velocity set-points are sent, and kept, in these steps.
 pub(crate) const VELOCITY_STEP_RAD_S: f64 = 1e-4;
 
+/// The torque as the sensor's other range tells it.
+pub(crate) const OTHER_RANGE: &str = "other_range_torque_nm";
+
 /// What one tick knows, measured and commanded. Slow quantities hold their last reading.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moment {
     pub time_s: f64,
     pub joint: JointReading,
     pub link_torque_nm: Option<f64>,
+    /// In the sensor's other range, where the plan asks for it.
+    pub other_torque_nm: Option<f64>,
     /// By how much later than the joint it was felt.
     pub torque_skew_s: f64,
     pub temperature_c: Option<f64>,
@@ -40,6 +45,8 @@ pub(crate) struct Moment {
 ///
 /// A thermometer adds thermometer_1_c, thermometer_2_c, … in the order in which the bench description names its channels. Of
 /// a joint that tells no temperature the first of them is temperature_c instead.
+///
+/// A run that checks the torque sensor has other_range_torque_nm behind torque_skew_s: the same torque in its other range.
 ///
 /// A run of a brake names what it feels after the brake: brake_torque_nm is the sensor's reading against the commanded
 /// way (positive while the brake brakes), position_rad and velocity_rad_s are those of its shaft, the link's, and
@@ -86,6 +93,9 @@ impl Columns {
             let name = if is_brake { "brake_torque_nm" } else { "link_torque_nm" };
             channels.push(channel(name, sensor.resolution().map(|step| step.0)));
             channels.push(channel(TORQUE_SKEW, Some(TIME_STEP_S)));
+            if plan.both_ranges && sensor.has_two_ranges() {
+                channels.push(channel(OTHER_RANGE, None));
+            }
         }
         let felt_step_c = bench.thermometer.as_ref().map(|thermometer| thermometer.resolution().0);
         let standing_in = usize::from(health.temperature.is_none() && felt > 0);
@@ -148,6 +158,7 @@ impl Columns {
         row.extend(moment.joint.link_position.map(|position| position.0));
         if let Some(torque_nm) = moment.link_torque_nm {
             row.extend([way * torque_nm, to_time_step(moment.torque_skew_s)]);
+            row.extend(moment.other_torque_nm.map(|other_nm| way * other_nm));
         }
         row.extend(moment.temperature_c);
         row.extend(felt_c.iter().skip(self.standing_in));

@@ -143,6 +143,7 @@ impl BenchFacts {
                 link_range_rad: range_rad,
             },
             has_torque_sensor: link_nm > 0.0,
+            has_two_ranges: false,
             has_brake: brake_a > 0.0,
             encoder_counts: None,
             has_stage: false,

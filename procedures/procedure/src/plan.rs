@@ -17,6 +17,8 @@ pub struct BenchFacts {
     pub limits: Limits,
     pub constants: JointConstants,
     pub has_torque_sensor: bool,
+    /// The torque sensor tells every moment in two ranges.
+    pub has_two_ranges: bool,
     pub has_brake: bool,
     /// Reference and test: counts of a turn. `None` where one of them is missing.
     pub encoder_counts: Option<[f64; 2]>,
@@ -37,6 +39,7 @@ impl BenchFacts {
             limits: bench.limits,
             constants: bench.constants,
             has_torque_sensor: bench.torque_sensor.is_some(),
+            has_two_ranges: bench.torque_sensor.as_ref().is_some_and(|sensor| sensor.has_two_ranges()),
             has_brake: bench.brake.is_some(),
             encoder_counts: counts(&bench.reference_encoder)
                 .zip(counts(&bench.test_encoder))
@@ -170,6 +173,8 @@ pub struct Plan {
     pub steps: Vec<Step>,
     /// Ends the warm-up early. `None`: every step is run.
     pub steady: Option<Steady>,
+    /// Keeps what the torque sensor's other range says, too.
+    pub both_ranges: bool,
 }
 
 impl Plan {
@@ -248,6 +253,7 @@ pub(crate) mod testing {
             acceleration_rad_s2: 200.0,
             steps: durations_s.iter().enumerate().map(step).collect(),
             steady: None,
+            both_ranges: false,
         }
     }
 

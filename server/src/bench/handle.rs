@@ -75,6 +75,7 @@ impl BenchHandle {
             limits: description.limits,
             constants: description.constants,
             has_torque_sensor: has.torque_sensor,
+            has_two_ranges: has.two_ranges,
             has_brake: has.brake,
             encoder_counts: has.encoder_counts,
             has_stage: has.stage,

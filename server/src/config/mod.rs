@@ -13,7 +13,7 @@ pub use mistake::{Mistake, Mistakes};
 
 use jiff::civil::Date;
 use jointbench_devices::sim::{ENCODER_COUNTS, Load, MockInstrument};
-use jointbench_devices::{InstrumentSettings, Joint, MockSettings};
+use jointbench_devices::{InstrumentSettings, Joint, MockSettings, TorqueSensorSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
 use std::path::{Path, PathBuf};
@@ -56,6 +56,8 @@ pub enum Source {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Has {
     pub torque_sensor: bool,
+    /// Every moment of its torque in two ranges.
+    pub two_ranges: bool,
     pub brake: bool,
     /// Counts of a turn: reference, and encoder under test.
     pub encoder_counts: Option<[f64; 2]>,
@@ -89,6 +91,7 @@ impl BenchDescription {
         match &self.source {
             Source::Mock(settings) => Has {
                 torque_sensor: settings.has(MockInstrument::TorqueSensor),
+                two_ranges: settings.has(MockInstrument::TorqueSensor),
                 brake: settings.has(MockInstrument::Brake),
                 encoder_counts: (settings.has(MockInstrument::CounterS1) && settings.has(MockInstrument::CounterS2))
                     .then_some(ENCODER_COUNTS.map(f64::from)),
@@ -98,6 +101,7 @@ impl BenchDescription {
             },
             Source::Hardware(settings) => Has {
                 torque_sensor: settings.torque_sensor.is_some(),
+                two_ranges: matches!(settings.torque_sensor, Some(TorqueSensorSettings::Lorenz(_))),
                 brake: settings.brake.is_some(),
                 encoder_counts: settings
                     .reference_encoder

@@ -40,13 +40,15 @@ pub struct LorenzSensor {
     pub(super) link: Link,
     pub(super) stream: Option<Stream>,
     identity: Option<Identity>,
+    /// Full scale of the coarse and the fine range, once the rotor was asked.
+    nominals_nm: Option<[f64; 2]>,
 }
 
 impl LorenzSensor {
     /// Opens the port, ends a stream that may run, and identifies the sensor.
     pub fn open(settings: LorenzSettings) -> Result<Self, Fault> {
         let link = Link::open(&settings.name, &settings.port, Duration::from_millis(settings.deadline_ms))?;
-        let mut sensor = Self { settings, link, stream: None, identity: None };
+        let mut sensor = Self { settings, link, stream: None, identity: None, nominals_nm: None };
         sensor.ready()?;
         Ok(sensor)
     }
@@ -69,6 +71,38 @@ impl LorenzSensor {
 
     fn nm_per_count(&self) -> f64 {
         self.settings.nominal_nm / f64::from(NOMINAL_COUNTS)
+    }
+
+    /// Counts of the coarse and the fine range, of one moment.
+    fn counts(&mut self) -> Result<[i16; 2], Fault> {
+        if self.stream.is_some() {
+            let what = "a single reading while the stream runs, which it would end: collect, or stop the stream";
+            return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
+        }
+        let reading = self.ready()?.request(&ReadRaw)?;
+        if reading.check_signal {
+            let what = "the 100 % check signal is switched in: unload the shaft and switch it off";
+            return Err(self.link.fault(FaultKind::Reported { what: what.into() }));
+        }
+        Ok(reading.calibrated)
+    }
+
+    fn torque(&self, counts: i16, nominal_nm: f64) -> Result<NewtonMetres, Fault> {
+        if counts.unsigned_abs() >= NOMINAL_COUNTS.unsigned_abs() {
+            let what = format!("{counts} counts, beyond ±{nominal_nm} Nm; use the larger range");
+            return Err(self.link.fault(FaultKind::Saturated { what }));
+        }
+        Ok(NewtonMetres(f64::from(counts) / f64::from(NOMINAL_COUNTS) * nominal_nm))
+    }
+}
+
+impl Range {
+    /// Places of the range in use and of the other among a sensor's two.
+    fn in_use_and_other(self) -> [usize; 2] {
+        match self {
+            Range::Coarse => [0, 1],
+            Range::Fine => [1, 0],
+        }
     }
 }
 
@@ -113,24 +147,24 @@ impl Instrument for LorenzSensor {
 
 impl TorqueSensor for LorenzSensor {
     fn read(&mut self) -> Result<NewtonMetres, Fault> {
-        if self.stream.is_some() {
-            let what = "a single reading while the stream runs, which it would end: collect, or stop the stream";
-            return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
-        }
-        let reading = self.ready()?.request(&ReadRaw)?;
-        if reading.check_signal {
-            let what = "the 100 % check signal is switched in: unload the shaft and switch it off";
-            return Err(self.link.fault(FaultKind::Reported { what: what.into() }));
-        }
-        let counts = match self.settings.range {
-            Range::Coarse => reading.calibrated[0],
-            Range::Fine => reading.calibrated[1],
+        let counts = self.counts()?;
+        let [used, _] = self.settings.range.in_use_and_other();
+        self.torque(counts[used], self.settings.nominal_nm)
+    }
+
+    fn has_two_ranges(&self) -> bool {
+        true
+    }
+
+    fn read_both(&mut self) -> Result<(NewtonMetres, Option<NewtonMetres>), Fault> {
+        let nominals_nm = match self.nominals_nm {
+            Some(nominals_nm) => nominals_nm,
+            None => self.nominals()?,
         };
-        if counts.unsigned_abs() >= NOMINAL_COUNTS.unsigned_abs() {
-            let what = format!("{counts} counts, beyond ±{} Nm; use the larger range", self.settings.nominal_nm);
-            return Err(self.link.fault(FaultKind::Saturated { what }));
-        }
-        Ok(NewtonMetres(f64::from(counts) * self.nm_per_count()))
+        self.nominals_nm = Some(nominals_nm);
+        let counts = self.counts()?;
+        let [used, other] = self.settings.range.in_use_and_other();
+        Ok((self.torque(counts[used], nominals_nm[used])?, Some(self.torque(counts[other], nominals_nm[other])?)))
     }
 
     fn range(&self) -> NewtonMetres {

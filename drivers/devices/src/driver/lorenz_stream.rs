@@ -100,7 +100,7 @@ fn torque(counts: i16, nominal_nm: f64) -> Option<NewtonMetres> {
 
 impl LorenzSensor {
     /// The rotor's own word for the range of each channel. It must agree with the bench description.
-    fn nominals(&mut self) -> Result<[f64; 2], Fault> {
+    pub(super) fn nominals(&mut self) -> Result<[f64; 2], Fault> {
         let header = self.ready()?.request(&ReadConfig { block: ROTOR_HEADER })?;
         let nominals = LOADS.map(|offset| f64::from(header.number::<2>(offset)));
         let (described_nm, found_nm) = match self.settings.range {

@@ -98,18 +98,12 @@ impl Procedure for Friction {
             meta.other.insert("brake_history".into(), history.into());
         }
         Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta,
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
             steady: Some(Steady {
                 cycle_steps: warm_up::CYCLE_STEPS,
                 temperature_c_per_min: 0.3,
                 current_share_per_min: 0.01,
             }),
+            ..legs.plan(self, values, meta, rate_hz)
         })
     }
 

@@ -118,6 +118,7 @@ impl Legs {
             acceleration_rad_s2: self.acceleration_rad_s2,
             steps: self.steps,
             steady: None,
+            both_ranges: false,
         }
     }
 
@@ -210,6 +211,7 @@ pub(super) mod testing {
                 link_range_rad: Some(5.0 * TAU),
             },
             has_torque_sensor: true,
+            has_two_ranges: true,
             has_brake: true,
             encoder_counts: None,
             has_stage: false,

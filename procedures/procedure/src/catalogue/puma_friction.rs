@@ -131,14 +131,8 @@ impl Procedure for PumaFriction {
         meta.other.insert("segments".into(), legs.steps.len().into());
         meta.other.insert("amperes_per_volt".into(), amperes_per_volt.into());
         Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta,
-            rate_hz,
-            acceleration_rad_s2,
-            steps: legs.steps,
             steady: Some(Steady { cycle_steps: CYCLE_STEPS, temperature_c_per_min: 0.3, current_share_per_min: 0.05 }),
+            ..legs.plan(self, values, meta, rate_hz)
         })
     }
 

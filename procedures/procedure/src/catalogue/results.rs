@@ -16,7 +16,7 @@ const NAMES: [(&str, &str); 20] = [
     ("brake_hysteresis", "torque_top width drag error_max error_rms current_error error_line"),
     ("brake_torque", "error_max error_rms error_mean torques"),
     ("demagnetise", "left noise"),
-    ("torque_sensor_zero", "zero drift drag"),
+    ("torque_sensor_zero", "zero drift drag zero_other drift_other gain_ratio disagreement"),
     ("stiffness", "inverse_k k beta_0 xi line_rms rms loop_area"),
     ("breakaway", "tau_b tau_b_positive tau_b_negative deviation"),
     ("presliding", "sigma_0 tau_c reach bias element_#_stiffness element_#_slip"),

@@ -1,12 +1,14 @@
-//! The torque sensor's zero and its drift.
+//! The torque sensor's zero and its drift, of each of its ranges, and whether the ranges agree.
 //!
 //! A resting line is never free of torque: what it was wound up with stays in it. So the joint goes out and back slowly
-//! without load, and the zero is half the sum of both directions: drag has the sign of motion, the zero has not.
+//! without load, and the zero is half the sum of both directions: drag has the sign of motion, the zero has not. Then the
+//! brake loads the line in both directions, as far as the smaller range goes: both ranges feel the same torque there.
 
 use super::Procedure;
 use super::legs::{ACCELERATION, Legs, sample_rate};
-use crate::findings::{Line, Mean, Unusable, curve, holds, quantity, scatter, verdict};
-use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::columns::OTHER_RANGE;
+use crate::findings::{Hold, Line, Mean, Unusable, curve, holds, quantity, scatter, verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
@@ -18,6 +20,9 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.3, [0.05, 20.0]),
     Parameter::number("dwell_s", "Constant speed each way", "s", 2.0, [0.5, 60.0]),
     Parameter::number("steady_nm_per_min", "Steady below this drift", "Nm/min", 0.002, [1e-5, 1.0]),
+    Parameter::count("loads", "Loads at which the ranges are compared", 4, [1, 20]),
+    Parameter::number("top_torque_nm", "Largest of them, within the smaller range (link)", "Nm", 10.0, [0.1, 1000.0]),
+    Parameter::number("agree_nm", "The ranges agree where they differ by less (link)", "Nm", 0.12, [1e-4, 10.0]),
     ACCELERATION,
     sample_rate(100.0),
 ];
@@ -37,7 +42,7 @@ impl Procedure for TorqueSensorZero {
     }
 
     fn summary(&self) -> &'static str {
-        "Goes out and back slowly without load: half the sum of both directions is the sensor's zero. Shows how it drifts as the sensor warms up."
+        "Goes out and back slowly without load: half the sum of both directions is the sensor's zero, which drifts as the sensor warms up. Under load its two ranges are compared."
     }
 
     fn kind(&self) -> Kind {
@@ -67,7 +72,10 @@ impl Procedure for TorqueSensorZero {
             legs.repeat += 1;
             planned_s = legs.steps.iter().map(crate::plan::Step::duration_s).sum();
         }
-        Ok(legs.friction_plan(self, values, bench, rate_hz))
+        if bench.has_two_ranges && bench.has_brake {
+            compare(&mut legs, speed_rad_s, values, bench);
+        }
+        Ok(Plan { both_ranges: bench.has_two_ranges, ..legs.friction_plan(self, values, bench, rate_hz) })
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
@@ -75,47 +83,157 @@ impl Procedure for TorqueSensorZero {
     }
 }
 
+/// Rising loads, out and back at each of them.
+fn compare(legs: &mut Legs, speed_rad_s: f64, values: &Values, bench: &BenchFacts) {
+    let share = (values.number("top_torque_nm") / bench.constants.brake_rated_torque_nm).min(1.0);
+    let loads = values.count("loads");
+    let mut before_a = 0.0;
+    for load in 1..=loads {
+        let brake_a = share * bench.constants.brake_rated_current_a * f64::from(load) / f64::from(loads);
+        legs.change(speed_rad_s, before_a, brake_a);
+        legs.leg(speed_rad_s, values.number("dwell_s"), brake_a);
+        legs.leg(-speed_rad_s, values.number("dwell_s"), brake_a);
+        before_a = brake_a;
+    }
+    legs.unload(speed_rad_s, before_a, bench);
+}
+
+/// A range's zero over the time [min], and what its last part comes to.
+struct Zero {
+    points: Vec<(f64, f64)>,
+    value: Mean,
+    drift: Line,
+    drag: Mean,
+}
+
+impl Zero {
+    fn of(torque: &[f64], time_s: &[f64], held: &[Hold]) -> Result<Self, Unusable> {
+        // A brake that has been loaded keeps some of it.
+        let idle = &held[..held.iter().position(|hold| hold.brake != 0.0).unwrap_or(held.len())];
+        let (mut points, mut drags) = (Vec::new(), Vec::new());
+        for pair in idle.chunk_by(|a, b| a.repeat == b.repeat).filter(|pair| pair.len() == 2) {
+            let [out, back] = [&pair[0], &pair[1]].map(|hold| hold.mean(torque, SETTLED));
+            let at_min = 0.5 * (time_s[pair[0].rows.start] + time_s[pair[1].rows.end - 1]) / 60.0;
+            points.push((at_min, 0.5 * (out + back)));
+            drags.push(0.5 * (out - back));
+        }
+        let end = &points[points.len() - (points.len() as f64 * END).ceil() as usize..];
+        let at_end: Vec<f64> = end.iter().map(|p| p.1).collect();
+        let (Some(value), Some(drift), Some(drag)) = (Mean::of(&at_end), Line::through(end), Mean::of(&drags)) else {
+            return Err(Unusable::TooLittle("too few strokes: give it a longer duration_s"));
+        };
+        Ok(Self { points, value, drift, drag })
+    }
+
+    fn is_steady(&self, bound_nm_per_min: f64) -> bool {
+        self.drift.slope_ci95.map(f64::abs).into_iter().fold(0.0, f64::max) <= bound_nm_per_min
+    }
+
+    fn words(&self) -> String {
+        format!("{:.1} mNm at the end and drifts by {:.2} mNm/min", 1e3 * self.value.value, 1e3 * self.drift.slope)
+    }
+}
+
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
-    let torque = run.column("link_torque_nm").unwrap_or_default();
+    let used = run.column("link_torque_nm").unwrap_or_default();
     let time_s = run.column("time_s").unwrap_or_default();
     let held: Vec<_> = holds(run, 0.3).into_iter().filter(|hold| hold.velocity_rad_s != 0.0).collect();
-    let pairs = held.chunk_by(|a, b| a.repeat == b.repeat).filter(|pair| pair.len() == 2);
-    let (mut zeros, mut drags) = (Vec::new(), Vec::new());
-    for pair in pairs {
-        let [out, back] = [&pair[0], &pair[1]].map(|hold| hold.mean(torque, SETTLED));
-        let at_min = 0.5 * (time_s[pair[0].rows.start] + time_s[pair[1].rows.end - 1]) / 60.0;
-        zeros.push((at_min, 0.5 * (out + back)));
-        drags.push(0.5 * (out - back));
-    }
-    let end = &zeros[zeros.len() - (zeros.len() as f64 * END).ceil() as usize..];
-    let values_nm: Vec<f64> = end.iter().map(|p| p.1).collect();
-    let (Some(zero), Some(drift), Some(drag)) = (Mean::of(&values_nm), Line::through(end), Mean::of(&drags)) else {
-        return Err(Unusable::TooLittle("too few strokes: give it a longer duration_s"));
-    };
-    let steady = drift.slope_ci95.map(f64::abs).into_iter().fold(0.0, f64::max) <= values.number("steady_nm_per_min");
-    Ok(Identification {
-        verdict: if steady { Verdict::Identified } else { Verdict::Inconclusive },
-        summary: format!(
-            "The zero of the range in use is {:.1} mNm at the end and drifts by {:.2} mNm/min.",
-            1e3 * zero.value,
-            1e3 * drift.slope
-        ),
-        advice: (!steady).then(|| "Let the sensor warm up and measure again, or take a longer duration_s.".into()),
+    let zero = Zero::of(used, time_s, &held)?;
+    let mut found = Identification {
+        verdict: Verdict::Identified,
+        summary: format!("The zero of the range in use is {}.", zero.words()),
+        advice: None,
         quantities: vec![
-            quantity(["zero", "τ₀", "Zero of the torque sensor", "Nm"], zero.value, Some(zero.ci95)),
-            quantity(["drift", "dτ₀/dt", "Drift of the zero", "Nm/min"], drift.slope, Some(drift.slope_ci95)),
-            quantity(["drag", "τ_d", "Drag of the line", "Nm"], drag.value, Some(drag.ci95)),
+            quantity(["zero", "τ₀", "Zero of the torque sensor", "Nm"], zero.value.value, Some(zero.value.ci95)),
+            quantity(["drift", "dτ₀/dt", "Drift of the zero", "Nm/min"], zero.drift.slope, Some(zero.drift.slope_ci95)),
+            quantity(["drag", "τ_d", "Drag of the line", "Nm"], zero.drag.value, Some(zero.drag.ci95)),
         ],
-        figures: vec![Figure {
-            name: "zero_over_time".into(),
-            title: "Zero of the torque sensor".into(),
-            form: Form::Cartesian,
-            x: Axis::of("time", "min"),
-            y: Axis::of("torque", "Nm"),
-            series: vec![
-                scatter("half the sum of both directions", zeros.iter().copied()),
-                curve("drift", [end[0].0, end[end.len() - 1].0], 1, |t| drift.at(t)),
-            ],
-        }],
-    })
+        figures: vec![over_time(&zero, "zero_over_time", "Zero of the torque sensor")],
+    };
+    let bound = values.number("steady_nm_per_min");
+    let mut steady = zero.is_steady(bound);
+    if let Some(other) = run.column(OTHER_RANGE) {
+        let other_zero = Zero::of(other, time_s, &held)?;
+        steady &= other_zero.is_steady(bound);
+        found.summary += &format!(" That of the other range is {}.", other_zero.words());
+        found.quantities.extend(of_other(&other_zero));
+        found.figures.push(over_time(&other_zero, "other_zero_over_time", "Zero of the torque sensor, other range"));
+        overlap(&mut found, &held, [used, other], values.number("agree_nm"))?;
+    }
+    if !steady {
+        found.verdict = Verdict::Inconclusive;
+        let advice = "Let the sensor warm up and measure again, or take a longer duration_s.";
+        found.advice = Some([found.advice.as_deref().unwrap_or_default(), advice].join(" ").trim().to_owned());
+    }
+    Ok(found)
+}
+
+fn of_other(zero: &Zero) -> [Quantity; 2] {
+    [
+        quantity(["zero_other", "τ₀′", "Zero of the other range", "Nm"], zero.value.value, Some(zero.value.ci95)),
+        quantity(
+            ["drift_other", "dτ₀′/dt", "Drift of the zero of the other range", "Nm/min"],
+            zero.drift.slope,
+            Some(zero.drift.slope_ci95),
+        ),
+    ]
+}
+
+/// Both ranges' word for the same torque, over all that was held.
+fn overlap(
+    found: &mut Identification,
+    held: &[Hold],
+    [used, other]: [&[f64]; 2],
+    agree_nm: f64,
+) -> Result<(), Unusable> {
+    let pairs: Vec<(f64, f64)> =
+        held.iter().map(|hold| (hold.mean(used, SETTLED), hold.mean(other, SETTLED))).collect();
+    let line = Line::through(&pairs).ok_or(Unusable::TooLittle("all torques are one: raise top_torque_nm"))?;
+    let apart: Vec<(f64, f64)> = pairs.iter().map(|(used, other)| (*used, other - used)).collect();
+    let widest = apart.iter().map(|(_, apart)| apart.abs()).fold(0.0, f64::max);
+    let (low, high) =
+        pairs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (p.0.min(low), p.0.max(high)));
+    let agree = widest <= agree_nm;
+    found.summary += &format!(
+        " From {low:.1} to {high:.1} Nm the ranges differ by {:.1} mNm at most: they {}.",
+        1e3 * widest,
+        if agree { "agree" } else { "do not agree" }
+    );
+    if !agree {
+        found.verdict = Verdict::Inconclusive;
+        found.advice =
+            Some("One of the ranges is wrong: have the sensor calibrated before its torques are used.".into());
+    }
+    found.quantities.extend([
+        quantity(["gain_ratio", "κ", "Other range over the range in use", "1"], line.slope, Some(line.slope_ci95)),
+        quantity(["disagreement", "Δτ", "Largest difference of the ranges", "Nm"], widest, None),
+    ]);
+    found.figures.push(Figure {
+        name: "ranges_apart".into(),
+        title: "Difference of the ranges".into(),
+        form: Form::Cartesian,
+        x: Axis::of("torque in the range in use", "Nm"),
+        y: Axis::of("other range less range in use", "Nm"),
+        series: vec![
+            scatter("constant speed and load", apart),
+            curve("line", [low, high], 1, |torque| line.at(torque) - torque),
+        ],
+    });
+    Ok(())
+}
+
+fn over_time(zero: &Zero, name: &str, title: &str) -> Figure {
+    let last = zero.points.len() - 1;
+    let first = zero.points.len() - (zero.points.len() as f64 * END).ceil() as usize;
+    Figure {
+        name: name.into(),
+        title: title.into(),
+        form: Form::Cartesian,
+        x: Axis::of("time", "min"),
+        y: Axis::of("torque", "Nm"),
+        series: vec![
+            scatter("half the sum of both directions", zero.points.iter().copied()),
+            curve("drift", [zero.points[first].0, zero.points[last].0], 1, |t| zero.drift.at(t)),
+        ],
+    }
 }

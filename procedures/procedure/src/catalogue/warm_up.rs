@@ -1,7 +1,7 @@
 //! Work the joint until temperature and friction are steady, or the time is up.
 
 use super::Procedure;
-use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
+use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use crate::findings::{Line, Plateau, Unusable, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -60,18 +60,12 @@ impl Procedure for WarmUp {
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
         work(&mut legs, values.number("top_speed_rad_s"), values.number("longest_s"), bench);
         Ok(Plan {
-            procedure: self.id(),
-            parameters: values.to_json(),
-            kind: self.kind(),
-            meta: friction_meta(bench, rate_hz),
-            rate_hz,
-            acceleration_rad_s2: legs.acceleration_rad_s2,
-            steps: legs.steps,
             steady: Some(Steady {
                 cycle_steps: CYCLE_STEPS,
                 temperature_c_per_min: values.number("steady_c_per_min"),
                 current_share_per_min: values.number("steady_share_per_min"),
             }),
+            ..legs.friction_plan(self, values, bench, rate_hz)
         })
     }
 

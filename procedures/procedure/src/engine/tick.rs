@@ -141,11 +141,14 @@ impl Session<'_> {
         self.trust_joint(recovered_before)?;
         self.joint = Some(joint);
         let asked_s = self.bench.clock.now_s();
-        let link_torque_nm = if self.lost.sensor {
+        let torque = if self.lost.sensor {
             None
         } else {
-            self.ask_torque_sensor(|sensor| sensor.read())?.map(|torque| torque.0)
+            let both = self.plan.both_ranges;
+            self.ask_torque_sensor(|sensor| if both { sensor.read_both() } else { Ok((sensor.read()?, None)) })?
         };
+        let other_torque_nm = torque.and_then(|(_, other)| other).map(|torque| torque.0);
+        let link_torque_nm = torque.map(|(torque, _)| torque.0);
         let torque_skew = skew::of(&joint, asked_s, self.bench.clock.now_s());
         let encoders = self.feel_encoders()?;
         self.link_torque_nm = link_torque_nm;
@@ -164,6 +167,7 @@ impl Session<'_> {
             time_s: to_time_step(encoders.map_or(joint.at_s, |both| both.test.at_s) - self.journal.started_s),
             joint,
             link_torque_nm,
+            other_torque_nm,
             torque_skew_s: torque_skew.s,
             temperature_c: self.held.temperature_c,
             brake_a: self.held.brake_a.map(|measured_a| (measured_a, self.commanded.brake_a)),

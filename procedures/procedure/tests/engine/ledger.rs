@@ -121,6 +121,7 @@ pub fn loaded_plan() -> Plan {
             step(4, -150.0, 3.0, Profile::constant(0.0)),
         ],
         steady: None,
+        both_ranges: false,
     }
 }
 

@@ -4,6 +4,7 @@ use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::catalogue::{brake_model, can_find};
 use jointbench_procedure::conduct::{conduct, conduct_knowing};
 use jointbench_procedure::identification::{Identification, Verdict};
+use jointbench_procedure::parameter::Values;
 use jointbench_procedure::{BenchFacts, procedure};
 use serde_json::{Value, json};
 
@@ -23,6 +24,26 @@ fn a_demagnetised_brake_is_clean() {
     let given = json!({"turns": 1.0, "speed_rad_s": 3.0, "sample_rate_hz": 100.0});
     let (_, found) = found(MockSettings::new(Joint::JointB, 3), "demagnetise", given);
     assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
+}
+
+#[test]
+fn a_sensor_of_two_ranges_has_two_zeros_and_one_torque() {
+    let mock = MockBench::start(MockSettings::new(Joint::JointB, 3)).unwrap();
+    let mut bench = mock.open_bench("mock").unwrap();
+    let procedure = procedure("torque_sensor_zero").unwrap();
+    let given = json!({"duration_s": 45.0, "loads": 3, "speed_rad_s": 1.0, "dwell_s": 1.2});
+    let done = conduct(&mut bench, procedure, given.as_object().unwrap()).unwrap();
+    let found = done.identification.unwrap();
+    let value = |name: &str| found.quantity(name).unwrap().value;
+    assert!((value("gain_ratio") - 1.0).abs() < 1e-3, "{}", found.summary);
+    // 0.05 % of 200 Nm and 0.1 % of 20 Nm.
+    assert!(value("disagreement") < 0.12 && found.summary.contains("they agree"), "{}", found.summary);
+    assert!((value("zero_other") - value("zero")).abs() < 5e-3 && value("drag") > 0.01, "{}", found.summary);
+
+    let strict = Values::parse(procedure.schema(), json!({"agree_nm": 1e-4}).as_object().unwrap()).unwrap();
+    let found = procedure.identify(&strict, &done.table).unwrap();
+    assert!(found.summary.contains("do not agree"), "{}", found.summary);
+    assert!(found.verdict == Verdict::Inconclusive && found.advice.is_some());
 }
 
 #[test]

@@ -15,6 +15,7 @@ fn puma() -> BenchFacts {
     facts.constants.link_range_rad = Some(1.6);
     BenchFacts {
         has_torque_sensor: false,
+        has_two_ranges: false,
         has_brake: false,
         amperes_per_volt: Some(1.0),
         feeds_forward: false,
