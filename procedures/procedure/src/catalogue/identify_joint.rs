@@ -1,19 +1,28 @@
-//! A joint in one run: friction from the warm-up on, friction under load, breakaway, stiffness.
+//! A joint and its brake in one run, in the order in which physical history asks for it: friction over temperature from the
+//! cold joint on, then, warm, friction, breakaway, presliding, friction under load, the brake, stiffness.
 //!
 //! Each part is planned by its own procedure and identified by it, on its own rows. Every part begins and ends without
-//! brake current and where the run began, so that the parts need nothing of each other but the warm-up.
+//! brake current and where the run began, so that the parts need nothing of each other but the warm-up. Compensation feeds
+//! forward what friction has found: it is a run of its own, afterwards.
 
+mod part;
+
+use super::brake_hysteresis::BrakeHysteresis;
+use super::brake_speed_independence::BrakeSpeedIndependence;
 use super::breakaway::Breakaway;
 use super::friction::Friction;
 use super::friction_load::FrictionLoad;
+use super::friction_temperature::FrictionTemperature;
 use super::legs::sample_rate;
+use super::presliding::Presliding;
 use super::stiffness::Stiffness;
 use super::{Procedure, procedure};
-use crate::findings::{Unusable, keep_rows, verdict};
+use crate::findings::{Unusable, verdict};
 use crate::identification::{Identification, Verdict};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault, Step};
-use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
+use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Step};
+use jointbench_instrument::{Kind, Meta, RunTable};
+use part::table_of;
 use serde_json::{Map, Value, json};
 
 pub(super) struct IdentifyJoint;
@@ -21,7 +30,9 @@ pub(super) struct IdentifyJoint;
 const SCHEMA: &[Parameter] = &[
     Parameter::number("top_speed_rad_s", "Highest speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
     Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
-    Parameter::number("warm_up_s", "Longest warm-up", "s", 20.0, [1.0, 3600.0]),
+    Parameter::number("heat_s", "Warm-up and cool-down that are watched, each; 0: neither", "s", 420.0, [0.0, 14400.0]),
+    Parameter::number("warm_up_s", "Longest warm-up before all others", "s", 20.0, [1.0, 3600.0]),
+    Parameter::number("swing_nm", "Largest swing before sliding, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
     Parameter::count("load_levels", "Load levels, no load included", 6, [3, 20]),
     Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
     Parameter::number("bearing_stiffness_nm_rad", "Stiffness of the bearing, 0: none known", "Nm/rad", 0.0, [0.0, 1e9]),
@@ -33,37 +44,58 @@ const SCHEMA: &[Parameter] = &[
 const PARTS: &str = "parts";
 
 /// What the campaign consists of.
-pub(super) const PARTS_IN_ORDER: [&str; 4] = ["friction", "breakaway", "friction_load", "stiffness"];
+pub(super) const PARTS_IN_ORDER: [&str; 8] = [
+    "friction_temperature",
+    "friction",
+    "breakaway",
+    "presliding",
+    "friction_load",
+    "brake_speed_independence",
+    "brake_hysteresis",
+    "stiffness",
+];
 
 /// One procedure of the campaign with the choices that it gets.
-fn parts(values: &Values) -> Vec<(&'static dyn Procedure, Value)> {
+fn parts(values: &Values, bench: &BenchFacts) -> Vec<(&'static dyn Procedure, Value)> {
     let number = |name: &str| json!(values.number(name));
     let (rate, repeats) = (number("sample_rate_hz"), number("repeats"));
-    vec![
+    let (top, stribeck, load) = (number("top_speed_rad_s"), number("stribeck_speed_rad_s"), number("top_load"));
+    // A brake is asked no faster than the joint, and no slower than its procedure can.
+    let link_rad_s = (values.number("top_speed_rad_s") / bench.constants.gear_ratio).clamp(0.2, 1.5);
+    let mut parts: Vec<(&'static dyn Procedure, Value)> = vec![
         (
             &Friction,
             json!({
-                "top_speed_rad_s": number("top_speed_rad_s"), "stribeck_speed_rad_s": number("stribeck_speed_rad_s"),
-                "warm_up_s": number("warm_up_s"), "load_levels": 1, "repeats": repeats, "sample_rate_hz": rate,
+                "top_speed_rad_s": top, "stribeck_speed_rad_s": stribeck, "warm_up_s": number("warm_up_s"),
+                "load_levels": 1, "repeats": repeats, "sample_rate_hz": rate,
             }),
         ),
         (&Breakaway, json!({"sample_rate_hz": rate})),
+        (&Presliding, json!({"top_torque_nm": number("swing_nm"), "sample_rate_hz": rate})),
         (
             &FrictionLoad,
             json!({
                 "top_speed_rad_s": 0.7 * values.number("top_speed_rad_s"), "load_levels": number("load_levels"),
-                "stribeck_speed_rad_s": number("stribeck_speed_rad_s"), "top_load": number("top_load"),
-                "warm_up_s": 1.0, "repeats": repeats, "sample_rate_hz": rate,
+                "stribeck_speed_rad_s": stribeck, "top_load": load, "warm_up_s": 1.0, "repeats": repeats,
+                "sample_rate_hz": rate,
             }),
         ),
+        (&BrakeSpeedIndependence, json!({"top_speed_rad_s": link_rad_s, "top_current": load, "sample_rate_hz": rate})),
+        (&BrakeHysteresis, json!({"top_current": load.as_f64().map(|load| load.max(0.2)), "sample_rate_hz": rate})),
         (
             &Stiffness,
             json!({
-                "top_load": number("top_load"), "bearing_stiffness_nm_rad": number("bearing_stiffness_nm_rad"),
-                "repeats": repeats, "sample_rate_hz": rate,
+                "top_load": load, "bearing_stiffness_nm_rad": number("bearing_stiffness_nm_rad"), "repeats": repeats,
+                "sample_rate_hz": rate,
             }),
         ),
-    ]
+    ];
+    if values.number("heat_s") > 0.0 {
+        let each = number("heat_s");
+        let given = json!({"top_speed_rad_s": top, "heat_s": each, "cool_s": each, "sample_rate_hz": rate});
+        parts.insert(0, (&FrictionTemperature, given));
+    }
+    parts
 }
 
 impl Procedure for IdentifyJoint {
@@ -76,7 +108,7 @@ impl Procedure for IdentifyJoint {
     }
 
     fn summary(&self) -> &'static str {
-        "The whole campaign of a joint in one run: friction, breakaway, friction under load, stiffness, in this order and ending in one report."
+        "The whole campaign of a joint and its brake in one run and one report: friction over temperature, friction, breakaway, presliding, friction under load, brake over speed and with its hysteresis, stiffness."
     }
 
     fn kind(&self) -> Kind {
@@ -90,39 +122,34 @@ impl Procedure for IdentifyJoint {
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         let mut whole: Option<Plan> = None;
         let mut facts = Vec::new();
-        for (number, (procedure, given)) in parts(values).into_iter().enumerate() {
-            let given = given.as_object().cloned().unwrap_or_default();
-            let part = procedure.plan(&given, bench)?;
-            let first = whole.as_ref().map_or(0, |plan| plan.steps.len());
-            let fact = json!({
-                "procedure": procedure.id(), "parameters": Value::Object(part.parameters), "meta": part.meta,
-                "first_segment": first, "segments": part.steps.len(),
-            });
-            facts.push(fact);
+        for (procedure, given) in parts(values, bench) {
+            let mut part = procedure.plan(&given.as_object().cloned().unwrap_or_default(), bench)?;
+            let steps = std::mem::take(&mut part.steps);
             let whole = whole.get_or_insert_with(|| Plan {
                 procedure: self.id(),
                 parameters: values.to_json(),
                 kind: self.kind(),
                 meta: Meta { other: Map::new(), ..part.meta.clone() },
-                steps: Vec::new(),
-                ..part
+                ..part.clone()
             });
-            // Only the first part is warmed up for: what the joint has once it keeps.
-            let steps = part.steps.into_iter().filter(|step| number == 0 || step.phase != crate::plan::Phase::WarmUp);
-            let before = whole.steps.len() as u32;
-            whole.steps.extend(steps.zip(before..).map(|(step, segment)| Step {
+            // It is warmed up for once: what the joint has it keeps.
+            let is_warm = whole.steps.iter().any(|step| step.phase == Phase::WarmUp);
+            whole.steady = whole.steady.or(part.steady);
+            let first = whole.steps.len();
+            let steps = steps.into_iter().filter(|step| !is_warm || step.phase != Phase::WarmUp);
+            whole.steps.extend(steps.zip(first as u32..).map(|(step, segment)| Step {
                 label: format!("{}: {}", procedure.title().to_lowercase(), step.label),
                 segment,
                 ..step
             }));
-            if let Some(fact) = facts.last_mut() {
-                fact["segments"] = json!(whole.steps.len() - first);
-                if number > 0
-                    && let Some(other) = fact["meta"].as_object_mut()
-                {
-                    other.insert("warm_up_segments".into(), json!(0));
-                }
+            let steps = &whole.steps[first..];
+            if let Some(warm_up) = part.meta.other.get_mut("warm_up_segments") {
+                *warm_up = json!(first + steps.iter().filter(|step| step.phase == Phase::WarmUp).count());
             }
+            facts.push(json!({
+                "procedure": procedure.id(), "parameters": Value::Object(part.parameters), "meta": part.meta,
+                "first_segment": first, "segments": steps.len(),
+            }));
         }
         let cure = "report it";
         let mut plan = whole.ok_or(PlanFault::Contradiction { what: "a campaign without parts".into(), cure })?;
@@ -177,43 +204,11 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     Ok(whole)
 }
 
-/// The rows of one part as a table of its own kind. A step that was made again after a pause has a number of its own: it
-/// belongs to the part that the rows before it belong to.
-fn table_of(run: &RunTable, facts: &[Value], number: usize) -> Result<RunTable, Unusable> {
-    const NONE: Unusable = Unusable::TooLittle("the run ended before this part: make it again");
-    let ranges: Vec<_> = facts
-        .iter()
-        .map(|fact| {
-            let first = fact["first_segment"].as_i64().unwrap_or(0);
-            first..first + fact["segments"].as_i64().unwrap_or(0)
-        })
-        .collect();
-    let segment = run.column("segment").unwrap_or_default();
-    let (mut part, mut first, mut last) = (0, None, 0);
-    for (row, segment) in segment.iter().enumerate() {
-        part = ranges.iter().position(|range| range.contains(&(*segment as i64))).unwrap_or(part);
-        if part == number {
-            first = first.or(Some(row));
-            last = row;
-        }
-    }
-    let rows = first.ok_or(NONE)?..last + 1;
-    let (_, trace) = keep_rows(run, &[rows])?.into_parts();
-    let meta: Meta = serde_json::from_value(facts[number]["meta"].clone()).map_err(|_| NONE)?;
-    let (mut channels, mut columns) = (trace.channels().to_vec(), trace.columns().to_vec());
-    if meta.kind == Some(Kind::Stiffness)
-        && let (Some(velocity), Some(gear)) = (trace.column("motor_velocity_rad_s"), meta.gear_ratio)
-    {
-        channels.push(Channel::new("link_velocity_rad_s"));
-        columns.push(velocity.iter().map(|v| v / gear).collect());
-    }
-    Ok(RunTable::new(meta, Trace::from_columns(channels, columns))?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::legs::testing::{joint_a, joint_b};
     use super::*;
+    use jointbench_instrument::{Channel, Trace};
 
     #[test]
     fn the_parts_follow_each_other_in_one_plan() {
@@ -224,6 +219,7 @@ mod tests {
             let parts = plan.meta.other[PARTS].as_array().unwrap();
             let ids: Vec<&str> = parts.iter().filter_map(|part| part["procedure"].as_str()).collect();
             assert_eq!(ids, PARTS_IN_ORDER);
+            assert!(plan.steady.is_some(), "the warm-up ends when the joint is warm");
             let steps: i64 = parts.iter().filter_map(|part| part["segments"].as_i64()).sum();
             assert_eq!(steps as usize, plan.steps.len());
             // Every part leaves the brake without current.
