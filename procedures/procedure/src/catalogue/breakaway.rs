@@ -144,6 +144,10 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {
         return Err(Unusable::TooLittle("the joint broke away too seldom: raise top_torque_nm"));
     };
+    // From row to row the torque rises by a step: equal readings tell it no closer.
+    let step_nm = values.number("ramp_nm_s") / values.number("sample_rate_hz");
+    let [mean, forward, backward] = [mean, forward, backward]
+        .map(|Mean { value, ci95: [low, high] }| Mean { value, ci95: [low - step_nm, high + step_nm] });
     let deviation = (all.iter().map(|t| (t - mean.value).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
     let differ = forward.ci95[0] > backward.ci95[1] || backward.ci95[0] > forward.ci95[1];
     let words = |name, symbol, title| [name, symbol, title, "Nm"];

@@ -1,32 +1,42 @@
-//! An arm's run, paused in the middle of one step of every kind, says what an unbroken one says.
+//! A run that is paused in a step of every kind, or ended and gone on with, says what an unbroken one says.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
-use jointbench_instrument::{RunTable, Trace};
+use jointbench_instrument::{Bench, RunTable, Trace};
+use jointbench_procedure::catalogue::Procedure;
 use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::continuing::{Continues, Done, joined};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::plan::{Drive, Phase};
 use jointbench_procedure::*;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Sender, channel};
 
-/// Pauses once in each of some steps, and resumes soon after.
-struct Pauser {
+/// Steers a run at some of its steps, and resumes it soon after it has paused.
+struct Steer {
     controls: Sender<Control>,
-    /// Steps, and how long after their start [s].
-    due: BTreeMap<usize, f64>,
+    /// Steps, how long after their start [s], and what is asked for then.
+    due: BTreeMap<usize, (f64, Control)>,
     step: (usize, f64),
-    pauses: usize,
     waited: u32,
     rows: Option<Trace>,
+    done: Done,
+    continues: Option<Continues>,
 }
 
-impl Recorder for Pauser {
+impl Recorder for Steer {
     fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
         Ok(None)
     }
 
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
+        for event in commit.events {
+            match event.kind {
+                EventKind::StepStarted { step, segment, .. } => self.done.take(self.continues, step, segment, false),
+                EventKind::StepFinished { step, segment, .. } => self.done.take(self.continues, step, segment, true),
+                _ => {}
+            }
+        }
         if !commit.rows.channels().is_empty() {
             match &mut self.rows {
                 Some(rows) => rows.append(commit.rows),
@@ -46,53 +56,123 @@ impl Recorder for Pauser {
             if self.waited.is_multiple_of(5) {
                 self.controls.send(Control::Resume).unwrap();
             }
-        } else if self.due.get(&step).is_some_and(|half_s| elapsed_s - self.step.1 >= *half_s) {
-            self.due.remove(&step);
-            self.pauses += 1;
-            self.controls.send(Control::Pause).unwrap();
+        } else if self.due.get(&step).is_some_and(|(after_s, _)| elapsed_s - self.step.1 >= *after_s)
+            && let Some((_, control)) = self.due.remove(&step)
+        {
+            self.controls.send(control).unwrap();
         }
     }
 }
 
-#[test]
-fn an_arm_that_is_paused_in_every_kind_of_step_is_the_same_arm() {
-    let given = json!({"speeds": 4, "repeats": 2, "breakaways": 3, "warm_up_s": 8.0, "ramp_nm_s": 0.03});
-    let given = given.as_object().unwrap();
-    let procedure = procedure("puma_friction").unwrap();
+/// Carries a plan out under these controls.
+fn steered(bench: &mut Bench, plan: &Plan, due: BTreeMap<usize, (f64, Control)>) -> (RunEnd, RunTable, Done) {
+    let (controls, heard) = channel();
+    let continues = Continues::of(&plan.meta);
+    let done = Done { steps: continues.map_or(0, |continues| continues.from_step), ..Done::default() };
+    let mut steer = Steer { controls, due, step: (usize::MAX, 0.0), waited: 0, rows: None, done, continues };
+    let end = run(bench, plan, 1, &heard, &mut steer);
+    assert!(steer.due.is_empty(), "{}: not reached: {:?}", plan.procedure, steer.due);
+    (end, RunTable::new(plan.meta.clone(), steer.rows.unwrap()).unwrap(), steer.done)
+}
+
+/// The first step of every kind, and a moment within it.
+fn one_of_each_kind(plan: &Plan) -> BTreeMap<usize, (f64, Control)> {
+    let mut kinds = BTreeMap::new();
+    for (index, step) in plan.steps.iter().enumerate() {
+        let way = step.velocity.knots().iter().map(|(_, v)| *v).find(|v| *v != 0.0).map(|v| v > 0.0);
+        let drive = std::mem::discriminant(&step.drive);
+        let kind = format!("{:?} {:?} {drive:?} {way:?} {}", step.phase, step.before, step.brake.largest() > 0.0);
+        // A ramp of current ends where the joint breaks away: it is left early.
+        let within_s = match step.drive {
+            Drive::Current { from_s, .. } => from_s + 0.8,
+            _ => 0.5 * step.duration_s(),
+        };
+        kinds.entry(kind).or_insert((index, (within_s, Control::Pause)));
+    }
+    kinds.into_values().collect()
+}
+
+/// Both carry noise: the value may lie outside the unbroken run's interval by half its width.
+fn same(what: &str, found: &Identification, unbroken: &Identification) {
+    assert_eq!(found.verdict, unbroken.verdict, "{what}: {}", found.summary);
+    for whole in &unbroken.quantities {
+        let Some([low, high]) = whole.ci95 else { continue };
+        let value = found.quantity(&whole.name).unwrap_or_else(|| panic!("{what}: no {}", whole.name)).value;
+        let margin = 0.5 * (high - low);
+        let holds = (low - margin..=high + margin).contains(&value);
+        assert!(holds, "{what}, {}: {value:e} beyond {low:e} … {high:e}", whole.name);
+    }
+}
+
+fn check(settings: &MockSettings, id: &str, given: Value) {
+    let (procedure, given): (&dyn Procedure, &Map<String, Value>) =
+        (procedure(id).unwrap(), given.as_object().unwrap());
+    let values = Values::parse(procedure.schema(), given).unwrap();
     let open = || {
-        let mock = MockBench::start(MockSettings::new(Joint::Puma, 2).hiding(&["stribeck"])).unwrap();
-        let bench = mock.open_bench("arm").unwrap();
+        let mock = MockBench::start(settings.clone()).unwrap();
+        let bench = mock.open_bench("mock").unwrap();
         (mock, bench)
     };
     let (_mock, mut bench) = open();
     let unbroken = conduct(&mut bench, procedure, given).unwrap().identification.unwrap();
 
     let (_mock, mut bench) = open();
-    let plan = procedure.plan(given, &BenchFacts::of(&bench)).unwrap();
-    let mut kinds = BTreeMap::new();
-    for (index, step) in plan.steps.iter().enumerate() {
-        let way = step.velocity.knots().iter().map(|(_, v)| *v).find(|v| *v != 0.0).map(|v| v > 0.0);
-        let kind = (step.phase == Phase::WarmUp, matches!(step.drive, Drive::Current { .. }), way);
-        // A ramp of current ends where the joint breaks away: it is left early.
-        let within_s = match step.drive {
-            Drive::Current { from_s, .. } => from_s + 0.8,
-            _ => 0.5 * step.duration_s(),
-        };
-        kinds.entry(kind).or_insert((index, within_s));
+    let facts = BenchFacts::of(&bench);
+    let plan = procedure.plan(given, &facts).unwrap();
+    let (end, table, _) = steered(&mut bench, &plan, one_of_each_kind(&plan));
+    assert_eq!(end.state, RunState::Completed, "{id}: {:?}", end.reason);
+    same(&format!("{id}, paused"), &procedure.identify(&values, &table).unwrap(), &unbroken);
+
+    let (_mock, mut bench) = open();
+    let measured = plan.steps.iter().filter(|step| step.phase == Phase::Measure).count();
+    // A plan of nothing but a warm-up may end as soon as the joint is warm.
+    let middle = if measured > 0 { plan.steps.len() - measured.div_ceil(2) } else { 1 };
+    let within_s = 0.3_f64.min(0.5 * plan.steps[middle].duration_s());
+    let (end, first, done) = steered(&mut bench, &plan, [(middle, (within_s, Control::Abort))].into());
+    assert_eq!((end.state, end.safe), (RunState::Aborted, Safe::SafeVerified), "{id}: {:?}", end.reason);
+    if procedure.goes_on().is_err() {
+        return;
     }
-    assert!(kinds.len() >= 6, "work-outs, lines and breakaways, each way: {kinds:?}");
-    let (controls, heard) = channel();
-    let due: BTreeMap<usize, f64> = kinds.into_values().collect();
-    let count = due.len();
-    let mut pauser = Pauser { controls, due, step: (usize::MAX, 0.0), pauses: 0, waited: 0, rows: None };
-    let end = run(&mut bench, &plan, 1, &heard, &mut pauser);
-    assert_eq!((end.state, pauser.pauses), (RunState::Completed, count), "{:?}", end.reason);
-    let table = RunTable::new(plan.meta.clone(), pauser.rows.unwrap()).unwrap();
-    let values = Values::parse(procedure.schema(), given).unwrap();
-    let paused = procedure.identify(&values, &table).unwrap();
-    for name in ["f_positive", "f_negative", "b_positive", "b_negative", "stiction_positive", "stiction_negative"] {
-        let [value, whole] = [&paused, &unbroken].map(|found| found.quantity(name).unwrap());
-        let [low, high] = whole.ci95.unwrap();
-        assert!((low..=high).contains(&value.value), "{name}: {} beyond {low} … {high}", value.value);
+    let rest = plan.rest(1, done.steps, done.next_segment, &facts).unwrap();
+    let (end, second, _) = steered(&mut bench, &rest, BTreeMap::new());
+    assert_eq!(end.state, RunState::Completed, "{id}: {:?}", end.reason);
+    let whole = joined(&first, &done, &second, 0.0).unwrap();
+    same(&format!("{id}, gone on with"), &procedure.identify(&values, &whole).unwrap(), &unbroken);
+}
+
+#[test]
+fn an_arm_is_the_same_arm() {
+    let given = json!({"speeds": 4, "repeats": 2, "breakaways": 3, "warm_up_s": 8.0, "ramp_nm_s": 0.03});
+    check(&MockSettings::new(Joint::Puma, 2).hiding(&["stribeck"]), "puma_friction", given);
+}
+
+#[test]
+fn a_joint_is_the_same_joint() {
+    let joint = MockSettings::new(Joint::JointA, 1);
+    for (id, given) in [
+        ("friction", json!({"load_levels": 2, "fast_speeds": 3, "dwell_s": 0.6, "warm_up_s": 4.0})),
+        ("friction_load", json!({"load_levels": 3, "speeds": 3, "warm_up_s": 4.0})),
+        ("breakaway", json!({"positions": 3, "ramp_nm_s": 0.04})),
+        ("presliding", json!({"amplitudes": 2, "swings": 1, "repeats": 2})),
+        ("stiffness", json!({"load_levels": 4, "repeats": 2, "dwell_s": 0.8, "sample_rate_hz": 100.0})),
+        ("strokes", json!({"repeats": 2, "dwell_s": 1.0, "speeds": 3, "sample_rate_hz": 100.0})),
+        ("warm_up", json!({"longest_s": 40.0})),
+        ("compensation", json!({"periods": 2, "period_s": 2.0})),
+    ] {
+        check(&joint, id, given);
+    }
+}
+
+#[test]
+fn a_brake_is_the_same_brake() {
+    let joint = MockSettings::new(Joint::JointB, 3);
+    for (id, given) in [
+        ("brake_speed_independence", json!({"currents": 2, "speeds": 3, "dwell_s": 0.6})),
+        ("brake_hysteresis", json!({"levels": 5, "loops": 2, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0})),
+        ("demagnetise", json!({"turns": 1.0, "speed_rad_s": 3.0, "sample_rate_hz": 100.0})),
+        ("torque_sensor_zero", json!({"duration_s": 45.0, "loads": 2, "speed_rad_s": 1.0, "dwell_s": 1.2})),
+        ("friction_temperature", json!({"heat_s": 40.0, "cool_s": 40.0, "rest_s": 10.0})),
+    ] {
+        check(&joint, id, given);
     }
 }

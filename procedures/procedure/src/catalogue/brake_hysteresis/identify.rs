@@ -98,7 +98,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     })
 }
 
-/// The holds of every sweep, the first without current among them.
+/// The holds of every sweep, the first without current among them. One that a pause has cut off is made again as a whole.
 fn sweeps(run: &RunTable) -> Vec<Sweep> {
     let torque = run.column("brake_torque_nm").unwrap_or_default();
     let held: Vec<Hold> = holds(run, 0.3).into_iter().filter(|hold| hold.repeat > Part::Demagnetise as i64).collect();
@@ -106,7 +106,8 @@ fn sweeps(run: &RunTable) -> Vec<Sweep> {
         part: steps[0].repeat,
         points: steps.iter().map(|hold| (hold.brake, hold.mean(torque, SETTLED))).collect(),
     };
-    held.chunk_by(|a, b| a.segment == b.segment).map(sweep).collect()
+    let is_whole = |steps: &&[Hold]| steps.len() > 1 && steps[steps.len() - 1].brake == 0.0;
+    held.chunk_by(|a, b| a.segment == b.segment).filter(is_whole).map(sweep).collect()
 }
 
 /// The grid, and for each current of it the torques on the way down, the lowest current first.

@@ -45,10 +45,22 @@ pub fn swings(run: &RunTable, torque_constant: f64) -> Option<Vec<Swings>> {
         }
         let last_nm = torque_nm[torque_nm.len() - 1];
         let top_nm = torque_nm.iter().fold(0.0, |top: f64, nm| top.max(nm.abs()));
-        let points = known(&position_rad[from..end]);
-        all.push(Swings { torque_nm, points, broke_away: last_nm.abs() > 0.1 * top_nm });
+        let (ended, slid) = (last_nm.abs() <= 0.1 * top_nm, slides(&position_rad[from..end], rate_hz));
+        // What a pause has cut off is made again.
+        if ended || slid {
+            all.push(Swings { torque_nm, points: known(&position_rad[from..end]), broke_away: !ended });
+        }
     }
     Some(all)
+}
+
+/// Whether the joint was caught at the end: on the move in most of the last rows, or too fast for contacts that hold.
+fn slides(position_rad: &[f64], rate_hz: f64) -> bool {
+    let last = |rows: usize| &position_rad[position_rad.len().saturating_sub(rows + 1)..];
+    let moving = last(50).windows(2).filter(|pair| (pair[1] - pair[0]).abs() > STILL_RAD).count();
+    let end = last(5);
+    let speed_rad_s = (end[end.len() - 1] - end[0]).abs() * rate_hz / end.len() as f64;
+    2 * moving > 50 || speed_rad_s > 1.0
 }
 
 /// Means over `2 reach + 1` rows, fewer at the ends.
