@@ -20,6 +20,9 @@ pub struct EncoderLinearity;
 const HARMONICS: u32 = 160;
 const FIRST_POLE_PAIR: u32 = 8;
 
+/// The thesis reaches 14 usable bits; this is what is asked of a compensation that goes beyond it.
+const BEYOND_BITS: f64 = 15.0;
+
 impl Procedure for EncoderLinearity {
     fn id(&self) -> &'static str {
         "encoder_linearity"
@@ -162,14 +165,24 @@ impl Procedure for EncoderLinearity {
         ];
         let summary = format!(
             "Of its bits {:.1} are usable as it is, {:.1} with a look-up table of {} entries, {:.1} with the velocity term \
-             too, and {:.1} with the direction of motion.",
+             too, and {:.1} with the direction of motion. {}",
             bits(stages[0].2),
             bits(stages[1].2),
             table.len(),
             bits(stages[2].2),
-            bits(stages[3].2)
+            bits(stages[3].2),
+            what_it_takes(bits(stages[2].2), bits(stages[3].2))
         );
         Some(Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures })
+    }
+}
+
+/// Whether more than the terms of the thesis, table and velocity, is needed for the bits that go beyond its 14.
+fn what_it_takes(thesis: f64, full: f64) -> String {
+    match (thesis >= BEYOND_BITS, full >= BEYOND_BITS) {
+        (true, _) => format!("The terms of the thesis, table and velocity, are enough for {BEYOND_BITS} bits."),
+        (false, true) => format!("{BEYOND_BITS} bits take the direction term, which the thesis does not have."),
+        (false, false) => format!("{BEYOND_BITS} bits are not reached, with the direction term neither."),
     }
 }
 
