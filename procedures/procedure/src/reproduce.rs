@@ -125,6 +125,9 @@ fn stiffness([inverse_k, k, beta_0]: [f64; 3]) -> Vec<Figure> {
     ]
 }
 
+/// The classes of both ranges of the torque sensor together: 0.1 % of 20 Nm and 0.05 % of 200 Nm.
+const RANGES_AGREE_NM: f64 = 0.12;
+
 /// The campaign of a joint, in its order.
 fn joint(bearing_nm_rad: f64, figures: [Vec<Figure>; 3]) -> Vec<Part> {
     let [friction, stiffness, compensation] = figures;
@@ -133,6 +136,11 @@ fn joint(bearing_nm_rad: f64, figures: [Vec<Figure>; 3]) -> Vec<Part> {
         ("brake_hysteresis", json!({}), Vec::new()),
         ("brake_torque", json!({}), vec![("beyond", "error_max", None, Some(Demand::AtMost(0.01)))]),
         ("demagnetise", json!({}), Vec::new()),
+        (
+            "torque_sensor_zero",
+            json!({}),
+            vec![("data sheet", "disagreement", None, Some(Demand::AtMost(RANGES_AGREE_NM)))],
+        ),
         ("friction", json!({"load_levels": 1, "repeats": 3}), friction),
         ("breakaway", json!({}), Vec::new()),
         ("presliding", json!({}), Vec::new()),
