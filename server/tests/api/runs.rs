@@ -109,6 +109,7 @@ fn what_is_left_of_a_stopped_run_is_made_later_and_both_are_one_measurement() {
     let daemon = TestDaemon::start();
     let whole = daemon.wait_for_end(start(&daemon));
     assert_eq!(whole["state"], "completed");
+    daemon.wait_for("/api/v1/bench/joint-a-mock", |bench| bench["run"].is_null());
     let id = start(&daemon);
     let measured = |run: &Value| run["progress"]["step"].as_u64().is_some_and(|step| step > 20);
     daemon.wait_for(&format!("/api/v1/runs/{id}"), measured);
