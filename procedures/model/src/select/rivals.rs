@@ -6,6 +6,7 @@ use super::library::Library;
 use super::search::losses;
 use crate::Options;
 use crate::terms::{Term, Terms, polish};
+use jointbench_instrument::Kind;
 
 /// Candidates that are refined and held against each other at each step.
 const SHORT_LIST: usize = 8;
@@ -38,8 +39,11 @@ pub struct Bar<'l> {
     pub options: &'l Options,
 }
 
-/// No formula fits nature better than to this share of what it explains, squared (4.5 % in RMS).
-const FORM_ERROR: f64 = 0.002;
+/// No formula fits nature better than to this share of what it explains, squared (4.5 % in RMS). But an encoder's errors
+/// are waves over its own angle, steps and slopes: their formulas are no approximations.
+fn form_error(kind: Kind) -> f64 {
+    if kind == Kind::Encoder { 0.0 } else { 0.002 }
+}
 
 /// A simpler effect is as good as another where it brings this share of what that one brings: beside noise everything is
 /// near in held-out error.
@@ -49,10 +53,10 @@ const MOST_OF_GAIN: f64 = 0.8;
 const UNMISTAKABLE: f64 = 0.5;
 
 impl Bar<'_> {
-    /// `share` of the squared error `energy` that is left.
-    fn is_worth(&self, share: f64, energy: f64) -> bool {
-        let remainder = FORM_ERROR * (self.plain - energy).max(0.0);
-        share >= self.options.practical_share && (share >= UNMISTAKABLE || share * energy >= remainder)
+    /// Of the squared error `energy` that is left.
+    fn is_worth(&self, Rival { term, share, .. }: &Rival, energy: f64) -> bool {
+        let remainder = form_error(term.effect.info().kind) * (self.plain - energy).max(0.0);
+        *share >= self.options.practical_share && (*share >= UNMISTAKABLE || share * energy >= remainder)
     }
 }
 
@@ -103,7 +107,7 @@ pub fn step<'p>(
             let losses = losses(&columns, residual, problem);
             Rival { share: 1.0 - sse / energy, held_out: losses.iter().sum(), p_value: 1.0, losses, term }
         })
-        .filter(|r| bar.is_worth(r.share, energy) && r.held_out < present)
+        .filter(|r| bar.is_worth(r, energy) && r.held_out < present)
         .collect();
     rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
     // The forms of one effect are one group: the best of them speaks for it.

@@ -1,0 +1,45 @@
+//! An encoder's errors of very different size in one run: the smallest is no remainder of the largest.
+
+mod common;
+
+use common::tables::{meta, scatter};
+use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use jointbench_model::{ModelSpec, Options, Verdict, discover};
+
+const STEP_S: f64 = 0.001;
+/// Speeds of the four legs of one repeat [rad/s], and how long each takes.
+const LEGS: [(f64, usize); 4] = [(5.0, 4000), (-5.0, 4000), (50.0, 1000), (-50.0, 1000)];
+/// One count of a reference of 14 bit.
+const COUNT_RAD: f64 = std::f64::consts::TAU / 16384.0;
+
+/// Eccentricity of 4.5 mrad over 64 periods of 0.28 mrad and a difference of directions of 0.14 mrad.
+fn run() -> RunTable {
+    let names = ["time_s", "reference_position_rad", "test_position_rad", "velocity_rad_s", "segment", "repeat"]
+        .map(Channel::new);
+    let mut trace = Trace::new(names.into());
+    let (mut angle, mut at) = (0.3f64, 0);
+    for leg in 0..2 * LEGS.len() {
+        let (speed, rows) = LEGS[leg % LEGS.len()];
+        for _ in 0..rows {
+            angle += speed * STEP_S;
+            let error = 4.5e-3 * (angle - 0.5).sin() + 2.8e-4 * (64.0 * angle).sin() - 1.4e-4 * speed.signum();
+            let test = angle + error + 5e-5 * scatter(at, 1);
+            let reference = (angle / COUNT_RAD).round() * COUNT_RAD;
+            let (segment, repeat) = (leg as f64, (leg / LEGS.len()) as f64);
+            trace.push_row(&[at as f64 * STEP_S, reference, test, speed, segment, repeat]);
+            at += 1;
+        }
+    }
+    RunTable::new(meta(Kind::Encoder), trace).unwrap()
+}
+
+#[test]
+fn what_is_small_beside_eccentricity_is_found_all_the_same() {
+    let run = run();
+    let spec = ModelSpec::parse(Kind::Encoder, "offset,delay").unwrap();
+    let found = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();
+    let mut effects = found.model.clone();
+    effects.sort();
+    assert_eq!(effects, ["delay", "direction_hysteresis", "harmonic_1", "offset", "pole_period"]);
+    assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+}
