@@ -30,9 +30,10 @@ pub enum ModelError {
     #[error(transparent)]
     Formula(#[from] Box<crate::FormulaFault>),
     #[error(
-        "effect {effect} is not finite at {points} points of this data, first where {first}; \
+        "effect {effect} is not finite at {points} points of this data, {first}; \
          write a formula that is defined there, or give its parameters bounds that keep it so"
     )]
+    /// `first`: where, or that it is so whatever the signals are.
     NotFinite { effect: String, points: usize, first: String },
     #[error("signal {signal}: {why}")]
     BadSignal { signal: String, why: String },

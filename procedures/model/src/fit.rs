@@ -8,7 +8,7 @@ use crate::report::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as T
 use crate::select::held_out;
 use crate::terms::Terms;
 use crate::view::View;
-use crate::{ModelError, ModelSpec, Options, effects};
+use crate::{ModelError, ModelSpec, Options, ResidualKind, effects};
 use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
@@ -127,13 +127,16 @@ pub fn evaluate(fit: &Fit, run: &RunTable) -> Result<Evaluation, ModelError> {
     let predicted = predict(fit, &prepared.main)?;
     let target = &prepared.main.target;
     let sse: f64 = target.iter().zip(&predicted).map(|(y, p)| (y - p).powi(2)).sum();
+    let settled = prepared.main.view.chunks.iter().map(|c| c.len()).sum::<usize>() as f64;
     Ok(Evaluation {
         rms: (sse / target.len() as f64).sqrt(),
         unit: prepared.unit(),
         residual: prepared.about.residual,
         relative_error: (sse / dot(target, target)).sqrt(),
         rows: target.len(),
-        notes: fit.scope.iter().flat_map(|scope| scope.left_by(&prepared)).collect(),
+        samples: run.len(),
+        settled_share: (prepared.about.residual == ResidualKind::PlateauMean).then(|| settled / run.len() as f64),
+        notes: fit.scope.iter().flat_map(|scope| scope.notes(fit, &prepared)).collect(),
     })
 }
 

@@ -126,3 +126,15 @@ fn a_model_says_where_it_is_an_extrapolation() {
         "{notes:?}"
     );
 }
+
+#[test]
+fn the_range_of_acceleration_is_that_of_the_ramps() {
+    let run = bench(5).run(dry);
+    let baseline = run.meta().baseline.iter().map(String::as_str);
+    let spec = ModelSpec::new(run.kind(), baseline.chain(["inertia"])).unwrap();
+    let model = fit(&run, &spec, &Options::default()).unwrap();
+    assert!(model.parameters.iter().any(|p| p.effect == "inertia" && p.ci95[0] < p.ci95[1]), "{:?}", model.parameters);
+    let ranges = &model.scope.as_ref().unwrap().signals;
+    let acceleration = ranges.iter().find(|r| r.name == "acceleration").unwrap();
+    assert!(acceleration.min < -10.0 && acceleration.max > 10.0, "{acceleration:?}");
+}

@@ -112,7 +112,7 @@ impl From<LabError> for Problem {
             },
             LabError::Formula(fault) => Self {
                 place: Some(Box::new(Place {
-                    field: fault.field,
+                    field: fault.field.to_owned(),
                     text: fault.text,
                     position: fault.position as u64,
                     length: fault.length as u64,

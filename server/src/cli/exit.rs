@@ -2,7 +2,8 @@
 
 use crate::lab::LabError;
 use jointbench_files::{FileError, OptionFault};
-use jointbench_model::{FormulaFault, ModelError};
+use jointbench_model::{FormulaFault, ModelError, words};
+use std::path::Path;
 
 #[derive(Debug)]
 pub struct Exit {
@@ -14,6 +15,13 @@ pub struct Exit {
 pub type Done = Result<(), Exit>;
 
 impl Exit {
+    /// What `files` could not be used for.
+    pub fn of(files: &[impl AsRef<Path>], fault: ModelError) -> Self {
+        let exit = Exit::from(fault);
+        let names: Vec<String> = files.iter().map(|file| file.as_ref().display().to_string()).collect();
+        Exit { said: format!("{}: {}", words::list(&names), exit.said), ..exit }
+    }
+
     pub fn failed(said: impl Into<String>) -> Self {
         Self { code: 1, said: said.into() }
     }

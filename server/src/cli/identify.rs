@@ -2,8 +2,9 @@
 
 use super::arguments::{Identify, Report};
 use super::exit::{Done, Exit};
+use super::files::write;
 use super::serve::runtime;
-use super::transfer::{Way, open, write};
+use super::transfer::{Way, open};
 use crate::report::with_interval;
 use crate::view::{Identification, Identified};
 use std::path::PathBuf;

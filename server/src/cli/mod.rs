@@ -6,6 +6,7 @@ mod check;
 mod client;
 mod demo;
 mod exit;
+mod files;
 mod identify;
 mod log;
 mod model;

@@ -2,6 +2,7 @@
 
 use super::arguments::{Model, ModelCommand};
 use super::exit::{Done, Exit};
+use super::files::write;
 use super::offline::{json_out, read};
 use super::print;
 use jointbench_model::Fit;
@@ -13,7 +14,7 @@ pub fn model(arguments: &Model) -> Done {
         ModelCommand::Export { model, format, output } => {
             let text = export(&open(model)?, (*format).into())?;
             match output {
-                Some(path) => write(path, &text),
+                Some(path) => write(path, text.as_bytes()),
                 None => {
                     print!("{text}");
                     Ok(())
@@ -22,7 +23,7 @@ pub fn model(arguments: &Model) -> Done {
         }
         ModelCommand::Evaluate { model, run, meta, columns, json } => {
             let (fit, table) = (open(model)?, read(run, meta.as_deref(), columns)?);
-            let evaluation = jointbench_model::evaluate(&fit, &table)?;
+            let evaluation = jointbench_model::evaluate(&fit, &table).map_err(|fault| Exit::of(&[run], fault))?;
             if *json {
                 return json_out(&evaluation);
             }
@@ -31,7 +32,8 @@ pub fn model(arguments: &Model) -> Done {
         }
         ModelCommand::Compare { first, second, run, meta, columns, json } => {
             let (a, b) = (open(first)?, open(second)?);
-            let comparison = jointbench_model::compare(&a, &b, &read(run, meta.as_deref(), columns)?)?;
+            let table = read(run, meta.as_deref(), columns)?;
+            let comparison = jointbench_model::compare(&a, &b, &table).map_err(|fault| Exit::of(&[run], fault))?;
             if *json {
                 return json_out(&comparison);
             }
@@ -43,15 +45,18 @@ pub fn model(arguments: &Model) -> Done {
 
 /// Writes a fit as `fit --out` does.
 pub fn save(fit: &Fit, path: &Path) -> Done {
-    write(path, &export(fit, Format::Json)?)
+    write(path, export(fit, Format::Json)?.as_bytes())
 }
 
 fn open(path: &Path) -> Result<Fit, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|fault| refuse(&fault))?;
+    // Headers, tables and attributes of joints go out only.
+    if !text.trim_start().starts_with('{') {
+        return Err(refuse(
+            &"this is no model that can be read again; only JSON is: what `jointbench fit --out` or \
+              `jointbench model export --format json` has written",
+        ));
+    }
     ModelFile::read(&text).map_err(|fault| refuse(&fault))
-}
-
-fn write(path: &Path, text: &str) -> Done {
-    std::fs::write(path, text).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))
 }

@@ -2,6 +2,7 @@
 
 use super::arguments::{Columns, Diagnose, Discover, Fit, Measured, Preparation};
 use super::exit::{Done, Exit};
+use super::files;
 use super::print;
 use crate::lab::{Offer, next_run, reread};
 use jointbench_files::{ReadOptions, parse_map, parse_scale};
@@ -13,7 +14,8 @@ use std::path::{Path, PathBuf};
 
 pub fn diagnose(arguments: &Diagnose) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
-    let diagnosis = crate::lab::diagnose(&run, &spec, &options, &Offer::shown_by(&run))?;
+    let about = |fault| Exit::of(&arguments.run.files, fault);
+    let diagnosis = crate::lab::diagnose(&run, &spec, &options, &Offer::shown_by(&run)).map_err(about)?;
     if arguments.run.json {
         json_out(&diagnosis)?;
     } else {
@@ -24,7 +26,9 @@ pub fn diagnose(arguments: &Diagnose) -> Done {
 
 pub fn discover(arguments: &Discover) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
-    let mut discovery = jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {})?;
+    let about = |fault| Exit::of(&arguments.run.files, fault);
+    let mut discovery =
+        jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {}).map_err(about)?;
     discovery.experiment =
         next_run(&run, &Open { own: spec.own, ..Open::from(&discovery) }, &Offer::shown_by(&run), &options);
     if arguments.run.json {
@@ -45,7 +49,7 @@ fn decided(undecided: Option<&String>) -> Done {
 
 pub fn fit(arguments: &Fit) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
-    let fit = jointbench_model::fit(&run, &spec, &options)?;
+    let fit = jointbench_model::fit(&run, &spec, &options).map_err(|fault| Exit::of(&arguments.run.files, fault))?;
     if let Some(path) = &arguments.out {
         super::model::save(&fit, path)?;
     }
@@ -53,7 +57,7 @@ pub fn fit(arguments: &Fit) -> Done {
         None => None,
         Some(other) => {
             let other_run = read(other, None, &arguments.run.columns)?;
-            Some((other, jointbench_model::evaluate(&fit, &other_run)?))
+            Some((other, jointbench_model::evaluate(&fit, &other_run).map_err(|fault| Exit::of(&[other], fault))?))
         }
     };
     if arguments.run.json {
@@ -66,16 +70,18 @@ pub fn fit(arguments: &Fit) -> Done {
     }
     print::fit(&fit);
     if let Some((file, evaluation)) = &evaluation {
+        println!();
         print::evaluation(file, evaluation);
     }
     Ok(())
 }
 
 fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
+    let files = measured.files.iter().map(|file| files::table(file)).collect::<Result<Vec<PathBuf>, Exit>>()?;
     let mut runs = Vec::new();
-    for (i, file) in measured.files.iter().enumerate() {
+    for (i, file) in files.iter().enumerate() {
         let same = |other: &PathBuf| matches!((other.canonicalize(), file.canonicalize()), (Ok(a), Ok(b)) if a == b);
-        if measured.files[..i].iter().any(same) {
+        if files[..i].iter().any(same) {
             return Err(Exit::bad_input(format!("{} is named twice: one run is no repeat of itself", file.display())));
         }
         runs.push(read(file, measured.meta.as_deref(), &measured.columns)?);
@@ -98,7 +104,7 @@ pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Resul
     for pair in &columns.scale {
         options.scale.push(parse_scale(pair)?);
     }
-    Ok(jointbench_files::read(file, &options)?)
+    Ok(jointbench_files::read(&files::table(file)?, &options)?)
 }
 
 fn options(preparation: &Preparation) -> Result<Options, Exit> {

@@ -1,7 +1,7 @@
 //! Results as a person reads them.
 
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Options, PairMap, Parameter,
+    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Options, Parameter,
     ParameterPair, ParameterState, Region, ResidualKind, Suggestion, words,
 };
 use std::path::Path;
@@ -33,16 +33,27 @@ pub fn fit(fit: &Fit) {
 }
 
 pub fn evaluation(file: &Path, evaluation: &Evaluation) {
-    println!();
     println!(
-        "on {}: error {}, {:.2} % of what was measured ({} points)",
+        "on {}: error {}, {:.2} % of what was measured",
         file.display(),
         words::figure(evaluation.rms, &evaluation.unit),
         100.0 * evaluation.relative_error,
-        evaluation.rows
     );
+    println!("judged    {}", judged(evaluation));
     for note in &evaluation.notes {
         println!("note      {note}");
+    }
+}
+
+/// What the error was taken over.
+fn judged(evaluation: &Evaluation) -> String {
+    let Evaluation { rows, samples, .. } = evaluation;
+    match evaluation.settled_share {
+        Some(share) => format!(
+            "{rows} means of settled motion, which is {} of this run ({samples} samples); of the rest it says nothing",
+            words::percent(share)
+        ),
+        None => format!("{rows} filtered points of {samples} samples"),
     }
 }
 
@@ -83,7 +94,7 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!();
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
-    own_formula(diagnosis.structure.as_ref());
+    own_formula(&diagnosis.shows_over);
     suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
     next_run(diagnosis.experiment.as_ref());
     not_visible(&diagnosis.not_visible);
@@ -119,20 +130,21 @@ pub fn discovery(discovery: &Discovery) {
         }
     }
     regions(&discovery.regions, &discovery.fit.unit);
-    own_formula(discovery.structure.as_ref());
+    own_formula(&discovery.shows_over);
     next_run(discovery.experiment.as_ref());
     not_visible(&discovery.not_visible);
 }
 
-/// What the library lacks, the user may know.
-fn own_formula(structure: Option<&PairMap>) {
-    let Some(map) = structure else { return };
+/// What the library lacks, the user may know: over the axes that the summary has named.
+fn own_formula(axes: &[String]) {
+    if axes.is_empty() {
+        return;
+    }
+    let axes: Vec<String> = axes.iter().map(|axis| words::spoken(axis)).collect();
     println!();
     println!(
-        "what you can do: write what you suspect as a formula of {} and {} with --own (see --help), and see whether the \
-         error falls",
-        words::spoken(&map.x),
-        words::spoken(&map.y)
+        "what you can do: write what you suspect as a formula of {} with --own (see --help), and see whether the error falls",
+        words::list(&axes)
     );
 }
 

@@ -3,6 +3,7 @@
 use super::arguments::{Columns, Export, Import, StorePlace};
 use super::client::Client;
 use super::exit::{Done, Exit};
+use super::files::{table, write};
 use super::serve::runtime;
 use crate::lab::{FileFormat, ImportRequest, Lab, LabError};
 use crate::view::Run;
@@ -14,6 +15,7 @@ pub fn import(arguments: &Import) -> Done {
     let runtime = runtime()?;
     let store = open(&runtime, &arguments.store, true)?;
     for file in &arguments.files {
+        let file = &table(file)?;
         let request = read(file, arguments.meta.as_deref(), &arguments.columns)?;
         let run = match &store {
             Way::Folder(lab) => runtime.block_on(lab.import(request))?,
@@ -137,8 +139,4 @@ fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
     request.scale.iter().for_each(|pair| part("\"scale\"", pair.as_bytes()));
     body.extend_from_slice(format!("--{boundary}--\r\n").as_bytes());
     client.post_bytes("/runs/import", &format!("multipart/form-data; boundary={boundary}"), &body)
-}
-
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Done {
-    fs::write(path, bytes).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))
 }

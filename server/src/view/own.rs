@@ -109,7 +109,11 @@ pub struct Evaluation {
     /// ‖residual‖ / ‖measured‖.
     pub relative_error: f64,
     pub rows: u64,
-    /// Signals that leave the ranges of the fit, in plain sentences: there the model is an extrapolation.
+    pub samples: u64,
+    /// Share of the samples that is settled motion, where only that is judged.
+    pub settled_share: Option<f64>,
+    /// What the error does not say by itself, in plain sentences: columns that are missing, facts that differ from those
+    /// of the fit, signals that leave its ranges.
     pub notes: Vec<String>,
 }
 

@@ -1,5 +1,6 @@
 //! `fit`, `diagnose`, `discover`, `import` and `export` on files, without a daemon.
 
+mod elsewhere;
 mod emps;
 mod own;
 mod practice;

@@ -20,7 +20,7 @@ parameters = [
 "#;
 
 /// A run of speeds and loads with rubbing, in a folder of its own.
-fn write_run(folder: &Path) {
+pub fn write_run(folder: &Path) {
     let mut table =
         String::from("time_s,motor_position_rad,motor_velocity_rad_s,motor_current_a,link_torque_nm,segment,repeat\n");
     let (mut time, mut position, mut segment, mut noise) = (0.0f64, 0.0f64, 0, 9u64);
@@ -45,11 +45,11 @@ fn write_run(folder: &Path) {
     std::fs::write(folder.join("effects.toml"), FILE).expect("effects");
 }
 
-fn run_in(folder: &Path, arguments: &[&str]) -> Output {
+pub fn run_in(folder: &Path, arguments: &[&str]) -> Output {
     jointbench().args(arguments).current_dir(folder).output().expect("jointbench starts")
 }
 
-fn done(folder: &Path, arguments: &[&str]) -> String {
+pub fn done(folder: &Path, arguments: &[&str]) -> String {
     let output = run_in(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
     stdout(&output)

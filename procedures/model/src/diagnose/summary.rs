@@ -100,17 +100,24 @@ fn structure(found: &Exploration, end: &Fit, shown: Option<&PairMap>) -> String 
         Some(share) => format!(", {} of it the same in every repeat", percent(share)),
         None => String::new(),
     };
-    let pair = shown.map(|s| (format!("{} and {}", spoken(&s.x), spoken(&s.y)), s.removable_share));
-    let axis = found.maps.removable().map(|(axis, share)| (spoken(axis), share));
-    // A second axis cuts the first one's bins: what shows over one alone can be more.
-    match axis.into_iter().chain(pair).max_by(|a, b| a.1.total_cmp(&b.1)) {
-        Some((axes, share)) if share > LEAST_SHOWN => format!(
-            "it shows most over {axes}, a function of which would take {} off the squared error that remains \
+    match shown_over(found, shown) {
+        Some((axes, share)) => format!(
+            "it shows most over {}, a function of which would take {} off the squared error that remains \
              ({error}{repeats})",
+            list(&axes.iter().map(|axis| spoken(axis)).collect::<Vec<_>>()),
             percent(share),
         ),
-        _ => format!("no axis of this run shows where it comes from (the error that remains is {error}{repeats})"),
+        None => format!("no axis of this run shows where it comes from (the error that remains is {error}{repeats})"),
     }
+}
+
+/// The columns over which what is left shows most, and what a function of them would take off it. `None` where none does.
+pub fn shown_over(found: &Exploration, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
+    let pair = shown.map(|s| (vec![s.x.clone(), s.y.clone()], s.removable_share));
+    let axis = found.maps.removable().map(|(axis, share)| (vec![axis.to_owned()], share));
+    // A second axis cuts the first one's bins: what shows over one alone can be more.
+    let most = axis.into_iter().chain(pair).max_by(|a, b| a.1.total_cmp(&b.1));
+    most.filter(|(_, share)| *share > LEAST_SHOWN)
 }
 
 /// What too short a run cannot decide, however well the model fits it.

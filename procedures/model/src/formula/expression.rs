@@ -2,7 +2,7 @@
 
 use super::fault::Mistake;
 use super::function::Function;
-use super::signals::{NamedSignal, signals};
+use super::names::Names;
 use super::syntax::{Node, Operator, Syntax};
 use crate::view::{Signal, Signals};
 use jointbench_instrument::Kind;
@@ -28,30 +28,30 @@ pub enum What {
 }
 
 impl Expression {
-    /// Gives every name its meaning. The first that has none is the mistake.
+    /// Gives every name its meaning. Those that have none are mistakes, each name once.
     pub(crate) fn resolve(node: Node, kind: Kind, parameters: &[&str]) -> Result<Self, Mistake> {
+        let mut names = Names::new(kind, parameters);
+        let whole = Self::named(node, &mut names);
+        Mistake::first_of(names.mistakes).map_or(Ok(whole), Err)
+    }
+
+    /// With zero in the place of what means nothing.
+    fn named(node: Node, names: &mut Names) -> Self {
         let at = node.at;
-        let inner = |node: Box<Node>| Ok(Box::new(Self::resolve(*node, kind, parameters)?));
+        let mut inner = |node: Box<Node>| Box::new(Self::named(*node, names));
         let what = match node.what {
             Syntax::Number(value) => What::Number(value),
-            Syntax::Name(name) => match parameters.iter().position(|p| *p == name) {
-                Some(parameter) => What::Parameter(parameter),
-                None => signal_or_constant(&name, kind).ok_or_else(|| unknown(&name, at.clone(), kind, parameters))?,
-            },
-            Syntax::Negate(a) => What::Negate(inner(a)?),
-            Syntax::Binary(operator, a, b) => What::Binary(operator, inner(a)?, inner(b)?),
+            Syntax::Name(name) => names.meaning(&name, &at),
+            Syntax::Negate(a) => What::Negate(inner(a)),
+            Syntax::Binary(operator, a, b) => What::Binary(operator, inner(a), inner(b)),
             Syntax::Call(name, arguments) => {
-                let function = Function::find(&name).ok_or_else(|| no_function(&name, at.start))?;
-                if arguments.len() != function.arity() {
-                    let (wanted, given) = (function.arity(), arguments.len());
-                    let plural = if wanted == 1 { "" } else { "s" };
-                    return Err(Mistake::new(at, format!("{name} takes {wanted} argument{plural}, not {given}")));
-                }
-                let arguments = arguments.into_iter().map(|a| Self::resolve(a, kind, parameters));
-                What::Call(function, arguments.collect::<Result<_, _>>()?)
+                let given = arguments.len();
+                let function = names.function(&name, given, &at);
+                let arguments = arguments.into_iter().map(|a| Self::named(a, names)).collect();
+                function.map_or(What::Number(0.0), |function| What::Call(function, arguments))
             }
         };
-        Ok(Self { at, what })
+        Self { at, what }
     }
 
     /// The value of every row.
@@ -148,47 +148,4 @@ impl<'s> Value<'s> {
             }
         }
     }
-}
-
-fn signal_or_constant(name: &str, kind: Kind) -> Option<What> {
-    if name == "pi" {
-        return Some(What::Number(std::f64::consts::PI));
-    }
-    signals(kind).iter().find(|s| s.name == name).map(|s| What::Signal(s.signal))
-}
-
-fn unknown(name: &str, at: Range<usize>, kind: Kind, parameters: &[&str]) -> Mistake {
-    let names = || signals(kind).iter().map(|s| s.name);
-    let by_column: Option<&NamedSignal> = signals(kind).iter().find(|s| s.column == name);
-    let hint = if let Some(signal) = by_column {
-        format!("write {} ({})", signal.name, signal.meaning)
-    } else if Function::find(name).is_some() {
-        format!("{name} is a function: write its arguments in brackets")
-    } else if let Some(near) = names().chain(parameters.iter().copied()).find(|known| is_near(name, known)) {
-        format!("did you mean {near}?")
-    } else {
-        let signals: Vec<&str> = names().collect();
-        format!("declare it as a parameter, or use a signal of {kind} runs: {}", signals.join(", "))
-    };
-    Mistake::new(at, format!("{name} is neither a signal nor a parameter of this effect; {hint}"))
-}
-
-fn no_function(name: &str, start: usize) -> Mistake {
-    let at = start..start + name.len();
-    let names: Vec<&str> = Function::ALL.iter().map(|f| f.name()).collect();
-    let hint = match names.iter().find(|known| is_near(name, known)) {
-        Some(near) => format!("did you mean {near}?"),
-        None => format!("there are {}", names.join(", ")),
-    };
-    Mistake::new(at, format!("there is no function {name}; {hint}"))
-}
-
-/// One letter wrong, missing, too many, or two in the wrong order.
-fn is_near(a: &str, b: &str) -> bool {
-    let (a, b): (Vec<char>, Vec<char>) = (a.to_lowercase().chars().collect(), b.to_lowercase().chars().collect());
-    let head = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
-    let tail = a[head..].iter().rev().zip(b[head..].iter().rev()).take_while(|(a, b)| a == b).count();
-    let (left_a, left_b) = (&a[head..a.len() - tail], &b[head..b.len() - tail]);
-    let swapped = left_a.len() == 2 && left_b.len() == 2 && left_a[0] == left_b[1] && left_a[1] == left_b[0];
-    a.len().max(b.len()) > 2 && (swapped || left_a.len().max(left_b.len()) <= 1)
 }

@@ -7,12 +7,13 @@ mod expression;
 mod factors;
 mod fault;
 mod function;
+mod names;
 mod signals;
 pub(crate) mod syntax;
 
 pub use expression::{Expression, What};
-pub use fault::FormulaFault;
 pub(crate) use fault::Mistake;
+pub use fault::{Also, FormulaFault};
 pub use function::Function;
 pub use signals::{NamedSignal, left_hand_side, signals};
 pub use syntax::Operator;

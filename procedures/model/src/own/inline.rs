@@ -25,13 +25,13 @@ pub fn read(kind: Kind, text: &str) -> Result<OwnEffect, FormulaFault> {
     OwnEffect::try_from(definition).map_err(|fault| {
         // The last of equal names is the one too many.
         let parameter = || names.iter().rposition(|n| *n == fault.text).map_or(0, |p| places[p].start);
-        let start = match fault.field.as_str() {
+        let start = match fault.field {
             "formula" => formula_at.start,
             "id" => id_at.start,
             _ => parameter(),
         };
-        let position = fault.position + text[..start].chars().count();
-        FormulaFault { field: "inline".to_owned(), text: text.to_owned(), position, ..fault }
+        let characters = text[..start].chars().count();
+        FormulaFault { field: "inline", ..fault }.within(text, characters)
     })
 }
 

@@ -22,6 +22,8 @@ pub struct OwnEffect {
     formula: Formula,
     parameters: Vec<ParameterInfo>,
     needs: Vec<&'static str>,
+    /// The user's, or one that names the formula.
+    sentence: String,
 }
 
 impl OwnEffect {
@@ -72,7 +74,11 @@ impl OwnEffect {
             .iter()
             .map(|s| format!("{} = {:.4} {}", s.name, view.get(s.signal)[point], s.unit))
             .collect();
-        Err(ModelError::NotFinite { effect: self.id().to_owned(), points: bad_points.max(1), first: values.join(", ") })
+        let first = match values.as_slice() {
+            [] => "for it names no signal and has no finite value".to_owned(),
+            values => format!("first where {}", values.join(", ")),
+        };
+        Err(ModelError::NotFinite { effect: self.id().to_owned(), points: bad_points.max(1), first })
     }
 
     fn shapes(&self, view: &View) -> Vec<Shape<'_>> {
@@ -102,7 +108,7 @@ impl Effect for OwnEffect {
             id: &self.definition.id,
             kind: self.definition.kind,
             title: &self.definition.title,
-            sentence: &self.definition.sentence,
+            sentence: &self.sentence,
             formula: &self.definition.formula,
             source: "written by a user",
             looks: "its formula is zero or not finite on this data",
@@ -143,7 +149,11 @@ impl TryFrom<Definition> for OwnEffect {
         let parameters = definition.parameters.iter().map(OwnParameter::info).collect();
         let optional = |s: &&&crate::formula::NamedSignal| definition.kind.optional_columns().contains(&s.column);
         let needs = formula.signals.iter().filter(optional).map(|s| s.column).collect();
-        Ok(Self { definition, formula, parameters, needs })
+        let sentence = match definition.sentence.trim() {
+            "" => format!("What a user suspects: {}.", definition.formula.trim()),
+            written => written.to_owned(),
+        };
+        Ok(Self { definition, formula, parameters, needs, sentence })
     }
 }
 

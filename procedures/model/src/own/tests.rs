@@ -72,6 +72,28 @@ fn the_caret_stands_below_the_mistake() {
     assert_eq!(fault.marked(), "rub: tau = a * velocty; a\n               ^^^^^^^");
 }
 
+#[test]
+fn all_unknown_names_are_told_at_once() {
+    let text = "rub: tau = a * tanh(µ / w1) * w2 * w1 * thanh(load); a";
+    let fault = OwnEffect::inline(Kind::Friction, text).unwrap_err();
+    let marked = "                    ^   ^^    ^^        ^^^^^";
+    assert_eq!(fault.marked(), format!("{text}\n{marked}"));
+    let said = fault.to_string();
+    for words in ["µ is neither", "`µ [Nm] 0..1`, or use a signal", "w1 [Nm] 0..1` (character 25)", "w2 is", "tanh?"]
+    {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert_eq!(said.matches("w1 is neither").count(), 1, "{said}");
+}
+
+#[test]
+fn an_effect_without_a_sentence_says_its_formula() {
+    let says = "What a user suspects: tau = a * tanh(velocity / w0) * abs(load).";
+    assert_eq!(rub().info().sentence, says);
+    let definition = Definition { sentence: "It rubs.".into(), ..rub().definition().clone() };
+    assert_eq!(OwnEffect::try_from(definition).unwrap().info().sentence, "It rubs.");
+}
+
 fn view(velocity: &[f64]) -> View {
     let mut points = Signals::new(velocity.len());
     points.set(Signal::Velocity, velocity.to_vec());
@@ -106,8 +128,11 @@ fn what_is_not_finite_is_told_with_its_point() {
     assert!(effect.check(&view(&[1.0, 2.0])).is_ok());
     let error = effect.check(&view(&[1.0, 0.0, 2.0])).unwrap_err();
     let ModelError::NotFinite { points: 1, first, .. } = &error else { panic!("{error}") };
-    assert_eq!(first, "velocity = 0.0000 rad/s");
+    assert_eq!(first, "first where velocity = 0.0000 rad/s");
     assert!(effect.hidden(&view(&[1.0, 0.0, 2.0])).is_some_and(|why| why.contains("not finite")));
+    let effect = OwnEffect::inline(Kind::Friction, "x: tau = a / 0; a [Nm]").unwrap();
+    let said = effect.check(&view(&[1.0, 2.0])).unwrap_err().to_string();
+    assert!(said.contains("names no signal") && !said.contains("where ;"), "{said}");
 }
 
 #[test]

@@ -11,7 +11,7 @@ mod stiffness;
 mod sweeps;
 
 use crate::effect::Stage;
-use crate::report::Preparation;
+use crate::report::{GivenConstant, Preparation};
 use crate::view::{Signal, View};
 use crate::{ModelError, Options, ResidualKind};
 use filter::LowPass;
@@ -92,6 +92,8 @@ pub struct Prepared {
     pub memory: Option<Problem>,
     /// Factor from the load as the models see it to the column of the run table.
     pub load_scale: f64,
+    /// Facts of the set-up that made signals or the response of the columns.
+    pub constants: Vec<GivenConstant>,
     pub about: Preparation,
 }
 
@@ -171,7 +173,23 @@ fn is_constant(values: &[f64]) -> bool {
     high - low <= 1e-9 * high.abs().max(low.abs())
 }
 
-/// The middle value of the step from sample to sample.
+/// Facts that a run of the kind is read with.
+fn constants(run: &RunTable) -> Vec<GivenConstant> {
+    let meta = run.meta();
+    let count = |name, number: Option<u32>| (name, number.map(f64::from));
+    let read = match run.kind() {
+        Kind::Friction => vec![
+            ("torque_constant_nm_per_a", meta.torque_constant_nm_per_a),
+            ("gear_ratio", Some(meta.gear_ratio.unwrap_or(1.0))),
+        ],
+        Kind::Stiffness => vec![("gear_ratio", meta.gear_ratio)],
+        Kind::Encoder => vec![count("pole_pairs", meta.pole_pairs), count("poles", meta.poles)],
+        Kind::Brake => vec![count("poles", meta.poles)],
+    };
+    let given = |(name, value): (&str, Option<f64>)| Some(GivenConstant { name: name.into(), value: value? });
+    read.into_iter().filter_map(given).collect()
+}
+
 /// Corner of the low-pass filter: what was asked for, or a tenth of the rate.
 fn cutoff_hz(options: &Options, step_s: f64) -> Result<f64, ModelError> {
     let highest_hz = 0.45 / step_s;
@@ -185,6 +203,7 @@ fn cutoff_hz(options: &Options, step_s: f64) -> Result<f64, ModelError> {
     }
 }
 
+/// The middle value of the step from sample to sample.
 fn sample_s(time_s: &[f64]) -> f64 {
     let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
     let middle = steps.len() / 2;

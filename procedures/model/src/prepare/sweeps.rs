@@ -62,6 +62,7 @@ pub fn prepare(
         moving: None,
         memory: None,
         load_scale: 1.0,
+        constants: super::constants(run),
         about,
     })
 }

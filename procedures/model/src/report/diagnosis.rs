@@ -42,6 +42,9 @@ pub struct Diagnosis {
     /// The residual over the two axes where it shows most, where the verdict is `unexplained_structure`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub structure: Option<PairMap>,
+    /// The columns that the summary names as those over which what remains shows most. Empty where none does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shows_over: Vec<String>,
     /// Missing effects, the most important first. Empty unless the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
     pub experiment: Option<Experiment>,
@@ -167,6 +170,9 @@ pub struct Discovery {
     /// The residual over the two axes where it shows most, where the verdict is `unexplained_structure`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub structure: Option<PairMap>,
+    /// The columns that the summary names as those over which what remains shows most. Empty where none does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shows_over: Vec<String>,
     pub experiment: Option<Experiment>,
     /// Effects that this data cannot show.
     #[serde(default)]

@@ -137,6 +137,16 @@ pub struct Scope {
     pub sample_s: f64,
     /// Signals at the points of the fit, by the names that formulas use.
     pub signals: Vec<SignalRange>,
+    /// Facts of the set-up that turned measured columns into what the model sees. Empty in fits of earlier versions.
+    #[serde(default)]
+    pub constants: Vec<GivenConstant>,
+}
+
+/// A fact of the set-up, by its name in the meta file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GivenConstant {
+    pub name: String,
+    pub value: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -156,6 +166,10 @@ pub struct Evaluation {
     /// ‖residual‖ / ‖measured‖.
     pub relative_error: f64,
     pub rows: usize,
-    /// Signals that leave the ranges of the fit, in plain sentences.
+    pub samples: usize,
+    /// Share of the samples that is settled motion, where only that is judged.
+    pub settled_share: Option<f64>,
+    /// What the error does not say by itself, in plain sentences: columns that are missing, facts that differ from those
+    /// of the fit, signals that leave its ranges.
     pub notes: Vec<String>,
 }

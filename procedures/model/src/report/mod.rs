@@ -11,7 +11,8 @@ pub use diagnosis::{
     Diagnosis, Discovery, Experiment, Invisible, NoiseFloor, Region, Silent, Step, Suggestion, Verdict,
 };
 pub use fit::{
-    Evaluation, Fit, Parameter, ParameterState, Preparation, ResidualKind, Scope, SignalRange, Term, TradeOff,
+    Evaluation, Fit, GivenConstant, Parameter, ParameterState, Preparation, ResidualKind, Scope, SignalRange, Term,
+    TradeOff,
 };
 pub use maps::{AxisMap, MapBin, MapCell, PairMap, ResidualMaps};
 pub use residuals::{Axis, ResidualSet};

@@ -5,6 +5,7 @@
 //! damping and inertia by N².
 
 use super::about;
+use super::parts::Parts;
 use crate::ModelError;
 use crate::report::Fit;
 use jointbench_instrument::Kind;
@@ -44,7 +45,9 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
         fit.effects.iter().filter(|id| !held(id)).map(|id| (id.as_str(), reason(id, dialect).to_owned())).collect();
     let attributes: Vec<String> =
         carried.iter().filter_map(|(name, (_, value))| value.map(|v| format!("{name}=\"{v}\""))).collect();
-    let mut words = about(fit, &left_out);
+    let mut parts = Parts::of(fit)?;
+    parts.parts.retain(|part| held(part.effect));
+    let mut words = about(fit, &parts, &left_out);
     words.push(format!("At the link: torque times the gear ratio {gear}, damping and inertia times its square."));
     // Two hyphens end a comment.
     let comment: String = words.iter().map(|w| format!("  {}\n", w.replace("--", "- -"))).collect();

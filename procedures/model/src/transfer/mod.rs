@@ -13,8 +13,11 @@ pub use file::ModelFile;
 pub use predict::{Moments, predict};
 
 use crate::ModelError;
-use crate::report::Fit;
+use crate::formula::signals;
+use crate::report::{Fit, SignalRange};
+use crate::view::Signal;
 use jointbench_instrument::Kind;
+use parts::Parts;
 
 /// What a fit can be written as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,14 +89,19 @@ fn predicted(fit: &Fit) -> String {
     format!("{what} [{}]", fit.unit)
 }
 
-/// What everyone should know who meets the export without its run, a line each.
-fn about(fit: &Fit, left_out: &[(&str, String)]) -> Vec<String> {
+/// What everyone should know who meets the export without its run, a line each. Ranges are those of the signals that
+/// what was carried over depends on.
+fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)]) -> Vec<String> {
     let mut lines = vec![
         format!("jointbench {}: {} model, {}", env!("CARGO_PKG_VERSION"), fit.kind, predicted(fit)),
         format!("Effects: {}", fit.effects.join(", ")),
         format!("Error: {:.4e} {} rms on data that took no part in the fit", fit.validation_rms, fit.unit),
     ];
-    for signal in fit.scope.iter().flat_map(|s| &s.signals).filter(|s| s.name != "direction") {
+    let is_input = |range: &&SignalRange| {
+        let signal = signals(fit.kind).iter().find(|s| s.name == range.name);
+        signal.is_some_and(|s| s.signal != Signal::Direction && parts.uses(s.signal))
+    };
+    for signal in fit.scope.iter().flat_map(|s| &s.signals).filter(is_input) {
         lines.push(format!("Fitted where {} is {:.4} to {:.4} {}", signal.name, signal.min, signal.max, signal.unit));
     }
     lines.extend(left_out.iter().map(|(effect, why)| format!("NOT CARRIED OVER: {effect} ({why})")));

@@ -49,7 +49,7 @@ pub fn table(fit: &Fit) -> Result<String, ModelError> {
     let values = predict(&still, &moments, scope.sample_s)?;
 
     let mut text = String::new();
-    about(fit, &parts.left_out).iter().for_each(|words| {
+    about(fit, &parts, &parts.left_out).iter().for_each(|words| {
         let _ = writeln!(text, "# {words}");
     });
     let resting = signals(fit.kind).iter().filter(|s| parts.uses(s.signal) && !axes.iter().any(|(a, _)| a == s));

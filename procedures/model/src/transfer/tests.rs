@@ -1,7 +1,6 @@
 use super::*;
-use crate::formula::signals;
-use crate::report::{Preparation, ResidualKind, Scope, SignalRange, Term};
-use crate::view::{Signal, Signals, View};
+use crate::report::{Preparation, ResidualKind, Scope, Term};
+use crate::view::{Signals, View};
 use crate::{OwnEffect, effects};
 use jointbench_instrument::Motion;
 use std::process::Command;
@@ -99,6 +98,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             motion: Motion::Rotary,
             load_scale: 50.0,
             sample_s: STEP_S,
+            constants: Vec::new(),
             signals: moments(kind)
                 .into_iter()
                 .map(|(name, values)| SignalRange {
@@ -210,6 +210,21 @@ fn little_is_left_out_and_that_is_named() {
     assert_eq!(left_out(Kind::Encoder), ["startup_offset"]);
     assert_eq!(left_out(Kind::Stiffness), ["torsional_hysteresis"]);
     assert_eq!(left_out(Kind::Brake), ["temperature_dependence", "velocity_dependence"]);
+}
+
+#[test]
+fn only_ranges_of_inputs_are_told() {
+    let mut fit = fit_of_all(Kind::Friction, 0, Vec::new());
+    fit.effects.retain(|e| ["inertia", "coulomb", "viscous"].contains(&e.as_str()));
+    fit.terms.retain(|t| fit.effects.contains(&t.effect));
+    let told = |format| -> Vec<String> {
+        let text = export(&fit, format).unwrap();
+        let ranges = text.split("Fitted where ").skip(1);
+        ranges.filter_map(|rest| rest.split(' ').next().map(str::to_owned)).collect()
+    };
+    assert_eq!(told(Format::C), ["velocity", "acceleration"]);
+    assert_eq!(told(Format::Mujoco), ["velocity", "acceleration"]);
+    assert_eq!(told(Format::Urdf), ["velocity"], "URDF has no armature");
 }
 
 #[test]

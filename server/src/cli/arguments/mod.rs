@@ -234,8 +234,8 @@ pub struct Autopilot {
 /// A measured run, or several of one joint, and how to read and prepare it.
 #[derive(Debug, Args)]
 pub struct Measured {
-    /// Run table: .csv, .csv.gz, .parquet or .arrow; further runs of the same kind and joint are looked at together
-    /// with the first, in the order in which they were made
+    /// Run table: .csv, .csv.gz, .parquet or .arrow, or the folder of a run.csv; further runs of the same kind and
+    /// joint are looked at together with the first, in the order in which they were made
     #[arg(required = true, value_name = "RUN")]
     pub files: Vec<PathBuf>,
     /// Facts about the set-up, for all files [default: RUN.meta.json or meta.json beside each file, or what is embedded]

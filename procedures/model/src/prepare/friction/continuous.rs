@@ -102,6 +102,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         motion: run.meta().motion,
         baseline: run.meta().baseline.clone(),
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
+        constants: super::super::constants(run),
         main,
         moving: None,
         memory: None,

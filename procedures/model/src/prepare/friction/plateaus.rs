@@ -119,6 +119,7 @@ pub fn prepare(
         motion: run.meta().motion,
         baseline: run.meta().baseline.clone(),
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
+        constants: super::super::constants(run),
         main,
         moving,
         memory,

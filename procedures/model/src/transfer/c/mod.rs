@@ -23,7 +23,7 @@ pub fn header(fit: &Fit) -> Result<String, ModelError> {
         let _ = writeln!(text, "{words}");
     };
     line("/*");
-    super::about(fit, &parts.left_out).iter().for_each(|words| line(&format!(" * {}", suffix::ascii(words))));
+    super::about(fit, &parts, &parts.left_out).iter().for_each(|words| line(&format!(" * {}", suffix::ascii(words))));
     line(" * SI units; the unit is the suffix of a name. C99; link with -lm.");
     line(" */");
     line(&format!("#ifndef {guard}\n#define {guard}\n\n#include <math.h>\n"));

@@ -1,0 +1,41 @@
+//! Files that commands read and write.
+
+use super::exit::{Done, Exit};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// How the table of a run is called in a folder of its own.
+const TABLES: [&str; 4] = ["run.csv", "run.csv.gz", "run.parquet", "run.arrow"];
+
+/// The table of a run: what was named, or the one in the folder that was named.
+pub fn table(named: &Path) -> Result<PathBuf, Exit> {
+    if !named.is_dir() {
+        return Ok(named.to_owned());
+    }
+    let there = TABLES.map(|name| named.join(name)).into_iter().filter(|path| path.is_file());
+    match there.collect::<Vec<_>>().as_slice() {
+        [table] => Ok(table.clone()),
+        [] => Err(Exit::bad_input(format!(
+            "{} is a folder without {}: name the file of the run",
+            named.display(),
+            TABLES.join(", ")
+        ))),
+        [first, second, ..] => Err(Exit::bad_input(format!(
+            "{} and {} are both there: name the one that is meant",
+            first.display(),
+            second.display()
+        ))),
+    }
+}
+
+pub fn write(path: &Path, bytes: &[u8]) -> Done {
+    if path.is_dir() {
+        let folder = path.display();
+        return Err(Exit::bad_input(format!("{folder} is a folder: name the file in it that is to be written")));
+    }
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+        let (path, folder) = (path.display(), folder.display());
+        return Err(Exit::bad_input(format!("{path} cannot be written: there is no folder {folder}")));
+    }
+    fs::write(path, bytes).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))
+}

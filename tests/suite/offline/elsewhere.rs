@@ -1,0 +1,99 @@
+//! A kept model on other runs, and the files that are named for it: what is not as it was is said.
+
+use super::own::{done, run_in, write_run};
+use crate::program::{stderr, stdout};
+use std::path::Path;
+
+const MODEL: &str = "load_transmission,coulomb,viscous";
+
+fn fitted(folder: &Path) {
+    write_run(folder);
+    done(folder, &["fit", "run.csv", "--model", MODEL, "--out", "model.json"]);
+}
+
+fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
+    let output = run_in(folder, arguments);
+    let said = stderr(&output);
+    assert!(matches!(output.status.code(), Some(2 | 3)), "{arguments:?}: {said}");
+    assert!(!said.contains("os error"), "{said}");
+    words.iter().for_each(|words| assert!(said.contains(words), "{words}: {said}"));
+}
+
+#[test]
+fn what_another_run_lacks_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    fitted(folder);
+    let told = done(folder, &["model", "evaluate", "model.json", "run.csv"]);
+    assert!(told.starts_with("on run.csv: error ") && !told.contains("note"), "{told}");
+    assert!(told.contains("means of settled motion, which is 80 %") && told.contains("(7200 samples)"), "{told}");
+
+    // The fifth column is the link's torque.
+    let table = std::fs::read_to_string(folder.join("run.csv")).expect("a table");
+    let without = |line: &str| {
+        let fields = line.split(',').enumerate().filter(|(i, _)| *i != 4).map(|(_, field)| field);
+        fields.collect::<Vec<&str>>().join(",")
+    };
+    std::fs::create_dir(folder.join("bare")).expect("a folder");
+    let bare: Vec<String> = table.lines().map(without).collect();
+    std::fs::write(folder.join("bare/run.csv"), bare.join("\n")).expect("a table");
+    let meta = std::fs::read_to_string(folder.join("meta.json")).expect("facts");
+    std::fs::write(folder.join("bare/meta.json"), meta.replace("50", "100")).expect("facts");
+    let told = done(folder, &["model", "evaluate", "model.json", "bare"]);
+    assert!(told.contains("load_transmission is left out, for the run has no column link_torque_nm"), "{told}");
+    assert!(told.contains("gear_ratio is 100 in the facts of this run and 50 in those of the fitted one"), "{told}");
+
+    done(folder, &["fit", "bare", "--model", MODEL, "--out", "bare.json"]);
+    let told = done(folder, &["model", "evaluate", "bare.json", "run.csv"]);
+    assert!(told.contains("load_transmission counts here, but the run that was fitted had no column"), "{told}");
+    done(folder, &["fit", "run.csv", "--model", "coulomb,load_linear", "--out", "loaded.json"]);
+    refused(folder, &["model", "evaluate", "loaded.json", "bare"], &["bare: effect load_linear", "link_torque_nm"]);
+}
+
+#[test]
+fn a_file_that_will_not_do_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    fitted(folder);
+    done(folder, &["model", "export", "model.json", "--format", "c", "-o", "joint.h"]);
+    let header = std::fs::read_to_string(folder.join("joint.h")).expect("a header");
+    assert!(!header.contains("acceleration") && header.contains("Fitted where velocity is -64"), "{header}");
+    refused(folder, &["model", "evaluate", "joint.h", "run.csv"], &["joint.h", "only JSON is", "--format json"]);
+    refused(folder, &["model", "export", "model.json", "--format", "c", "-o", "."], &[". is a folder: name the file"]);
+    refused(folder, &["fit", "run.csv", "--out", "."], &[". is a folder: name the file"]);
+    refused(folder, &["fit", "run.csv", "--out", "no/model.json"], &["no/model.json", "there is no folder no"]);
+
+    std::fs::create_dir(folder.join("short")).expect("a folder");
+    refused(folder, &["fit", "short"], &["short is a folder without run.csv"]);
+    let table = std::fs::read_to_string(folder.join("run.csv")).expect("a table");
+    let few: Vec<&str> = table.lines().take(9).collect();
+    std::fs::write(folder.join("short/run.csv"), few.join("\n")).expect("a table");
+    std::fs::copy(folder.join("meta.json"), folder.join("short/meta.json")).expect("facts");
+    refused(folder, &["diagnose", "short"], &["short: too few samples: 8 usable samples"]);
+    refused(folder, &["fit", "short", "short/run.csv"], &["named twice"]);
+}
+
+#[test]
+fn advice_names_the_axes_of_the_summary() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_run(folder.path());
+    // A bump over a stretch of the angle is no effect of the library.
+    let table = std::fs::read_to_string(folder.path().join("run.csv")).expect("a table");
+    let bumped = table.lines().enumerate().map(|(i, line)| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if i > 0 {
+            let velocity: f64 = fields[2].parse().expect("a velocity");
+            let current: f64 = fields[3].parse().expect("a current");
+            fields[3] = format!("{}", current + 0.2 * f64::from(u8::from((9.0..40.0).contains(&velocity.abs()))));
+        }
+        fields.join(",")
+    });
+    let bumped: Vec<String> = bumped.collect();
+    std::fs::write(folder.path().join("run.csv"), bumped.join("\n")).expect("a table");
+    let told = stdout(&run_in(folder.path(), &["discover", "run.csv", "--max-effects", "0"]));
+    let shown = told.split("it shows most over ").nth(1).and_then(|rest| rest.split(", a function").next());
+    let shown = shown.unwrap_or_else(|| panic!("structure: {told}"));
+    assert!(told.contains(&format!("as a formula of {shown} with --own")), "{told}");
+    let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv"]));
+    assert!(told.contains("is missing") && !told.contains("as a formula of"), "{told}");
+}
