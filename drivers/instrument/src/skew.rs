@@ -14,9 +14,15 @@ pub struct Skew {
     pub uncertainty_s: f64,
 }
 
-/// The columns that have a skew, and the one that tells it.
-const SKEWED: [&str; 2] = ["link_torque_nm", "brake_torque_nm"];
+/// When the torque was felt, against the rows.
 pub const TORQUE_SKEW: &str = "torque_skew_s";
+/// When the brake's current was measured, against the rows: a supply is read more seldom than the joint, and its reading held.
+pub const BRAKE_SKEW: &str = "brake_current_skew_s";
+/// Moments are kept in whole microseconds: such as differ by less are one.
+const HELD_S: f64 = 3e-6;
+/// What tells a skew, and the columns that have it.
+const SKEWED: [(&str, &[&str]); 2] =
+    [(TORQUE_SKEW, &["link_torque_nm", "brake_torque_nm"]), (BRAKE_SKEW, &["brake_current_a"])];
 
 /// The value at each moment of the grid, on the straight line between the readings around it. `None` where there is no reading
 /// on one side: none is invented.
@@ -41,12 +47,13 @@ fn on_grid(at_s: &[f64], values: &[f64], grid_s: &[f64]) -> Vec<Option<f64>> {
 /// Moves every column with a skew to the moments of its rows; the skew is 0 then. Within a segment only: between two of them
 /// time was not kept. Where there is no reading on one side a value stays as it was felt.
 pub(crate) fn align(trace: Trace) -> Trace {
-    let Some(skew_s) = trace.column(TORQUE_SKEW).filter(|skew| skew.iter().any(|s| *s != 0.0)) else { return trace };
+    SKEWED.into_iter().fold(trace, |trace, (skew, columns)| align_by(trace, skew, columns))
+}
+
+fn align_by(trace: Trace, skew: &str, skewed: &[&str]) -> Trace {
+    let Some(skew_s) = trace.column(skew).filter(|skew| skew.iter().any(|s| *s != 0.0)) else { return trace };
     let time_s = trace.column("time_s").unwrap_or_default();
     let felt_s: Vec<f64> = time_s.iter().zip(skew_s).map(|(at_s, skew_s)| at_s + skew_s).collect();
-    if felt_s.windows(2).any(|pair| pair[1] <= pair[0]) {
-        return trace;
-    }
     let ends: Vec<usize> = match trace.column("segment") {
         Some(segment) => (1..=time_s.len()).filter(|at| segment.get(*at) != Some(&segment[at - 1])).collect(),
         None => vec![time_s.len()],
@@ -56,21 +63,25 @@ pub(crate) fn align(trace: Trace) -> Trace {
         let mut out = Vec::with_capacity(column.len());
         for end in &ends {
             let rows = start..*end;
-            let grid = on_grid(&felt_s[rows.clone()], &column[rows.clone()], &time_s[rows.clone()]);
+            // A reading that is held stands in several rows; it counts at its own moment, once.
+            let fresh: Vec<usize> =
+                rows.clone().filter(|i| *i == start || felt_s[*i] > felt_s[i - 1] + HELD_S).collect();
+            let of = |values: &[f64]| -> Vec<f64> { fresh.iter().map(|i| values[*i]).collect() };
+            let grid = on_grid(&of(&felt_s), &of(column), &time_s[rows.clone()]);
             out.extend(grid.into_iter().zip(&column[rows]).map(|(value, felt)| value.unwrap_or(*felt)));
             start = *end;
         }
         out
     };
     let columns = trace.channels().iter().zip(trace.columns()).map(|(channel, column)| match channel.name.as_str() {
-        TORQUE_SKEW => vec![0.0; column.len()],
-        name if SKEWED.contains(&name) => moved(column),
+        name if name == skew => vec![0.0; column.len()],
+        name if skewed.contains(&name) => moved(column),
         _ => column.clone(),
     });
     let columns = columns.collect();
     // A value between two counts is no count any more.
     let channels = trace.channels().iter().map(|channel| match channel.name.as_str() {
-        name if SKEWED.contains(&name) => Channel::new(name),
+        name if skewed.contains(&name) => Channel::new(name),
         _ => channel.clone(),
     });
     Trace::from_columns(channels.collect(), columns)
@@ -108,5 +119,22 @@ mod tests {
         }
         assert_eq!(aligned.column("motor_current_a"), trace.column("motor_current_a"));
         assert_eq!(align(aligned.clone()), aligned, "once is enough");
+    }
+
+    #[test]
+    fn a_reading_that_is_held_counts_at_its_own_moment() {
+        // A current that rises by 1 A/s, read in every fifth row and a little before it.
+        let channels = ["time_s", "brake_current_a", "brake_current_skew_s", "segment"].map(Channel::new);
+        let mut trace = Trace::new(channels.into());
+        for i in 0..23 {
+            let (at_s, read_s) = (f64::from(i) * 0.02, f64::from(i / 5 * 5) * 0.02 - 1e-3);
+            trace.push_row(&[at_s, read_s, read_s - at_s, 0.0]);
+        }
+        let aligned = align(trace.clone());
+        let (current_a, time_s) = (aligned.column("brake_current_a").unwrap(), trace.column("time_s").unwrap());
+        for i in 0..20 {
+            assert!((current_a[i] - time_s[i]).abs() < 1e-9, "row {i}: {}", current_a[i]);
+        }
+        assert!((current_a[22] - 0.399).abs() < 1e-9, "nothing is invented behind the last: {}", current_a[22]);
     }
 }

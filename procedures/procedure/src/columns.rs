@@ -4,7 +4,7 @@ use crate::encoder_columns::{self, Encoders};
 use crate::plan::Plan;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{DriveHealth, JointReading, Pose};
-use jointbench_instrument::skew::TORQUE_SKEW;
+use jointbench_instrument::skew::{BRAKE_SKEW, TORQUE_SKEW};
 use jointbench_instrument::{Bench, Channel, Kind, Trace};
 
 /// Time is kept in whole microseconds: finer than any serial instrument can tell, and exact to store.
@@ -14,6 +14,15 @@ pub(crate) const VELOCITY_STEP_RAD_S: f64 = 1e-4;
 
 /// The torque as the sensor's other range tells it.
 pub(crate) const OTHER_RANGE: &str = "other_range_torque_nm";
+
+/// The brake's current in one tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BrakeMoment {
+    pub measured_a: f64,
+    /// By how much later than the joint it was measured: earlier, where it is held.
+    pub skew_s: f64,
+    pub commanded_a: f64,
+}
 
 /// What one tick knows, measured and commanded. Slow quantities hold their last reading.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +35,7 @@ pub(crate) struct Moment {
     /// By how much later than the joint it was felt.
     pub torque_skew_s: f64,
     pub temperature_c: Option<f64>,
-    /// Measured, and commanded.
-    pub brake_a: Option<(f64, f64)>,
+    pub brake: Option<BrakeMoment>,
     pub velocity_setpoint_rad_s: f64,
     /// In a run of encoders.
     pub encoders: Option<Encoders>,
@@ -49,8 +57,9 @@ pub(crate) struct Moment {
 /// A run that checks the torque sensor has other_range_torque_nm behind torque_skew_s: the same torque in its other range.
 ///
 /// A run of a brake names what it feels after the brake: brake_torque_nm is the sensor's reading against the commanded
-/// way (positive while the brake brakes), position_rad and velocity_rad_s are those of its shaft, the link's, and
-/// brake_current_command_a stands in for the torque that nobody has asked for.
+/// way (positive while the brake brakes), position_rad and velocity_rad_s are those of its shaft, the link's,
+/// brake_current_skew_s tells when its current was measured, and brake_current_command_a stands in for the torque that
+/// nobody has asked for.
 #[derive(Debug, Clone)]
 pub(crate) struct Columns {
     channels: Vec<Channel>,
@@ -108,6 +117,9 @@ impl Columns {
         if let Some(source) = &bench.brake {
             let step_a = source.resolution().map(|step| step.0);
             channels.push(channel("brake_current_a", step_a));
+            if is_brake {
+                channels.push(channel(BRAKE_SKEW, Some(TIME_STEP_S)));
+            }
             let name = if is_brake { "brake_current_command_a" } else { "brake_torque_command_nm" };
             channels.push(channel(name, step_a.map(|step| step * brake_nm_per_a)));
         }
@@ -162,8 +174,10 @@ impl Columns {
         }
         row.extend(moment.temperature_c);
         row.extend(felt_c.iter().skip(self.standing_in));
-        if let Some((measured_a, commanded_a)) = moment.brake_a {
-            row.extend([measured_a, commanded_a * self.brake_nm_per_a]);
+        if let Some(brake) = moment.brake {
+            row.push(brake.measured_a);
+            row.extend(self.braked_way.map(|_| to_time_step(brake.skew_s)));
+            row.push(brake.commanded_a * self.brake_nm_per_a);
         }
         row.push(moment.velocity_setpoint_rad_s);
         row.extend(self.commands_current.then_some(moment.motor_current_setpoint_a));

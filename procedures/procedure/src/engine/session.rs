@@ -77,14 +77,22 @@ pub(super) enum Asked {
     Current { a: f64 },
 }
 
+/// The brake's current, and the moment at which it was measured.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FeltCurrent {
+    pub a: f64,
+    pub at_s: f64,
+}
+
 /// Readings that are taken seldom and held.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Held {
     pub temperature_c: Option<f64>,
-    pub brake_a: Option<f64>,
+    pub brake: Option<FeltCurrent>,
     pub next_s: f64,
-    /// Readings in a row that found the supply unable to hold the commanded current.
-    pub unregulated: u32,
+    pub brake_next_s: f64,
+    /// Since when every reading found the supply unable to hold the commanded current.
+    pub unregulated_since_s: Option<f64>,
 }
 
 /// The control period.

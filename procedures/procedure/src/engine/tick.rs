@@ -2,13 +2,14 @@
 
 use super::arm::link_position_rad;
 use super::ending::Ending;
-use super::session::{Asked, Session, Wish, reported};
+use super::session::{Asked, FeltCurrent, Session, Wish, reported};
 use super::skew::{self, Skews};
-use crate::columns::{Moment, VELOCITY_STEP_RAD_S, to_time_step};
+use crate::columns::{BrakeMoment, Moment, VELOCITY_STEP_RAD_S, to_time_step};
 use crate::event::{Control, EventKind};
 use crate::guard::Sample;
 use crate::state::{RunState, Transition};
 use jointbench_instrument::FaultKind;
+use jointbench_instrument::clock::between;
 use jointbench_instrument::roles::Regulation;
 use jointbench_instrument::units::{Amperes, RadPerSec};
 use std::sync::mpsc::TryRecvError;
@@ -17,11 +18,15 @@ use std::sync::mpsc::TryRecvError;
 const BRAKE_EVERY_S: f64 = 0.1;
 /// Temperature and supply are read this often and held in between.
 const SLOW_EVERY_S: f64 = 0.5;
+/// A supply is good for 10 to 20 readings a second (scpi-current-source, timing): so often while its current changes.
+const CHANGING_EVERY_S: f64 = 0.1;
+/// A new current has come to rest this long after its command: supply and coil.
+const CHANGES_FOR_S: f64 = 1.0;
 /// A resistance thermometer in a housing takes 10 to 30 s to follow, and its reply several ticks.
 const WARMTH_EVERY_S: f64 = 2.0;
-/// Readings in a row that find the supply out of regulation before it counts: CV for more than 0.5 s at a commanded
-/// CC (bench-physics, section 5); a rising current needs the full voltage for a moment.
-const UNREGULATED_READINGS: u32 = 3;
+/// The supply may be out of regulation for so long: CV for more than 0.5 s at a commanded CC is a fault (bench-physics,
+/// section 5), and a rising current needs the full voltage for a moment.
+const UNREGULATED_S: f64 = 1.0;
 /// A link that has to be recovered more often than this in one step is not worth trusting.
 const RECOVERIES_PER_STEP: u32 = 3;
 
@@ -156,9 +161,11 @@ impl Session<'_> {
         if now_s >= self.held.next_s {
             self.held.next_s = now_s + SLOW_EVERY_S;
             self.check_drive()?;
-            if !self.lost.brake {
-                self.feel_brake()?;
-            }
+        }
+        if now_s >= self.held.brake_next_s && !self.lost.brake {
+            let changes = now_s < self.commanded.brake_at_s + CHANGES_FOR_S;
+            self.held.brake_next_s = now_s + if changes { CHANGING_EVERY_S } else { SLOW_EVERY_S };
+            self.feel_brake()?;
         }
         if now_s >= self.felt_next_s {
             self.feel_warmth()?;
@@ -170,7 +177,11 @@ impl Session<'_> {
             other_torque_nm,
             torque_skew_s: torque_skew.s,
             temperature_c: self.held.temperature_c,
-            brake_a: self.held.brake_a.map(|measured_a| (measured_a, self.commanded.brake_a)),
+            brake: self.held.brake.map(|felt| BrakeMoment {
+                measured_a: felt.a,
+                skew_s: felt.at_s - joint.at_s,
+                commanded_a: self.commanded.brake_a,
+            }),
             velocity_setpoint_rad_s: self.commanded.velocity_rad_s,
             encoders,
             pose: self.pose,
@@ -191,13 +202,16 @@ impl Session<'_> {
     }
 
     fn feel_brake(&mut self) -> Result<(), Ending> {
+        let asked_s = self.bench.clock.now_s();
         if let Some(reading) = self.ask_brake(|brake| brake.read())? {
-            self.held.brake_a = Some(reading.current.0);
+            let (at_s, _) = between(asked_s, self.bench.clock.now_s());
+            self.held.brake = Some(FeltCurrent { a: reading.current.0, at_s });
             let loaded = self.commanded.brake_a > 0.02 * self.bench.constants.brake_rated_current_a;
             let holds = !loaded || reading.regulation == Regulation::ConstantCurrent;
-            self.held.unregulated = if holds { 0 } else { self.held.unregulated + 1 };
+            let since_s = (!holds).then(|| self.held.unregulated_since_s.unwrap_or(at_s));
+            self.held.unregulated_since_s = since_s;
             if let Some(brake) = &self.bench.brake
-                && self.held.unregulated >= UNREGULATED_READINGS
+                && since_s.is_some_and(|since_s| at_s >= since_s + UNREGULATED_S)
             {
                 let what = format!(
                     "the supply does not hold {:.3} A ({:?} at {:.1} V): is the coil too hot or disconnected?",
@@ -246,7 +260,7 @@ impl Session<'_> {
             link_position_rad: link_position_rad(joint, self.bench.constants.gear_ratio),
             link_torque_nm: moment.link_torque_nm,
             temperature_c: moment.temperature_c,
-            brake_current_a: moment.brake_a.map(|(measured_a, _)| measured_a),
+            brake_current_a: moment.brake.map(|brake| brake.measured_a),
         };
         self.guard.check_sample(&sample).map_err(Ending::SampleRefused)
     }

@@ -1,5 +1,6 @@
 //! What procedures identify: from tables that are written down here, and on the mock bench.
 
+mod diagnosed;
 mod mock;
 mod pauses;
 mod tables;

@@ -1,0 +1,32 @@
+//! What the diagnosis says of runs that procedures make on the mock bench, whose parts are those of the documents.
+
+use jointbench_devices::{Joint, MockBench, MockSettings};
+use jointbench_model::{ModelSpec, Options, discover};
+use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::procedure;
+use serde_json::{Value, json};
+
+/// The effects that a run is found to show beside its baseline.
+fn found(joint: Joint, id: &str, parameters: Value) -> Vec<String> {
+    let mock = MockBench::start(MockSettings::new(joint, 3)).unwrap();
+    let mut bench = mock.open_bench("mock").unwrap();
+    let run = conduct(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap().table;
+    let baseline = ModelSpec::baseline(&run).unwrap();
+    let mut added = discover(&run, &baseline, &Options::default(), 6, |_| {}).unwrap().model;
+    added.retain(|effect| !baseline.contains(effect));
+    added.sort();
+    added
+}
+
+#[test]
+fn a_brake_saturates_and_remembers() {
+    // The supply tells the current ten times a second at best: held readings would hide both.
+    let given = json!({"levels": 6, "loops": 1, "random_turns": 6, "speed_rad_s": 3.0});
+    assert_eq!(found(Joint::JointA, "brake_hysteresis", given), ["hysteresis", "saturation"]);
+}
+
+#[test]
+fn an_encoder_has_waves_over_the_turn_and_over_the_pole_pair_and_a_play() {
+    let expected = ["direction_hysteresis", "harmonic_1", "harmonic_2", "pole_period"];
+    assert_eq!(found(Joint::EncoderShaft, "encoder_linearity", json!({})), expected);
+}
