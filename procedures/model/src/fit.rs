@@ -86,6 +86,9 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
     })
 }
 
+/// The square of more is no number any more.
+const LARGEST: f64 = 1e150;
+
 /// Condition of the scaled columns by QR; refuses columns that depend on each other.
 fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
     let columns = terms.columns();
@@ -96,7 +99,10 @@ fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
     };
     match found.dependent {
         Some((a, b)) if a == b => {
-            Err(ModelError::NotVisible { effect: owner(a), why: "its signal never changes".into() })
+            let is_finite = columns[a].iter().all(|v| v.abs() < LARGEST);
+            let why =
+                if is_finite { "its signal never changes" } else { "its formula gives more than numbers can hold" };
+            Err(ModelError::NotVisible { effect: owner(a), why: why.into() })
         }
         Some((a, b)) => Err(ModelError::Collinear { first: owner(a), second: owner(b) }),
         None => Ok(found.number),

@@ -23,9 +23,10 @@ pub fn condition(columns: &[&[f64]]) -> Condition {
         return Condition { number: 1.0, dependent: None };
     }
     let norm: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt()).collect();
+    // A column beyond the range of numbers is none; the decomposition would never end on it.
+    let counts: Vec<bool> = norm.iter().map(|norm| *norm > 0.0 && norm.is_finite()).collect();
     // Rows of zeros change no singular value, and there are never fewer rows than columns.
-    let scaled =
-        DMatrix::from_fn(n.max(p), p, |i, j| if i < n && norm[j] > 0.0 { columns[j][i] / norm[j] } else { 0.0 });
+    let scaled = DMatrix::from_fn(n.max(p), p, |i, j| if i < n && counts[j] { columns[j][i] / norm[j] } else { 0.0 });
     let svd = scaled.qr().unpack_r().svd(false, true);
     let (largest, smallest) = (svd.singular_values[0], svd.singular_values[p - 1]);
     let number = if smallest > 0.0 { largest / smallest } else { f64::INFINITY };
@@ -34,7 +35,9 @@ pub fn condition(columns: &[&[f64]]) -> Condition {
         // The combination that vanishes: its two largest entries are the culprits.
         let mut order: Vec<usize> = (0..p).collect();
         order.sort_by(|a, b| weights[*b].abs().total_cmp(&weights[*a].abs()));
-        let (a, b) = (order[0], *order.get(1).unwrap_or(&order[0]));
+        let a = order[0];
+        // A column of zeros vanishes by itself.
+        let b = order.get(1).copied().filter(|b| weights[*b].abs() > 1e-9).unwrap_or(a);
         (a.min(b), a.max(b))
     });
     Condition { number, dependent }
@@ -66,5 +69,13 @@ mod tests {
         let one = vec![1.0; 50];
         assert_eq!(condition(&[&one, &x, &z]).dependent, Some((1, 2)));
         assert_eq!(condition(&[&[0.0; 4]]).dependent, Some((0, 0)));
+    }
+
+    #[test]
+    fn a_column_beyond_the_range_of_numbers_is_refused() {
+        for beyond in [f64::INFINITY, 1e200, f64::NAN] {
+            let found = condition(&[&[1.0, 1.0, 1.0], &[1.0, 2.0, 3.0], &[beyond, 1.0, 0.0]]);
+            assert_eq!(found.dependent, Some((2, 2)), "{beyond}");
+        }
     }
 }
