@@ -49,6 +49,25 @@ impl Source {
         legs.into_iter().flat_map(|leg| self.within_runs(leg)).collect()
     }
 
+    /// A leg at one speed without the ramps at its ends, and after the first as long again, in which its motion dies down:
+    /// the flanks are still being changed there, whatever the sign of the motion says. A leg that never keeps a speed
+    /// stays whole.
+    pub fn even_part(&self, leg: &Range<usize>, chunk: usize) -> Range<usize> {
+        const EVEN: f64 = 0.05;
+        let Some(velocity) = self.signals.find(Signal::Velocity) else { return leg.clone() };
+        let means: Vec<f64> =
+            velocity[leg.clone()].chunks(chunk).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
+        let kept = super::median(means.iter().copied());
+        let is_even = |mean: &f64| (mean - kept).abs() <= EVEN * kept.abs();
+        let (first, last) = (means.iter().position(is_even), means.iter().rposition(is_even));
+        match (first, last) {
+            (Some(first), Some(last)) if 2 * means.iter().filter(|m| is_even(m)).count() >= means.len() => {
+                leg.start + (2 * first).min(last) * chunk..(leg.start + (last + 1) * chunk).min(leg.end)
+            }
+            _ => leg.clone(),
+        }
+    }
+
     /// The samples of some chunks, with all turning points in between: a way between two of these is one straight step to
     /// every memory that does not ask how long it took.
     pub fn around(&self, chunks: Vec<Range<usize>>) -> (Source, Vec<Range<usize>>) {

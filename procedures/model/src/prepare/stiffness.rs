@@ -56,7 +56,12 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         time_s,
         constants: Constants::default(),
     };
-    let smooth: Vec<f64> = source.legs().into_iter().flat_map(|leg| smooth_leg(&torque[leg])).collect();
+    let mut smooth = torque.to_vec();
+    let chunk = source.chunk(CHUNK_S);
+    for leg in source.legs() {
+        let even = source.even_part(&leg, chunk);
+        smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
+    }
     source.signals.set(Signal::Load, smooth);
     sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Load], options)
 }

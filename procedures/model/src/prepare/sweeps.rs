@@ -25,6 +25,10 @@ pub fn prepare(
     let thin = if raw { 1 } else { (run.len() / n).div_ceil(MOST_ROWS).max(1) };
     let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (number, leg) in legs.iter().enumerate() {
+        let leg = match run.kind() {
+            Kind::Stiffness => samples.even_part(leg, n),
+            _ => leg.clone(),
+        };
         // One of several and not their mean, which would blur a short wave.
         for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
             chunks.push(start..start + n);
