@@ -30,3 +30,10 @@ fn an_encoder_has_waves_over_the_turn_and_over_the_pole_pair_and_a_play() {
     let expected = ["direction_hysteresis", "harmonic_1", "harmonic_2", "pole_period"];
     assert_eq!(found(Joint::EncoderShaft, "encoder_linearity", json!({})), expected);
 }
+
+#[test]
+fn a_stiff_joint_lacks_nothing_and_a_soft_one_hardens() {
+    let given = json!({"load_levels": 4});
+    assert_eq!(found(Joint::JointA, "stiffness", given.clone()), Vec::<String>::new());
+    assert_eq!(found(Joint::JointB, "stiffness", given), ["hardening"]);
+}
