@@ -87,7 +87,9 @@ export async function readResult(page) {
 export async function readVersion(page) {
 	await page.locator('section[data-verdict]').waitFor({ timeout: FIT_MS });
 	await page.locator('rect.held.here').waitFor({ timeout: FIT_MS });
-	await page.waitForFunction(() => !document.querySelector('main .old'), null, { timeout: FIT_MS });
+	// A version that was made elsewhere is in the address before the page has heard of it.
+	const isThere = () => document.querySelector(`a[href$="model=${new URL(location.href).searchParams.get('model')}"] rect.held.here`) && !document.querySelector('main .old');
+	await page.waitForFunction(isThere, null, { timeout: FIT_MS });
 	return {
 		model: new URL(page.url()).searchParams.get('model'),
 		verdict: await page.locator('section[data-verdict]').getAttribute('data-verdict'),

@@ -43,7 +43,7 @@ fn text_is_refused_where_it_is_wrong() {
     );
     check_refused(
         b"time_s,motor_position_rad\n0,1\n",
-        "run.csv, line 1: column motor_current_a is missing: a friction table needs time_s, motor_position_rad, motor_current_a, \
+        "run.csv, line 1: column motor_current_a is missing: a table of kind friction needs time_s, motor_position_rad, motor_current_a, \
          and the file has time_s, motor_position_rad; take it from another column with --map motor_current_a=NAME",
     );
     check_refused(

@@ -85,7 +85,7 @@ fn a_file_finds_its_facts_beside_it() {
     std::fs::write(folder.path().join("meta.json"), meta_json(&general, &[])).unwrap();
     std::fs::rename(folder.path().join("run-1.csv"), folder.path().join("other.csv")).unwrap();
     let refused = read(&folder.path().join("other.csv"), &ReadOptions::default()).unwrap_err().to_string();
-    assert!(refused.contains("a stiffness table needs"), "the facts of the folder hold: {refused}");
+    assert!(refused.contains("a table of kind stiffness needs"), "the facts of the folder hold: {refused}");
 }
 
 #[test]

@@ -17,7 +17,7 @@ const SAME_RATE: f64 = 0.05;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum JoinFault {
     #[error(
-        "of the runs named, number {number} is a {kind} run and the first a {first} run: put runs of one kind together"
+        "of the runs named, number {number} is of kind {kind} and the first of kind {first}: put runs of one kind together"
     )]
     OtherKind { number: usize, kind: Kind, first: Kind },
     #[error(
@@ -212,7 +212,7 @@ mod tests {
         let fault = first.join(vec![brake]).unwrap_err().to_string();
         assert_eq!(
             fault,
-            "of the runs named, number 2 is a brake run and the first a friction run: put runs of one kind together"
+            "of the runs named, number 2 is of kind brake and the first of kind friction: put runs of one kind together"
         );
     }
 }

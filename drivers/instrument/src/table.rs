@@ -20,7 +20,7 @@ pub enum TableFault {
     )]
     UnknownKind,
     #[error(
-        "column {column} is missing: a {kind} table needs {}, and the file has {}; take it from another column with \
+        "column {column} is missing: a table of kind {kind} needs {}, and the file has {}; take it from another column with \
          --map {column}=NAME",
         .kind.required_columns().join(", "), .found.join(", ")
     )]

@@ -39,7 +39,7 @@ pub enum ModelError {
     BadSignal { signal: String, why: String },
     #[error("the fit does not say where it holds: it was made by another version; fit the run again")]
     NoScope,
-    #[error("a {kind} model cannot be written as {what}: {why}")]
+    #[error("a model of kind {kind} cannot be written as {what}: {why}")]
     NoExport { kind: Kind, what: &'static str, why: &'static str },
     #[error("this is no exported model: {0}; export one with `jointbench model export`")]
     BadFile(String),

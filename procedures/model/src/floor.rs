@@ -5,6 +5,9 @@ use crate::prepare::Prepared;
 use crate::report::NoiseFloor;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+/// An interval that reaches this many times as far tells nothing.
+const WIDEST: f64 = 5.0;
+
 /// Fewer pairs than these have no scatter that could be told.
 const FEWEST: usize = 8;
 
@@ -39,7 +42,7 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
     let total = common + variance;
     NoiseFloor {
         rms: Some(variance.sqrt()),
-        ci95: Some(interval(noise, pairs, &of_piece)),
+        ci95: interval(noise, pairs, &of_piece),
         source: format!(
             "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
              different repeats ({})",
@@ -51,8 +54,8 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
 }
 
 /// 95 % interval of the root: jackknife over pieces, because the pairs of one are not independent of each other, on the
-/// logarithm, because a variance is skew.
-fn interval(noise: f64, pairs: f64, of_piece: &[(f64, f64)]) -> [f64; 2] {
+/// logarithm, because a variance is skew. `None` where a few pieces hold all of it: nobody can say how well it is known then.
+fn interval(noise: f64, pairs: f64, of_piece: &[(f64, f64)]) -> Option<[f64; 2]> {
     let whole = noise / pairs;
     let without = |(sum, n): &(f64, f64)| ((noise - sum).max(0.0) / (pairs - n).max(1.0)).max(1e-12 * whole);
     let steps: Vec<f64> = of_piece.iter().filter(|p| p.1 > 0.0).map(|p| (without(p) / whole).ln()).collect();
@@ -60,5 +63,5 @@ fn interval(noise: f64, pairs: f64, of_piece: &[(f64, f64)]) -> [f64; 2] {
     let spread = (groups - 1.0) / groups * steps.iter().map(|s| s * s).sum::<f64>();
     let t = StudentsT::new(0.0, 1.0, groups - 1.0).map_or(2.0, |t| t.inverse_cdf(0.975));
     let factor = if whole > 0.0 { (0.5 * t * spread.sqrt()).min(50.0).exp() } else { 1.0 };
-    [whole.sqrt() / factor, whole.sqrt() * factor]
+    (factor <= WIDEST).then(|| [whole.sqrt() / factor, whole.sqrt() * factor])
 }

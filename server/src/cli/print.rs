@@ -257,8 +257,11 @@ fn shown(unit: &str) -> &str {
 fn floor(floor: &NoiseFloor, unit: &str) {
     match floor.rms {
         Some(rms) => {
-            let [low, high] = floor.ci95.unwrap_or([rms, rms]).map(|edge| words::figure(edge, unit));
-            println!("noise     {} [{low} … {high}]: {}", words::figure(rms, unit), floor.source);
+            let interval = match floor.ci95.map(|ends| ends.map(|edge| words::figure(edge, unit))) {
+                Some([low, high]) => format!("[{low} … {high}]"),
+                None => "(too few pieces to say how well this is known)".into(),
+            };
+            println!("noise     {} {interval}: {}", words::figure(rms, unit), floor.source);
         }
         None => println!("noise     {}", floor.source),
     }

@@ -85,7 +85,8 @@ fn floor(found: &Exploration, end: &Fit) -> String {
         }
         false => "",
     };
-    format!("the run repeats itself to {}{below}", figure(floor, &end.unit))
+    let about = if found.floor.ci95.is_some() { "" } else { "about " };
+    format!("the run repeats itself to {about}{}{below}", figure(floor, &end.unit))
 }
 
 /// Where what is left shows most.
