@@ -46,7 +46,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
             Verdict::MissingEffect => summary::missing(&found, &fit, &complete, &suggestions),
             _ => summary::end(&found, &complete, structure.as_ref(), options),
         },
-        shows_over: structure.as_ref().and_then(|s| summary::shown_over(&found, Some(s))).unwrap_or_default().0,
+        shows_over: shows_over(&found, structure.as_ref()),
         regions,
         structure,
         experiment: experiment(&found, &prepared),
@@ -96,7 +96,7 @@ pub fn discover(
         verdict,
         undecided: summary::undecided(&found, verdict, options),
         summary: summary::end(&found, &fit, structure.as_ref(), options),
-        shows_over: structure.as_ref().and_then(|s| summary::shown_over(&found, Some(s))).unwrap_or_default().0,
+        shows_over: shows_over(&found, structure.as_ref()),
         model: found.end().effects.clone(),
         regions: regions(&found.maps, &fit, &found, verdict),
         structure,
@@ -179,6 +179,11 @@ fn regions(maps: &Maps, fit: &Fit, found: &Exploration, verdict: Verdict) -> Vec
 
 fn structure(found: &Exploration, verdict: Verdict) -> Option<PairMap> {
     (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(found.start.prepared))?
+}
+
+/// The columns that the summary names, where structure remains.
+fn shows_over(found: &Exploration, structure: Option<&PairMap>) -> Vec<String> {
+    structure.and_then(|shown| summary::shown_over(found, Some(shown))).unwrap_or_default().0
 }
 
 /// What to measure next.

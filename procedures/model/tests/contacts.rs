@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::tables::{meta, scatter};
-use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use common::tables::{meta, scatter, stiffness};
+use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{ModelSpec, Options, discover};
 
 const STEP_S: f64 = 0.01;
@@ -15,16 +15,7 @@ const NOISE_RAD: f64 = 2e-5;
 
 /// A joint that turns to and fro under a torque that follows its direction, level by level.
 fn run() -> RunTable {
-    let names = [
-        "time_s",
-        "motor_position_rad",
-        "link_position_rad",
-        "link_velocity_rad_s",
-        "link_torque_nm",
-        "segment",
-        "repeat",
-    ];
-    let mut trace = Trace::new(names.map(Channel::new).into());
+    let mut trace = stiffness();
     let (mut link, mut torque, mut bent) = (0.0, 0.0f64, [0.0f64; 2]);
     for leg in 0..36 {
         let side = if leg % 2 == 0 { 1.0 } else { -1.0 };

@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::tables::{meta, scatter};
-use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use common::tables::{meta, scatter, stiffness};
+use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{ModelSpec, Options, Verdict, discover};
 
 const STEP_S: f64 = 0.004;
@@ -19,16 +19,7 @@ const WAY_RAD: f64 = 5e-3;
 
 /// To and fro at four loads with ramps in speed; torque and flank follow the way since the reversal.
 fn run() -> RunTable {
-    let names = [
-        "time_s",
-        "motor_position_rad",
-        "link_position_rad",
-        "link_velocity_rad_s",
-        "link_torque_nm",
-        "segment",
-        "repeat",
-    ];
-    let mut trace = Trace::new(names.map(Channel::new).into());
+    let mut trace = stiffness();
     let (mut link, mut flank) = (0.0, -1.0f64);
     for leg in 0..32usize {
         let side = if leg % 2 == 0 { 1.0 } else { -1.0 };

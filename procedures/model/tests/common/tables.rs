@@ -72,6 +72,12 @@ pub fn try_table(kind: Kind, shape: &Shape, spoil: impl Fn(&str, usize, f64) -> 
     RunTable::new(meta(kind), trace)
 }
 
+/// No rows yet of a stiffness run that knows its speed, its segments and its repeats.
+pub fn stiffness() -> Trace {
+    let names = "time_s motor_position_rad link_position_rad link_velocity_rad_s link_torque_nm segment repeat";
+    Trace::new(names.split(' ').map(Channel::new).collect())
+}
+
 pub fn meta(kind: Kind) -> Meta {
     let baseline: &[&str] = match kind {
         Kind::Friction => &["coulomb", "viscous"],
