@@ -41,7 +41,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        undecided: summary::undecided(&found, verdict, options),
+        undecided: summary::undecided(&found, &fit, verdict, options),
         summary: match verdict {
             Verdict::MissingEffect => summary::missing(&found, &fit, &complete, &suggestions),
             _ => summary::end(&found, &complete, structure.as_ref(), options),
@@ -94,7 +94,7 @@ pub fn discover(
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        undecided: summary::undecided(&found, verdict, options),
+        undecided: summary::undecided(&found, &fit, verdict, options),
         summary: summary::end(&found, &fit, structure.as_ref(), options),
         shows_over: shows_over(&found, structure.as_ref()),
         model: found.end().effects.clone(),

@@ -3,6 +3,8 @@
 mod jumps;
 mod words;
 
+pub use words::IMPOSSIBLE;
+
 use crate::effect::{Search, Shape};
 use crate::linear::{BlockGrams, Spd};
 use crate::pieces::pieces;

@@ -124,7 +124,7 @@ fn a_new_speed_decides_between_two_shapes_of_asymmetry() {
     let run = common::read(&folder);
     let model = ["inertia", "coulomb", "viscous", "direction_offset", "viscous_asymmetry"].map(String::from).into();
     let ties = vec![("viscous_asymmetry".to_owned(), vec!["viscous_quadratic".to_owned()])];
-    let open = Open { model, ties, has_noise_floor: true, own: Vec::new() };
+    let open = Open { model, ties, has_noise_floor: true, ..Open::default() };
     let z = |speed: f64| {
         let once = strokes("stroke", &[speed], 0.0, (0.2 / speed).min(2.0));
         let choice = Choice { stretches: once.stretches[..2].to_vec(), ..once };

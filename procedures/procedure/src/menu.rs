@@ -3,7 +3,7 @@
 use crate::catalogue::procedure;
 use crate::plan::{BenchFacts, Phase, Plan};
 use jointbench_instrument::bench::JointConstants;
-use jointbench_instrument::{Kind, Limits, RunTable};
+use jointbench_instrument::{Kind, Limits, Motion, RunTable};
 use jointbench_model::{Choice, Stretch};
 use serde_json::{Map, Value, json};
 
@@ -22,6 +22,12 @@ const HELD_S: f64 = 0.6;
 /// what it was made with, where it came from a procedure.
 pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>) -> Vec<Choice> {
     let ordinary = match run.kind() {
+        // No procedure here moves an axis that slides: where that could be done, the ordinary run again would help.
+        Kind::Friction if run.meta().motion == Motion::Linear => {
+            let parameters = Map::from_iter([("repeats".to_owned(), json!(3))]);
+            let (procedure, duration_s) = ("friction".to_owned(), f64::INFINITY);
+            return vec![Choice { procedure, parameters, duration_s, stretches: Vec::new() }];
+        }
         Kind::Friction => None,
         Kind::Encoder => Some(("encoder_linearity", json!({"repeats": 3}))),
         Kind::Stiffness => Some(("stiffness", json!({"repeats": 3}))),

@@ -50,12 +50,14 @@ pub fn save(fit: &Fit, path: &Path) -> Done {
 
 fn open(path: &Path) -> Result<Fit, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|fault| refuse(&fault))?;
+    let bytes = std::fs::read(path).map_err(|fault| refuse(&fault))?;
+    // A table that was named in its place may not even be text.
+    let text = String::from_utf8_lossy(&bytes);
     // Headers, tables and attributes of joints go out only.
     if !text.trim_start().starts_with('{') {
         return Err(refuse(
-            &"this is no model that can be read again; only JSON is: what `jointbench fit --out` or \
-              `jointbench model export --format json` has written",
+            &"this is no model that can be read again (the model is named first, then the run); only JSON is: what \
+              `jointbench fit --out` or `jointbench model export --format json` has written",
         ));
     }
     ModelFile::read(&text).map_err(|fault| refuse(&fault))

@@ -49,6 +49,12 @@ fn decided(undecided: Option<&String>) -> Done {
 
 pub fn fit(arguments: &Fit) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
+    if let Some(idle) = spec.own.iter().find(|effect| !spec.contains(effect.id())) {
+        let (all, id) = (spec.effects.join(","), idle.id());
+        return Err(Exit::bad_input(format!(
+            "effect {id} takes no part in the fit: name it, as in --model {all},{id}"
+        )));
+    }
     let fit = jointbench_model::fit(&run, &spec, &options).map_err(|fault| Exit::of(&arguments.run.files, fault))?;
     if let Some(path) = &arguments.out {
         super::model::save(&fit, path)?;
@@ -104,7 +110,14 @@ pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Resul
     for pair in &columns.scale {
         options.scale.push(parse_scale(pair)?);
     }
-    Ok(jointbench_files::read(&files::table(file)?, &options)?)
+    let table = files::table(file)?;
+    if !table.exists() && file.to_str().is_some_and(|name| name.parse::<u64>().is_ok()) {
+        let run = file.display();
+        return Err(Exit::bad_input(format!(
+            "there is no file {run}; run {run} of the store becomes one with: jointbench export {run}"
+        )));
+    }
+    Ok(jointbench_files::read(&table, &options)?)
 }
 
 fn options(preparation: &Preparation) -> Result<Options, Exit> {

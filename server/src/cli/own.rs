@@ -12,7 +12,8 @@ use std::path::{Path, PathBuf};
 )]
 pub struct OwnEffects {
     /// An effect in one line: "ID: tau = FORMULA; PARAMETER [UNIT] MIN..MAX; …". Unit and range may be left out, and
-    /// `start LOW..HIGH` and `whole` may follow; may be given again. Example: "rub: tau = a * tanh(velocity / w0) *
+    /// `start LOW..HIGH` and `whole` may follow; a name that is not known is answered with the signals that are, units
+    /// that contradict each other are told, and wrap(angle) folds an angle into one turn. May be given again. Example: "rub: tau = a * tanh(velocity / w0) *
     /// abs(load); a [1] 0..1; w0 [rad/s] 0.1..10"
     #[arg(long, value_name = "EFFECT")]
     pub own: Vec<String>,
@@ -31,6 +32,9 @@ impl OwnEffects {
         }
         for text in &self.own {
             all.push(OwnEffect::inline(kind, text)?);
+        }
+        for fault in all.iter().filter_map(OwnEffect::doubt) {
+            eprintln!("note: {}", Exit::from(fault).said);
         }
         Ok(all)
     }

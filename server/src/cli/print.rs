@@ -11,6 +11,9 @@ const BAR_WIDTH: f64 = 40.0;
 pub fn fit(fit: &Fit) {
     println!("model     {}", fit.effects.join(" + "));
     println!("prepared  {}", prepared(fit));
+    if let Some(scope) = fit.scope.as_ref().filter(|scope| scope.load_scale != 1.0) {
+        println!("side      motor: its torques, speeds and angles (gear ratio {})", figure(scope.load_scale));
+    }
     println!();
     parameters(&fit.parameters);
     println!();
@@ -107,14 +110,21 @@ fn not_visible(hidden: &[Invisible]) {
 }
 
 pub fn discovery(discovery: &Discovery) {
+    let mut last_rms = f64::NAN;
     let steps: Vec<(String, f64)> = discovery
         .steps
         .iter()
-        .map(|step| match (&step.added, &step.removed) {
-            (Some(added), Some(removed)) => (format!("+ {added} − {removed}"), step.validation_rms),
-            (Some(added), None) => (format!("+ {added}"), step.validation_rms),
-            (None, Some(removed)) => (format!("− {removed}"), step.validation_rms),
-            (None, None) => ("start".to_owned(), step.validation_rms),
+        .map(|step| {
+            let name = match (&step.added, &step.removed) {
+                (Some(added), Some(removed)) => format!("+ {added} − {removed}"),
+                // What acts around reversals or on ramps is judged there.
+                (Some(added), None) if step.validation_rms == last_rms => format!("+ {added} (not in settled motion)"),
+                (Some(added), None) => format!("+ {added}"),
+                (None, Some(removed)) => format!("− {removed}"),
+                (None, None) => "start".to_owned(),
+            };
+            last_rms = step.validation_rms;
+            (name, last_rms)
         })
         .collect();
     fall(&steps, discovery.noise_floor_rms, &discovery.fit.unit);
@@ -146,6 +156,9 @@ fn own_formula(axes: &[String]) {
         "what you can do: write what you suspect as a formula of {} with --own (see --help), and see whether the error falls",
         words::list(&axes)
     );
+    if axes.iter().any(|axis| axis.ends_with("position")) {
+        println!("  positions are folded into one turn above; a formula folds them with wrap(position - p), -π to π");
+    }
 }
 
 /// As a command, so that it can be typed.
@@ -153,7 +166,7 @@ fn next_run(experiment: Option<&Experiment>) {
     let Some(experiment) = experiment else { return };
     let set = experiment.parameters.iter().map(|(name, value)| format!(" --set {name}={value}"));
     println!();
-    println!("what to measure next: {}", experiment.why);
+    println!("what to measure next, on a bench that can do what this run shows: {}", experiment.why);
     if let Some(duration_s) = experiment.expected_duration_s {
         println!("  {duration_s:.0} s of the bench at most:");
     }
@@ -245,7 +258,13 @@ fn interval(low: f64, high: f64) -> String {
     match (low == high, low == 0.0) {
         (true, true) => "–".to_owned(),
         (true, false) => "chosen".to_owned(),
-        (false, _) => format!("{} … {}", figure(low), figure(high)),
+        // As many digits as tell the ends apart.
+        (false, _) => {
+            let ends =
+                (3..9).map(|digits| (rounded(low, digits), rounded(high, digits))).find(|(low, high)| low != high);
+            let (low, high) = ends.unwrap_or_else(|| (figure(low), figure(high)));
+            format!("{low} … {high}")
+        }
     }
 }
 
@@ -310,6 +329,11 @@ fn of(residual: ResidualKind) -> &'static str {
 
 /// Four significant digits, plain where that is short.
 pub fn figure(value: f64) -> String {
+    rounded(value, 3)
+}
+
+/// So many digits after the first.
+fn rounded(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -324,14 +348,22 @@ pub fn figure(value: f64) -> String {
     }
     let exponent = value.abs().log10().floor() as i32;
     match exponent {
-        -4..=5 => format!("{value:.*}", (3 - exponent).max(0) as usize),
-        _ => format!("{value:.3e}"),
+        -4..=5 => format!("{value:.*}", (digits - exponent).max(0) as usize),
+        _ => format!("{value:.*e}", digits as usize),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::figure;
+    use super::{figure, interval};
+
+    #[test]
+    fn the_ends_of_an_interval_are_told_apart() {
+        assert_eq!(interval(0.0306, 0.0312), "0.03060 … 0.03120");
+        assert_eq!(interval(1.000012, 1.000031), "1.00001 … 1.00003");
+        assert_eq!(interval(1.2e-7, 1.2000004e-7), "1.2000000e-7 … 1.2000004e-7");
+        assert_eq!((interval(7.0, 7.0), interval(0.0, 0.0)), ("chosen".into(), "–".into()));
+    }
 
     #[test]
     fn figures_have_four_digits() {

@@ -59,6 +59,8 @@ fn a_file_that_will_not_do_is_named() {
     let header = std::fs::read_to_string(folder.join("joint.h")).expect("a header");
     assert!(!header.contains("acceleration") && header.contains("Fitted where velocity is -64"), "{header}");
     refused(folder, &["model", "evaluate", "joint.h", "run.csv"], &["joint.h", "only JSON is", "--format json"]);
+    refused(folder, &["model", "evaluate", "run.csv", "model.json"], &["run.csv", "the model is named first"]);
+    refused(folder, &["diagnose", "1"], &["there is no file 1", "jointbench export 1"]);
     refused(folder, &["model", "export", "model.json", "--format", "c", "-o", "."], &[". is a folder: name the file"]);
     refused(folder, &["fit", "run.csv", "--out", "."], &[". is a folder: name the file"]);
     refused(folder, &["fit", "run.csv", "--out", "no/model.json"], &["no/model.json", "there is no folder no"]);

@@ -85,6 +85,13 @@ fn a_caret_stands_below_the_mistake() {
     let below = "  rub: tau = a * velocty; a [Nm]\n                 ^^^^^^^\n";
     assert!(said.contains("did you mean velocity?") && said.ends_with(below), "{said}");
 
+    let seconds = RUB.replace("[rad/s]", "[s]");
+    let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", &seconds]));
+    assert!(said.contains("tanh takes a plain number, but this is in 1/s²") && said.contains("^^"), "{said}");
+    let output = run_in(folder.path(), &["fit", "run.csv", "--own", RUB]);
+    assert_eq!(output.status.code(), Some(2), "an effect that takes no part");
+    assert!(stderr(&output).contains("--model load_transmission,coulomb,viscous,rub"), "{}", stderr(&output));
+
     std::fs::write(folder.path().join("effects.toml"), FILE.replace("/ w0", "/ w1")).expect("effects");
     let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--effect-file", "effects.toml"]));
     assert!(said.contains("effects.toml: effect rub: w1") && said.contains(" ^^\n"), "{said}");

@@ -1,6 +1,7 @@
 //! A diagnosis in plain sentences.
 
 use crate::explore::{Exploration, Withdrawal};
+use crate::intervals::IMPOSSIBLE;
 use crate::report::{PairMap, Suggestion, Verdict};
 use crate::words::{figure, list, percent, spoken};
 use crate::{Fit, Options};
@@ -51,7 +52,7 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
 pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Options) -> String {
     let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, fit));
     let verdict = found.end_verdict();
-    let said = match (verdict, undecided(found, verdict, options)) {
+    let said = match (verdict, undecided(found, fit, verdict, options)) {
         (Verdict::UnexplainedStructure, _) => format!(
             "Structure remains that no effect of the library explains: {}; {floor}.",
             structure(found, fit, shown)
@@ -121,8 +122,8 @@ pub fn shown_over(found: &Exploration, shown: Option<&PairMap>) -> Option<(Vec<S
     most.filter(|(_, share)| *share > LEAST_SHOWN)
 }
 
-/// What too short a run cannot decide, however well the model fits it.
-pub fn undecided(found: &Exploration, verdict: Verdict, options: &Options) -> Option<String> {
+/// Why a model that fits may be wrong all the same: too short a run cannot decide it, or a size contradicts physics.
+pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Options) -> Option<String> {
     let blocks = found.start.main.problem.blocks;
     // The smallest p-value that flipping the signs of so many blocks can give.
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
@@ -131,6 +132,10 @@ pub fn undecided(found: &Exploration, verdict: Verdict, options: &Options) -> Op
             Some(format!("{blocks} independent stretches of motion are too few to name anything"))
         }
         Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
+        Verdict::Adequate => fit.parameters.iter().find(|p| p.note.as_deref() == Some(IMPOSSIBLE)).map(|p| {
+            let (effect, name) = (&p.effect, &p.name);
+            format!("{name} of {effect} is {}, which {IMPOSSIBLE}", figure(p.value, &p.unit))
+        }),
         _ => None,
     }
 }

@@ -1,5 +1,7 @@
 //! The functions that a formula may call.
 
+use std::f64::consts::TAU;
+
 /// Name in a formula and in C, and the number of arguments.
 macro_rules! functions {
     ($($variant:ident $name:literal $c:literal $arity:literal $apply:expr;)*) => {
@@ -13,7 +15,7 @@ macro_rules! functions {
                 match self { $(Function::$variant => $name),* }
             }
 
-            /// What C99's math.h calls it; `sign` is written out.
+            /// What C99's math.h calls it; `sign` and `wrap`, an angle within half a turn of zero, are written out.
             pub fn c_name(self) -> &'static str {
                 match self { $(Function::$variant => $c),* }
             }
@@ -50,6 +52,7 @@ functions! {
     Tanh "tanh" "tanh" 1 |x, _| x.tanh();
     Min "min" "fmin" 2 f64::min;
     Max "max" "fmax" 2 f64::max;
+    Wrap "wrap" "" 1 |x, _| x - TAU * (x / TAU).round_ties_even();
 }
 
 impl Function {
@@ -59,6 +62,6 @@ impl Function {
 
     /// A mean over an interval is far from the value at its middle.
     pub fn is_periodic(self) -> bool {
-        matches!(self, Function::Sin | Function::Cos | Function::Tan)
+        matches!(self, Function::Sin | Function::Cos | Function::Tan | Function::Wrap)
     }
 }

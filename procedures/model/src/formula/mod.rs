@@ -10,6 +10,7 @@ mod function;
 mod names;
 mod signals;
 pub(crate) mod syntax;
+mod units;
 
 pub use expression::{Expression, What};
 pub(crate) use fault::Mistake;
@@ -31,10 +32,13 @@ pub struct Formula {
     pub signals: Vec<&'static NamedSignal>,
     /// A mean over an interval is far from the value at its middle: a sine or cosine of a signal.
     pub is_periodic: bool,
+    /// Units that contradict each other. They change no figure, so that the formula is used all the same.
+    pub(crate) doubt: Option<Mistake>,
 }
 
 impl Formula {
-    pub(crate) fn parse(kind: Kind, text: &str, parameters: &[&str]) -> Result<Self, Mistake> {
+    /// `units` are those of the parameters.
+    pub(crate) fn parse(kind: Kind, text: &str, parameters: &[&str], units: &[&str]) -> Result<Self, Mistake> {
         let ((left, at), tree) = syntax::equation(text)?;
         let wanted = left_hand_side(kind);
         if left != wanted {
@@ -55,6 +59,7 @@ impl Formula {
             shape: (0..parameters.len()).filter(|p| !linear(p) && whole.uses(*p)).collect(),
             signals: signals(kind).iter().filter(|s| whole.uses_signal(s.signal)).collect(),
             is_periodic: whole.any(&mut |what| periodic(what)),
+            doubt: units::check(kind, text, &whole, units).err(),
             columns: factors.columns,
         })
     }

@@ -51,6 +51,11 @@ pub fn equation(text: &str) -> Result<((String, Range<usize>), Node), Mistake> {
     whole((terminated(left, equals), tree), text, "an operator or the end was expected")
 }
 
+/// An expression by itself, such as a unit.
+pub fn tree_of(text: &str) -> Result<Node, Mistake> {
+    whole(tree, text, "an operator or the end was expected")
+}
+
 /// All of a text, or where it stops to be one. `otherwise` is what could have followed what is complete.
 pub(crate) fn whole<'i, O>(
     mut parser: impl Parser<Input<'i>, O, ErrMode<ContextError>>,

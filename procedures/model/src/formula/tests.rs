@@ -2,7 +2,7 @@ use super::*;
 use crate::view::{Signal, Signals};
 
 fn parse(text: &str, parameters: &[&str]) -> Result<Formula, Mistake> {
-    Formula::parse(Kind::Friction, text, parameters)
+    Formula::parse(Kind::Friction, text, parameters, &vec!["1"; parameters.len()])
 }
 
 /// A mistake from where `§` stands on, with some of its words.
@@ -100,4 +100,54 @@ fn factors_are_told_from_shapes() {
 fn a_wave_is_known() {
     assert!(parse("tau = a * cos(7 * position)", &["a"]).unwrap().is_periodic);
     assert!(!parse("tau = a * cos(b) * velocity", &["a", "b"]).unwrap().is_periodic);
+}
+
+/// Parameters a, b and w with these units; where `§` stands something contradicts.
+fn check_units(kind: Kind, marked: &str, units: [&str; 3], words: &str) {
+    let text = marked.replacen('§', "", 1);
+    let found = Formula::parse(kind, &text, &["a", "b", "w"], &units);
+    match marked.find('§') {
+        None => assert_eq!(found.unwrap().doubt, None, "{marked}"),
+        Some(at) => {
+            let mistake = found.unwrap().doubt.unwrap_or_else(|| panic!("{marked}"));
+            assert!(mistake.at.start == at && mistake.message.contains(words), "{marked}: {mistake:?}");
+        }
+    }
+}
+
+#[test]
+fn units_that_contradict_each_other_are_told_where_they_do() {
+    let torque = ["Nm", "Nm·s/rad", "rad/s"];
+    let check = |marked: &str, units, words: &str| check_units(Kind::Friction, marked, units, words);
+    check("tau = a * tanh(velocity / w) + b * velocity", torque, "");
+    check("tau = a * tanh(§velocity / w)", ["Nm", "1", "s"], "tanh takes a plain number, but this is in 1/s²");
+    check("tau = §a * velocity", torque, "tau is in Nm, but this is in Nm/s");
+    check("tau = a + §b * velocity^2", torque, "this is in Nm/s, but a beside it is in Nm");
+    check("tau = a * 2^§load", torque, "an exponent takes a plain number, but this is in Nm");
+    check("tau = a * max(load, §velocity)", torque, "but load beside it is in Nm");
+    check("tau = §a * sqrt(load) * wrap(position - 3)", torque, "this is in Nm^1.5");
+    check("tau = a * sign(velocity - w) * abs(direction) + a * sqrt((velocity/w)^2)", torque, "");
+    check("tau = §a * exp(-b * (temperature - w)) * load", ["1/K", "1/°C", "°C"], "this is in Nm/K");
+    check("tau = a * exp(-b * (temperature - w)) * load", ["1", "1/°C", "°C"], "");
+}
+
+#[test]
+fn units_that_nobody_can_judge_are_believed() {
+    check_units(Kind::Friction, "tau = a * tanh(velocity / 0.3)", ["Nm", "1", "1"], "");
+    check_units(Kind::Friction, "tau = a * velocity", ["furlong", "1", "1"], "");
+    check_units(Kind::Friction, "tau = a * velocity + b", ["1", "Nm", "1"], "");
+    check_units(Kind::Friction, "tau = a * abs(velocity)^w", ["Nm", "1", "1"], "");
+    check_units(Kind::Friction, "tau = a * tanh(velocity / w)", ["N", "1", "m/s"], "a joint that slides");
+    check_units(Kind::Encoder, "error = a * cos(position) + b * velocity", ["µrad", "s", "1"], "");
+    check_units(Kind::Brake, "tau = a * current^2 + b * current", ["Nm/A²", "mNm A⁻¹", "1"], "");
+    check_units(Kind::Stiffness, "torsion = a * load", ["rad/Nm", "1", "1"], "");
+}
+
+#[test]
+fn an_angle_is_wrapped_to_half_a_turn() {
+    use std::f64::consts::PI;
+    for (angle, within) in [(0.5, 0.5), (7.0, 7.0 - 2.0 * PI), (-4.0, 2.0 * PI - 4.0), (63.0, 63.0 - 20.0 * PI)] {
+        let found = Function::Wrap.apply(angle, 0.0);
+        assert!((found - within).abs() < 1e-12, "{angle}: {found}");
+    }
 }

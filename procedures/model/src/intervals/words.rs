@@ -8,6 +8,9 @@ use crate::words::figure;
 /// An interval of a shape parameter that is wider than this factor does not decide it.
 const WIDE: f64 = 10.0;
 
+/// What is said of a size that contradicts physics, and certainly so.
+pub const IMPOSSIBLE: &str = "is physically impossible: another effect is missing, or a column has the wrong sign";
+
 /// State of a parameter, with words where it is not well determined.
 pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {
     let nothing =
@@ -22,8 +25,7 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
             return (ParameterState::Unidentified, Some("not identified by this run: it may be zero".into()));
         }
         if slot.value < least || slot.value > most {
-            let words = "is physically impossible: another effect is missing, or a column has the wrong sign";
-            return (ParameterState::AtBound, Some(words.into()));
+            return (ParameterState::AtBound, Some(IMPOSSIBLE.into()));
         }
         return (ParameterState::Ok, None);
     };

@@ -63,7 +63,8 @@ impl Definition {
             let message = format!("an effect has at most {MOST_PARAMETERS} parameters; make two effects of it");
             return Err(in_formula(Mistake::new(0..0, message)));
         }
-        let formula = Formula::parse(self.kind, &self.formula, &names).map_err(in_formula)?;
+        let units: Vec<&str> = self.parameters.iter().map(|p| p.unit.as_str()).collect();
+        let formula = Formula::parse(self.kind, &self.formula, &names, &units).map_err(in_formula)?;
         if let Some(unused) = (0..names.len()).find(|p| !formula.uses(*p)) {
             let message = format!("{} does not occur in the formula; leave it out", names[unused]);
             return Err(Mistake::new(0..names[unused].len(), message).found(&self.id, "parameters", names[unused]));

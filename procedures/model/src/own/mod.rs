@@ -58,6 +58,11 @@ impl OwnEffect {
         &self.formula
     }
 
+    /// Units that contradict each other: the figures are the formula's, whatever the units say.
+    pub fn doubt(&self) -> Option<FormulaFault> {
+        Some(self.formula.doubt.clone()?.found(self.id(), "formula", &self.definition.formula))
+    }
+
     /// [`ModelError::NotFinite`] where a signal that this data has makes the formula fail at every shape.
     pub(crate) fn check(&self, view: &View) -> Result<(), ModelError> {
         let present = self.formula.signals.iter().all(|s| view.find(s.signal).is_some());

@@ -9,7 +9,7 @@ mod unseen;
 
 use crate::assembly::Assembly;
 use crate::prepare::prepare;
-use crate::report::{Diagnosis, Discovery, Experiment};
+use crate::report::{Diagnosis, Discovery, Experiment, Verdict};
 use crate::words::list;
 use crate::{ModelError, ModelSpec, Options, OwnEffect};
 use design::{Noise, Side};
@@ -52,6 +52,8 @@ pub struct Open {
     /// A named effect, and those that explain the data as well.
     pub ties: Vec<(String, Vec<String>)>,
     pub has_noise_floor: bool,
+    /// What remains shows in this data: a run for effects that it cannot show says nothing about it.
+    pub has_structure: bool,
     /// Effects that the user wrote, which the model or its rivals may be.
     pub own: Vec<OwnEffect>,
 }
@@ -64,6 +66,7 @@ impl From<&Diagnosis> for Open {
             model: diagnosis.model.iter().cloned().chain(named).collect(),
             ties: tied.map(|s| (s.effect.clone(), s.confounded_with.clone())).collect(),
             has_noise_floor: diagnosis.noise_floor_rms.is_some(),
+            has_structure: diagnosis.verdict == Verdict::UnexplainedStructure,
             own: Vec::new(),
         }
     }
@@ -77,6 +80,7 @@ impl From<&Discovery> for Open {
             model: discovery.model.clone(),
             ties: tied.filter(|(effect, _)| discovery.model.contains(effect)).collect(),
             has_noise_floor: discovery.noise_floor_rms.is_some(),
+            has_structure: discovery.verdict == Verdict::UnexplainedStructure,
             own: Vec::new(),
         }
     }
@@ -124,7 +128,7 @@ pub fn next_run(
     {
         return Ok(Some(again(choice)));
     }
-    Ok(unseen::unseen(&model, &noise, menu, &imagined))
+    Ok(if open.has_structure { None } else { unseen::unseen(&model, &noise, menu, &imagined) })
 }
 
 /// A choice with what is expected of it.

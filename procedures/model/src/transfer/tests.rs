@@ -113,7 +113,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
 }
 
 fn rub() -> Vec<OwnEffect> {
-    let text = "rub: tau = a * tanh(velocity / w0) * abs(load) ^ 1.5 - b * min(load, 0.2) + sign(velocity) * a; \
+    let text = "rub: tau = a * tanh(velocity / w0) * abs(load) ^ 1.5 - b * min(load, 0.2 * wrap(9 * velocity)) + sign(velocity) * a; \
                 a [1] 0..1; b [1]; w0 [rad/s] 0.1..10";
     vec![OwnEffect::inline(Kind::Friction, text).unwrap()]
 }

@@ -25,6 +25,10 @@ pub fn c(e: &Expression, signal: &dyn Fn(Signal) -> String, parameter: &dyn Fn(u
             let x = arguments.first().map(of).unwrap_or_default();
             format!("(double)(({x} > 0.0) - ({x} < 0.0))")
         }
+        What::Call(Function::Wrap, arguments) => {
+            let x = arguments.first().map(of).unwrap_or_default();
+            format!("remainder({x}, {})", number(std::f64::consts::TAU))
+        }
         What::Call(function, arguments) => {
             format!("{}({})", function.c_name(), arguments.iter().map(of).collect::<Vec<_>>().join(", "))
         }
