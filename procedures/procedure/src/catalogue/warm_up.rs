@@ -27,8 +27,9 @@ const SCHEMA: &[Parameter] = &[
 
 /// Steps of one cycle: fast and slow, out and back.
 pub(super) const CYCLE_STEPS: usize = 4;
-/// The slow pair of a cycle: viscous friction shows apart from Coulomb friction while both change with temperature.
-pub(super) const SLOW_SHARE: f64 = 0.25;
+/// The slow pair of a cycle: viscous friction shows apart from Coulomb friction while both change with temperature. Well above
+/// the Stribeck velocity, or what is left of its rise would count as Coulomb friction.
+pub(super) const SLOW_SHARE: f64 = 0.5;
 
 impl Procedure for WarmUp {
     fn id(&self) -> &'static str {
