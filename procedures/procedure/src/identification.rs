@@ -3,6 +3,7 @@
 
 use crate::state::RunState;
 use serde::Serialize;
+use serde_json::{Map, Value};
 
 /// Whether the run has shown what it was made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -62,6 +63,15 @@ impl Identification {
     pub fn quantity(&self, name: &str) -> Option<&Quantity> {
         self.quantities.iter().find(|quantity| quantity.name == name)
     }
+}
+
+/// A run for which this one has found the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FollowUp {
+    pub procedure: &'static str,
+    pub parameters: Map<String, Value>,
+    /// What it is good for, in a few words.
+    pub why: &'static str,
 }
 
 /// One figure of a result, in SI units.

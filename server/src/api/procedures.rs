@@ -1,16 +1,26 @@
 //! What a bench can be asked to do.
 
-use super::extract::{Answer, Json, Path};
+use super::extract::{Answer, Json, Path, Query};
 use super::problem::Refusals;
 use crate::lab::Lab;
 use crate::view::{Preview, PreviewRequest, Procedure};
 use axum::extract::State;
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+#[derive(Debug, Clone, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct ProcedureQuery {
+    /// A bench: each procedure then says whether it could be made there.
+    pub bench: Option<String>,
+}
 
 /// All procedures with their parameters
-#[utoipa::path(get, path = "/procedures", operation_id = "list_procedures", tag = "procedures",
+#[utoipa::path(get, path = "/procedures", operation_id = "list_procedures", tag = "procedures", params(ProcedureQuery),
     responses((status = 200, description = "The procedures", body = Vec<Procedure>), Refusals))]
-pub async fn list(State(lab): State<Lab>) -> Answer<Vec<Procedure>> {
-    Ok(Json(lab.procedures()))
+pub async fn list(State(lab): State<Lab>, Query(query): Query<ProcedureQuery>) -> Answer<Vec<Procedure>> {
+    Ok(Json(lab.procedures(query.bench.as_deref())?))
 }
 
 /// Dry run: duration, steps, extremes against the limits, checks; nothing moves

@@ -6,7 +6,7 @@ use super::files::write;
 use super::serve::runtime;
 use super::transfer::{Way, open};
 use crate::report::with_interval;
-use crate::view::{Identification, Identified};
+use crate::view::{Identification, Identified, Shown};
 use std::path::PathBuf;
 
 pub fn identify(arguments: &Identify) -> Done {
@@ -53,6 +53,14 @@ pub(super) fn print(found: &Identification) {
     if let Some(advice) = &result.advice {
         println!("next: {advice}");
     }
+    quantities(result);
+    if let Some(next) = &found.follow_up {
+        let set: String = next.parameters.iter().map(|(name, value)| format!(" --set {name}={value}")).collect();
+        println!("\nto {}:\n  jointbench run {}{set}", next.why, next.procedure);
+    }
+}
+
+fn quantities(result: &Shown) {
     if result.quantities.is_empty() {
         return;
     }

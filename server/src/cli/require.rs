@@ -125,7 +125,7 @@ mod tests {
             quantities: vec![quantity],
             figures: Vec::new(),
         };
-        Identification { run: 1, procedure: "friction".to_owned(), software: String::new(), result }
+        Identification { run: 1, procedure: "friction".to_owned(), software: String::new(), result, follow_up: None }
     }
 
     #[test]

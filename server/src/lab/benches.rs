@@ -7,7 +7,7 @@ use crate::store::RunFilter;
 use crate::view::{self, Bench, BenchState};
 use jointbench_procedure::catalogue::{BrakeModel, brake_model};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
-use jointbench_procedure::{Plan, PlanFault, Procedure, catalogue, procedure};
+use jointbench_procedure::{BenchFacts, Plan, PlanFault, Procedure, catalogue, procedure};
 use serde_json::{Map, Value};
 
 /// So many of the latest runs are looked at for one of this bench.
@@ -51,8 +51,11 @@ impl Lab {
         self.bench(name)
     }
 
-    pub fn procedures(&self) -> Vec<view::Procedure> {
-        catalogue().iter().map(|procedure| procedure_view(*procedure)).collect()
+    /// The catalogue, with what a bench could not make of it, where one is named.
+    pub fn procedures(&self, bench: Option<&str>) -> Answer<Vec<view::Procedure>> {
+        let facts = bench.map(|name| self.handle(name)).transpose()?.map(BenchHandle::facts);
+        let refused = |procedure| facts.as_ref().and_then(|facts| refusal(procedure, facts));
+        Ok(catalogue().iter().map(|one| procedure_view(*one, refused(*one))).collect())
     }
 
     /// Dry run. Nothing moves.
@@ -145,13 +148,26 @@ fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
     ]
 }
 
-fn procedure_view(procedure: &dyn Procedure) -> view::Procedure {
+/// Why a procedure could not be made with its defaults, as far as that does not depend on earlier runs.
+fn refusal(procedure: &dyn Procedure, facts: &BenchFacts) -> Option<String> {
+    let defaults = Values::parse(procedure.schema(), &Map::new()).ok()?;
+    if procedure.brake_model(&defaults).is_some() {
+        return None;
+    }
+    match procedure.plan(&Map::new(), facts) {
+        Ok(plan) => plan.preview(facts).checks.into_iter().find(|check| !check.ok).map(|check| check.detail),
+        Err(fault) => Some(fault.to_string()),
+    }
+}
+
+fn procedure_view(procedure: &dyn Procedure, refused: Option<String>) -> view::Procedure {
     view::Procedure {
         id: procedure.id().to_owned(),
         title: procedure.title().to_owned(),
         summary: procedure.summary().to_owned(),
         kind: procedure.kind().to_string(),
         parameters: procedure.schema().iter().map(parameter_view).collect(),
+        refused,
     }
 }
 

@@ -87,6 +87,9 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
         duration_s: record.duration_s.and_then(view::finite),
         simulated: record.simulated,
         tags: record.tags.clone(),
+        note: record.note.clone(),
+        // Figures of a model that cannot be read any more are none.
+        model: record.model.as_ref().and_then(|model| reread(model).ok()),
     }
 }
 

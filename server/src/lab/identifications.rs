@@ -35,6 +35,7 @@ impl Lab {
             run: id,
             procedure: record.procedure,
             software: concat!("jointbench ", env!("CARGO_PKG_VERSION")).to_owned(),
+            follow_up: procedure.follow_up(&found).map(|next| reread(&next)).transpose()?,
             result: reread(&found)?,
         })
     }

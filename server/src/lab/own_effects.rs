@@ -41,6 +41,7 @@ impl Lab {
         let name = |p: &usize| own.definition().parameters[*p].name.clone();
         let mut check = EffectCheck {
             effect: Effect { definition: Some(reread(own.definition())?), ..effect_view(&own.info()) },
+            doubt: own.doubt().map(|fault| fault.to_string()),
             linear: own.formula().columns.iter().map(|(p, _)| name(p)).collect(),
             shape: own.formula().shape.iter().map(name).collect(),
             signals: own.formula().signals.iter().map(|s| s.name.to_owned()).collect(),

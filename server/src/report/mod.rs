@@ -147,6 +147,14 @@ fn result(found: &Identification) -> Markup {
                 }
             }
         }
+        @if let Some(next) = &found.follow_up {
+            p {
+                "To " (next.why) ": " code {
+                    "jointbench run " (next.procedure)
+                    @for (name, value) in &next.parameters { " --set " (name) "=" (value) }
+                }
+            }
+        }
         @for one in &result.figures {
             @if let Some(svg) = figure::svg(one) {
                 figure { figcaption { (one.title) } (PreEscaped(svg)) }

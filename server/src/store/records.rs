@@ -42,6 +42,10 @@ pub struct RunRecord {
     /// Empty before the first row.
     pub channels: Vec<Channel>,
     pub tags: Vec<String>,
+    /// The last one.
+    pub note: Option<String>,
+    /// Figures of the last version, as the list tells them.
+    pub model: Option<Value>,
 }
 
 /// Which runs to list. Newest first.

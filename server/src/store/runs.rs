@@ -10,9 +10,15 @@ use serde_json::{Map, Value};
 use sqlx::sqlite::SqliteRow;
 use sqlx::{QueryBuilder, Row, SqliteConnection};
 
-/// Runs as they are told, with their tags.
-const TOLD: &str = "SELECT runs_told.*, (SELECT json_group_array(tag) FROM \
-                    (SELECT tag FROM tags WHERE run = runs_told.id ORDER BY tag)) AS tags FROM runs_told";
+/// Runs as they are told, with their tags, their last note and the last version of their model.
+const TOLD: &str = "SELECT runs_told.*, \
+    (SELECT json_group_array(tag) FROM (SELECT tag FROM tags WHERE run = runs_told.id ORDER BY tag)) AS tags, \
+    (SELECT text FROM notes WHERE run = runs_told.id ORDER BY id DESC LIMIT 1) AS note, \
+    (SELECT json_object('id', id, 'validation_rms', validation_rms, 'noise_floor_rms', noise_floor_rms, \
+        'unit', json_extract(fit, '$.unit'), \
+        'coulomb', (SELECT json(p.value) FROM json_each(models.fit, '$.parameters') AS p WHERE p.value ->> '$.effect' = 'coulomb')) \
+        FROM models WHERE run = runs_told.id ORDER BY id DESC LIMIT 1) AS model \
+    FROM runs_told";
 
 /// Now, as it is written in the store.
 pub(super) fn now() -> String {
@@ -43,6 +49,8 @@ fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreErr
         provenance: json(row, "provenance")?,
         meta: json(row, "meta")?,
         tags: json(row, "tags")?,
+        note: row.try_get("note")?,
+        model: row.try_get::<Option<&str>, _>("model")?.map(serde_json::from_str).transpose()?,
         channels,
     })
 }

@@ -100,8 +100,11 @@ pub struct Suggestion {
     pub effect: String,
     /// With the effect added.
     pub validation_rms: f64,
-    /// Share of the validation error that goes away.
+    /// Share of the validation error that goes away with this effect alone.
     pub error_reduction: f64,
+    /// Share of the validation error that it takes away beside all other suggestions.
+    #[serde(default)]
+    pub error_reduction_together: f64,
     /// Family-wise, from sign flips of whole blocks.
     pub p_value: f64,
     pub parameters: Vec<FittedParameter>,

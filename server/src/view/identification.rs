@@ -1,6 +1,7 @@
 //! What a procedure makes of its run.
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -22,6 +23,19 @@ pub struct Identification {
     pub software: String,
     #[serde(flatten)]
     pub result: Shown,
+    /// The run that uses what was found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub follow_up: Option<FollowUp>,
+}
+
+/// A run for which this one has found the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FollowUp {
+    pub procedure: String,
+    #[schema(value_type = Object)]
+    pub parameters: Map<String, Value>,
+    /// What it is good for, in a few words.
+    pub why: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -64,6 +64,9 @@ pub struct EffectTrial {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct EffectCheck {
     pub effect: Effect,
+    /// Where units contradict each other, which changes no figure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
     /// Parameters that enter linearly.
     pub linear: Vec<String>,
     /// Parameters that are searched for.

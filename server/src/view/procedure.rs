@@ -12,6 +12,9 @@ pub struct Procedure {
     /// The kind of run table that comes out.
     pub kind: String,
     pub parameters: Vec<ProcedureParameter>,
+    /// Why the bench that was asked about could not make it with its defaults; absent where it could, or none was named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refused: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -1,5 +1,6 @@
 //! Runs, their journal and their samples.
 
+use super::FittedParameter;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -52,6 +53,25 @@ pub struct RunSummary {
     pub duration_s: Option<f64>,
     pub simulated: bool,
     pub tags: Vec<String>,
+    /// The last note.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// The last version of the run's model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<LastModel>,
+}
+
+/// What a model version comes to, in short.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LastModel {
+    pub id: i64,
+    /// On data that took no part in the fit.
+    pub validation_rms: f64,
+    pub noise_floor_rms: Option<f64>,
+    /// Of the RMS figures.
+    pub unit: String,
+    /// Coulomb friction, where the model has it.
+    pub coulomb: Option<FittedParameter>,
 }
 
 /// What somebody said about a run; only ever appended to.

@@ -39,7 +39,8 @@ export const api = {
 	stopBench: (bench: string, signal?: Signal) =>
 		body(client.POST('/api/v1/bench/{bench}/stop', { params: { path: { bench } }, signal })),
 
-	procedures: (signal?: Signal) => body(client.GET('/api/v1/procedures', { signal })),
+	/** With what that bench could not make of them, where one is named. */
+	procedures: (bench?: string, signal?: Signal) => body(client.GET('/api/v1/procedures', { params: { query: { bench } }, signal })),
 	preview: (id: string, bench: string, parameters: Values, signal?: Signal) =>
 		body(client.POST('/api/v1/procedures/{id}/preview', { params: { path: { id } }, body: { bench, parameters }, signal })),
 

@@ -1,25 +1,18 @@
-import type { Bench, Procedure } from '../api/types';
-import { words } from '../format/label';
+import type { Procedure } from '../api/types';
 
 export interface Offer {
 	title: string;
 	procedures: Procedure[];
 }
 
-/** What each kind of run cannot do without. */
-const NEEDS: Record<string, string> = { encoder: 'test_encoder', brake: 'brake' };
-
-/** Procedures by the kind of run that they bring; what this bench has the instruments for comes first, and encoders before all where one is under test. */
-export function offers(procedures: readonly Procedure[], bench: Pick<Bench, 'instruments'>): Offer[] {
+/** Procedures by the kind of run that they bring; what the bench can make comes first, and encoders before all where one is under test. */
+export function offers(procedures: readonly Procedure[]): Offer[] {
 	const kinds = [...new Set(procedures.map((one) => one.kind))].map((kind) => {
-		const need = NEEDS[kind] ?? 'joint';
-		const here = bench.instruments.some((one) => one.role === need);
-		return { kind, need, here, rank: !here ? 2 : kind === 'encoder' ? 0 : 1 };
+		const all = procedures.filter((one) => one.kind === kind);
+		const can = all.filter((one) => !one.refused);
+		return { kind, here: can.length > 0, rank: can.length === 0 ? 2 : kind === 'encoder' ? 0 : 1, procedures: [...can, ...all.filter((one) => one.refused)] };
 	});
 	return kinds
 		.sort((a, b) => a.rank - b.rank)
-		.map(({ kind, need, here }) => ({
-			title: here ? kind : `${kind}: this bench has no ${words(need)}`,
-			procedures: procedures.filter((one) => one.kind === kind),
-		}));
+		.map(({ kind, here, procedures }) => ({ title: here ? kind : `${kind}: not on this bench`, procedures }));
 }

@@ -1,7 +1,7 @@
 import type { RunSummary } from '../api/types';
 
 /** What the list can show of a run beside its number and its state; a person chooses, and the browser remembers. */
-export const COLUMNS = ['procedure', 'bench', 'started', 'duration', 'rows', 'safe'] as const;
+export const COLUMNS = ['procedure', 'bench', 'started', 'duration', 'rows', 'safe', 'error', 'Coulomb', 'note'] as const;
 export type Column = (typeof COLUMNS)[number];
 
 const HIDDEN = 'jointbench.runs.hidden';
@@ -29,7 +29,7 @@ export function toggleView(search: string, kept: Pick<Storage, 'getItem' | 'setI
 	kept.setItem(VIEWS, (views.includes(search) ? views.filter((one) => one !== search) : [...views, search]).join('\n'));
 }
 
-const FIELDS = ['id', 'state', 'procedure', 'kind', 'bench', 'simulated', 'created_at', 'duration_s', 'rows', 'safe', 'reason', 'tags'] as const;
+const FIELDS = ['id', 'state', 'procedure', 'kind', 'bench', 'simulated', 'created_at', 'duration_s', 'rows', 'safe', 'reason', 'tags', 'note'] as const;
 
 /** The list as a table for other programs. */
 export function runsCsv(runs: readonly RunSummary[]): string {
@@ -37,5 +37,7 @@ export function runsCsv(runs: readonly RunSummary[]): string {
 		const text = Array.isArray(value) ? value.join(' ') : String(value ?? '');
 		return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 	};
-	return [FIELDS.join(','), ...runs.map((run) => FIELDS.map((field) => cell(run[field])).join(','))].join('\n') + '\n';
+	const model = ({ model }: RunSummary) => [model?.validation_rms, model?.unit, model?.coulomb?.value, ...(model?.coulomb?.ci95 ?? [null, null])];
+	const head = [...FIELDS, 'held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high'];
+	return [head, ...runs.map((run) => [...FIELDS.map((field) => run[field]), ...model(run)].map(cell))].map((row) => row.join(',')).join('\n') + '\n';
 }

@@ -1,3 +1,5 @@
+import type { Suggestion } from '../api/types';
+
 /** A stretch of one axis, as the address carries it: `motor_velocity_rad_s:3.2:8`. */
 export interface Stretch {
 	axis: string;
@@ -43,7 +45,9 @@ export function around({ from, to }: { from: number; to: number }, low: number, 
 export type Strength = 'STRONG' | 'WEAK' | "CAN'T TELL APART";
 
 /** One word for the evidence; the figures stand beside it. */
-export function strength(suggestion: { error_reduction: number; p_value: number; confounded_with: readonly string[] }): Strength {
+export function strength(suggestion: Pick<Suggestion, 'error_reduction' | 'error_reduction_together' | 'p_value' | 'confounded_with'>): Strength {
 	if (suggestion.confounded_with.length > 0) return "CAN'T TELL APART";
-	return suggestion.p_value < 0.01 && suggestion.error_reduction >= 0.05 ? 'STRONG' : 'WEAK';
+	// Effects that mask each other show little alone.
+	const reduction = Math.max(suggestion.error_reduction, suggestion.error_reduction_together ?? 0);
+	return suggestion.p_value < 0.01 && reduction >= 0.05 ? 'STRONG' : 'WEAK';
 }

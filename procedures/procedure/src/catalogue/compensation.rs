@@ -9,11 +9,12 @@ mod identify;
 use super::Procedure;
 use super::legs::{Legs, sample_rate};
 use crate::findings::verdict;
-use crate::identification::Identification;
+use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Drive, Feed, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
+use serde_json::{Map, Value};
 use std::f64::consts::TAU;
 
 pub(super) struct Compensation;
@@ -175,6 +176,30 @@ impl Procedure for Compensation {
     }
 }
 
+/// Compensation of the friction that a run has found, under names that begin with `prefix`.
+pub(super) fn of_friction(found: &Identification, prefix: &str) -> Option<FollowUp> {
+    const FOUND: [[&str; 2]; 5] = [
+        ["tau_c", "tau_c_nm"],
+        ["c_v", "c_v_nm_s"],
+        ["tau_h", "tau_h_nm"],
+        ["omega_s", "stribeck_speed_rad_s"],
+        ["delta_s", "stribeck_exponent"],
+    ];
+    let given = |[name, parameter]: [&str; 2]| {
+        let value = found.quantity(&format!("{prefix}{name}"))?.value;
+        Some((parameter.to_owned(), four_digits(value).into()))
+    };
+    let parameters = FOUND.into_iter().map(given).collect::<Option<Map<String, Value>>>()?;
+    Values::parse(SCHEMA, &parameters).ok()?;
+    let why = "feed this friction forward and see what each way of compensating it gains";
+    Some(FollowUp { procedure: Compensation.id(), parameters, why })
+}
+
+/// As many as a person would type.
+fn four_digits(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
 /// Refused where more would be fed forward than the stated friction at any speed of the reference.
 fn over_compensates(stated: &Stated, way: Way, share: f64, top_rad_s: f64) -> Result<(), PlanFault> {
     let over = (1..=POINTS)
@@ -193,6 +218,8 @@ fn over_compensates(stated: &Stated, way: Way, share: f64, top_rad_s: f64) -> Re
 mod tests {
     use super::super::legs::testing::joint_a;
     use super::*;
+    use crate::findings::quantity;
+    use crate::identification::Verdict;
     use serde_json::json;
 
     #[test]
@@ -214,6 +241,23 @@ mod tests {
         let refused: Vec<_> = preview.checks.iter().filter(|check| !check.ok).collect();
         assert_eq!(refused.len(), 1, "{refused:?}");
         assert!(refused[0].detail.contains("no motor current beside a velocity") && refused[0].cure.is_some());
+    }
+
+    #[test]
+    fn what_friction_found_is_handed_over() {
+        let found = |values: &[(&str, f64)]| Identification {
+            verdict: Verdict::Identified,
+            summary: String::new(),
+            advice: None,
+            quantities: values.iter().map(|(name, value)| quantity([name, "", "", ""], *value, None)).collect(),
+            figures: Vec::new(),
+        };
+        let all =
+            [("f.tau_c", 0.030_612_3), ("f.c_v", 1.5e-4), ("f.tau_h", 0.0391), ("f.omega_s", 0.06), ("f.delta_s", 0.8)];
+        let next = of_friction(&found(&all), "f.").unwrap();
+        assert_eq!(next.parameters["tau_c_nm"], 0.030_61);
+        assert!(Compensation.plan(&next.parameters, &joint_a()).is_ok());
+        assert_eq!(of_friction(&found(&all[..4]), "f."), None, "without a Stribeck part there is no full model");
     }
 
     #[test]

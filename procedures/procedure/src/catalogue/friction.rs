@@ -10,10 +10,11 @@
 //! facts counts them): it is where temperature changes most, which is what shows an effect of temperature.
 
 use super::Procedure;
+use super::compensation;
 use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
 use super::warm_up;
 use crate::findings::verdict;
-use crate::identification::Identification;
+use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault, Steady};
 use jointbench_instrument::{Kind, RunTable};
@@ -109,6 +110,10 @@ impl Procedure for Friction {
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
         verdict(identify::identify(run))
+    }
+
+    fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
+        compensation::of_friction(found, "")
     }
 }
 

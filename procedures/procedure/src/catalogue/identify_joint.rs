@@ -3,13 +3,14 @@
 //!
 //! Each part is planned by its own procedure and identified by it, on its own rows. Every part begins and ends without
 //! brake current and where the run began, so that the parts need nothing of each other but the warm-up. Compensation feeds
-//! forward what friction has found: it is a run of its own, afterwards.
+//! forward what friction has found: it is a run of its own afterwards, for which this one gives the parameters.
 
 mod part;
 
 use super::brake_hysteresis::BrakeHysteresis;
 use super::brake_speed_independence::BrakeSpeedIndependence;
 use super::breakaway::Breakaway;
+use super::compensation;
 use super::friction::Friction;
 use super::friction_load::FrictionLoad;
 use super::friction_temperature::FrictionTemperature;
@@ -18,7 +19,7 @@ use super::presliding::Presliding;
 use super::stiffness::Stiffness;
 use super::{Procedure, procedure};
 use crate::findings::{Unusable, verdict};
-use crate::identification::{Identification, Verdict};
+use crate::identification::{FollowUp, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Step};
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -159,6 +160,10 @@ impl Procedure for IdentifyJoint {
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
         verdict(identify(run))
+    }
+
+    fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
+        compensation::of_friction(found, "friction.")
     }
 }
 

@@ -25,7 +25,7 @@ mod warm_up;
 pub use brake_hysteresis::{BrakeModel, brake_model};
 pub use results::{can_find, results};
 
-use crate::identification::Identification;
+use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
@@ -46,6 +46,11 @@ pub trait Procedure: Sync {
     /// What a run of this procedure shows, with the values that it was planned with. Pure; a run that ended early or a
     /// table that says nothing gets its verdict too. `None`: nothing but samples is asked of it.
     fn identify(&self, _values: &Values, _run: &RunTable) -> Option<Identification> {
+        None
+    }
+
+    /// The run that uses what was found.
+    fn follow_up(&self, _found: &Identification) -> Option<FollowUp> {
         None
     }
 

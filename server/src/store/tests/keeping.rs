@@ -150,7 +150,9 @@ fn runs_are_found_by_field_tag_note_and_number() {
         let imported = store.import(&new_run(), &[], rows(0, 500)).await.unwrap();
         store.set_tags(1, &["cold".into(), "Oil".into()]).await.unwrap();
         store.set_tags(1, &["Oil".into()]).await.unwrap();
+        store.save_note(2, None, "a new belt").await.unwrap();
         store.save_note(2, Some(1.5), "smells of ozone").await.unwrap();
+        assert_eq!(store.run(2).await.unwrap().note.as_deref(), Some("smells of ozone"), "the last one");
         let found = async |search: &str| {
             let filter = RunFilter { limit: 9, offset: 0, search: Some(search.to_owned()) };
             store.runs(&filter).await.unwrap().1.into_iter().map(|run| run.id).collect::<Vec<_>>()
@@ -165,7 +167,7 @@ fn runs_are_found_by_field_tag_note_and_number() {
         assert_eq!(found("-duration>0").await, [2, 1], "what is not known does not hold");
         assert_eq!(found("after:2020-01-01 before:2020-01-02").await, [0i64; 0]);
         assert_eq!(store.run(1).await.unwrap().tags, ["Oil"]);
-        assert_eq!(store.notes(2).await.unwrap()[0].at_s, Some(1.5));
+        assert_eq!(store.notes(2).await.unwrap()[1].at_s, Some(1.5));
         assert_eq!(store.tags().await.unwrap(), ["Oil"]);
         assert!(matches!(store.save_note(99, None, "?").await, Err(StoreError::NoRun(99))));
     });
@@ -179,7 +181,9 @@ fn model(run: RunId, parent: Option<i64>, effects: &[&str]) -> NewModel {
         parent,
         kind: "friction".into(),
         effects: effects.iter().map(|effect| (*effect).to_owned()).collect(),
-        fit: json!({"rms": 0.012345678901234567, "parameters": []}),
+        fit: json!({"rms": 0.012345678901234567, "unit": "Nm", "parameters": [
+            {"effect": "viscous", "name": "c_v", "value": 1e-4}, {"effect": "coulomb", "name": "tau_c", "value": 0.03},
+        ]}),
         residual: "raw".into(),
         rms: 0.0123,
         validation_rms: 0.0125,
@@ -206,6 +210,13 @@ fn model_versions_are_a_tree() {
         );
         assert_eq!(store.model(left.id).await.unwrap(), left);
         assert_eq!(left.fit, model(run, None, &[]).fit);
+
+        let told = store.run(run).await.unwrap().model.unwrap();
+        assert_eq!(
+            (&told["id"], &told["unit"], &told["coulomb"]["value"]),
+            (&json!(right.id), &json!("Nm"), &json!(0.03))
+        );
+        assert_eq!(store.run(other).await.unwrap().model, None);
 
         let astray = store.save_model(&model(other, Some(root.id), &[])).await.unwrap_err();
         assert!(matches!(astray, StoreError::OtherRun { .. }), "{astray}");
