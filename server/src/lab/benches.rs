@@ -152,7 +152,7 @@ fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
 fn refusal(procedure: &dyn Procedure, facts: &BenchFacts) -> Option<String> {
     let defaults = Values::parse(procedure.schema(), &Map::new()).ok()?;
     if procedure.brake_model(&defaults).is_some() {
-        return None;
+        return (!facts.has_brake).then(|| format!("bench {} has no brake", facts.name));
     }
     match procedure.plan(&Map::new(), facts) {
         Ok(plan) => plan.preview(facts).checks.into_iter().find(|check| !check.ok).map(|check| check.detail),

@@ -75,6 +75,8 @@ pub trait Procedure: Sync {
 pub fn catalogue() -> &'static [&'static dyn Procedure] {
     &[
         &friction::Friction,
+        // What a Puma's bench can make comes first there.
+        &puma_friction::PumaFriction,
         &friction_load::FrictionLoad,
         &friction_temperature::FrictionTemperature,
         &brake_speed_independence::BrakeSpeedIndependence,
@@ -89,7 +91,6 @@ pub fn catalogue() -> &'static [&'static dyn Procedure] {
         &strokes::Strokes,
         &warm_up::WarmUp,
         &identify_joint::IdentifyJoint,
-        &puma_friction::PumaFriction,
         &encoder::EncoderOffset,
         &encoder::EncoderStartup,
         &encoder::EncoderDelay,
