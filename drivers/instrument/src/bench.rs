@@ -65,6 +65,11 @@ impl Bench {
         Ok(files)
     }
 
+    /// By its name in the bench description.
+    pub fn instrument(&mut self, name: &str) -> Option<&mut dyn Instrument> {
+        self.instruments().into_iter().find(|instrument| instrument.name() == name)
+    }
+
     fn instruments(&mut self) -> Vec<&mut dyn Instrument> {
         let mut instruments: Vec<&mut dyn Instrument> = vec![self.joint.as_mut()];
         instruments.extend(self.torque_sensor.as_mut().map(|sensor| -> &mut dyn Instrument { sensor.as_mut() }));

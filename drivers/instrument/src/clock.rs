@@ -15,6 +15,23 @@ pub fn between(from_s: f64, until_s: f64) -> (f64, f64) {
     (0.5 * (from_s + until_s), 0.5 * (until_s - from_s))
 }
 
+/// A reading with its moment on the bench's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timed<T> {
+    pub value: T,
+    pub at_s: f64,
+    /// How far [`Timed::at_s`] may be off, either way.
+    pub uncertainty_s: f64,
+}
+
+/// A reading that was taken between its question and its answer.
+pub fn timed<T, E>(clock: &dyn Clock, read: impl FnOnce() -> Result<T, E>) -> Result<Timed<T>, E> {
+    let asked_s = clock.now_s();
+    let value = read()?;
+    let (at_s, uncertainty_s) = between(asked_s, clock.now_s());
+    Ok(Timed { value, at_s, uncertainty_s })
+}
+
 /// Wall time, for real instruments.
 pub struct SystemClock {
     opened: Instant,

@@ -41,6 +41,11 @@ impl FaultKind {
 }
 
 impl Fault {
+    /// The port is gone, and whatever was behind it.
+    pub fn is_port_lost(&self) -> bool {
+        matches!(self.kind, FaultKind::Disconnected { .. } | FaultKind::NotOpened { .. })
+    }
+
     /// Worth one more try after the link was drained and the instrument identified again.
     pub fn is_retryable(&self) -> bool {
         matches!(self.kind, FaultKind::Silent { .. } | FaultKind::Garbled { .. } | FaultKind::StreamGap { .. })

@@ -110,6 +110,10 @@ pub trait TorqueSensor: Instrument {
     /// Full scale of the range in use; a reading beyond it is a fault, never a number.
     fn range(&self) -> NewtonMetres;
     fn resolution(&self) -> Option<NewtonMetres>;
+    /// The same sensor sending by itself, where it can.
+    fn as_stream(&mut self) -> Option<&mut dyn TorqueStream> {
+        None
+    }
 }
 
 /// One sample of a torque stream.
@@ -121,17 +125,10 @@ pub struct TorqueSample {
     pub at_s: f64,
     /// How far [`TorqueSample::at_s`] may be off, either way.
     pub uncertainty_s: f64,
-    /// `None`: beyond the large range.
-    pub coarse: Option<NewtonMetres>,
-    /// `None`: beyond the small range.
-    pub fine: Option<NewtonMetres>,
-}
-
-impl TorqueSample {
-    /// From the smallest range that holds it.
-    pub fn torque(&self) -> Option<NewtonMetres> {
-        self.fine.or(self.coarse)
-    }
+    /// In the range in use; `None`: beyond it.
+    pub torque: Option<NewtonMetres>,
+    /// The sensor's other range's word for the same moment; `None`: beyond that.
+    pub other: Option<NewtonMetres>,
 }
 
 /// Feels torque at the pace of its own clock. While a stream runs single readings are refused.

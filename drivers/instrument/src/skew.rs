@@ -18,11 +18,20 @@ pub struct Skew {
 pub const TORQUE_SKEW: &str = "torque_skew_s";
 /// When the brake's current was measured, against the rows: a supply is read more seldom than the joint, and its reading held.
 pub const BRAKE_SKEW: &str = "brake_current_skew_s";
+/// When the thermometer was read, against the rows: more seldom than all else.
+pub const WARMTH_SKEW: &str = "thermometer_skew_s";
 /// Moments are kept in whole microseconds: such as differ by less are one.
 const HELD_S: f64 = 3e-6;
-/// What tells a skew, and the columns that have it.
-const SKEWED: [(&str, &[&str]); 2] =
-    [(TORQUE_SKEW, &["link_torque_nm", "brake_torque_nm"]), (BRAKE_SKEW, &["brake_current_a"])];
+
+/// What tells a skew, and the columns that have it. A thermometer's first channel may stand for the joint's temperature.
+fn skewed(trace: &Trace) -> [(&'static str, Vec<String>); 3] {
+    let stands_in = trace.column("thermometer_1_c").is_none();
+    let is_warmth = |name: &str| name.starts_with("thermometer_") && name.ends_with("_c");
+    let warmth = trace.channels().iter().map(|channel| &channel.name);
+    let warmth = warmth.filter(|name| is_warmth(name) || stands_in && *name == "temperature_c").cloned();
+    let torque = ["link_torque_nm", "brake_torque_nm", "other_range_torque_nm"].map(str::to_owned);
+    [(TORQUE_SKEW, torque.into()), (BRAKE_SKEW, vec!["brake_current_a".into()]), (WARMTH_SKEW, warmth.collect())]
+}
 
 /// The value at each moment of the grid, on the straight line between the readings around it. `None` where there is no reading
 /// on one side: none is invented.
@@ -47,10 +56,10 @@ fn on_grid(at_s: &[f64], values: &[f64], grid_s: &[f64]) -> Vec<Option<f64>> {
 /// Moves every column with a skew to the moments of its rows; the skew is 0 then. Within a segment only: between two of them
 /// time was not kept. Where there is no reading on one side a value stays as it was felt.
 pub(crate) fn align(trace: Trace) -> Trace {
-    SKEWED.into_iter().fold(trace, |trace, (skew, columns)| align_by(trace, skew, columns))
+    skewed(&trace).into_iter().fold(trace, |trace, (skew, columns)| align_by(trace, skew, &columns))
 }
 
-fn align_by(trace: Trace, skew: &str, skewed: &[&str]) -> Trace {
+fn align_by(trace: Trace, skew: &str, skewed: &[String]) -> Trace {
     let Some(skew_s) = trace.column(skew).filter(|skew| skew.iter().any(|s| *s != 0.0)) else { return trace };
     let time_s = trace.column("time_s").unwrap_or_default();
     let felt_s: Vec<f64> = time_s.iter().zip(skew_s).map(|(at_s, skew_s)| at_s + skew_s).collect();
@@ -58,33 +67,30 @@ fn align_by(trace: Trace, skew: &str, skewed: &[&str]) -> Trace {
         Some(segment) => (1..=time_s.len()).filter(|at| segment.get(*at) != Some(&segment[at - 1])).collect(),
         None => vec![time_s.len()],
     };
-    let moved = |column: &[f64]| {
+    // A reading that is held stands in several rows; it counts at its own moment, once.
+    let is_fresh = |i: usize, start: usize| i == start || felt_s[i] > felt_s[i - 1] + HELD_S;
+    let time_s = time_s.to_vec();
+    let (mut channels, mut columns) = trace.into_parts();
+    for (channel, column) in channels.iter_mut().zip(&mut columns) {
+        if channel.name == skew {
+            column.fill(0.0);
+        }
+        if !skewed.contains(&channel.name) {
+            continue;
+        }
         let mut start = 0;
-        let mut out = Vec::with_capacity(column.len());
         for end in &ends {
-            let rows = start..*end;
-            // A reading that is held stands in several rows; it counts at its own moment, once.
-            let fresh: Vec<usize> =
-                rows.clone().filter(|i| *i == start || felt_s[*i] > felt_s[i - 1] + HELD_S).collect();
+            let fresh: Vec<usize> = (start..*end).filter(|i| is_fresh(*i, start)).collect();
             let of = |values: &[f64]| -> Vec<f64> { fresh.iter().map(|i| values[*i]).collect() };
-            let grid = on_grid(&of(&felt_s), &of(column), &time_s[rows.clone()]);
-            out.extend(grid.into_iter().zip(&column[rows]).map(|(value, felt)| value.unwrap_or(*felt)));
+            let grid = on_grid(&of(&felt_s), &of(column), &time_s[start..*end]);
+            let rows = column[start..*end].iter_mut().zip(grid);
+            rows.for_each(|(felt, value)| *felt = value.unwrap_or(*felt));
             start = *end;
         }
-        out
-    };
-    let columns = trace.channels().iter().zip(trace.columns()).map(|(channel, column)| match channel.name.as_str() {
-        name if name == skew => vec![0.0; column.len()],
-        name if skewed.contains(&name) => moved(column),
-        _ => column.clone(),
-    });
-    let columns = columns.collect();
-    // A value between two counts is no count any more.
-    let channels = trace.channels().iter().map(|channel| match channel.name.as_str() {
-        name if skewed.contains(&name) => Channel::new(name),
-        _ => channel.clone(),
-    });
-    Trace::from_columns(channels.collect(), columns)
+        // A value between two counts is no count any more.
+        *channel = Channel::new(&channel.name);
+    }
+    Trace::from_columns(channels, columns)
 }
 
 #[cfg(test)]

@@ -81,6 +81,11 @@ impl Trace {
         self.index_of(name).map(|i| self.columns[i].as_slice())
     }
 
+    /// Channels and columns, without a copy. [`Trace::from_columns`] puts them together again.
+    pub fn into_parts(self) -> (Vec<Channel>, Vec<Vec<f64>>) {
+        (self.channels, self.columns)
+    }
+
     /// Takes the rows out and leaves an empty trace with the same channels.
     pub fn take(&mut self) -> Trace {
         let empty = Trace::new(self.channels.clone());

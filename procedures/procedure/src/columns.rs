@@ -4,7 +4,7 @@ use crate::encoder_columns::{self, Encoders};
 use crate::plan::Plan;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::{DriveHealth, JointReading, Pose};
-use jointbench_instrument::skew::{BRAKE_SKEW, TORQUE_SKEW};
+use jointbench_instrument::skew::{BRAKE_SKEW, TORQUE_SKEW, WARMTH_SKEW};
 use jointbench_instrument::{Bench, Channel, Kind, Trace};
 
 /// Time is kept in whole microseconds: finer than any serial instrument can tell, and exact to store.
@@ -14,6 +14,18 @@ pub(crate) const VELOCITY_STEP_RAD_S: f64 = 1e-4;
 
 /// The torque as the sensor's other range tells it.
 pub(crate) const OTHER_RANGE: &str = "other_range_torque_nm";
+
+/// The torque in one tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TorqueMoment {
+    pub nm: f64,
+    /// The largest either way, where more than one sample stands behind it.
+    pub peak_nm: f64,
+    /// In the sensor's other range, where the plan asks for it.
+    pub other_nm: Option<f64>,
+    /// By how much later than the joint it was felt.
+    pub skew_s: f64,
+}
 
 /// The brake's current in one tick.
 #[derive(Debug, Clone, Copy)]
@@ -29,12 +41,10 @@ pub(crate) struct BrakeMoment {
 pub(crate) struct Moment {
     pub time_s: f64,
     pub joint: JointReading,
-    pub link_torque_nm: Option<f64>,
-    /// In the sensor's other range, where the plan asks for it.
-    pub other_torque_nm: Option<f64>,
-    /// By how much later than the joint it was felt.
-    pub torque_skew_s: f64,
+    pub torque: Option<TorqueMoment>,
     pub temperature_c: Option<f64>,
+    /// By how much later than the row the thermometer was read: earlier, where it is held.
+    pub warmth_skew_s: f64,
     pub brake: Option<BrakeMoment>,
     pub velocity_setpoint_rad_s: f64,
     /// In a run of encoders.
@@ -51,8 +61,11 @@ pub(crate) struct Moment {
 /// link_torque_nm, torque_skew_s (it was felt so much later than its row), temperature_c, brake_current_a,
 /// brake_torque_command_nm, velocity_setpoint_rad_s, segment, repeat.
 ///
-/// A thermometer adds thermometer_1_c, thermometer_2_c, … in the order in which the bench description names its channels. Of
-/// a joint that tells no temperature the first of them is temperature_c instead.
+/// A thermometer adds thermometer_1_c, thermometer_2_c, … in the order in which the bench description names its channels, and
+/// thermometer_skew_s. Of a joint that tells no temperature the first of them is temperature_c instead.
+///
+/// Where the torque sensor sends by itself, a row has the mean of the samples since the row before, and the middle of their
+/// moments.
 ///
 /// A run that checks the torque sensor has other_range_torque_nm behind torque_skew_s: the same torque in its other range.
 ///
@@ -76,10 +89,11 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// `placed`: the plan moves the stage. `felt`: channels of the thermometer.
+    /// `placed`: the plan moves the stage. `streams`: the torque sensor sends by itself. `felt`: channels of the thermometer.
     pub fn of(
         plan: &Plan,
         placed: bool,
+        streams: bool,
         bench: &Bench,
         reading: &JointReading,
         health: &DriveHealth,
@@ -100,7 +114,8 @@ impl Columns {
         }
         if let Some(sensor) = &bench.torque_sensor {
             let name = if is_brake { "brake_torque_nm" } else { "link_torque_nm" };
-            channels.push(channel(name, sensor.resolution().map(|step| step.0)));
+            // A mean of counts is no count.
+            channels.push(channel(name, sensor.resolution().map(|step| step.0).filter(|_| !streams)));
             channels.push(channel(TORQUE_SKEW, Some(TIME_STEP_S)));
             if plan.both_ranges && sensor.has_two_ranges() {
                 channels.push(channel(OTHER_RANGE, None));
@@ -113,6 +128,7 @@ impl Columns {
             channels.push(channel("temperature_c", if standing_in == 0 { own_step_c } else { felt_step_c }));
         }
         channels.extend((standing_in..felt).map(|at| channel(&format!("thermometer_{}_c", at + 1), felt_step_c)));
+        channels.extend((felt > 0).then(|| channel(WARMTH_SKEW, Some(TIME_STEP_S))));
         let brake_nm_per_a = if is_brake { 1.0 } else { nominal_brake_nm_per_a(&bench.constants) };
         if let Some(source) = &bench.brake {
             let step_a = source.resolution().map(|step| step.0);
@@ -168,12 +184,13 @@ impl Columns {
         row.extend([moment.time_s, moment.joint.motor_position.0, moment.joint.motor_velocity.0]);
         row.push(moment.joint.motor_current.0);
         row.extend(moment.joint.link_position.map(|position| position.0));
-        if let Some(torque_nm) = moment.link_torque_nm {
-            row.extend([way * torque_nm, to_time_step(moment.torque_skew_s)]);
-            row.extend(moment.other_torque_nm.map(|other_nm| way * other_nm));
+        if let Some(torque) = moment.torque {
+            row.extend([way * torque.nm, to_time_step(torque.skew_s)]);
+            row.extend(torque.other_nm.map(|other_nm| way * other_nm));
         }
         row.extend(moment.temperature_c);
         row.extend(felt_c.iter().skip(self.standing_in));
+        row.extend((!felt_c.is_empty()).then(|| to_time_step(moment.warmth_skew_s)));
         if let Some(brake) = moment.brake {
             row.push(brake.measured_a);
             row.extend(self.braked_way.map(|_| to_time_step(brake.skew_s)));

@@ -175,6 +175,8 @@ pub struct Plan {
     pub steady: Option<Steady>,
     /// Keeps what the torque sensor's other range says, too.
     pub both_ranges: bool,
+    /// How often a torque sensor that can send by itself is to do so. `None`, and one that cannot: read once for each row.
+    pub torque_period_s: Option<f64>,
 }
 
 impl Plan {
@@ -254,6 +256,7 @@ pub(crate) mod testing {
             steps: durations_s.iter().enumerate().map(step).collect(),
             steady: None,
             both_ranges: false,
+            torque_period_s: None,
         }
     }
 

@@ -3,17 +3,26 @@
 
 use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
-use jointbench_procedure::{BenchFacts, Commit, Live, Recorder, RecorderFault, RunState, Safe, procedure, run, secure};
+use jointbench_instrument::{Bench, FaultKind};
+use jointbench_procedure::{
+    BenchFacts, Commit, EventKind, Live, Recorder, RecorderFault, RunEnd, RunState, Safe, procedure, run, secure,
+};
+use serde_json::json;
 use std::sync::mpsc::channel;
 
 /// In the first strokes, long before anything is finished.
 const FROM_S: f64 = 8.0;
+/// So long the plug is out while another unit is put in the place of an instrument: gone before anyone gives it up.
+const PULLED_S: f64 = 0.05;
 /// Slow quantities are asked for every half second: as long may rows follow whose quick ones are good.
 const NOTICED_S: f64 = 0.6;
 
-/// The times of the rows.
+/// The times of the rows, and what was told.
 #[derive(Default)]
-struct Kept(Vec<f64>);
+struct Kept {
+    times_s: Vec<f64>,
+    events: Vec<EventKind>,
+}
 
 impl Recorder for Kept {
     fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
@@ -21,34 +30,57 @@ impl Recorder for Kept {
     }
 
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
-        self.0.extend(commit.rows.column("time_s").unwrap_or_default());
+        self.times_s.extend(commit.rows.column("time_s").unwrap_or_default());
+        self.events.extend(commit.events.iter().map(|event| event.kind.clone()));
         Ok(())
     }
 
     fn live(&mut self, _live: Live<'_>) {}
 }
 
-/// `named`: what the reason of the failure has to say. `safe`: what the run has to reach by itself.
-fn check(instrument: MockInstrument, trouble: Trouble, named: &str, safe: &[Safe]) {
-    let case = format!("{instrument:?}, {trouble:?}");
-    let planned = PlannedTrouble { instrument, trouble, from_s: FROM_S, until_s: None };
-    let settings = MockSettings { troubles: vec![planned], deadline_ms: 300, ..MockSettings::new(Joint::JointA, 6) };
-    let mock = MockBench::start(settings).unwrap();
-    let mut bench = mock.open_bench("bench").unwrap();
-    let plan = procedure("friction").unwrap().plan(&Default::default(), &BenchFacts::of(&bench)).unwrap();
+/// `None`: for ever.
+type Planned = (MockInstrument, Trouble, f64, Option<f64>);
+
+fn start(troubles: impl IntoIterator<Item = Planned>) -> (MockBench, Bench) {
+    let planned = |(instrument, trouble, from_s, until_s)| PlannedTrouble { instrument, trouble, from_s, until_s };
+    let troubles = troubles.into_iter().map(planned).collect();
+    let mock = MockBench::start(MockSettings { troubles, deadline_ms: 300, ..MockSettings::new(Joint::JointA, 6) });
+    let mock = mock.unwrap();
+    let bench = mock.open_bench("bench").unwrap();
+    (mock, bench)
+}
+
+fn play(bench: &mut Bench, id: &str, parameters: serde_json::Value) -> (RunEnd, Kept) {
+    let parameters = parameters.as_object().cloned().unwrap_or_default();
+    let plan = procedure(id).unwrap().plan(&parameters, &BenchFacts::of(bench)).unwrap();
     let (_held, controls) = channel();
     let mut kept = Kept::default();
-    let end = run(&mut bench, &plan, 1, &controls, &mut kept);
+    let end = run(bench, &plan, 1, &controls, &mut kept);
+    (end, kept)
+}
+
+/// `named`: what the reason of the failure has to say. `safe`: what the run has to reach by itself.
+fn check(id: &str, instrument: MockInstrument, trouble: Trouble, named: &str, safe: &[Safe]) {
+    let case = format!("{id}: {instrument:?}, {trouble:?}");
+    // Nobody changes an instrument without pulling its plug.
+    let pulled = (instrument, Trouble::Unplugged, FROM_S, None);
+    let troubles = match trouble {
+        Trouble::Exchanged => vec![pulled, (instrument, trouble, FROM_S + PULLED_S, None)],
+        _ => vec![(instrument, trouble, FROM_S, None)],
+    };
+    let (mock, mut bench) = start(troubles);
+    let (end, Kept { times_s, .. }) = play(&mut bench, id, serde_json::Value::Null);
 
     let reason = end.reason.unwrap_or_default();
     assert_eq!(end.state, RunState::Failed, "{case}: {reason}");
     assert!(reason.contains(named), "{case}: {reason}");
     assert!(safe.contains(&end.safe), "{case}: {} after {reason}", end.safe);
-    assert_eq!(end.rows, kept.0.len() as u64, "{case}");
-    assert!(end.rows > 0 && kept.0.windows(2).all(|pair| pair[0] < pair[1]), "{case}");
-    // A loose contact shows when the brake is to hold a current.
-    let latest_s = if trouble == Trouble::CurrentLost { f64::INFINITY } else { FROM_S + NOTICED_S };
-    assert!(kept.0.last().is_some_and(|last_s| *last_s <= latest_s), "{case}: {:?}", kept.0.last());
+    assert_eq!(end.rows, times_s.len() as u64, "{case}");
+    assert!(end.rows > 0 && times_s.windows(2).all(|pair| pair[0] < pair[1]), "{case}");
+    // A loose contact shows when the brake is to hold a current; of gaps only many are too many.
+    let shows_late = [Trouble::CurrentLost, Trouble::StreamGap].contains(&trouble);
+    let latest_s = if shows_late { f64::INFINITY } else { FROM_S + NOTICED_S };
+    assert!(times_s.last().is_some_and(|last_s| *last_s <= latest_s), "{case}: {:?}", times_s.last());
 
     mock.trouble(instrument, Trouble::None);
     bench.clock.sleep_until_s(bench.clock.now_s() + 3.0);
@@ -77,7 +109,7 @@ const CABLE: [Trouble; 8] = [
 fn check_all(cases: impl IntoIterator<Item = (MockInstrument, Trouble, &'static str)>, safe: &[Safe]) {
     std::thread::scope(|scope| {
         for (instrument, trouble, named) in cases {
-            scope.spawn(move || check(instrument, trouble, named, safe));
+            scope.spawn(move || check("friction", instrument, trouble, named, safe));
         }
     });
 }
@@ -109,4 +141,58 @@ fn what_is_measured_and_must_not_be_ends_a_run_too() {
         (MockInstrument::Brake, Trouble::CurrentLost, "does not hold"),
     ];
     check_all(cases, &[Safe::SafeVerified]);
+}
+
+#[test]
+fn another_unit_in_the_place_of_an_instrument_is_named_as_one() {
+    let exchanged = |instrument| (instrument, Trouble::Exchanged, "another instrument answers: expected");
+    check_all([exchanged(MockInstrument::TorqueSensor)], &[Safe::SafeVerified]);
+    let others = [MockInstrument::Joint, MockInstrument::Brake].map(exchanged);
+    check_all(others, &[Safe::SafeCommanded, Safe::UnsafeUnknown]);
+}
+
+#[test]
+fn a_torque_stream_that_fails_ends_its_run_and_the_bench_is_read_back_safe() {
+    std::thread::scope(|scope| {
+        for trouble in CABLE.into_iter().chain([Trouble::StreamGap, Trouble::Saturated, Trouble::Exchanged]) {
+            // What comes a little later in whole chunks is in its place by its own index: nothing is wrong with it.
+            if trouble == Trouble::Stale {
+                continue;
+            }
+            let named = match trouble {
+                Trouble::StreamGap => "8 samples missing from the stream",
+                Trouble::Exchanged => "another instrument answers: expected",
+                _ => "torque_sensor",
+            };
+            scope.spawn(move || {
+                check("stiffness", MockInstrument::TorqueSensor, trouble, named, &[Safe::SafeVerified]);
+            });
+        }
+    });
+}
+
+#[test]
+fn a_gap_in_the_torque_stream_is_told_and_stays_one() {
+    let short = json!({"load_levels": 3, "dwell_s": 0.5, "top_load": 0.3});
+    let gaps = (MockInstrument::TorqueSensor, Trouble::StreamGap, FROM_S, Some(FROM_S + 0.6));
+    let (_mock, mut bench) = start([gaps]);
+    let (end, Kept { times_s, events }) = play(&mut bench, "stiffness", short);
+    assert_eq!((end.state, end.safe), (RunState::Completed, Safe::SafeVerified), "{:?}", end.reason);
+    let counts: Vec<u64> = events
+        .iter()
+        .filter_map(|event| match event {
+            EventKind::Fault { fault, recovered: true } => match fault.kind {
+                FaultKind::StreamGap { count } => Some(count),
+                _ => None,
+            },
+            _ => None,
+        })
+        .collect();
+    assert!(!counts.is_empty() && counts.iter().all(|count| *count == 8), "{counts:?}");
+    let missing: u64 = counts.iter().sum();
+    let told = format!("{missing} are missing");
+    assert!(events.iter().any(|event| matches!(event, EventKind::Note { text } if text.contains(&told))));
+    // Eight samples are two rows of 250 a second: they are not there, and the others are where they were.
+    let holes = times_s.windows(2).filter(|pair| (0.0061..0.1).contains(&(pair[1] - pair[0]))).count();
+    assert_eq!(holes, counts.len());
 }

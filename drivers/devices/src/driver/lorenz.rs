@@ -98,7 +98,7 @@ impl LorenzSensor {
 
 impl Range {
     /// Places of the range in use and of the other among a sensor's two.
-    fn in_use_and_other(self) -> [usize; 2] {
+    pub(super) fn in_use_and_other(self) -> [usize; 2] {
         match self {
             Range::Coarse => [0, 1],
             Range::Fine => [1, 0],
@@ -173,5 +173,9 @@ impl TorqueSensor for LorenzSensor {
 
     fn resolution(&self) -> Option<NewtonMetres> {
         Some(NewtonMetres(self.nm_per_count()))
+    }
+
+    fn as_stream(&mut self) -> Option<&mut dyn TorqueStream> {
+        Some(self)
     }
 }

@@ -13,6 +13,8 @@ use std::time::Duration;
 /// Nominal load of both channels.
 const ROTOR_HEADER: u8 = 128;
 const LOADS: [usize; 2] = [10, 14];
+/// The index of a sample counts so far.
+const INDICES: u64 = 256;
 /// For samples that are due and not there: another look after this long finds them, or they are late.
 const PATIENCE: Duration = Duration::from_millis(20);
 
@@ -21,15 +23,19 @@ pub(super) struct Stream {
     placed: StreamClock,
     frames: Frames,
     nominal_nm: [f64; 2],
+    /// Of the range in use.
+    range: Range,
     /// Of the next frame.
     number: u64,
     heard_s: f64,
+    /// When frames were last found in what was heard.
+    found_s: f64,
     gap: Option<u64>,
 }
 
 impl Stream {
     /// Samples in order, up to a gap, which is kept for the next call.
-    fn sort(&mut self, now_s: f64) -> Vec<TorqueSample> {
+    fn sort(&mut self, now_s: f64) -> Result<Vec<TorqueSample>, FaultKind> {
         let mut samples = Vec::new();
         while self.gap.is_none()
             && let Some(item) = self.frames.next()
@@ -37,22 +43,28 @@ impl Stream {
             match item {
                 Item::Frame(frame) => {
                     let moment = self.placed.moment(self.number);
-                    let [coarse, fine] = [0, 1].map(|channel| torque(frame.counts[channel], self.nominal_nm[channel]));
+                    let felt = |channel: usize| in_range(frame.counts[channel], self.nominal_nm[channel]);
+                    let [torque, other] = self.range.in_use_and_other().map(felt);
                     let (at_s, uncertainty_s) = (moment.at_s, moment.uncertainty_s);
-                    samples.push(TorqueSample { number: self.number, at_s, uncertainty_s, coarse, fine });
+                    samples.push(TorqueSample { number: self.number, at_s, uncertainty_s, torque, other });
                     self.number += 1;
                 }
                 Item::Gap { count } => {
                     // The index says how many are missing but for multiples of 256, the clock the rest.
                     let known = self.number + u64::from(count) + self.frames.waiting();
-                    let behind = self.placed.due(now_s).saturating_sub(known);
-                    let missing = u64::from(count) + (behind + 128) / 256 * 256;
+                    let due = self.placed.due(now_s);
+                    if known > due + INDICES / 2 {
+                        let what = "the stream repeats samples that have come before".into();
+                        return Err(FaultKind::Garbled { what });
+                    }
+                    let behind = due.saturating_sub(known);
+                    let missing = u64::from(count) + (behind + INDICES / 2) / INDICES * INDICES;
                     self.gap = Some(missing);
                     self.number += missing;
                 }
             }
         }
-        samples
+        Ok(samples)
     }
 
     fn arrived(&self) -> u64 {
@@ -93,7 +105,7 @@ impl Stream {
 }
 
 /// `None` at and beyond the nominal torque, where the counts are an overload.
-fn torque(counts: i16, nominal_nm: f64) -> Option<NewtonMetres> {
+fn in_range(counts: i16, nominal_nm: f64) -> Option<NewtonMetres> {
     let within = counts.unsigned_abs() < NOMINAL_COUNTS.unsigned_abs();
     within.then(|| NewtonMetres(f64::from(counts) / f64::from(NOMINAL_COUNTS) * nominal_nm))
 }
@@ -133,7 +145,9 @@ impl TorqueStream for LorenzSensor {
         let period_s = steps * PERIOD_STEP_S;
         let placed = StreamClock::new(period_s, before_s, heard_s);
         let frames = Frames::default();
-        self.stream = Some(Stream { clock, placed, frames, nominal_nm, number: 0, heard_s, gap: None });
+        let range = self.settings.range;
+        self.stream =
+            Some(Stream { clock, placed, frames, nominal_nm, range, number: 0, heard_s, found_s: heard_s, gap: None });
         Ok(Seconds(period_s))
     }
 
@@ -145,9 +159,18 @@ impl TorqueStream for LorenzSensor {
         if let Some(count) = stream.gap.take() {
             return Err(self.link.fault(FaultKind::StreamGap { count }));
         }
-        match stream.listen(&mut self.link) {
-            Ok(now_s) => {
-                let samples = stream.sort(now_s);
+        let heard = stream.listen(&mut self.link).and_then(|now_s| {
+            let samples = stream.sort(now_s).map_err(|kind| self.link.fault(kind))?;
+            if !samples.is_empty() || stream.gap.is_some() {
+                stream.found_s = now_s;
+            } else if now_s - stream.found_s > self.link.deadline().as_secs_f64() {
+                let what = "what comes holds no samples that follow each other".into();
+                return Err(self.link.fault(FaultKind::Garbled { what }));
+            }
+            Ok((now_s, samples))
+        });
+        match heard {
+            Ok((now_s, samples)) => {
                 if let Some(newest) = stream.arrived().checked_sub(1)
                     && stream.gap.is_none()
                 {

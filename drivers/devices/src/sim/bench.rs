@@ -6,7 +6,7 @@ use super::firmware::{AMPERES_PER_VOLT, Firmware, Odrive, PUMA_COUNTS, Puma};
 use super::plant::{HIDDEN_EFFECTS, Hidden, Plant, Truth};
 #[cfg(unix)]
 use super::port::serve_terminal;
-use super::port::{Port, lock, serve_inside, serve_tcp};
+use super::port::{Line, Port, lock, serve_inside, serve_tcp};
 use super::rig::{MockInstrument, Rig, Supply};
 use super::trouble::{PlannedTrouble, Trouble};
 use crate::driver::{
@@ -51,6 +51,8 @@ pub struct MockSettings {
     /// Bench seconds for each second of wall time. `None`: as fast as it goes.
     pub pace: Option<f64>,
     pub transport: Transport,
+    /// Bytes take the time on the wall that they take on the instrument's line; not [`Transport::Inside`]. Otherwise none.
+    pub paced_lines: bool,
     /// For the drivers that [`MockBench::open_bench`] opens.
     pub deadline_ms: u64,
     pub troubles: Vec<PlannedTrouble>,
@@ -75,6 +77,7 @@ impl MockSettings {
             effects: Vec::new(),
             pace: None,
             transport: Transport::Inside,
+            paced_lines: false,
             deadline_ms: DEADLINE_MS,
             troubles: Vec::new(),
             others,
@@ -164,11 +167,12 @@ impl MockBench {
                 continue;
             }
             let rig = Arc::clone(&bench.rig);
+            let line = if bench.settings.paced_lines { Line::paced(instrument.baud()) } else { Line::default() };
             let (port, thread) = match bench.settings.transport {
                 Transport::Inside => (serve_inside(instrument, rig), None),
                 #[cfg(unix)]
-                Transport::Terminal => serve_terminal(instrument, rig)?,
-                _ => serve_tcp(instrument, rig)?,
+                Transport::Terminal => serve_terminal(instrument, rig, line)?,
+                _ => serve_tcp(instrument, rig, line)?,
             };
             bench.ports.push((instrument, port));
             bench.threads.extend(thread);
@@ -209,7 +213,7 @@ impl MockBench {
             }),
             _ => JointSettings::Odrive(OdriveSettings {
                 name,
-                port: PortSettings::new(address, 921_600),
+                port: PortSettings::new(address, MockInstrument::Joint.baud()),
                 deadline_ms,
                 link_encoder: self.settings.load != Load::None,
                 thermistor: Some(Thermistor::Motor),
@@ -220,32 +224,26 @@ impl MockBench {
     /// What the ordinary drivers need to reach the instruments of this bench.
     pub fn instruments(&self) -> InstrumentSettings {
         let deadline_ms = self.settings.deadline_ms;
-        let port = |instrument, baud| self.address(instrument).map(|address| PortSettings::new(address, baud));
+        let port = |instrument: MockInstrument| {
+            self.address(instrument).map(|address| PortSettings::new(address, instrument.baud()))
+        };
         let counter = |name: &str, instrument, counts_per_turn, status_input| {
-            let port = port(instrument, 230_400)?;
+            let port = port(instrument)?;
             let (name, reversed) = (name.into(), false);
             Some(QsbSettings { name, port, deadline_ms, counts_per_turn, reversed, status_input })
         };
-        let torque_sensor = self.settings.torque_range().zip(port(MockInstrument::TorqueSensor, 230_400));
+        let torque_sensor = self.settings.torque_range().zip(port(MockInstrument::TorqueSensor));
         InstrumentSettings {
             joint: self.joint(),
             torque_sensor: torque_sensor.map(|((range, nominal_nm), port)| {
                 let name = "torque_sensor".into();
                 TorqueSensorSettings::Lorenz(LorenzSettings { name, port, deadline_ms, range, nominal_nm })
             }),
-            brake: port(MockInstrument::Brake, 115_200).map(|port| ScpiSettings {
-                name: "brake_a".into(),
-                port,
-                deadline_ms,
-            }),
+            brake: port(MockInstrument::Brake).map(|port| ScpiSettings { name: "brake_a".into(), port, deadline_ms }),
             reference_encoder: counter("s1", MockInstrument::CounterS1, ENCODER_COUNTS[0], None),
             test_encoder: counter("s2", MockInstrument::CounterS2, ENCODER_COUNTS[1], Some(0)),
-            stage: port(MockInstrument::Stage, 115_200).map(|port| GcsSettings {
-                name: "stage".into(),
-                port,
-                deadline_ms,
-            }),
-            thermometer: port(MockInstrument::Thermometer, 9600).map(|port| AdamSettings {
+            stage: port(MockInstrument::Stage).map(|port| GcsSettings { name: "stage".into(), port, deadline_ms }),
+            thermometer: port(MockInstrument::Thermometer).map(|port| AdamSettings {
                 name: "thermometer".into(),
                 port,
                 deadline_ms,

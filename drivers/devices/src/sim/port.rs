@@ -12,17 +12,48 @@ use std::net::TcpListener;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How soon a thread notices that it shall end, or that its cable is pulled.
 const GLANCE: Duration = Duration::from_millis(20);
 const GLANCE_STREAMING: Duration = Duration::from_micros(200);
+/// A sleep may end so much later than it should.
+const SLEEP_GRAIN: Duration = Duration::from_micros(500);
 
 /// What the bench's owner and the threads share about one connector.
 pub struct Port {
     instrument: MockInstrument,
     address: Mutex<Address>,
     closing: Arc<AtomicBool>,
+    line: Line,
+}
+
+/// How long a byte takes on a line; none at all by default, as on a pseudo-terminal.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Line {
+    byte: Duration,
+}
+
+impl Line {
+    /// A byte is ten bits: start, eight of data, stop.
+    pub fn paced(baud: u32) -> Self {
+        Self { byte: Duration::from_secs_f64(10.0 / f64::from(baud)) }
+    }
+
+    /// Returns when `count` bytes have gone by, the first of which may go at once, or behind what is on the line until `free`.
+    fn carry(self, count: usize, free: &mut Instant) {
+        if self.byte.is_zero() {
+            return;
+        }
+        let now = Instant::now();
+        *free = now.max(*free) + self.byte * u32::try_from(count).unwrap_or(u32::MAX);
+        if let Some(sleep) = free.checked_duration_since(now + SLEEP_GRAIN) {
+            std::thread::sleep(sleep);
+        }
+        while Instant::now() < *free {
+            std::hint::spin_loop();
+        }
+    }
 }
 
 pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -52,12 +83,14 @@ impl Port {
 pub fn serve_terminal(
     instrument: MockInstrument,
     rig: Arc<Mutex<Rig>>,
+    line: Line,
 ) -> io::Result<(Arc<Port>, Option<JoinHandle<()>>)> {
     let pty = Pty::open()?;
     let port = Arc::new(Port {
         instrument,
         address: Mutex::new(Address::Serial(pty.path().to_owned())),
         closing: Arc::default(),
+        line,
     });
     let shared = Arc::clone(&port);
     let thread = std::thread::Builder::new().name(format!("mock {}", instrument.label())).spawn(move || {
@@ -86,13 +119,18 @@ pub fn serve_terminal(
 }
 
 /// Listens on a free port of the loopback interface; every client talks to the same instrument.
-pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result<(Arc<Port>, Option<JoinHandle<()>>)> {
+pub fn serve_tcp(
+    instrument: MockInstrument,
+    rig: Arc<Mutex<Rig>>,
+    line: Line,
+) -> io::Result<(Arc<Port>, Option<JoinHandle<()>>)> {
     let listener = TcpListener::bind(("127.0.0.1", 0))?;
     listener.set_nonblocking(true)?;
     let port = Arc::new(Port {
         instrument,
         address: Mutex::new(Address::Tcp(listener.local_addr()?.to_string())),
         closing: Arc::default(),
+        line,
     });
     let shared = Arc::clone(&port);
     let thread = std::thread::Builder::new().name(format!("mock {}", instrument.label())).spawn(move || {
@@ -117,7 +155,8 @@ pub fn serve_tcp(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> io::Result
 pub fn serve_inside(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> Arc<Port> {
     let closing = Arc::new(AtomicBool::new(false));
     let connector = Connector { instrument, closing: Arc::clone(&closing), taken: Arc::default(), rig };
-    Arc::new(Port { instrument, address: Mutex::new(Address::Inside(Inside(Arc::new(connector)))), closing })
+    let address = Mutex::new(Address::Inside(Inside(Arc::new(connector))));
+    Arc::new(Port { instrument, address, closing, line: Line::default() })
 }
 
 /// A connector without a port: whoever is in this process plugs a cord in.
@@ -176,8 +215,9 @@ impl Cord for Plugged {
 fn converse(port: &Port, rig: &Mutex<Rig>, wire: &mut impl Wire) {
     let instrument = port.instrument;
     let mut talk = Talk::default();
+    let mut free = Instant::now();
     while !port.is_closing() {
-        if let Err(error) = talk.carry(instrument, rig, wire) {
+        if let Err(error) = talk.carry(port, &mut free, rig, wire) {
             tracing::debug!(%error, instrument = instrument.label(), "client left");
             return;
         }
@@ -194,12 +234,15 @@ struct Talk {
 }
 
 impl Talk {
-    fn carry(&mut self, instrument: MockInstrument, rig: &Mutex<Rig>, wire: &mut impl Wire) -> io::Result<()> {
+    /// `free`: when the last byte on the line has gone by.
+    fn carry(&mut self, port: &Port, free: &mut Instant, rig: &Mutex<Rig>, wire: &mut impl Wire) -> io::Result<()> {
+        let instrument = port.instrument;
         let mut chunk = [0; 1024];
         let wait = if lock(rig).is_streaming(instrument) { GLANCE_STREAMING } else { GLANCE };
         let count = wire.hear(&mut chunk, wait)?;
         self.exchange(instrument, &mut lock(rig), &chunk[..count])?;
         if !self.output.is_empty() {
+            port.line.carry(count + self.output.len(), free);
             wire.say(&self.output)?;
             self.output.clear();
         }

@@ -48,6 +48,16 @@ impl MockInstrument {
         }
     }
 
+    /// Bits a second on its line.
+    pub fn baud(self) -> u32 {
+        match self {
+            MockInstrument::Joint => 921_600,
+            MockInstrument::TorqueSensor | MockInstrument::CounterS1 | MockInstrument::CounterS2 => 230_400,
+            MockInstrument::Brake | MockInstrument::Stage => 115_200,
+            MockInstrument::Thermometer | MockInstrument::Multimeter => 9600,
+        }
+    }
+
     /// The firmware of an instrument that not every mock bench has.
     fn other(self) -> Option<Box<dyn Firmware + Send>> {
         match self {
@@ -101,7 +111,10 @@ impl Rig {
             moments.push((plan.from_s, plan.instrument, plan.trouble));
             moments.extend(plan.until_s.map(|until_s| (until_s, plan.instrument, Trouble::None)));
         }
-        moments.sort_by(|(a_s, ..), (b_s, ..)| b_s.total_cmp(a_s));
+        // What ends at a moment ends before what begins there.
+        moments.sort_by(|(a_s, _, a), (b_s, _, b)| {
+            b_s.total_cmp(a_s).then((*a == Trouble::None).cmp(&(*b == Trouble::None)))
+        });
         let torque_sensor = Lorenz::new();
         let brake: Box<dyn Firmware + Send> = match supply {
             Supply::Dp821a => Box::new(Dp800::new()),

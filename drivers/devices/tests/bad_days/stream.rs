@@ -65,7 +65,7 @@ fn every_sample_comes_once_and_in_its_place() {
             // 40 ppm of 4 s, and what the placing itself claims.
             let off_s = (sample.at_s - 1.0 - (sample.number + 1) as f64 * 1e-3).abs();
             assert!(off_s < 0.2e-3 + sample.uncertainty_s && sample.uncertainty_s < 0.5e-3, "{sample:?}");
-            assert!(sample.torque().unwrap().0.abs() < 0.1, "{sample:?}");
+            assert!(sample.torque.unwrap().0.abs() < 0.1, "{sample:?}");
         }
         world.sensor.stop_stream().unwrap();
         assert!(world.sensor.read().unwrap().0.abs() < 0.1, "single readings again");
@@ -123,8 +123,8 @@ fn both_ranges_come_and_the_small_one_saturates_alone() {
     world.mock.trouble(MockInstrument::TorqueSensor, Trouble::Saturated);
     world.collect(0.2).unwrap();
     let sample = world.samples.last().unwrap();
-    assert_eq!(sample.fine, None);
-    assert!((sample.torque().unwrap().0 - 27.0).abs() < 0.3, "{sample:?}");
+    assert_eq!(sample.torque, None);
+    assert!((sample.other.unwrap().0 - 27.0).abs() < 0.3, "{sample:?}");
 }
 
 #[test]

@@ -18,6 +18,9 @@ const LAG_S: f64 = 0.6;
 /// A falling one is spread over at least this time and a whole link turn (bench-physics, section 3).
 const UNLOAD_S: f64 = 2.0;
 
+/// What is measured by the torque sensor has its own pace, 1000 a second, wherever that gives two samples to every row.
+const TORQUE_PERIOD_S: f64 = 1e-3;
+
 /// What nearly every procedure lets people set.
 pub(super) const ACCELERATION: Parameter =
     Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [10.0, 5000.0]);
@@ -109,6 +112,7 @@ impl Legs {
 
     /// The plan that these legs make, with the facts about its run.
     pub fn plan(self, procedure: &dyn Procedure, values: &Values, meta: Meta, rate_hz: f64) -> Plan {
+        let measures_torque = matches!(procedure.kind(), Kind::Stiffness | Kind::Brake);
         Plan {
             procedure: procedure.id(),
             parameters: values.to_json(),
@@ -119,6 +123,7 @@ impl Legs {
             steps: self.steps,
             steady: None,
             both_ranges: false,
+            torque_period_s: (measures_torque && rate_hz * TORQUE_PERIOD_S <= 0.5).then_some(TORQUE_PERIOD_S),
         }
     }
 

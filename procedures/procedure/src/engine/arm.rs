@@ -39,7 +39,9 @@ impl Session<'_> {
         }
 
         self.feel_warmth()?;
-        let columns = Columns::of(self.plan, self.pose.is_some(), self.bench, &reading, &health, self.felt_c.len());
+        self.start_torque_stream()?;
+        let (placed, streams, felt) = (self.pose.is_some(), self.streaming.is_some(), self.felt_c.len());
+        let columns = Columns::of(self.plan, placed, streams, self.bench, &reading, &health, felt);
         self.journal.set_columns(columns.empty_trace());
         self.columns = Some(columns);
         if health.temperature.is_none() && self.felt_c.is_empty() {

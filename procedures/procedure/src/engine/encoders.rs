@@ -9,8 +9,10 @@ use crate::event::EventKind;
 use crate::place::{Edge, Hunt, Place};
 use crate::plan::Step;
 use crate::profile::Profile;
+use jointbench_instrument::clock::{Timed, timed};
 use jointbench_instrument::roles::{AlignmentStage, Pose, PositionCounter};
 use jointbench_instrument::{Fault, FaultKind, Kind};
+use std::sync::Arc;
 
 /// An accepted move is not under way yet (gcs2-hexapod, timing).
 const SET_OFF_S: f64 = 0.2;
@@ -18,6 +20,41 @@ const SET_OFF_S: f64 = 0.2;
 const ARRIVED_EVERY_S: f64 = 0.05;
 /// Longest move, and longest search for the axes' zeros.
 const LONGEST_MOVE_S: f64 = 60.0;
+
+/// How well the stage stood where it was told to, whenever it was read.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Stood {
+    readings: u32,
+    off_m: f64,
+    off_rad: f64,
+    uncertainty_s: f64,
+}
+
+impl Stood {
+    fn add(before: Option<Self>, told: Pose, stood: &Timed<Pose>) -> Self {
+        let before = before.unwrap_or_default();
+        let off =
+            |told: [f64; 3], stood: [f64; 3]| told.iter().zip(stood).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        Self {
+            readings: before.readings + 1,
+            off_m: before.off_m.max(off(told.shift_m, stood.value.shift_m)),
+            off_rad: before.off_rad.max(off(told.rotation_rad, stood.value.rotation_rad)),
+            uncertainty_s: before.uncertainty_s.max(stood.uncertainty_s),
+        }
+    }
+
+    /// For people.
+    pub fn told(self) -> String {
+        format!(
+            "the stage was read {} times when it had settled, at moments known to ±{:.2} ms or better: at most {:.2} µm and \
+             {:.1} µrad from where it was told to stand",
+            self.readings,
+            1e3 * self.uncertainty_s,
+            1e6 * self.off_m,
+            1e6 * self.off_rad
+        )
+    }
+}
 
 impl Session<'_> {
     /// Both encoders, in a run of encoders.
@@ -106,7 +143,11 @@ impl Session<'_> {
             "take its pose",
             |stage| stage.is_settled(),
             |session| session.drive(&here.clone().hold(ARRIVED_EVERY_S), &brake),
-        )
+        )?;
+        let clock = Arc::clone(&self.bench.clock);
+        let stood = self.ask_stage(|stage| timed(&*clock, || stage.pose()))?;
+        self.stood = Some(Stood::add(self.stood, pose, &stood));
+        Ok(())
     }
 
     fn until_stage(

@@ -29,6 +29,16 @@ pub(super) enum Ending {
     Illegal(IllegalMove),
 }
 
+impl Ending {
+    /// The fault of an instrument.
+    pub fn fault_mut(&mut self) -> Option<&mut Fault> {
+        match self {
+            Ending::JointFault(fault) | Ending::OtherFault(fault) => Some(fault),
+            _ => None,
+        }
+    }
+}
+
 /// How much time securing may take, from most to least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Urgency {

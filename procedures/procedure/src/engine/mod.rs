@@ -15,12 +15,14 @@ mod session;
 mod skew;
 mod steps;
 mod tick;
+mod torque;
 mod warmth;
 
 use crate::event::{Control, EventKind, Safe};
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::{RunState, Transition};
+use encoders::Stood;
 use ending::Ending;
 use jointbench_instrument::Bench;
 pub use safe_state::{Secured, secure};
@@ -77,10 +79,11 @@ impl Session<'_> {
         {
             ending = unkept;
         }
-        if let Some(told) = self.skews.and_then(Skews::told) {
-            self.note(told);
-        }
+        let told = [self.skews.and_then(Skews::told), self.stood.map(Stood::told)];
+        told.into_iter().flatten().for_each(|told| self.note(told));
         let safe = self.make_safe(&ending);
+        let _told = self.caught(Session::stop_torque_stream);
+        self.look_behind(&mut ending);
         let now_s = self.bench.clock.now_s();
         self.journal.tell(now_s, Some(EventKind::Safe { safe }));
         if let Err(unkept) = self.enter(Transition::End(ending.outcome())) {

@@ -3,10 +3,12 @@
 use super::ending::{Ending, Urgency};
 use super::safe_state::secure;
 use super::session::Session;
-use crate::event::Safe;
+use crate::event::{EventKind, Safe};
 use crate::guard::STANDSTILL_LINK_RAD_S;
 use crate::profile::Profile;
+use jointbench_instrument::FaultKind;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// The brake is unloaded over at least this time and one link turn, so that every pole is reached (bench-physics,
 /// section 3).
@@ -17,6 +19,9 @@ const LONGEST_UNLOAD_S: f64 = 15.0;
 const UNLOAD_LINK_RAD_S: f64 = TAU;
 /// The supply's dead time and the coil's lag, before the shaft may stop behind a falling current.
 const BRAKE_LAG_S: f64 = 0.5;
+/// A plug that is put in again is a port after this, and is looked for so often.
+const PLUGGED_S: f64 = 1.0;
+const LOOK_EVERY_S: f64 = 0.2;
 /// Shortest ramp of an abort.
 const QUICK_S: f64 = 0.3;
 
@@ -41,6 +46,28 @@ impl Session<'_> {
         let secured = secure(self.bench);
         secured.notes.into_iter().for_each(|note| self.note(note));
         secured.safe
+    }
+
+    /// An instrument that is gone may have been exchanged for another: what answers in its place now is the reason then.
+    pub(super) fn look_behind(&mut self, ending: &mut Ending) {
+        let Some(gone) = ending.fault_mut().filter(|fault| fault.is_port_lost()) else { return };
+        let clock = Arc::clone(&self.bench.clock);
+        let Some(instrument) = self.bench.instrument(&gone.instrument) else { return };
+        let give_up_s = clock.now_s() + PLUGGED_S;
+        let found = loop {
+            match instrument.recover() {
+                Err(fault) if fault.is_port_lost() && clock.now_s() < give_up_s => {
+                    clock.sleep_until_s(clock.now_s() + LOOK_EVERY_S);
+                }
+                found => break found,
+            }
+        };
+        if let Err(found) = found
+            && matches!(found.kind, FaultKind::WrongInstrument { .. })
+        {
+            *gone = found.clone();
+            self.journal.tell(clock.now_s(), EventKind::Fault { fault: found, recovered: false });
+        }
     }
 
     /// Takes the brake current away while the shaft turns, then lets it come to rest.

@@ -1,10 +1,12 @@
 //! The state of one run while it lasts.
 
 use super::ask::{Trouble, ask};
+use super::encoders::Stood;
 use super::ending::Ending;
 use super::journal::Journal;
 use super::pace::Pace;
 use super::skew::Skews;
+use super::torque::Streaming;
 use crate::columns::Columns;
 use crate::event::{Control, EventKind};
 use crate::guard::Guard;
@@ -19,6 +21,9 @@ use jointbench_instrument::{Bench, Fault};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Receiver;
 
+/// A link that has to be recovered more often than this in one step is not worth trusting.
+pub(super) const RECOVERIES_PER_STEP: u32 = 3;
+
 pub(super) struct Session<'a> {
     pub bench: &'a mut Bench,
     pub plan: &'a Plan,
@@ -31,8 +36,9 @@ pub(super) struct Session<'a> {
     pub columns: Option<Columns>,
     pub commanded: Commanded,
     pub held: Held,
-    /// The latest reading of the thermometer, its channels in the order of the bench description, and when the next is due.
+    /// The latest reading of the thermometer, its channels in the order of the bench description; empty where there is none.
     pub felt_c: Vec<f64>,
+    pub felt_at_s: f64,
     pub felt_next_s: f64,
     pub beat: Beat,
     pub wish: Option<Wish>,
@@ -45,12 +51,15 @@ pub(super) struct Session<'a> {
     /// The latest reading of the torque sensor.
     pub link_torque_nm: Option<f64>,
     pub skews: Option<Skews>,
+    /// While the torque sensor sends by itself.
+    pub streaming: Option<Streaming>,
     /// Time of the newest row, which the next one has to exceed.
     pub row_s: f64,
     pub next_segment: u32,
     pub lost: Lost,
     /// Where the stage was told to hold the sensor, in a plan that moves it.
     pub pose: Option<Pose>,
+    pub stood: Option<Stood>,
     /// The encoder under test has not been seen inconsistent since this was last set.
     pub consistent: bool,
     /// Replies that were missed and asked for again in this step.
@@ -138,6 +147,7 @@ impl<'a> Session<'a> {
             commanded: Commanded::default(),
             held: Held::default(),
             felt_c: Vec::new(),
+            felt_at_s: now_s,
             felt_next_s: now_s,
             beat: Beat { period_s: 1.0 / plan.rate_hz, next_s: now_s, late: 0 },
             wish: None,
@@ -146,10 +156,12 @@ impl<'a> Session<'a> {
             warm_from_rad: None,
             link_torque_nm: None,
             skews: None,
+            streaming: None,
             row_s: f64::NEG_INFINITY,
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
             lost: Lost::default(),
             pose: None,
+            stood: None,
             consistent: true,
             recoveries: 0,
             bench,

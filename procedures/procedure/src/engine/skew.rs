@@ -1,6 +1,6 @@
-//! How much later than the joint the torque sensor is read, by the bench's clock.
+//! How much later than the joint the torque is felt, by the bench's clock: earlier, where a stream has sent it before.
 
-use jointbench_instrument::clock::between;
+use jointbench_instrument::clock::Timed;
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::skew::Skew;
 
@@ -12,10 +12,8 @@ pub(super) struct Skews {
     uncertainty_s: f64,
 }
 
-/// Of a reading that was asked for and came between two moments.
-pub(super) fn of(joint: &JointReading, asked_s: f64, heard_s: f64) -> Skew {
-    let (at_s, uncertainty_s) = between(asked_s, heard_s);
-    Skew { s: at_s - joint.at_s, uncertainty_s: uncertainty_s + joint.uncertainty_s }
+pub(super) fn of<T>(joint: &JointReading, felt: &Timed<T>) -> Skew {
+    Skew { s: felt.at_s - joint.at_s, uncertainty_s: felt.uncertainty_s + joint.uncertainty_s }
 }
 
 impl Skews {
@@ -31,15 +29,18 @@ impl Skews {
     /// For people. `None` where the clock stood still between the two, as that of a mock bench without a pace does.
     pub fn told(self) -> Option<String> {
         let Self { least_s, most_s, uncertainty_s } = self;
-        (most_s > 0.0).then(|| {
-            format!(
-                "the torque sensor was read {:.2} to {:.2} ms after the joint, each known to ±{:.2} ms or better; \
-                 column torque_skew_s has it for every row",
-                1e3 * least_s,
-                1e3 * most_s,
-                1e3 * uncertainty_s
-            )
-        })
+        let (from_ms, to_ms, known_ms) = (1e3 * least_s, 1e3 * most_s, 1e3 * uncertainty_s);
+        let told = if most_s > 0.0 {
+            format!("read {from_ms:.2} to {to_ms:.2} ms after")
+        } else if least_s < 0.0 {
+            format!("felt {:.2} to {:.2} ms before", -to_ms, -from_ms)
+        } else {
+            return None;
+        };
+        Some(format!(
+            "the torque was {told} the joint, each known to ±{known_ms:.2} ms or better; column torque_skew_s has it for \
+             every row"
+        ))
     }
 }
 
@@ -58,12 +59,16 @@ mod tests {
             motor_current: Amperes(0.0),
             link_position: None,
         };
-        let first = of(&joint, 10.001, 10.002);
+        let felt = |at_s: f64, uncertainty_s: f64| of(&joint, &Timed { value: (), at_s, uncertainty_s });
+        let first = felt(10.0015, 0.5e-3);
         assert!((first.s - 1.5e-3).abs() < 1e-9 && (first.uncertainty_s - 1e-3).abs() < 1e-9, "{first:?}");
-        let skews = Skews::add(Some(Skews::add(None, first)), of(&joint, 10.001, 10.005));
+        let skews = Skews::add(Some(Skews::add(None, first)), felt(10.003, 2e-3));
         let told = skews.told().unwrap();
         assert!(told.contains("1.50 to 3.00 ms") && told.contains("±2.50 ms"), "{told}");
         let still = JointReading { uncertainty_s: 0.0, ..joint };
-        assert_eq!(Skews::add(None, of(&still, 10.0, 10.0)).told(), None);
+        let now = Timed { value: (), at_s: 10.0, uncertainty_s: 0.0 };
+        assert_eq!(Skews::add(None, of(&still, &now)).told(), None);
+        let streamed = Skews::add(Some(Skews::add(None, felt(9.997, 1e-4))), felt(9.998, 1e-4));
+        assert!(streamed.told().unwrap().contains("felt 2.00 to 3.00 ms before"), "{streamed:?}");
     }
 }

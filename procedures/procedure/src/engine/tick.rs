@@ -2,16 +2,16 @@
 
 use super::arm::link_position_rad;
 use super::ending::Ending;
-use super::session::{Asked, FeltCurrent, Session, Wish, reported};
-use super::skew::{self, Skews};
+use super::session::{Asked, FeltCurrent, RECOVERIES_PER_STEP, Session, Wish, reported};
 use crate::columns::{BrakeMoment, Moment, VELOCITY_STEP_RAD_S, to_time_step};
 use crate::event::{Control, EventKind};
 use crate::guard::Sample;
 use crate::state::{RunState, Transition};
 use jointbench_instrument::FaultKind;
-use jointbench_instrument::clock::between;
+use jointbench_instrument::clock::timed;
 use jointbench_instrument::roles::Regulation;
 use jointbench_instrument::units::{Amperes, RadPerSec};
+use std::sync::Arc;
 use std::sync::mpsc::TryRecvError;
 
 /// A supply needs up to 118 ms for a new current (scpi-current-source, timing): more commands would only queue.
@@ -27,8 +27,6 @@ const WARMTH_EVERY_S: f64 = 2.0;
 /// The supply may be out of regulation for so long: CV for more than 0.5 s at a commanded CC is a fault (bench-physics,
 /// section 5), and a rising current needs the full voltage for a moment.
 const UNREGULATED_S: f64 = 1.0;
-/// A link that has to be recovered more often than this in one step is not worth trusting.
-const RECOVERIES_PER_STEP: u32 = 3;
 
 impl Session<'_> {
     /// Waits for the next tick and tells its time.
@@ -145,19 +143,9 @@ impl Session<'_> {
         let joint = self.ask_joint(|joint| joint.read())?;
         self.trust_joint(recovered_before)?;
         self.joint = Some(joint);
-        let asked_s = self.bench.clock.now_s();
-        let torque = if self.lost.sensor {
-            None
-        } else {
-            let both = self.plan.both_ranges;
-            self.ask_torque_sensor(|sensor| if both { sensor.read_both() } else { Ok((sensor.read()?, None)) })?
-        };
-        let other_torque_nm = torque.and_then(|(_, other)| other).map(|torque| torque.0);
-        let link_torque_nm = torque.map(|(torque, _)| torque.0);
-        let torque_skew = skew::of(&joint, asked_s, self.bench.clock.now_s());
+        let torque = self.feel_torque(&joint)?;
+        self.link_torque_nm = torque.map(|torque| torque.nm);
         let encoders = self.feel_encoders()?;
-        self.link_torque_nm = link_torque_nm;
-        self.skews = link_torque_nm.map(|_| Skews::add(self.skews, torque_skew)).or(self.skews);
         if now_s >= self.held.next_s {
             self.held.next_s = now_s + SLOW_EVERY_S;
             self.check_drive()?;
@@ -170,13 +158,13 @@ impl Session<'_> {
         if now_s >= self.felt_next_s {
             self.feel_warmth()?;
         }
+        let row_s = encoders.map_or(joint.at_s, |both| both.test.at_s);
         Ok(Moment {
-            time_s: to_time_step(encoders.map_or(joint.at_s, |both| both.test.at_s) - self.journal.started_s),
+            time_s: to_time_step(row_s - self.journal.started_s),
             joint,
-            link_torque_nm,
-            other_torque_nm,
-            torque_skew_s: torque_skew.s,
+            torque,
             temperature_c: self.held.temperature_c,
+            warmth_skew_s: self.felt_at_s - row_s,
             brake: self.held.brake.map(|felt| BrakeMoment {
                 measured_a: felt.a,
                 skew_s: felt.at_s - joint.at_s,
@@ -194,17 +182,19 @@ impl Session<'_> {
         if self.lost.thermometer {
             return Ok(());
         }
-        if let Some(felt) = self.ask_thermometer(|thermometer| thermometer.read())? {
-            self.felt_next_s = self.bench.clock.now_s() + WARMTH_EVERY_S;
-            self.felt_c = felt.iter().map(|felt| felt.0).collect();
+        let clock = Arc::clone(&self.bench.clock);
+        if let Some(felt) = self.ask_thermometer(|thermometer| timed(&*clock, || thermometer.read()))? {
+            self.felt_next_s = clock.now_s() + WARMTH_EVERY_S;
+            self.felt_at_s = felt.at_s;
+            self.felt_c = felt.value.iter().map(|felt| felt.0).collect();
         }
         Ok(())
     }
 
     fn feel_brake(&mut self) -> Result<(), Ending> {
-        let asked_s = self.bench.clock.now_s();
-        if let Some(reading) = self.ask_brake(|brake| brake.read())? {
-            let (at_s, _) = between(asked_s, self.bench.clock.now_s());
+        let clock = Arc::clone(&self.bench.clock);
+        if let Some(felt) = self.ask_brake(|brake| timed(&*clock, || brake.read()))? {
+            let (reading, at_s) = (felt.value, felt.at_s);
             self.held.brake = Some(FeltCurrent { a: reading.current.0, at_s });
             let loaded = self.commanded.brake_a > 0.02 * self.bench.constants.brake_rated_current_a;
             let holds = !loaded || reading.regulation == Regulation::ConstantCurrent;
@@ -258,7 +248,7 @@ impl Session<'_> {
             motor_velocity_rad_s: joint.motor_velocity.0,
             motor_current_a: joint.motor_current.0,
             link_position_rad: link_position_rad(joint, self.bench.constants.gear_ratio),
-            link_torque_nm: moment.link_torque_nm,
+            link_torque_nm: moment.torque.map(|torque| torque.peak_nm),
             temperature_c: moment.temperature_c,
             brake_current_a: moment.brake.map(|brake| brake.measured_a),
         };
@@ -266,8 +256,10 @@ impl Session<'_> {
     }
 
     fn keep(&mut self, now_s: f64, moment: &Moment, keep: Option<(u32, u32)>) {
-        // A reading that is not newer than the row before is that row again; without an instrument it is no row.
-        let is_row = moment.time_s > self.row_s && !self.lost.sensor;
+        // A reading that is not newer than the row before is that row again; without an instrument, or what it feels, it is
+        // no row.
+        let felt = moment.torque.is_some() || self.bench.torque_sensor.is_none();
+        let is_row = moment.time_s > self.row_s && felt && !self.lost.sensor;
         let Some(columns) = self.columns.as_mut().filter(|_| is_row) else { return };
         self.row_s = moment.time_s;
         let (segment, repeat) = keep.unwrap_or_default();

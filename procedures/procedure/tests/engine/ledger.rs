@@ -122,6 +122,7 @@ pub fn loaded_plan() -> Plan {
         ],
         steady: None,
         both_ranges: false,
+        torque_period_s: None,
     }
 }
 

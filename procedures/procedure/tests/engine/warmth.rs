@@ -24,6 +24,14 @@ fn every_channel_is_a_column_beside_the_joints_own_temperature() {
     let behind = |(felt_c, at_s): (&f64, &f64)| (-1e-5..=2.01).contains(&(at_s - felt_c));
     let (felt_c, time_s) = (table.column("thermometer_1_c").unwrap(), table.column("time_s").unwrap());
     assert!(felt_c.iter().zip(time_s).all(behind), "never older than two seconds");
+    // As kept, each row tells when; as read, it is moved to the rows' moments.
+    for kept in done.ledger.kept.iter().filter(|kept| !kept.rows.is_empty()) {
+        let [felt_c, time_s, skew_s] =
+            ["thermometer_1_c", "time_s", "thermometer_skew_s"].map(|name| kept.rows.column(name).unwrap());
+        assert!((0..kept.rows.len()).all(|i| (felt_c[i] - time_s[i] - skew_s[i]).abs() < 1e-5));
+    }
+    let exact = felt_c.iter().zip(time_s).filter(|(felt_c, at_s)| (*felt_c - *at_s).abs() < 1e-4).count();
+    assert!(2 * exact > time_s.len(), "{exact} of {}", time_s.len());
     let identified =
         |event: &Event| matches!(&event.kind, EventKind::Identified { instrument, .. } if instrument == "thermometer");
     assert!(done.ledger.events().any(identified));

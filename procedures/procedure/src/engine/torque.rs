@@ -1,0 +1,159 @@
+//! The torque of a tick: one reading, or all that a stream has sent since the tick before.
+
+use super::ask::Trouble;
+use super::ending::Ending;
+use super::session::{RECOVERIES_PER_STEP, Session, tell};
+use super::skew::{self, Skews};
+use crate::columns::TorqueMoment;
+use jointbench_instrument::clock::{Timed, timed};
+use jointbench_instrument::roles::{JointReading, TorqueSample, TorqueSensor};
+use jointbench_instrument::units::Seconds;
+use jointbench_instrument::{Clock, Fault, FaultKind};
+use std::sync::Arc;
+
+/// The first sample of a stream is one period away, and a little longer under way.
+const FIRST_PERIODS: f64 = 2.0;
+
+/// What has come of a stream so far.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Streaming {
+    period: Seconds,
+    samples: u64,
+    missing: u64,
+}
+
+/// Torque as one tick feels it.
+#[derive(Debug, Clone, Copy)]
+struct Felt {
+    nm: f64,
+    peak_nm: f64,
+    other_nm: Option<f64>,
+}
+
+impl Session<'_> {
+    /// Lets the sensor send by itself, where the plan wants that and the sensor can.
+    pub(super) fn start_torque_stream(&mut self) -> Result<(), Ending> {
+        let Some(period_s) = self.plan.torque_period_s else { return Ok(()) };
+        let clock = Arc::clone(&self.bench.clock);
+        let started = self.ask_torque_sensor(|sensor| match sensor.as_stream() {
+            Some(stream) => stream.start_stream(Seconds(period_s), Arc::clone(&clock)).map(Some),
+            None => Ok(None),
+        })?;
+        self.streaming = started.flatten().map(|period| Streaming { period, samples: 0, missing: 0 });
+        if let Some(Streaming { period, .. }) = self.streaming {
+            clock.sleep_until_s(clock.now_s() + FIRST_PERIODS * period.0);
+        }
+        Ok(())
+    }
+
+    /// Single readings again, and a word on what has come.
+    pub(super) fn stop_torque_stream(&mut self) -> Result<(), Ending> {
+        let Some(Streaming { period, samples, missing }) = self.streaming.take() else { return Ok(()) };
+        self.note(format!(
+            "{samples} torque samples, {:.0} a second, came for the rows, each of which has the mean of its own; {missing} are missing",
+            1.0 / period.0
+        ));
+        let sensor = self.bench.torque_sensor.as_mut();
+        if let Some(Err(fault)) = sensor.and_then(|sensor| sensor.as_stream()).map(|stream| stream.stop_stream()) {
+            self.note(format!("the torque stream could not be ended: {fault}"));
+        }
+        Ok(())
+    }
+
+    /// `None`: no sensor, or nothing has come of its stream.
+    pub(super) fn feel_torque(&mut self, joint: &JointReading) -> Result<Option<TorqueMoment>, Ending> {
+        if self.lost.sensor {
+            return Ok(None);
+        }
+        let felt = if self.streaming.is_some() { self.collect_torque()? } else { self.read_torque()? };
+        let Some(felt) = felt else { return Ok(None) };
+        let skew = skew::of(joint, &felt);
+        self.skews = Some(Skews::add(self.skews, skew));
+        let Felt { nm, peak_nm, other_nm } = felt.value;
+        Ok(Some(TorqueMoment { nm, peak_nm, other_nm, skew_s: skew.s }))
+    }
+
+    fn read_torque(&mut self) -> Result<Option<Timed<Felt>>, Ending> {
+        let clock = Arc::clone(&self.bench.clock);
+        let both = self.plan.both_ranges;
+        let read = |sensor: &mut (dyn TorqueSensor + 'static)| {
+            let (torque, other) = if both { sensor.read_both()? } else { (sensor.read()?, None) };
+            Ok(Felt { nm: torque.0, peak_nm: torque.0, other_nm: other.map(|other| other.0) })
+        };
+        self.ask_torque_sensor(|sensor| timed(&*clock, || read(sensor)))
+    }
+
+    /// The mean of the samples of one period of the run, at the middle of their moments.
+    fn collect_torque(&mut self) -> Result<Option<Timed<Felt>>, Ending> {
+        let clock = Arc::clone(&self.bench.clock);
+        let Some(period) = self.streaming.map(|streaming| streaming.period) else { return Ok(None) };
+        let both = self.plan.both_ranges;
+        let mut samples = loop {
+            let mut ended = false;
+            let collected = self.ask_torque_sensor(|sensor| {
+                let collected = collect(sensor, std::mem::take(&mut ended).then_some(period), &clock, both);
+                ended = collected.is_err();
+                collected
+            })?;
+            match collected {
+                Some(Ok(samples)) => break samples,
+                Some(Err(gap)) => self.pass_gap(gap)?,
+                None => return Ok(None),
+            }
+        };
+        if let Some(streaming) = &mut self.streaming {
+            streaming.samples += samples.len() as u64;
+        }
+        let Some(newest_s) = samples.last().map(|sample| sample.at_s) else { return Ok(None) };
+        // What is older belongs to a tick that has not been.
+        samples.retain(|sample| sample.at_s > newest_s - self.beat.period_s);
+        let count = samples.len() as f64;
+        let mean = |of: fn(&TorqueSample) -> f64| samples.iter().map(of).sum::<f64>() / count;
+        let in_use = |sample: &TorqueSample| sample.torque.map_or(0.0, |torque| torque.0);
+        let peak_nm =
+            samples.iter().map(in_use).fold(0.0, |peak: f64, nm| if nm.abs() > peak.abs() { nm } else { peak });
+        let value = Felt {
+            nm: mean(in_use),
+            peak_nm,
+            other_nm: both.then(|| mean(|sample| sample.other.map_or(0.0, |other| other.0))),
+        };
+        let uncertainty_s = samples.iter().map(|sample| sample.uncertainty_s).fold(0.0, f64::max);
+        Ok(Some(Timed { value, at_s: mean(|sample| sample.at_s), uncertainty_s }))
+    }
+
+    /// A gap stays one: nothing stands in for what is missing. The stream itself goes on.
+    fn pass_gap(&mut self, gap: Fault) -> Result<(), Ending> {
+        if let (FaultKind::StreamGap { count }, Some(streaming)) = (&gap.kind, &mut self.streaming) {
+            streaming.missing += count;
+        }
+        let now_s = self.bench.clock.now_s();
+        tell(&mut self.journal, &mut self.recoveries, now_s, Trouble { fault: gap.clone(), recovered: true });
+        if self.recoveries > RECOVERIES_PER_STEP {
+            self.lost.sensor = true;
+            return Err(Ending::OtherFault(gap));
+        }
+        Ok(())
+    }
+}
+
+/// Samples, or the gap before those that come next. `anew`: the stream has ended and starts again with this period.
+fn collect(
+    sensor: &mut dyn TorqueSensor,
+    anew: Option<Seconds>,
+    clock: &Arc<dyn Clock>,
+    both: bool,
+) -> Result<Result<Vec<TorqueSample>, Fault>, Fault> {
+    let Some(stream) = sensor.as_stream() else { return Ok(Ok(Vec::new())) };
+    if let Some(period) = anew {
+        stream.start_stream(period, Arc::clone(clock))?;
+    }
+    let samples = match stream.collect() {
+        Err(gap @ Fault { kind: FaultKind::StreamGap { .. }, .. }) => return Ok(Err(gap)),
+        collected => collected?,
+    };
+    if samples.iter().any(|sample| sample.torque.is_none() || both && sample.other.is_none()) {
+        let what = format!("a sample of the stream beyond ±{} Nm; use the larger range", sensor.range().0);
+        return Err(FaultKind::Saturated { what }.at(sensor.name(), sensor.port()));
+    }
+    Ok(Ok(samples))
+}
