@@ -1,5 +1,6 @@
 //! Results as a person reads them.
 
+use jointbench_instrument::Motion;
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Options, Parameter,
     ParameterPair, ParameterState, Region, ResidualKind, Suggestion, words,
@@ -97,7 +98,7 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!();
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
-    own_formula(&diagnosis.shows_over);
+    own_formula(&diagnosis.shows_over, &diagnosis.fit);
     suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
     next_run(diagnosis.experiment.as_ref());
     not_visible(&diagnosis.not_visible);
@@ -140,13 +141,13 @@ pub fn discovery(discovery: &Discovery) {
         }
     }
     regions(&discovery.regions, &discovery.fit.unit);
-    own_formula(&discovery.shows_over);
+    own_formula(&discovery.shows_over, &discovery.fit);
     next_run(discovery.experiment.as_ref());
     not_visible(&discovery.not_visible);
 }
 
 /// What the library lacks, the user may know: over the axes that the summary has named.
-fn own_formula(axes: &[String]) {
+fn own_formula(axes: &[String], fit: &Fit) {
     if axes.is_empty() {
         return;
     }
@@ -156,7 +157,8 @@ fn own_formula(axes: &[String]) {
         "what you can do: write what you suspect as a formula of {} with --own (see --help), and see whether the error falls",
         words::list(&axes)
     );
-    if axes.iter().any(|axis| axis.ends_with("position")) {
+    let turns = fit.scope.as_ref().is_none_or(|scope| scope.motion != Motion::Linear);
+    if turns && axes.iter().any(|axis| axis.ends_with("position")) {
         println!("  positions are folded into one turn above; a formula folds them with wrap(position - p), -π to π");
     }
 }
