@@ -6,6 +6,7 @@ use jointbench_procedure::catalogue::Procedure;
 use jointbench_procedure::conduct::conduct;
 use jointbench_procedure::continuing::{Continues, Done, joined};
 use jointbench_procedure::parameter::Values;
+use jointbench_procedure::place::Place;
 use jointbench_procedure::plan::{Drive, Phase};
 use jointbench_procedure::*;
 use serde_json::{Map, Value, json};
@@ -80,11 +81,13 @@ fn one_of_each_kind(plan: &Plan) -> BTreeMap<usize, (f64, Control)> {
     let mut kinds = BTreeMap::new();
     for (index, step) in plan.steps.iter().enumerate() {
         let way = step.velocity.knots().iter().map(|(_, v)| *v).find(|v| *v != 0.0).map(|v| v > 0.0);
-        let drive = std::mem::discriminant(&step.drive);
-        let kind = format!("{:?} {:?} {drive:?} {way:?} {}", step.phase, step.before, step.brake.largest() > 0.0);
-        // A ramp of current ends where the joint breaks away: it is left early.
-        let within_s = match step.drive {
-            Drive::Current { from_s, .. } => from_s + 0.8,
+        let (drive, place) = (std::mem::discriminant(&step.drive), std::mem::discriminant(&step.place));
+        let braked = step.brake.largest() > 0.0;
+        let kind = format!("{:?} {:?} {drive:?} {place:?} {way:?} {braked}", step.phase, step.before);
+        // A ramp of current ends where the joint breaks away, a hunt where the edge is found: they are left early.
+        let within_s = match (&step.drive, step.place) {
+            (Drive::Current { from_s, .. }, _) => from_s + 0.8,
+            (_, Place::Edge(_)) => 1.0,
             _ => 0.5 * step.duration_s(),
         };
         kinds.entry(kind).or_insert((index, (within_s, Control::Pause)));
@@ -174,5 +177,19 @@ fn a_brake_is_the_same_brake() {
         ("friction_temperature", json!({"heat_s": 40.0, "cool_s": 40.0, "rest_s": 10.0})),
     ] {
         check(&joint, id, given);
+    }
+}
+
+#[test]
+fn an_encoder_is_the_same_encoder() {
+    let shaft = MockSettings::new(Joint::EncoderShaft, 1);
+    for (id, given) in [
+        ("encoder_offset", json!({"repeats": 2})),
+        ("encoder_delay", json!({})),
+        ("encoder_linearity", json!({"turns": 4.0, "table_size": 256})),
+        ("encoder_startup", json!({"power_ups": 4})),
+        ("encoder_alignment", json!({"halvings": 2, "map_positions": 3, "map_turns": 2.0})),
+    ] {
+        check(&shaft, id, given);
     }
 }
