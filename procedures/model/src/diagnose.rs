@@ -1,5 +1,6 @@
 //! Which effect is missing, and what is left when all that can be named is in the model.
 
+mod reversals;
 mod summary;
 
 use crate::assembly::Assembly;
@@ -25,13 +26,18 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let complete = report(found.end())?;
     let suggestions = suggestions(&found, &fit, &complete, spec, options)?;
     let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
-    let regions = if verdict == Verdict::MissingEffect {
-        let start = &found.start.main;
-        let residual = start.tangent().rest(&start.response());
-        regions(&Maps::new(&prepared, residual, options), &fit, &found, verdict)
-    } else {
-        regions(&found.maps, &fit, &found, verdict)
-    };
+    let undecided = summary::undecided(&found, &fit, verdict, options);
+    let start = &found.start.main;
+    let of_start = (verdict == Verdict::MissingEffect)
+        .then(|| Maps::new(&prepared, start.tangent().rest(&start.response()), options));
+    let maps = of_start.as_ref().unwrap_or(&found.maps);
+    let mut regions = regions(maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
+    let remembering = found.ranking().into_iter().filter_map(|(advance, _)| advance.added.as_ref());
+    let apart = remembering.filter(|rival| found.start.is_apart(rival.term.effect));
+    let reach = apart.filter_map(|rival| rival.term.shape.first().copied());
+    let measure = yardstick(&fit, Some(&found.floor));
+    let reversals = reach.filter_map(|reach| reversals::region(&found.start, reach, &fit, measure.as_ref()));
+    regions.splice(0..0, reversals.collect::<Vec<_>>());
     let structure = structure(&found, verdict);
     Ok(Diagnosis {
         kind: prepared.kind,
@@ -41,11 +47,11 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        undecided: summary::undecided(&found, &fit, verdict, options),
+        undecided,
         summary: match verdict {
             Verdict::MissingEffect => summary::missing(&found, &fit, &complete, &suggestions),
             _ => summary::end(&found, &complete, structure.as_ref(), options),
-        },
+        } + &summary::nowhere(verdict, maps, &regions, &fit),
         shows_over: shows_over(&found, structure.as_ref()),
         regions,
         structure,
@@ -87,6 +93,8 @@ pub fn discover(
     let fit = report(found.end())?;
     let verdict = found.end_verdict();
     let structure = structure(&found, verdict);
+    let undecided = summary::undecided(&found, &fit, verdict, options);
+    let regions = regions(&found.maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
     Ok(Discovery {
         kind: prepared.kind,
         steps,
@@ -94,11 +102,12 @@ pub fn discover(
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        undecided: summary::undecided(&found, &fit, verdict, options),
-        summary: summary::end(&found, &fit, structure.as_ref(), options),
+        undecided,
+        summary: summary::end(&found, &fit, structure.as_ref(), options)
+            + &summary::nowhere(verdict, &found.maps, &regions, &fit),
         shows_over: shows_over(&found, structure.as_ref()),
         model: found.end().effects.clone(),
-        regions: regions(&found.maps, &fit, &found, verdict),
+        regions,
         structure,
         experiment: experiment(&found, &prepared),
         not_visible: found.not_visible(),
@@ -169,11 +178,11 @@ fn suggestions(
     Ok(out)
 }
 
-/// Where a model fails. Nowhere that counts, where it is adequate.
-fn regions(maps: &Maps, fit: &Fit, found: &Exploration, verdict: Verdict) -> Vec<Region> {
-    match verdict {
-        Verdict::Adequate => Vec::new(),
-        _ => maps.regions(&fit.unit, yardstick(fit, Some(&found.floor)).as_ref()),
+/// Where a model fails. Nowhere that counts, where it is known to be adequate.
+fn regions(maps: &Maps, fit: &Fit, found: &Exploration, is_adequate: bool) -> Vec<Region> {
+    match is_adequate {
+        true => Vec::new(),
+        false => maps.regions(&fit.unit, yardstick(fit, Some(&found.floor)).as_ref()),
     }
 }
 

@@ -153,6 +153,11 @@ pub trait Effect: Sync {
         self.info().needs.iter().find(absent).copied()
     }
 
+    /// The effect that this one is one and the same with in such data, and that stands for both.
+    fn same_as(&self, _view: &View) -> Option<&'static str> {
+        None
+    }
+
     /// Why this data cannot show the effect: a needed signal is missing or never changes.
     fn hidden(&self, view: &View) -> Option<String> {
         let info = self.info();
@@ -162,6 +167,12 @@ pub trait Effect: Sync {
         let still = |need: &&&str| Signal::of_column(need).and_then(|s| view.find(s)).is_some_and(is_constant);
         if let Some(need) = info.needs.iter().find(still) {
             return Some(format!("{need} never changes"));
+        }
+        if let Some(other) = self.same_as(view) {
+            return Some(format!(
+                "the motion goes one way only, where it is one and the same with {other}, which stands for both; measure the \
+                 other direction as well"
+            ));
         }
         if self.forms(view).is_empty() { Some(format!("it would not show: {}", info.looks)) } else { None }
     }

@@ -44,6 +44,8 @@ pub struct Exploration<'p> {
     /// Maps of what the last model leaves.
     pub maps: Maps,
     pub floor: NoiseFloor,
+    /// Effects of the last model, and what this run cannot tell them from.
+    ties: Vec<(&'p str, &'p str)>,
 }
 
 /// A map must take this share off held-out squared error to be called structure. Over null runs the best map reaches
@@ -111,6 +113,7 @@ impl<'p> Exploration<'p> {
             advances.last().into_iter().for_each(&mut *on_advance);
         };
         let silent = search.silences();
+        let ties = open_ties(&search, &advances);
         let now = advances.last().map_or(&start, |a| &a.after);
         if now.effects.len() < start.effects.len() + most
             && !search.closed
@@ -118,7 +121,7 @@ impl<'p> Exploration<'p> {
             && let effects = now.effects.iter().map(String::as_str).chain([rival.term.id()]).map(String::from).collect()
             && let after = now.of(now.main.clone(), effects)
             && let Some(moving) = &after.moving
-            && is_decided(&rival.term, moving, &intervals(moving, prepared.motion).parameters, prepared)
+            && !Doubt::of(&rival.term, moving, &intervals(moving, prepared.motion).parameters, prepared).is_there()
         {
             advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
             advances.last().into_iter().for_each(&mut *on_advance);
@@ -126,7 +129,7 @@ impl<'p> Exploration<'p> {
         let mut invisible = library.invisible;
         invisible.retain(|i| !start.hidden.iter().any(|h| h.effect == i.effect));
         let floor = floor::noise_floor(prepared, &residual);
-        Ok(Self { start, advances, withdrawn, silent, invisible, maps, floor })
+        Ok(Self { start, advances, withdrawn, silent, invisible, maps, floor, ties })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
@@ -142,10 +145,10 @@ impl<'p> Exploration<'p> {
         self.start.hidden.iter().chain(&self.invisible).cloned().collect()
     }
 
-    /// Whether a rival that tied with an effect when it came in is still one: not where both are in the model now.
+    /// Whether a rival that tied with an effect when it came in is still one: not where both are in the model now, nor
+    /// where the last model would be worse with it in place of the effect.
     pub fn is_open_tie(&self, effect: &str, rival: &str) -> bool {
-        let is_in = |id: &str| self.end().effects.iter().any(|e| e == id);
-        is_in(effect) && !is_in(rival)
+        self.ties.iter().any(|(e, r)| *e == effect && *r == rival)
     }
 
     /// Verdict on the last model.
@@ -197,33 +200,67 @@ fn held_out_rms(terms: &Terms) -> f64 {
     (held_out(terms).iter().sum::<f64>() / terms.problem.rows() as f64).sqrt()
 }
 
-/// Whether the run decides that an effect is there: not where its factors could all be zero, or where its shape lies at
-/// the edge of what the run can speak about. A size that is open only because it trades off with the shape is no reason
-/// to doubt the effect.
-fn is_decided(term: &Term, terms: &Terms, parameters: &[Parameter], prepared: &Prepared) -> bool {
-    let own = |p: &&Parameter| p.effect == term.id();
-    let sudden = term.effect.suddenness();
-    let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
-    let at_bound = others.any(|p| p.state == ParameterState::AtBound);
-    // Of a wave's two factors one may well be zero.
-    let is_there = |parameters: &[Parameter]| {
-        let mut factors = parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
-        factors.any(|p| p.state != ParameterState::Unidentified)
-    };
-    !at_bound && (is_there(parameters) || is_there(&intervals(&terms.held(term.id()), prepared.motion).parameters))
+/// What the run leaves open about an effect.
+#[derive(Clone, Copy, Default)]
+struct Doubt {
+    /// Its factors could all be zero, be it because they trade off with the shape.
+    of_factors: bool,
+    /// They could with the shape held as well. What is open only because of the shape is no reason to doubt the effect.
+    of_size: bool,
+    /// Its shape lies at the edge of what the run can speak about, or a factor beyond what is physically possible.
+    of_shape: bool,
 }
 
-/// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Beside
-/// structure from outside the library no size is decided: a part of that may be in it.
+impl Doubt {
+    fn of(term: &Term, terms: &Terms, parameters: &[Parameter], prepared: &Prepared) -> Self {
+        let own = |p: &&Parameter| p.effect == term.id();
+        let sudden = term.effect.suddenness();
+        let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
+        // Of a wave's two factors one may well be zero.
+        let is_there = |parameters: &[Parameter]| {
+            let mut factors = parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
+            factors.any(|p| p.state != ParameterState::Unidentified)
+        };
+        let held = || intervals(&terms.held(term.id()), prepared.motion).parameters;
+        Self {
+            of_factors: !is_there(parameters),
+            of_size: !is_there(parameters) && !is_there(&held()),
+            of_shape: others.any(|p| p.state == ParameterState::AtBound),
+        }
+    }
+
+    fn is_there(self) -> bool {
+        self.of_size || self.of_shape
+    }
+}
+
+/// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Where it
+/// decides neither, something else shows in its place, and the effect goes whatever it brings. Beside structure from
+/// outside the library no size is decided: a part of that may be in it.
 fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
     let present: f64 = held_out(&search.now).iter().sum();
-    let more = |id| held_out(&search.now.without(id)).iter().sum::<f64>() / present - 1.0;
-    let open = search
-        .added()
-        .filter(|term| search.closed || !is_decided(term, &search.now, &parameters, prepared))
-        .map(|term| (term.id(), more(term.id())));
-    open.filter(|(_, more)| *more < CLEARLY_NEEDED).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+    let open = search.added().filter_map(|term| {
+        let doubt = Doubt::of(term, &search.now, &parameters, prepared);
+        let more = held_out(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
+        let goes = (search.closed || doubt.is_there()) && more < CLEARLY_NEEDED || doubt.of_factors && doubt.of_shape;
+        goes.then_some((term.id(), more))
+    });
+    open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+}
+
+/// Of what tied with an effect when it came in, what still does beside everything that came later.
+fn open_ties<'p>(search: &Search<'_, 'p>, advances: &[Advance<'p>]) -> Vec<(&'p str, &'p str)> {
+    let mut open = Vec::new();
+    for advance in advances {
+        let Some(effect) = advance.added.as_ref().map(|rival| rival.term.id()) else { continue };
+        let is_new = |rival: &&&'p str| !search.now.contains(rival) && !open.contains(&(effect, **rival));
+        if search.now.contains(effect) {
+            let rivals: Vec<&'p str> = advance.ties.iter().filter(is_new).copied().collect();
+            open.extend(rivals.into_iter().filter(|rival| search.ties(effect, rival)).map(|rival| (effect, rival)));
+        }
+    }
+    open
 }
 
 /// The axis over which structure remains.

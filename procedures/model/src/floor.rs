@@ -3,6 +3,8 @@
 use crate::pieces::pieces;
 use crate::prepare::Prepared;
 use crate::report::NoiseFloor;
+use crate::words::{figure, spoken};
+use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// An interval that reaches this many times as far tells nothing.
@@ -18,11 +20,7 @@ const FEWEST: usize = 8;
 pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
     let problem = &prepared.main;
     if problem.twins.len() < FEWEST {
-        let source = match problem.repeat.iter().any(|r| *r != problem.repeat[0]) {
-            true => "no noise floor: the repeats have no moments of the same condition and phase in common",
-            false => "no noise floor: the run has no repeats of the same profile",
-        };
-        return NoiseFloor { rms: None, ci95: None, source: source.to_owned(), repeatable_share: None };
+        return NoiseFloor { rms: None, ci95: None, source: unknown(prepared), repeatable_share: None };
     }
     let (piece, count) = pieces(problem, 1);
     let mut of_piece = vec![(0.0, 0.0); count];
@@ -47,10 +45,35 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
             "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
              different repeats ({})",
             problem.twins.len(),
-            if prepared.about.repeats_from == "column" { "as numbered" } else { "found by the period of the motion" }
+            match (prepared.about.repeats_from.as_str(), prepared.main.settled || prepared.kind == Kind::Friction) {
+                ("column", _) => "as numbered",
+                (_, true) => "found by the period of the motion",
+                (_, false) => "legs that run alike",
+            }
         ),
         repeatable_share: Some(if total > 0.0 { common / total } else { 0.0 }),
     }
+}
+
+/// Why there is no floor.
+fn unknown(prepared: &Prepared) -> String {
+    let problem = &prepared.main;
+    if let Some(unlike) = problem.unlike {
+        let (column, unit) = (prepared.column_name(unlike.signal), prepared.column_unit(unlike.signal));
+        let say = |value: f64| figure(prepared.column_scale(unlike.signal) * value, &unit);
+        return format!(
+            "no noise floor: the repeats are different motions, whose {} differs by {} RMS at the same moment where it \
+             varies by {} in the whole run",
+            spoken(column),
+            say(unlike.apart),
+            say(unlike.spread)
+        );
+    }
+    let source = match problem.repeat.iter().any(|r| *r != problem.repeat[0]) {
+        true => "no noise floor: the repeats have no moments of the same condition and phase in common",
+        false => "no noise floor: the run has no repeats of the same profile",
+    };
+    source.to_owned()
 }
 
 /// 95 % interval of the root: jackknife over pieces, because the pairs of one are not independent of each other, on the

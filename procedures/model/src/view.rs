@@ -148,6 +148,22 @@ impl View {
         self.points.find(signal).unwrap_or(&self.zeros)
     }
 
+    /// All motion has one direction: what changes sign with it cannot be told there from what does not.
+    pub fn goes_one_way(&self) -> bool {
+        let direction = self.get(Signal::Direction);
+        direction.first().is_some_and(|first| *first != 0.0 && direction.iter().all(|d| d == first))
+    }
+
+    /// The link turns as the motor does: there is no gear between their angles.
+    pub fn is_direct(&self) -> bool {
+        let (motor, link) = (self.get(Signal::Position), self.get(Signal::Link));
+        let span = |angle: &[f64]| {
+            let ends = angle.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+            ends.1 - ends.0
+        };
+        (span(motor) / span(link) - 1.0).abs() < 0.01
+    }
+
     /// One column from one signal.
     pub fn map(&self, signal: Signal, f: impl Fn(f64) -> f64) -> Vec<f64> {
         self.get(signal).iter().map(|x| f(*x)).collect()

@@ -1,5 +1,7 @@
 //! Figures as people say them.
 
+use jointbench_instrument::Kind;
+
 /// Factor and prefix of a unit that keep the digits of `size` before the point.
 pub fn prefix(size: f64) -> (f64, &'static str) {
     match size {
@@ -48,6 +50,15 @@ pub fn spoken(column: &str) -> String {
     column.trim_end_matches(suffix).replace('_', " ")
 }
 
+/// The same for an axis of a run: what turns in a brake run is the current.
+pub fn spoken_axis(axis: &str, kind: Kind) -> String {
+    match (kind, axis) {
+        (Kind::Brake, "direction") => "direction of the current".into(),
+        (Kind::Brake, "time_since_reversal_s") => "time since the current turned".into(),
+        _ => spoken(axis),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -66,5 +77,7 @@ mod tests {
         assert_eq!(spoken("motor_velocity_rad_s"), "motor velocity");
         assert_eq!(spoken("time_since_reversal_s"), "time since reversal");
         assert_eq!(spoken("repeat"), "repeat");
+        assert_eq!(spoken_axis("direction", Kind::Brake), "direction of the current");
+        assert_eq!(spoken_axis("direction", Kind::Friction), "direction");
     }
 }

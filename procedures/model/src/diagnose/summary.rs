@@ -1,9 +1,10 @@
 //! A diagnosis in plain sentences.
 
-use crate::explore::{Exploration, Withdrawal};
+use crate::explore::{Exploration, Withdrawal, Withdrawn};
 use crate::intervals::IMPOSSIBLE;
-use crate::report::{PairMap, Suggestion, Verdict};
-use crate::words::{figure, list, percent, spoken};
+use crate::maps::Maps;
+use crate::report::{PairMap, Region, Suggestion, Verdict};
+use crate::words::{figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
 /// A picture that takes less than this off held-out squared error shows nothing.
@@ -11,6 +12,9 @@ const LEAST_SHOWN: f64 = 0.02;
 
 /// Less than this share of the squared error in common is nothing in common.
 const NOTHING_IN_COMMON: f64 = 0.01;
+
+/// An effect that was left out is told where held-out error with it would be below this share.
+const WORTH_TELLING: f64 = 0.99;
 
 /// What is missing, and what is left when it is there. `fit` is the model at hand, `complete` the one with all suggestions.
 pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
@@ -79,7 +83,11 @@ fn dead_signal(found: &Exploration) -> String {
 
 /// How well the run repeats itself, and why an error may be smaller than that.
 fn floor(found: &Exploration, end: &Fit) -> String {
-    let Some(floor) = found.floor.rms else { return "how well the run repeats itself is not known".into() };
+    let Some(floor) = found.floor.rms else {
+        let why =
+            found.floor.source.strip_prefix("no noise floor").filter(|_| found.start.prepared.main.unlike.is_some());
+        return format!("how well the run repeats itself is not known{}", why.unwrap_or_default());
+    };
     let below = match end.validation_rms < floor {
         true => {
             " (counted only at moments that come again in another repeat; the error over all moments may be smaller)"
@@ -95,9 +103,7 @@ fn structure(found: &Exploration, end: &Fit, shown: Option<&PairMap>) -> String 
     let error = figure(end.validation_rms, &end.unit);
     let repeats = match found.floor.repeatable_share {
         Some(share) if share < NOTHING_IN_COMMON => {
-            ", which does not come again at the same moments of other repeats: it goes with the axis, or differs from \
-             repeat to repeat"
-                .to_owned()
+            ", none of it the same at the same moment of another repeat".to_owned()
         }
         Some(share) => format!(", {} of it the same in every repeat", percent(share)),
         None => String::new(),
@@ -106,7 +112,7 @@ fn structure(found: &Exploration, end: &Fit, shown: Option<&PairMap>) -> String 
         Some((axes, share)) => format!(
             "it shows most over {}, a function of which would take {} off the squared error that remains \
              ({error}{repeats})",
-            list(&axes.iter().map(|axis| spoken(axis)).collect::<Vec<_>>()),
+            list(&axes.iter().map(|axis| spoken_axis(axis, found.start.prepared.kind)).collect::<Vec<_>>()),
             percent(share),
         ),
         None => format!("no axis of this run shows where it comes from (the error that remains is {error}{repeats})"),
@@ -120,6 +126,15 @@ pub fn shown_over(found: &Exploration, shown: Option<&PairMap>) -> Option<(Vec<S
     // A second axis cuts the first one's bins: what shows over one alone can be more.
     let most = axis.into_iter().chain(pair).max_by(|a, b| a.1.total_cmp(&b.1));
     most.filter(|(_, share)| *share > LEAST_SHOWN)
+}
+
+/// Why no region is named where the model fails, in a sentence of its own. `maps` is what was looked at.
+pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> String {
+    match verdict {
+        Verdict::Adequate => String::new(),
+        _ if !regions.is_empty() => String::new(),
+        _ => format!(" No part of an axis stands out for sure{}.", maps.nowhere(&fit.unit)),
+    }
 }
 
 /// Why a model that fits may be wrong all the same: too short a run cannot decide it, or a size contradicts physics.
@@ -143,9 +158,13 @@ pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Opt
 /// Effects that came in and were taken back, and what that cost.
 fn taken_back(found: &Exploration, unit: &str) -> String {
     let of = |why: Withdrawal| found.withdrawn.iter().filter(move |w| w.why == why);
-    let is_out = |e: &&str| !found.end().effects.iter().any(|f| f == e);
+    // What could stand in the place of an effect of the model is named there.
+    let is_rival = |e: &str| found.end().effects.iter().any(|effect| found.is_open_tie(effect, e));
+    let is_out = |e: &&str| !found.end().effects.iter().any(|f| f == e) && !is_rival(e);
     let named = |why: Withdrawal| {
-        let mut names: Vec<&str> = of(why).map(|w| w.effect).filter(is_out).collect();
+        let brings =
+            |w: &&Withdrawn| why != Withdrawal::Undecided || w.held_out_rms < WORTH_TELLING * found.end_held_out_rms();
+        let mut names: Vec<&str> = of(why).filter(brings).map(|w| w.effect).filter(is_out).collect();
         names.reverse();
         let several = names.len() > 1;
         (!names.is_empty()).then(|| (list(&names), several))

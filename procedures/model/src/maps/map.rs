@@ -24,7 +24,7 @@ pub struct Cell {
     pub mean: f64,
     /// Standard error over the pieces that pass through; `None` with fewer than three, which say nothing about a fourth.
     error: Option<f64>,
-    pieces: usize,
+    pub pieces: usize,
     pub rows: usize,
 }
 

@@ -12,6 +12,7 @@ use crate::Options;
 use crate::pieces::pieces;
 use crate::prepare::Prepared;
 use crate::report::{PairMap, Region};
+use jointbench_instrument::Kind;
 use map::{Cell, Map};
 use scale::{Scale, scales};
 
@@ -25,6 +26,7 @@ pub struct Maps {
     residual: Vec<f64>,
     alpha: f64,
     cells: usize,
+    kind: Kind,
 }
 
 /// Bins of each axis of a map over two.
@@ -46,7 +48,7 @@ impl Maps {
             None => Vec::new(),
         };
         let cells = axes.iter().chain(&by_direction).map(|m| m.cells.len()).sum();
-        Self { scales, axes, by_direction, piece, residual, alpha: options.alpha, cells }
+        Self { scales, axes, by_direction, piece, residual, alpha: options.alpha, cells, kind: prepared.kind }
     }
 
     /// Share of the squared error that the best map would take off held-out data, with its axis.
@@ -73,6 +75,11 @@ impl Maps {
     /// Regions in which the residual is not noise, the worst first.
     pub fn regions(&self, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
         regions::regions(self, unit, yardstick)
+    }
+
+    /// Why there is none.
+    pub fn nowhere(&self, unit: &str) -> String {
+        regions::nowhere(self, unit)
     }
 
     /// The residual over the two axes where it shows most: of the pairs among the most telling axes, the one whose

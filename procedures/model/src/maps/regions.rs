@@ -4,7 +4,8 @@ use super::Maps;
 use super::map::{Cell, Map};
 use super::scale::Scale;
 use crate::report::{Fit, NoiseFloor, Region};
-use crate::words::{figure, percent, spoken};
+use crate::words::{figure, percent, spoken_axis};
+use jointbench_instrument::Kind;
 
 /// More regions than these nobody reads.
 const MOST: usize = 8;
@@ -22,7 +23,7 @@ pub struct Yardstick {
 
 impl Yardstick {
     /// `18 % of the Coulomb friction`, `35 times the noise`.
-    fn says(&self, size: f64) -> String {
+    pub fn says(&self, size: f64) -> String {
         match size / self.value {
             times if times >= 9.95 => format!("{times:.0} times {}", self.what),
             times if times >= 1.995 => format!("{times:.1} times {}", self.what),
@@ -66,7 +67,26 @@ pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Re
             told.push((stretch, rows));
         }
     }
-    told.iter().map(|(stretch, _)| stretch.region(unit, yardstick)).collect()
+    told.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
+}
+
+/// Why no region is named, with the part of an axis that comes nearest to being one.
+pub fn nowhere(maps: &Maps, unit: &str) -> String {
+    let cells =
+        maps.axes.iter().chain(&maps.by_direction).flat_map(|map| map.cells.iter().map(move |cell| (map, cell)));
+    let banded = cells.filter_map(|(map, cell)| Some((map, cell, maps.half_width(cell)?)));
+    let beyond = |(_, cell, half_width): &(&Map, &Cell, f64)| cell.mean.abs() / half_width.max(f64::MIN_POSITIVE);
+    let Some((map, cell, half_width)) = banded.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else {
+        return ", because none was passed by three independent stretches of motion".into();
+    };
+    let (mean, count) = (cell.mean, cell.rows);
+    let nearest = Stretch { map, first: cell.x, last: cell.x, y: cell.y, mean, half_width, count };
+    format!(
+        "; nearest to it, {}, known to ±{} from {} independent stretches of motion",
+        nearest.region(maps.kind, unit, None).sentence,
+        figure(half_width, unit),
+        cell.pieces,
+    )
 }
 
 /// Share of the rows that are among others in rising order.
@@ -100,6 +120,16 @@ fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
     out
 }
 
+/// What goes one way or the other: the motion, or the current of a brake.
+fn way(kind: Kind, positive: bool) -> &'static str {
+    match (kind, positive) {
+        (Kind::Brake, true) => "while the current rises",
+        (Kind::Brake, false) => "while the current falls",
+        (_, true) => "in positive motion",
+        (_, false) => "in negative motion",
+    }
+}
+
 impl Stretch<'_> {
     /// Squared error that it stands for.
     fn weight(&self) -> f64 {
@@ -114,13 +144,13 @@ impl Stretch<'_> {
         (0..self.map.x.bin.len()).filter(inside).collect()
     }
 
-    fn region(&self, unit: &str, yardstick: Option<&Yardstick>) -> Region {
+    fn region(&self, kind: Kind, unit: &str, yardstick: Option<&Yardstick>) -> Region {
         let x = &self.map.x;
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         let direction = self.map.y.as_ref().map(|y| if y.bins[self.y].centre > 0.0 { "positive" } else { "negative" });
         let side = if self.mean > 0.0 { "low" } else { "high" };
         let measure = yardstick.map_or_else(String::new, |y| format!(", {}", y.says(self.mean.abs())));
-        let motion = direction.map_or_else(String::new, |d| format!(" in {d} motion"));
+        let motion = direction.map_or_else(String::new, |d| format!(" {}", way(kind, d == "positive")));
         Region {
             axis: x.name.clone(),
             from,
@@ -132,22 +162,22 @@ impl Stretch<'_> {
             sentence: format!(
                 "the model is {} too {side} {}{motion}{measure}",
                 figure(self.mean.abs(), unit),
-                self.place(x)
+                self.place(kind, x)
             ),
         }
     }
 
     /// `below 9.0 rad/s`, `near 2.4 Nm`, `between a link position of 1.1 rad and 1.3 rad`.
-    fn place(&self, x: &Scale) -> String {
+    fn place(&self, kind: Kind, x: &Scale) -> String {
         if x.name == "direction" {
-            return if x.bins[self.first].centre > 0.0 { "in positive motion" } else { "in negative motion" }.into();
+            return way(kind, x.bins[self.first].centre > 0.0).into();
         }
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         if x.name == "repeat" {
             return if from == to { format!("in repeat {from}") } else { format!("in repeats {from} to {to}") };
         }
         let say = |value: f64| figure(value, &x.unit);
-        let what = spoken(&x.name);
+        let what = spoken_axis(&x.name, kind);
         let end = x.bins.len() - 1;
         if self.first == self.last && (say(from) == say(to) || (to - from).abs() < 0.03 * (to + from).abs() / 2.0) {
             return format!("at a {what} of about {}", say(x.bins[self.first].centre));

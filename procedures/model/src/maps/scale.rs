@@ -2,6 +2,7 @@
 
 use crate::prepare::{Prepared, Problem};
 use crate::view::Signal;
+use jointbench_instrument::Kind;
 use std::f64::consts::TAU;
 
 /// One quantity at the rows, in the column's own unit, with the bin of every row.
@@ -45,7 +46,9 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
         Signal::Drive,
         Signal::Direction,
     ] {
-        let Some(values) = problem.view.find(signal) else { continue };
+        let Some(values) = problem.view.find(signal).filter(|_| signal != Signal::Load || bears(prepared)) else {
+            continue;
+        };
         let factor = prepared.column_scale(signal);
         let values: Vec<f64> = problem.reduce.apply(values.to_vec()).into_iter().map(|v| v * factor).collect();
         let (name, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
@@ -61,7 +64,9 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
             Signal::Repeat => Scale::new(name, unit, levels(&values), values),
             Signal::Direction => {
                 let values: Vec<f64> = values.iter().map(|d| if *d > 0.0 { 1.0 } else { -1.0 }).collect();
-                Scale::new(name, unit, levels(&values), values)
+                let both = values.contains(&1.0) && values.contains(&-1.0);
+                let bin = values.iter().map(|d| usize::from(both && *d > 0.0)).collect();
+                Scale::new(name, unit, bin, values)
             }
             _ => Scale::new(name, unit, quantiles(&values, BINS), values),
         };
@@ -73,6 +78,15 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
     let since = Scale::new("time_since_reversal_s", "s".into(), quantiles(&since, BINS), since);
     scales.extend((since.bins.len() > 1 && scales.iter().any(|s| s.name == "direction")).then_some(since));
     scales
+}
+
+/// The link carries something: a load that is nothing beside the torque of the motor is its sensor's noise.
+fn bears(prepared: &Prepared) -> bool {
+    const NOTHING: f64 = 0.02;
+    let problem = &prepared.main;
+    let square = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64;
+    let load = problem.reduce.apply(problem.view.get(Signal::Load).to_vec());
+    prepared.kind != Kind::Friction || square(&load) > NOTHING * NOTHING * square(&problem.target)
 }
 
 impl Scale {

@@ -82,6 +82,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly) -> Proble
         fold: vec![0; rows],
         folds: 1,
         twins: Vec::new(),
+        unlike: None,
         segment: vec![0; rows],
         repeat: vec![0; rows],
         settled: true,

@@ -1,6 +1,7 @@
 //! Brake runs: braking torque over the coil current.
 
 use super::chunks::Source;
+use super::repeats::Same;
 use super::{Prepared, Problem, sample_s, segments, sweeps};
 use crate::effects::memory;
 use crate::linear::Basis;
@@ -46,7 +47,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         time_s,
         constants: Constants { pole_pairs: None, poles: run.meta().poles, ..Constants::default() },
     };
-    sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Current], options)
+    sweeps::prepare(run, source, CHUNK_S, &[Same::Size(Signal::Velocity), Same::Value(Signal::Current)], options)
 }
 
 /// The torque as the current and its history explain it: what speed and temperature may scale as a whole.

@@ -1,5 +1,6 @@
 //! Samples in model quantities, and their means over chunks.
 
+use super::repeats::{self, Same};
 use super::{Problem, Reduce, layout, segments};
 use crate::view::{Constants, Signal, Signals, View};
 use std::ops::Range;
@@ -24,7 +25,7 @@ pub struct Source {
 }
 
 /// Which samples become rows, and what they have in common.
-pub struct Layout {
+pub struct Layout<'a> {
     pub chunks: Vec<Range<usize>>,
     /// Stretch of consecutive rows.
     pub group: Vec<usize>,
@@ -33,6 +34,8 @@ pub struct Layout {
     pub phase: Option<Vec<usize>>,
     /// Constant speed: what is measured as acceleration is noise.
     pub settled: bool,
+    /// Signals in which stretches of one condition must agree to be repeats; none where the condition says all.
+    pub inputs: &'a [Same],
 }
 
 impl Source {
@@ -111,7 +114,7 @@ impl Source {
 
 /// The means of target and signals over chunks, as a problem.
 pub fn problem(samples: &Source, layout: Layout) -> Problem {
-    let Layout { chunks, group, condition, phase, settled } = layout;
+    let Layout { chunks, group, condition, phase, settled, inputs } = layout;
     let mean = |values: &[f64]| -> Vec<f64> {
         chunks.iter().map(|c| values[c.clone()].iter().sum::<f64>() / c.len() as f64).collect()
     };
@@ -137,10 +140,30 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         Some(_) => first(&samples.segment),
         None => group.iter().map(|g| *g as i64).collect(),
     };
-    let twins = phase.map_or_else(Vec::new, |phase| layout::twins(&condition, &phase, &repeat, 1));
+    // Numbered legs of one condition are repeats of each other, whatever the repeats are called.
+    let of: Vec<i64> = match inputs.is_empty() || samples.segment.is_none() {
+        true => repeat.clone(),
+        false => group.iter().map(|g| *g as i64).collect(),
+    };
+    let twins = phase.map_or_else(Vec::new, |phase| layout::twins(&condition, &phase, &of, 1));
     let mut view = View::new(points, samples.signals.clone(), chunks, samples.starts.clone(), samples.step_s);
     view.constants = samples.constants;
-    Problem { view, target, reduce: Reduce::Same, block, blocks, fold, folds, twins, segment, repeat, settled }
+    let mut problem = Problem {
+        view,
+        target,
+        reduce: Reduce::Same,
+        block,
+        blocks,
+        fold,
+        folds,
+        twins,
+        unlike: None,
+        segment,
+        repeat,
+        settled,
+    };
+    repeats::believe(&mut problem, &of, inputs);
+    problem
 }
 
 #[cfg(test)]

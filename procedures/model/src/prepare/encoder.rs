@@ -1,6 +1,7 @@
 //! Encoder runs: the wrapped difference of a test encoder to a reference.
 
 use super::chunks::Source;
+use super::repeats::Same;
 use super::{Prepared, filter, sample_s, segments, sweeps};
 use crate::view::{Constants, Signal, Signals};
 use crate::{ModelError, Options};
@@ -54,7 +55,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         time_s,
         constants: Constants { pole_pairs: run.meta().pole_pairs, poles: run.meta().poles, ..Constants::default() },
     };
-    sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity], options)
+    sweeps::prepare(run, source, CHUNK_S, &[Same::Value(Signal::Velocity)], options)
 }
 
 /// test − reference, wrapped about its own middle, so that no sample is torn from the others at ±π.

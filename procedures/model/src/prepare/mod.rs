@@ -5,7 +5,9 @@ mod chunks;
 mod encoder;
 pub mod filter;
 mod friction;
+mod holds;
 mod layout;
+mod repeats;
 mod segments;
 mod stiffness;
 mod sweeps;
@@ -16,6 +18,7 @@ use crate::view::{Signal, View};
 use crate::{ModelError, Options, ResidualKind};
 use filter::LowPass;
 use jointbench_instrument::{Kind, Motion, RunTable};
+pub use repeats::Unlike;
 
 /// What a model is judged on: the response at points with the signals that may explain it.
 #[derive(Debug, Clone)]
@@ -33,6 +36,8 @@ pub struct Problem {
     pub folds: usize,
     /// Rows that should be equal but for noise: the same condition and phase in another repeat.
     pub twins: Vec<(usize, usize)>,
+    /// Why there are none, where repeats are different motions.
+    pub unlike: Option<Unlike>,
     pub segment: Vec<i64>,
     pub repeat: Vec<i64>,
     /// Speed and load are constant within a block: what they seem to change there is their sensors' noise.

@@ -45,6 +45,27 @@ pub fn direction(velocity: &[f64], band: f64) -> Vec<f64> {
         .collect()
 }
 
+/// A joint that creeps over its own teeth swings back a little again and again: that is no motion the other way. Where
+/// these swings are short and few, the direction of the whole run is that of its way.
+pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -> Vec<f64> {
+    const FEW: f64 = 0.1;
+    const SHORT: f64 = 0.01;
+    let ahead: f64 = direction.iter().sum::<f64>().signum();
+    let back = direction.iter().filter(|d| **d == -ahead).count() as f64;
+    let (mut reached, mut deepest, mut way) = (f64::NEG_INFINITY, 0.0f64, 0.0f64);
+    for (i, q) in position.iter().enumerate() {
+        if starts.contains(&i) {
+            reached = f64::NEG_INFINITY;
+        } else if ahead * q > reached {
+            way += ahead * q - reached;
+        }
+        reached = reached.max(ahead * q);
+        deepest = deepest.max(reached - ahead * q);
+    }
+    let one_way = back < FEW * direction.len() as f64 && deepest < SHORT * way;
+    if one_way { vec![ahead; direction.len()] } else { direction }
+}
+
 /// The integers of a column, where the run has it.
 pub fn integers(run: &RunTable, column: &str) -> Option<Vec<i64>> {
     run.column(column).map(|values| values.iter().map(|v| *v as i64).collect())
@@ -86,6 +107,18 @@ pub fn period(signal: &[f64]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn swings_on_the_way_are_no_motion_the_other_way() {
+        let swinging = |size: f64| {
+            let position: Vec<f64> =
+                (0..2000).map(|i| 1e-3 * f64::from(i) + size * (0.02 * f64::from(i)).sin()).collect();
+            let velocity: Vec<f64> = position.windows(2).map(|w| w[1] - w[0]).collect();
+            without_swings(direction(&velocity, 0.0), &position[1..], &[0])
+        };
+        assert!(swinging(0.051).iter().all(|d| *d == 1.0));
+        assert!(swinging(0.2).contains(&-1.0), "a tenth of the way back and forth");
+    }
 
     #[test]
     fn a_period_is_found_in_short_and_long_signals() {

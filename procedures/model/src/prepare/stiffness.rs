@@ -1,6 +1,7 @@
 //! Stiffness runs: torsion between motor and link over the link torque.
 
 use super::chunks::Source;
+use super::repeats::Same;
 use super::{Prepared, filter, sample_s, segments, sweeps};
 use crate::linear::Spd;
 use crate::view::{Constants, Signal, Signals};
@@ -63,7 +64,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
     }
     source.signals.set(Signal::Load, smooth);
-    sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Load], options)
+    sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Load].map(Same::Value), options)
 }
 
 /// Most Chebyshev polynomials of one leg.

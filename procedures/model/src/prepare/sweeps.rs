@@ -1,7 +1,8 @@
 //! Runs in legs without plateaus: every sample counts, averaged over short chunks.
 
 use super::chunks::{Layout, Source, problem};
-use super::{Prepared, layout};
+use super::repeats::Same;
+use super::{Prepared, holds, layout};
 use crate::report::Preparation;
 use crate::view::Signal;
 use crate::{ModelError, Options, ResidualKind};
@@ -15,7 +16,7 @@ pub fn prepare(
     run: &RunTable,
     samples: Source,
     chunk_s: f64,
-    inputs: &[Signal],
+    inputs: &[Same],
     options: &Options,
 ) -> Result<Prepared, ModelError> {
     let raw = options.residual == Some(ResidualKind::Raw);
@@ -26,11 +27,18 @@ pub fn prepare(
     let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (number, leg) in legs.iter().enumerate() {
         let leg = match run.kind() {
-            Kind::Stiffness => samples.even_part(leg, n),
+            Kind::Stiffness | Kind::Brake => samples.even_part(leg, n),
             _ => leg.clone(),
+        };
+        let held = match (run.kind(), samples.signals.find(Signal::Current)) {
+            (Kind::Brake, Some(current)) => holds::held(&current[leg.clone()], n),
+            _ => Vec::new(),
         };
         // One of several and not their mean, which would blur a short wave.
         for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
+            if held.get(k * thin) == Some(&false) {
+                continue;
+            }
             chunks.push(start..start + n);
             group.push(number);
             phase.push(k);
@@ -40,12 +48,17 @@ pub fn prepare(
     if chunks.len() < 12 {
         return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks" });
     }
-    let mut main = problem(&samples, Layout { chunks, group, condition, phase: Some(phase), settled: false });
+    let layout = Layout { chunks, group, condition, phase: Some(phase), settled: false, inputs };
+    let mut main = problem(&samples, layout);
     if run.kind() == Kind::Brake {
         let drive = super::brake::drive(&main);
         main.view.points.set(Signal::Drive, drive);
     }
-    let repeats = main.repeat.iter().any(|r| *r != main.repeat[0]);
+    let repeats_from = match main.repeat.iter().any(|r| *r != main.repeat[0]) {
+        true => "column",
+        false if main.twins.is_empty() => "none",
+        false => "found",
+    };
     let about = Preparation {
         residual: if raw { ResidualKind::Raw } else { ResidualKind::PlateauMean },
         sample_rate_hz: 1.0 / samples.step_s,
@@ -56,7 +69,7 @@ pub fn prepare(
         rows: main.rows(),
         blocks: main.blocks,
         segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
-        repeats_from: if repeats { "column" } else { "none" }.into(),
+        repeats_from: repeats_from.into(),
     };
     Ok(Prepared {
         kind: run.kind(),
@@ -72,10 +85,11 @@ pub fn prepare(
 }
 
 /// Legs that start and end alike are repeats of one condition.
-fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Signal]) -> Vec<usize> {
+fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Same]) -> Vec<usize> {
     let mut keys: Vec<Vec<usize>> = vec![Vec::new(); legs.len()];
-    for signal in inputs {
-        let Some(values) = samples.signals.find(*signal) else { continue };
+    for same in inputs {
+        let Some(values) = samples.signals.find(same.signal()) else { continue };
+        let values = same.of(values);
         let peak = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
         let early = |leg: &Range<usize>| leg.start + leg.len() / 4..leg.start + leg.len() / 2;
         let late = |leg: &Range<usize>| leg.end - leg.len() / 4..leg.end;

@@ -8,8 +8,11 @@ use crate::effect::Search;
 use crate::prepare::Problem;
 use crate::terms::{Term, Terms, allows, polish};
 
-/// Gives an effect of several parts another one, as long as that explains more than any effect that is not in the model
-/// and passes the same tests.
+/// A part that keeps this share of what it explains beside another effect explains something else than that one.
+const OF_ITS_OWN: f64 = 0.8;
+
+/// Gives an effect of several parts another one, as long as no effect that is not in the model explains more of the same, and
+/// it passes the same tests.
 pub fn extend<'p>(terms: &mut Terms<'p>, library: &Library<'p>, options: &Options) {
     for at in 0..terms.terms.len() {
         while let Some(longer) = one_more(terms, at, library, options) {
@@ -28,9 +31,26 @@ fn one_more<'p>(terms: &Terms<'p>, at: usize, library: &Library<'p>, options: &O
     let is_part = |c: &&Candidate| c.id() == term.id() && c.form.name == part && !term.shape.contains(&c.shape[0]);
     let parts = library.candidates.iter().filter(is_part).map(|c| (share(c), c));
     let (share_of_part, part) = parts.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let others = library.candidates.iter().filter(|c| !terms.contains(c.id()));
-    let enough = others.map(share).fold(options.practical_share, f64::max);
-    if share_of_part < enough || significance(&part.term(terms.problem), library, &ground, options) > options.alpha {
+    let part = part.term(terms.problem);
+    let mut others: Vec<(f64, &Candidate)> = Vec::new();
+    for (share, other) in library.candidates.iter().filter(|c| !terms.contains(c.id())).map(|c| (share(c), c)) {
+        match others.iter_mut().find(|known| known.1.id() == other.id()) {
+            Some(known) if share > known.0 => *known = (share, other),
+            None if share > share_of_part => others.push((share, other)),
+            _ => {}
+        }
+    }
+    // What explains more is added first, unless it explains something else.
+    let instead = |other: &Candidate| {
+        let mut beside = ground.basis.clone();
+        for column in &other.term(terms.problem).columns {
+            beside.push(column);
+        }
+        let left = Ground::new(beside.clone(), beside.rest(&ground.residual), terms.problem);
+        left.own(&part.columns).share * left.energy < OF_ITS_OWN * share_of_part * ground.energy
+    };
+    let is_weak = share_of_part < options.practical_share || others.into_iter().any(|(_, other)| instead(other));
+    if is_weak || significance(&part, library, &ground, options) > options.alpha {
         return None;
     }
     let shape = term.shape.iter().chain(&part.shape).copied().collect();

@@ -101,8 +101,7 @@ impl<'l, 'p> Search<'l, 'p> {
     }
 
     fn drop(&mut self, id: &'p str) -> Move<'p> {
-        let rest: Vec<&str> = self.now.terms.iter().map(Term::id).filter(|other| *other != id).collect();
-        self.now = lay(&self.now, &rest, self.library, self.options);
+        self.now = self.laid_without(id);
         Move::Removed(id)
     }
 
@@ -128,6 +127,28 @@ impl<'l, 'p> Search<'l, 'p> {
         let shares = ids.map(|id| (id, 1.0 - full / self.now.without(id).linear().sse));
         let open = shares.filter(|(_, share)| *share < self.options.practical_share);
         open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+    }
+
+    /// The added effect that brings least on what was held out, where that is not worth a name: whatever came in since
+    /// explains the rest of it. Asked when nothing more can be added, because on the way two effects may mask each other.
+    fn idle(&self) -> Option<&'p str> {
+        let present: f64 = held_out(&self.now).iter().sum();
+        let share = |id: &'p str| (id, 1.0 - present / held_out(&self.laid_without(id)).iter().sum::<f64>());
+        let least = self.added().map(|term| share(term.id())).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (least.1 < self.options.practical_share).then_some(least.0)
+    }
+
+    fn laid_without(&self, id: &str) -> Terms<'p> {
+        let rest: Vec<&str> = self.now.terms.iter().map(Term::id).filter(|other| *other != id).collect();
+        lay(&self.now, &rest, self.library, self.options)
+    }
+
+    /// The model is as good with another effect in place of one.
+    pub fn ties(&self, effect: &str, rival: &'p str) -> bool {
+        let others = self.now.terms.iter().map(Term::id).filter(|id| *id != effect);
+        let with: Vec<&str> = others.chain([rival]).collect();
+        let other = lay(&self.now, &with, self.library, self.options);
+        is_tie(&held_out(&self.now), &held_out(&other))
     }
 
     /// Effects that were added and are still there.
@@ -159,6 +180,10 @@ impl<'p> Iterator for Search<'_, 'p> {
         let found = if self.left > 0 { self.step(&self.now) } else { None };
         let found = found.filter(|(rival, _)| !stands_in(rival));
         let Some((rival, ties)) = found else {
+            if let Some(id) = self.idle() {
+                self.withdrawn.push(id);
+                return Some(self.remove(id));
+            }
             self.exchanges = self.exchanges.checked_sub(1)?;
             let id = self.misplaced()?;
             return Some(self.remove(id));

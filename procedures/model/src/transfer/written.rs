@@ -110,7 +110,7 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
                 Some([2, 3, 4, 5].map(power).into())
             }
             ("saturation", "curve") => {
-                Some((2..).take(term.linear.len()).map(|n| Column::Formula(chebyshev(n))).collect())
+                Some((2..).take(term.linear.len()).map(|n| Column::Formula(from_zero(n))).collect())
             }
             ("saturation", "tanh") => formula("tanh(current / i_s)"),
             ("saturation", _) => formula("tanh((current - i_0) / i_s) + tanh(i_0 / i_s)"),
@@ -118,9 +118,9 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
                 let bands = term.linear.len();
                 Some((0..bands).map(|band| Column::Band { stops: 6 * bands, bands, band }).collect())
             }
-            ("hysteresis", _) => memory(rule, "current", "z"),
-            ("velocity_dependence", "plain") => formula("velocity"),
-            ("velocity_dependence", "excited") => formula("velocity * current"),
+            ("hysteresis", _) => memory(rule, "current", "z + 1"),
+            ("velocity_dependence", "plain") => formula("abs(velocity)"),
+            ("velocity_dependence", "excited") => formula("abs(velocity) * current"),
             ("cogging", "excited") => Some(waves("position", " * current", &orders(term))),
             ("cogging", _) => Some(waves("position", "", &orders(term))),
             ("temperature_dependence", "plain") => formula("temperature - 25"),
@@ -129,6 +129,12 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
             _ => None,
         },
     }
+}
+
+/// Chebyshev polynomial beside its value without current.
+fn from_zero(degree: usize) -> String {
+    let sign = if degree.is_multiple_of(2) { '-' } else { '+' };
+    format!("({} {sign} 1)", chebyshev(degree))
 }
 
 /// Chebyshev polynomial over the range of currents, by Horner's rule.

@@ -19,7 +19,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Brake,
     title: "Hysteresis",
     sentence: "At the same current the brake holds more on the way down than on the way up.",
-    formula: "h·z, stop dz = di/r within ±1 or Dahl; or Σ h_k·z_k over bands of stops with reaches up to i_max, half of the range of the current",
+    formula: "h·(z + 1), stop dz = di/r within ±1 or Dahl; or Σ h_k·(z_k + 1) over bands of stops with reaches up to i_max, half of the range of the current",
     source: "Prandtl–Ishlinskii model: Kuhnen 2003",
     looks: "loops over current",
     parameters: &[
@@ -71,8 +71,8 @@ impl Effect for Hysteresis {
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let current = view.samples.find(Signal::Current).unwrap_or_default();
         match form {
-            "stop" => vec![view.average(memory::stop(current, shape[0], &view.starts))],
-            "dahl" => vec![view.average(memory::dahl(current, shape[0], &view.starts))],
+            "stop" => vec![view.average(beside_rest(memory::stop(current, shape[0], &view.starts)))],
+            "dahl" => vec![view.average(beside_rest(memory::dahl(current, shape[0], &view.starts)))],
             _ => {
                 let bands = FORMS.iter().find(|known| known.0 == form).map_or(BANDS.len(), |known| known.1);
                 density(current, shape[0], bands, view)
@@ -81,13 +81,20 @@ impl Effect for Hysteresis {
     }
 }
 
+/// A state beside the one in which a fall to no current leaves it: what the brake holds there is drag.
+fn beside_rest(mut state: Vec<f64>) -> Vec<f64> {
+    state.iter_mut().for_each(|z| *z += 1.0);
+    state
+}
+
 /// Stops weighted by hats over their reach: each band rises to its knot and falls to the next.
 fn density(current: &[f64], reach: f64, bands: usize, view: &View) -> Columns {
     let mut columns = vec![vec![0.0; view.len()]; bands];
     let stops = STOPS * bands;
     for k in 1..=stops {
         let place = k as f64 / STOPS as f64;
-        let stop = view.average(memory::stop(current, reach * k as f64 / stops as f64, &view.starts));
+        let stop = memory::stop(current, reach * k as f64 / stops as f64, &view.starts);
+        let stop = view.average(beside_rest(stop));
         for (band, column) in columns.iter_mut().enumerate() {
             let weight = (1.0 - (place - (band + 1) as f64).abs()).max(0.0);
             if weight > 0.0 {

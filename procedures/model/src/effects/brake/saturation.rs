@@ -14,7 +14,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Brake,
     title: "Saturation",
     sentence: "The curve starts flat, is steep in the middle and bends when the iron is full.",
-    formula: "c_2·i² + c_3·i³, also up to i⁵, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s), or Σ k_n·T_n(2·i/i_max − 1)",
+    formula: "c_2·i² + c_3·i³, also up to i⁵, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s), or Σ k_n·(T_n(2·i/i_max − 1) − T_n(−1))",
     source: "makers' data of hysteresis brakes (S-shape); contract section 2",
     looks: "a curve over current, the same on the way up and down",
     parameters: &[
@@ -77,7 +77,7 @@ impl Effect for Saturation {
             "tanh" => vec![view.map(Signal::Current, |i| (i / shape[0]).tanh())],
             "curve" => (2..)
                 .take(CURVE.len())
-                .map(|n| view.map(Signal::Current, |i| chebyshev(n, 2.0 * i / shape[0] - 1.0)))
+                .map(|n| view.map(Signal::Current, |i| chebyshev(n, 2.0 * i / shape[0] - 1.0) - chebyshev(n, -1.0)))
                 .collect(),
             _ => vec![view.map(Signal::Current, |i| ((i - shape[0]) / shape[1]).tanh() + (shape[0] / shape[1]).tanh())],
         }

@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Brake,
     title: "Velocity dependence",
     sentence: "The brake holds more or less at higher speed: eddy currents and windage.",
-    formula: "c_v·ω, or c_v·i·ω, or c_v·τ·ω with the torque τ that current and history explain",
+    formula: "c_v·|ω|, or c_v·i·|ω|, or c_v·τ·|ω| with the torque τ that current and history explain",
     source: "makers' data of hysteresis brakes (eddy currents)",
     looks: "a line over speed",
     parameters: &[
@@ -34,9 +34,9 @@ impl Effect for VelocityDependence {
 
     fn columns(&self, form: &str, _: &[f64], view: &View) -> Columns {
         vec![match form {
-            "plain" => view.get(Signal::Velocity).to_vec(),
-            "excited" => view.map2(Signal::Velocity, Signal::Current, |w, i| w * i),
-            _ => view.map2(Signal::Velocity, Signal::Drive, |w, t| w * t),
+            "plain" => view.map(Signal::Velocity, f64::abs),
+            "excited" => view.map2(Signal::Velocity, Signal::Current, |w, i| w.abs() * i),
+            _ => view.map2(Signal::Velocity, Signal::Drive, |w, t| w.abs() * t),
         }]
     }
 }

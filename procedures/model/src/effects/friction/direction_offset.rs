@@ -30,4 +30,8 @@ impl Effect for DirectionOffset {
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![vec![1.0; view.len()]]
     }
+
+    fn same_as(&self, view: &View) -> Option<&'static str> {
+        view.goes_one_way().then_some("coulomb")
+    }
 }

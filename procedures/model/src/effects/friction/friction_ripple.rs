@@ -46,4 +46,8 @@ impl Effect for FrictionRipple {
         }
         columns
     }
+
+    fn same_as(&self, view: &View) -> Option<&'static str> {
+        (view.goes_one_way() && view.is_direct()).then_some("cogging")
+    }
 }

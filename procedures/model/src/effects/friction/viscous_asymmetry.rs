@@ -30,4 +30,8 @@ impl Effect for ViscousAsymmetry {
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.map(Signal::Velocity, f64::abs)]
     }
+
+    fn same_as(&self, view: &View) -> Option<&'static str> {
+        view.goes_one_way().then_some("viscous")
+    }
 }

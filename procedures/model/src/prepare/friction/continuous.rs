@@ -5,6 +5,7 @@
 
 use crate::prepare::chunks::Source;
 use crate::prepare::filter::{LowPass, by_recording};
+use crate::prepare::repeats::{self, Same};
 use crate::prepare::{Prepared, Problem, Reduce, layout, segments};
 use crate::report::Preparation;
 use crate::view::{Signal, View};
@@ -72,7 +73,9 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         })
         .collect();
     let group: Vec<usize> = without(pick(&strokes), &left_out).into_iter().map(|s| s as usize).collect();
-    let (block, blocks) = layout::blocks(&group, 16);
+    // A motion that never turns has no strokes: it says as much in pieces of half of that.
+    let never_turns = starts.len() == 1 && stroke == 0;
+    let (block, blocks) = layout::blocks(&group, if never_turns { 32 } else { 16 });
     let folds = blocks.clamp(1, 8);
     let fold: Vec<usize> = block.iter().map(|b| b % folds).collect();
 
@@ -96,7 +99,23 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     let points = std::mem::take(&mut samples.signals);
     let mut view = View::new(points.clone(), points, Vec::new(), starts, samples.step_s);
     view.constants = samples.constants;
-    let main = Problem { view, target, reduce, block, blocks, fold, folds, twins, segment, repeat, settled: false };
+    let mut main = Problem {
+        view,
+        target,
+        reduce,
+        block,
+        blocks,
+        fold,
+        folds,
+        twins,
+        unlike: None,
+        segment,
+        repeat,
+        settled: false,
+    };
+    let of = main.repeat.clone();
+    let inputs = [Signal::Velocity, Signal::Link, Signal::Load].map(Same::Value);
+    repeats::believe(&mut main, &of, &inputs);
     Ok(Prepared {
         kind: run.kind(),
         motion: run.meta().motion,

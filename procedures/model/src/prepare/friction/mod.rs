@@ -57,6 +57,7 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
     let noise = median(velocity.iter().zip(&smooth_velocity).map(|(a, b)| (a - b).abs()));
     let fastest = smooth_velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let direction = segments::direction(&smooth_velocity, (2.0 * noise).min(0.02 * fastest));
+    let direction = segments::without_swings(direction, position, &starts);
 
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let mut signals = Signals::new(run.len());

@@ -92,7 +92,8 @@ pub fn prepare(
     }
     let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
     let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
-    let mut main = problem(&samples, Layout { chunks, group, condition, phase: Some(phase), settled: true });
+    let layout = Layout { chunks, group, condition, phase: Some(phase), settled: true, inputs: &[] };
+    let mut main = problem(&samples, layout);
     let drive = super::drive(&main.view.points, &main.target);
     main.view.points.set(Signal::Drive, drive);
     let speed = |p: &Range<usize>| {
@@ -172,5 +173,6 @@ fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Pr
         return None;
     }
     let (samples, chunks) = samples.around(chunks);
-    Some(problem(&samples, Layout { chunks, condition: group.clone(), group, phase: None, settled: false }))
+    let layout = Layout { chunks, condition: group.clone(), group, phase: None, settled: false, inputs: &[] };
+    Some(problem(&samples, layout))
 }

@@ -78,7 +78,8 @@ impl Body {
                 }
                 self.statements.push(format!("for (int k = 1; k <= {stops}; k++) {{"));
                 let place = format!("fabs(k * {} / {} - {})", number(*bands as f64), number(*stops as f64), band + 1);
-                self.statements.push(format!("    sum += {factor} * fmax(0.0, 1.0 - {place}) * {state}[k - 1];"));
+                self.statements
+                    .push(format!("    sum += {factor} * fmax(0.0, 1.0 - {place}) * ({state}[k - 1] + 1.0);"));
                 self.statements.push("}".into());
             }
         }

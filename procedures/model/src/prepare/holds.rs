@@ -1,0 +1,66 @@
+//! Currents that go in steps: while one changes, its reading, the coil and the torque are each at another moment.
+
+/// A current that holds changes from chunk to chunk by less than this share of its usual step, or by no more than this
+/// multiple of what it does most of the time.
+const CHANGES: f64 = 0.01;
+const NOISE: f64 = 5.0;
+
+/// For each chunk of `n` samples whether the current holds there, and did so a little before and after. Empty where the
+/// current does not go in steps.
+pub fn held(current: &[f64], n: usize) -> Vec<bool> {
+    let means: Vec<f64> = current.chunks(n).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
+    let steps: Vec<f64> = means.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted.get(sorted.len() * 9 / 10).copied().unwrap_or(0.0);
+    let noise = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    // Where it moves all the time, what it does most of the time is no noise.
+    if usual == 0.0 || noise > 0.1 * usual {
+        return Vec::new();
+    }
+    let changes = (0..steps.len()).filter(|k| steps[*k] > (CHANGES * usual).max(NOISE * noise));
+    let margin = freshness(current).div_ceil(n) + 1;
+    let mut held = vec![true; means.len()];
+    for k in changes {
+        let last = (k + 1 + margin).min(held.len() - 1);
+        held[(k + 1).saturating_sub(margin)..=last].fill(false);
+    }
+    held
+}
+
+/// Samples for which one reading stands, where the current changes.
+fn freshness(current: &[f64]) -> usize {
+    let mut lengths: Vec<usize> = current.chunk_by(|a, b| a == b).map(<[f64]>::len).collect();
+    lengths.sort_unstable();
+    lengths.get(lengths.len() / 2).copied().unwrap_or(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every 100 samples a step to which the current creeps, read every tenth sample.
+    fn steps() -> Vec<f64> {
+        let current = |i: usize| {
+            let since = (i % 100) as f64;
+            0.1 * ((i / 100) as f64 - (-since / 8.0).exp())
+        };
+        (0..1000).map(|i| current(i / 10 * 10)).collect()
+    }
+
+    #[test]
+    fn a_change_and_what_lies_beside_it_is_left_out() {
+        let held = held(&steps(), 4);
+        let kept: Vec<usize> = (0..25).filter(|k| held[25 * 5 + k]).collect();
+        assert!(kept.first().is_some_and(|k| (8..20).contains(k)), "{kept:?}");
+        assert!(kept.last().is_some_and(|k| (19..24).contains(k)), "the reading may come late: {kept:?}");
+    }
+
+    #[test]
+    fn a_ramp_and_a_swing_have_no_holds() {
+        let ramp: Vec<f64> = (0..1000).map(|i| 1e-3 * f64::from(i) + 1e-4 * f64::from(i % 3)).collect();
+        let swing: Vec<f64> = (0..1000).map(|i| (0.01 * f64::from(i)).sin()).collect();
+        assert!(held(&ramp, 4).is_empty() && held(&swing, 4).is_empty());
+        assert!(held(&[0.5; 100], 4).is_empty(), "a constant current has no steps");
+    }
+}

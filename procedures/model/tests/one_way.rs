@@ -1,0 +1,40 @@
+//! A run that goes one way only: Coulomb friction and an offset are one and the same there, cogging and friction ripple too.
+
+mod common;
+
+use common::tables::{meta, scatter};
+use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
+use jointbench_model::{ModelSpec, Options, discover};
+
+/// A direct drive that creeps over its teeth: three turns forwards, with small swings back.
+fn creeping(baseline: &[&str]) -> RunTable {
+    const STEP_S: f64 = 0.005;
+    let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).to_vec());
+    for i in 0..12_000 {
+        let t = STEP_S * i as f64;
+        let way = 0.3 * t + 1.2 * (0.1 * t).sin();
+        let position = way + 0.1455 * (7.0 * way).sin();
+        let torque = 0.03 + 0.02 * (7.0 * position).cos() + 2e-3 * scatter(i, 3);
+        trace.push_row(&[t, position, torque / 0.08]);
+    }
+    let baseline = baseline.iter().map(|effect| (*effect).to_owned()).collect();
+    RunTable::new(Meta { gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) }, trace).unwrap()
+}
+
+#[test]
+fn what_goes_one_way_is_called_by_one_name() {
+    for baseline in [&["viscous"][..], &["coulomb", "viscous"]] {
+        let run = creeping(baseline);
+        let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
+        let mut model: Vec<&str> = found.model.iter().map(String::as_str).filter(|e| *e != "viscous").collect();
+        model.sort_unstable();
+        assert_eq!(model, ["cogging", "coulomb"], "{}", found.summary);
+        for (effect, other) in [("direction_offset", "coulomb"), ("friction_ripple", "cogging")] {
+            let why = &found.not_visible.iter().find(|n| n.effect == effect).unwrap().why;
+            assert!(why.contains("one way only") && why.contains(other), "{effect}: {why}");
+        }
+        assert!(found.fit.notes.iter().any(|note| note.contains("one way only")), "{:?}", found.fit.notes);
+        let coulomb = found.fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
+        assert!((coulomb.value - 0.03).abs() < 1e-3, "{coulomb:?}");
+    }
+}

@@ -1,0 +1,58 @@
+//! What is called a repeat, and what is one.
+
+mod common;
+
+use common::tables::meta;
+use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use jointbench_model::{Diagnosis, ModelSpec, Options, Verdict, diagnose};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+
+/// Three repeats of swings whose phases differ by `shift` from one repeat to the next, each from where it began.
+fn swings(shift: f64) -> Diagnosis {
+    const STEP_S: f64 = 0.01;
+    let names = "time_s motor_position_rad motor_current_a repeat";
+    let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let noise = Normal::new(0.0, 1.0).unwrap();
+    for i in 0..4_500 {
+        let (repeat, t) = (i / 1_500, STEP_S * (i % 1_500) as f64);
+        let phase = shift * repeat as f64;
+        let waves = [(9.0, 0.9, 0.0), (4.0, 2.1, phase), (1.5, 3.7, 2.0 * phase)];
+        let position: f64 = waves.iter().map(|(a, w, p)| a * (w * t + p).sin()).sum();
+        let velocity: f64 = waves.iter().map(|(a, w, p)| a * w * (w * t + p).cos()).sum();
+        let torque = 2e-3 * velocity + 1e-3 * noise.sample(&mut random);
+        trace.push_row(&[STEP_S * i as f64, position, torque / 0.08, repeat as f64]);
+    }
+    let run = RunTable::new(meta(Kind::Friction), trace).unwrap();
+    diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap()
+}
+
+#[test]
+fn repeats_of_one_motion_tell_the_noise() {
+    let found = swings(0.0);
+    assert!(found.noise_floor_rms.is_some_and(|rms| rms < 1e-3), "{:?}", found.noise_floor);
+    assert_eq!((found.verdict, &found.undecided), (Verdict::Adequate, &None), "{}", found.summary);
+}
+
+#[test]
+fn repeats_of_different_motions_tell_nothing() {
+    let found = swings(1.3);
+    assert_eq!(found.noise_floor_rms, None);
+    assert!(found.noise_floor.source.contains("different motions, whose"), "{}", found.noise_floor.source);
+    assert!(found.undecided.is_some() && found.suggestions.is_empty(), "{}", found.summary);
+    assert!(found.experiment.is_some(), "the run that would tell");
+}
+
+/// An industrial robot whose three repeats are three motions.
+#[test]
+fn kr300_repeats_are_different_motions() {
+    let Some(data) = common::shared("data") else { return };
+    for axis in ["kr300-axis1", "kr300-axis2", "kr300-axis3"] {
+        let run = common::read(&data.join(axis));
+        let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+        assert!(found.noise_floor.source.contains("different motions"), "{axis}: {}", found.noise_floor.source);
+        assert!(found.verdict != Verdict::Adequate || found.undecided.is_some(), "{axis}: {}", found.summary);
+    }
+}
