@@ -17,9 +17,17 @@ use jointbench_instrument::RunTable;
 /// blocks. Effects that the run cannot show stay in the model at zero and are named in the notes.
 /// [`ModelError::Collinear`] where two effects are proportional in this data.
 pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
+    fit_each(run, std::slice::from_ref(spec), options)?.remove(0)
+}
+
+/// As [`fit`], several models on one run, which is prepared once: on a long one that is most of the work.
+pub fn fit_each(
+    run: &RunTable,
+    specs: &[ModelSpec],
+    options: &Options,
+) -> Result<Vec<Result<Fit, ModelError>>, ModelError> {
     let prepared = prepare(run, options)?;
-    let assembly = Assembly::new(&prepared, spec, options)?;
-    report(&assembly)
+    Ok(specs.iter().map(|spec| report(&Assembly::new(&prepared, spec, options)?)).collect())
 }
 
 /// The contract's object of a model that is laid out.

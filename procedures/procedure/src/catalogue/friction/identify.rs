@@ -6,7 +6,9 @@ use crate::findings::{
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::words;
-use jointbench_model::{Fit, ModelSpec, Options, fit};
+use jointbench_model::{Fit, ModelSpec, Options, fit_each};
+use std::panic::resume_unwind;
+use std::thread;
 
 /// A figure with its 95 % interval.
 type Figured = (f64, [f64; 2]);
@@ -31,11 +33,11 @@ impl FreeFriction {
     pub fn of(run: &RunTable) -> Result<Self, Unusable> {
         let given = if run.column("link_torque_nm").is_some() { vec!["load_transmission"] } else { Vec::new() };
         let with = |more: &[&'static str]| {
-            let effects = given.iter().chain(["coulomb", "viscous"].iter()).chain(more).copied();
-            ModelSpec::new(run.kind(), effects).and_then(|spec| fit(run, &spec, &Options::default()))
+            ModelSpec::new(run.kind(), given.iter().chain(["coulomb", "viscous"].iter()).chain(more).copied())
         };
-        let plain = with(&[])?;
-        if let Ok(rich) = with(&["stribeck"])
+        let mut fits = fit_each(run, &[with(&[])?, with(&["stribeck"])?], &Options::default())?;
+        let (rich, plain) = (fits.remove(1), fits.remove(0)?);
+        if let Ok(rich) = rich
             && rich.validation_rms < plain.validation_rms
             && let Some(rise) = parameter(&rich, "stribeck", "tau_s")
             && let Some(speed) = parameter(&rich, "stribeck", "omega_s")
@@ -80,10 +82,17 @@ pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
 pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let free = free(run);
     let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
-    let both = keep(run, &free)?;
-    let whole = FreeFriction::of(&both)?;
-    let (forward, backward) = (FreeFriction::of(&part(1.0)?)?, FreeFriction::of(&part(-1.0)?)?);
-    let points = plateaus(&both)?;
+    // A run of hours takes seconds: the directions are looked at beside the whole.
+    let (whole, sides) = thread::scope(|scope| {
+        let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&part(sign)?)));
+        let whole = || -> Result<_, Unusable> {
+            let both = keep(run, &free)?;
+            Ok((FreeFriction::of(&both)?, plateaus(&both)?))
+        };
+        (whole(), sides.join())
+    });
+    let [forward, backward] = sides.unwrap_or_else(|panic| resume_unwind(panic));
+    let ((whole, points), forward, backward) = (whole?, forward?, backward?);
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
 
     let mut quantities = named("", "", "", &whole, gear);
