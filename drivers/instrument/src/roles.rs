@@ -166,6 +166,8 @@ pub trait CurrentSource: Instrument {
     fn read(&mut self) -> Result<SupplyReading, Fault>;
     /// Output off. The coil current decays with its own time constant.
     fn output_off(&mut self) -> Result<(), Fault>;
+    /// The same for a supply that answers no more: the command is on the wire when this returns, and nothing is waited for.
+    fn command_off(&mut self) -> Result<(), Fault>;
     fn resolution(&self) -> Option<Amperes>;
 }
 

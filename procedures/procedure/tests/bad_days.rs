@@ -1,7 +1,7 @@
 //! Every bad day that strikes in mid-run, on the mock bench and through the drivers: the run ends in the right verdict, the
 //! bench is safe, nothing is kept that was not measured, and once the trouble is over every port can be used again.
 
-use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Trouble};
+use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Transport, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, FaultKind};
 use jointbench_procedure::{
@@ -195,4 +195,35 @@ fn a_gap_in_the_torque_stream_is_told_and_stays_one() {
     // Eight samples are two rows of 250 a second: they are not there, and the others are where they were.
     let holes = times_s.windows(2).filter(|pair| (0.0061..0.1).contains(&(pair[1] - pair[0]))).count();
     assert_eq!(holes, counts.len());
+}
+
+#[test]
+fn a_cable_that_is_back_under_another_port_serves_a_bench_that_is_opened_again() {
+    let pulled = PlannedTrouble {
+        instrument: MockInstrument::TorqueSensor,
+        trouble: Trouble::Unplugged,
+        from_s: FROM_S,
+        until_s: None,
+    };
+    let (transport, deadline_ms) = (Transport::Terminal, 300);
+    let settings =
+        MockSettings { transport, troubles: vec![pulled], deadline_ms, ..MockSettings::new(Joint::JointA, 6) };
+    let mock = MockBench::start(settings).unwrap();
+    let mut bench = mock.open_bench("bench").unwrap();
+    let (end, _) = play(&mut bench, "stiffness", serde_json::Value::Null);
+    assert_eq!((end.state, end.safe), (RunState::Failed, Safe::SafeVerified), "{:?}", end.reason);
+    assert!(end.reason.unwrap().contains("port lost"));
+    drop(bench);
+    mock.trouble(MockInstrument::TorqueSensor, Trouble::None);
+    // Plugged in by a thread of its own.
+    let since = std::time::Instant::now();
+    let mut again = loop {
+        match mock.open_bench("again") {
+            Ok(bench) => break bench,
+            Err(fault) => assert!(since.elapsed().as_secs() < 10, "{fault}"),
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    };
+    assert_eq!(secure(&mut again).safe, Safe::SafeVerified);
+    again.torque_sensor.as_mut().unwrap().read().unwrap();
 }

@@ -8,7 +8,7 @@ use jointbench_instrument::roles::{TorqueSample, TorqueStream};
 use jointbench_instrument::units::{NewtonMetres, Seconds};
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Nominal load of both channels.
 const ROTOR_HEADER: u8 = 128;
@@ -28,6 +28,8 @@ pub(super) struct Stream {
     /// Of the next frame.
     number: u64,
     heard_s: f64,
+    /// The same on the wall, where a bench's clock may stand still while somebody listens.
+    heard: Instant,
     /// When frames were last found in what was heard.
     found_s: f64,
     gap: Option<u64>,
@@ -83,7 +85,7 @@ impl Stream {
         let mut patience = Duration::ZERO;
         while link.overhear(&mut bytes, patience)? > 0 || patience.is_zero() {
             if !bytes.is_empty() {
-                self.heard_s = now_s;
+                (self.heard_s, self.heard) = (now_s, Instant::now());
                 self.frames.push(&bytes);
                 bytes.clear();
             }
@@ -92,12 +94,13 @@ impl Stream {
             }
             patience = PATIENCE;
         }
-        if now_s - self.heard_s > deadline.as_secs_f64() {
-            if link.overhear(&mut bytes, deadline)? == 0 {
+        let waited = self.heard.elapsed();
+        if waited > deadline || now_s - self.heard_s > deadline.as_secs_f64() {
+            if link.overhear(&mut bytes, deadline.saturating_sub(waited))? == 0 {
                 let deadline_ms = deadline.as_millis() as u64;
                 return Err(link.fault(FaultKind::Silent { request: "the stream".into(), deadline_ms }));
             }
-            self.heard_s = now_s;
+            (self.heard_s, self.heard) = (now_s, Instant::now());
             self.frames.push(&bytes);
         }
         Ok(now_s)
@@ -145,9 +148,19 @@ impl TorqueStream for LorenzSensor {
         let period_s = steps * PERIOD_STEP_S;
         let placed = StreamClock::new(period_s, before_s, heard_s);
         let frames = Frames::default();
-        let range = self.settings.range;
-        self.stream =
-            Some(Stream { clock, placed, frames, nominal_nm, range, number: 0, heard_s, found_s: heard_s, gap: None });
+        let (range, heard) = (self.settings.range, Instant::now());
+        self.stream = Some(Stream {
+            clock,
+            placed,
+            frames,
+            nominal_nm,
+            range,
+            number: 0,
+            heard_s,
+            heard,
+            found_s: heard_s,
+            gap: None,
+        });
         Ok(Seconds(period_s))
     }
 

@@ -185,10 +185,14 @@ impl CurrentSource for ScpiSource {
     }
 
     fn output_off(&mut self) -> Result<(), Fault> {
-        self.on = false;
         // Out first, whatever the state of the link; then the question whether it was taken.
-        self.link.send(&SwitchOff(self.line_end, self.dialect))?;
+        self.command_off()?;
         self.output(false)
+    }
+
+    fn command_off(&mut self) -> Result<(), Fault> {
+        self.on = false;
+        self.link.send(&SwitchOff(self.line_end, self.dialect))
     }
 
     fn resolution(&self) -> Option<Amperes> {

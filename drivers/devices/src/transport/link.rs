@@ -34,6 +34,8 @@ pub struct Link {
     wire: Option<Wire>,
     recorder: Option<Recorder>,
     trust: Trust,
+    /// The last exchange has failed: whoever answers again has half a deadline, so that a fault is known within two.
+    missed: bool,
     outgoing: Vec<u8>,
     received: Vec<u8>,
 }
@@ -51,6 +53,7 @@ impl Link {
             wire: Some(wire),
             recorder: None,
             trust: Trust::Stale,
+            missed: false,
             outgoing: Vec::with_capacity(256),
             received: Vec::with_capacity(256),
         };
@@ -93,6 +96,7 @@ impl Link {
     /// The instrument has been identified: replies belong to requests again.
     pub fn trust(&mut self) {
         self.trust = Trust::Trusted;
+        self.missed = false;
     }
 
     /// The next reply may belong to something else: drain and identify before the next request.
@@ -137,7 +141,7 @@ impl Link {
 
     /// Request and reply whatever the state of the link: for identification.
     pub fn probe<R: Request>(&mut self, request: &R) -> Result<R::Reply, Fault> {
-        let deadline = Instant::now() + self.deadline;
+        let deadline = Instant::now() + self.patience();
         self.exchange(request, deadline).map_err(|kind| self.broken(kind))
     }
 
@@ -191,9 +195,13 @@ impl Link {
         }
     }
 
+    fn patience(&self) -> Duration {
+        if self.missed { self.deadline / 2 } else { self.deadline }
+    }
+
     fn nothing_came(&self, request: String) -> FaultKind {
         if self.received.is_empty() {
-            FaultKind::Silent { request, deadline_ms: self.deadline.as_millis() as u64 }
+            FaultKind::Silent { request, deadline_ms: self.patience().as_millis() as u64 }
         } else {
             FaultKind::Garbled { what: format!("{} and no more", shown(&self.received)) }
         }
@@ -249,6 +257,7 @@ impl Link {
             recorder.lost();
         }
         self.trust = if lost { Trust::Lost } else { Trust::Stale };
+        self.missed = true;
         self.fault(kind)
     }
 }

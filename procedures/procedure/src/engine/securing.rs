@@ -38,6 +38,12 @@ impl Session<'_> {
                 }
             }
         }
+        // A supply that answers no more is told at once, while the shaft still turns.
+        if self.lost.brake
+            && let Some(Err(fault)) = self.bench.brake.as_mut().map(|brake| brake.command_off())
+        {
+            tracing::warn!("the brake is not switched off before the joint comes to rest: {fault}");
+        }
         if urgency == Urgency::Quick
             && let Err(hurry) = self.caught(Session::come_to_rest)
         {

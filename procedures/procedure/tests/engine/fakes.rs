@@ -347,6 +347,10 @@ impl CurrentSource for FakeBrake {
         self.0.call(Call::OutputOff, |world| world.brake_on = false)
     }
 
+    fn command_off(&mut self) -> Result<(), Fault> {
+        self.output_off()
+    }
+
     fn resolution(&self) -> Option<Amperes> {
         Some(Amperes(1e-4))
     }
