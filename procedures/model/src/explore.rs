@@ -61,6 +61,9 @@ const FAR_FROM_FLOOR: f64 = 1.5;
 /// An effect that the run does not decide stays where held-out squared error without it is larger by this share.
 const CLEARLY_NEEDED: f64 = 0.1;
 
+/// So much more error without an effect is no accident, however open its parameters are.
+const UNMISTAKABLE: f64 = 1.0;
+
 /// An effect that takes less than this share of what any function of its own axis would take is not what is missing.
 const WHOLE_EXPLANATION: f64 = 0.7;
 
@@ -235,7 +238,7 @@ impl Doubt {
 }
 
 /// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Where it
-/// decides neither, something else shows in its place, and the effect goes whatever it brings. Beside structure from
+/// decides neither, something else may show in its place: there it has to take half of the error away. Beside structure from
 /// outside the library no size is decided: a part of that may be in it.
 fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
@@ -243,7 +246,10 @@ fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str
     let open = search.added().filter_map(|term| {
         let doubt = Doubt::of(term, &search.now, &parameters, prepared);
         let more = held_out(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
-        let goes = (search.closed || doubt.is_there()) && more < CLEARLY_NEEDED || doubt.of_factors && doubt.of_shape;
+        let goes = match doubt.of_factors && doubt.of_shape {
+            true => more < UNMISTAKABLE,
+            false => (search.closed || doubt.is_there()) && more < CLEARLY_NEEDED,
+        };
         goes.then_some((term.id(), more))
     });
     open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)

@@ -56,7 +56,7 @@ fn speed_range(view: &View) -> Option<(f64, f64)> {
 }
 
 /// Lengths over which a reversal can be remembered and seen: from a thousandth of the motion between two reversals, or
-/// three steps of the encoder, to all of it. `None` where the motion never turns.
+/// three steps of the encoder, to the longest of these motions but for a tenth. `None` where the motion never turns.
 fn reversal_range(view: &View) -> Option<(f64, f64)> {
     let position = view.samples.find(Signal::Position)?;
     let direction = view.samples.find(Signal::Direction)?;
@@ -77,7 +77,9 @@ fn reversal_range(view: &View) -> Option<(f64, f64)> {
     steps.retain(|s| *s < 1.5 * smallest);
     let counted = steps.len() * 20 > position.len();
     let low = if counted { (3.0 * smallest).max(1e-3 * typical) } else { 1e-3 * typical };
-    (low < typical).then_some((low, typical))
+    // Loops of several sizes: what most of them do not leave, the largest ones do.
+    let high = *ways.get(ways.len() * 9 / 10)?;
+    (low < high).then_some((low, high))
 }
 
 /// A harmonic of an angle, searched over whole orders. Orders that turn further than half a wave between two samples

@@ -82,7 +82,7 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
 
 /// The link carries something: a load that is nothing beside the torque of the motor is its sensor's noise.
 fn bears(prepared: &Prepared) -> bool {
-    const NOTHING: f64 = 0.02;
+    const NOTHING: f64 = 0.1;
     let problem = &prepared.main;
     let square = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64;
     let load = problem.reduce.apply(problem.view.get(Signal::Load).to_vec());
