@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 /// Nominal load of both channels.
 const ROTOR_HEADER: u8 = 128;
 const LOADS: [usize; 2] = [10, 14];
+/// No sample is so many periods late.
+const LATE_PERIODS: u32 = 3;
 /// The index of a sample counts so far.
 const INDICES: u64 = 256;
 /// For samples that are due and not there: another look after this long finds them, or they are late.
@@ -80,7 +82,8 @@ impl Stream {
             self.clock.sleep_until_s(self.clock.now_s() + delay_s);
         }
         let now_s = self.clock.now_s();
-        let deadline = link.deadline();
+        // A stream is due all the time: half a deadline without a byte is its end, and leaves time to know within two.
+        let silent = (link.deadline() / 2).max(LATE_PERIODS * Duration::from_secs_f64(self.placed.period_s()));
         let mut bytes = Vec::new();
         let mut patience = Duration::ZERO;
         while link.overhear(&mut bytes, patience)? > 0 || patience.is_zero() {
@@ -95,9 +98,9 @@ impl Stream {
             patience = PATIENCE;
         }
         let waited = self.heard.elapsed();
-        if waited > deadline || now_s - self.heard_s > deadline.as_secs_f64() {
-            if link.overhear(&mut bytes, deadline.saturating_sub(waited))? == 0 {
-                let deadline_ms = deadline.as_millis() as u64;
+        if waited > silent || now_s - self.heard_s > silent.as_secs_f64() {
+            if link.overhear(&mut bytes, silent.saturating_sub(waited))? == 0 {
+                let deadline_ms = silent.as_millis() as u64;
                 return Err(link.fault(FaultKind::Silent { request: "the stream".into(), deadline_ms }));
             }
             (self.heard_s, self.heard) = (now_s, Instant::now());

@@ -44,6 +44,10 @@ impl StreamClock {
         Self { period_s, started_s: before_s, possible, looks: 0, soonest: None }
     }
 
+    pub fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
     /// By how much the next look is to be put off.
     pub fn delay_s(&self) -> f64 {
         let part = self.looks / LOOKS_BETWEEN % PARTS;
