@@ -28,6 +28,7 @@ use crate::view::LiveMessage;
 use axum::extract::DefaultBodyLimit;
 use axum::routing::{any, get};
 use axum::{Router, middleware};
+use tower_http::CompressionLevel;
 use tower_http::compression::CompressionLayer;
 use tower_http::trace::TraceLayer;
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
@@ -139,7 +140,7 @@ pub fn router(lab: Lab, door: Door) -> Router {
     rest.route("/api", get(health::no_such_route))
         .route("/api/{*rest}", any(health::no_such_route))
         .method_not_allowed_fallback(health::no_such_method)
-        .fallback_service(any(dashboard::serve).layer(CompressionLayer::new()))
+        .fallback_service(any(dashboard::serve).layer(CompressionLayer::new().quality(CompressionLevel::Best)))
         .with_state(lab)
         .layer(middleware::from_fn_with_state(door, door::guard))
         .layer(middleware::from_fn(problem::name_instance))
