@@ -3,6 +3,8 @@
 //! A point is a chunk of settled motion or a filtered sample. Memory effects are simulated on the samples behind the
 //! points and averaged over them.
 
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -152,6 +154,22 @@ impl View {
     pub fn goes_one_way(&self) -> bool {
         let direction = self.get(Signal::Direction);
         direction.first().is_some_and(|first| *first != 0.0 && direction.iter().all(|d| d == first))
+    }
+
+    /// The link carries something: a load that is nothing beside the torque of the motor is its sensor's noise.
+    pub fn bears_load(&self) -> bool {
+        const NOTHING: f64 = 0.2;
+        let square = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+        let torque = self.find(Signal::Drive).map_or(0.0, square);
+        square(self.get(Signal::Load)) > NOTHING * NOTHING * torque
+    }
+
+    /// Share of a turn that an angle was at.
+    pub fn turned(&self, angle: Signal) -> f64 {
+        const PARTS: f64 = 72.0;
+        let part = |a: &f64| (a.rem_euclid(TAU) / TAU * PARTS) as usize;
+        let parts: BTreeSet<usize> = self.samples.find(angle).unwrap_or_default().iter().map(part).collect();
+        parts.len() as f64 / PARTS
     }
 
     /// The link turns as the motor does: there is no gear between their angles.

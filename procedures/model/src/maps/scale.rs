@@ -46,7 +46,8 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
         Signal::Drive,
         Signal::Direction,
     ] {
-        let Some(values) = problem.view.find(signal).filter(|_| signal != Signal::Load || bears(prepared)) else {
+        let tells = signal != Signal::Load || prepared.kind != Kind::Friction || problem.view.bears_load();
+        let Some(values) = problem.view.find(signal).filter(|_| tells) else {
             continue;
         };
         let factor = prepared.column_scale(signal);
@@ -78,15 +79,6 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
     let since = Scale::new("time_since_reversal_s", "s".into(), quantiles(&since, BINS), since);
     scales.extend((since.bins.len() > 1 && scales.iter().any(|s| s.name == "direction")).then_some(since));
     scales
-}
-
-/// The link carries something: a load that is nothing beside the torque of the motor is its sensor's noise.
-fn bears(prepared: &Prepared) -> bool {
-    const NOTHING: f64 = 0.1;
-    let problem = &prepared.main;
-    let square = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64;
-    let load = problem.reduce.apply(problem.view.get(Signal::Load).to_vec());
-    prepared.kind != Kind::Friction || square(&load) > NOTHING * NOTHING * square(&problem.target)
 }
 
 impl Scale {

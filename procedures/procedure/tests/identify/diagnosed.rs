@@ -37,3 +37,12 @@ fn a_stiff_joint_lacks_nothing_and_a_soft_one_hardens() {
     assert_eq!(found(Joint::JointA, "stiffness", given.clone()), Vec::<String>::new());
     assert_eq!(found(Joint::JointB, "stiffness", given), ["hardening"]);
 }
+
+#[test]
+fn an_unloaded_joint_that_swings_at_a_few_places_shows_neither_load_nor_waves() {
+    for joint in [Joint::JointA, Joint::JointB] {
+        let found = found(joint, "presliding", json!({}));
+        let false_ones = |effect: &String| effect.contains("load") || effect == "cogging";
+        assert!(found.contains(&"presliding".to_owned()) && !found.iter().any(false_ones), "{joint:?}: {found:?}");
+    }
+}

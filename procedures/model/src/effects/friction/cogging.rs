@@ -6,6 +6,9 @@ use jointbench_instrument::Kind;
 
 pub struct Cogging;
 
+/// Share of a turn that has to be seen.
+const LEAST_TURNED: f64 = 1.0 / 3.0;
+
 static INFO: EffectInfo = EffectInfo {
     id: "cogging",
     kind: Kind::Friction,
@@ -27,7 +30,11 @@ impl Effect for Cogging {
         INFO
     }
 
+    /// None where the motor stayed at a few places: what errs about the middle of a swing is a wave over them.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        if view.turned(Signal::Position) < LEAST_TURNED {
+            return Vec::new();
+        }
         let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Position, 1..=120);
         forms.iter_mut().for_each(|f| f.name = crate::effects::SEVERAL_HARMONICS);
         forms

@@ -23,8 +23,8 @@ impl Effect for LoadLinear {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
-        vec![Form::linear(&["mu"])]
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        if view.bears_load() { vec![Form::linear(&["mu"])] } else { Vec::new() }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {

@@ -23,8 +23,8 @@ impl Effect for LoadQuadratic {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
-        vec![Form::linear(&["mu_2"])]
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        if view.bears_load() { vec![Form::linear(&["mu_2"])] } else { Vec::new() }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {

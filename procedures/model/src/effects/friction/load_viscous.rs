@@ -23,8 +23,8 @@ impl Effect for LoadViscous {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
-        vec![Form::linear(&["c_l"])]
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        if view.bears_load() { vec![Form::linear(&["c_l"])] } else { Vec::new() }
     }
 
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {

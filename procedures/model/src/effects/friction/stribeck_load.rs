@@ -28,7 +28,9 @@ impl Effect for StribeckLoad {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let Some((shape, grid)) = super::stribeck::search(view) else { return Vec::new() };
+        let Some((shape, grid)) = super::stribeck::search(view).filter(|_| view.bears_load()) else {
+            return Vec::new();
+        };
         vec![Form { name: "exponential", linear: vec!["mu_s"], shape, grid }]
     }
 
