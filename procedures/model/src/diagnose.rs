@@ -50,7 +50,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         undecided,
         summary: match verdict {
             Verdict::MissingEffect => summary::missing(&found, &fit, &complete, &suggestions),
-            _ => summary::end(&found, &complete, structure.as_ref(), options),
+            _ => summary::end(&found, &complete, structure.as_ref(), options, false),
         } + &summary::nowhere(verdict, maps, &regions, &fit),
         shows_over: shows_over(&found, structure.as_ref()),
         regions,
@@ -90,6 +90,7 @@ pub fn discover(
         let added = step.added.clone().unwrap_or_default();
         step.confounded_with.retain(|rival| found.is_open_tie(&added, rival));
     }
+    let is_cut = steps.iter().filter(|step| step.added.is_some()).count() >= max_effects;
     let fit = report(found.end())?;
     let verdict = found.end_verdict();
     let structure = structure(&found, verdict);
@@ -103,7 +104,7 @@ pub fn discover(
         noise_floor: found.floor.clone(),
         verdict,
         undecided,
-        summary: summary::end(&found, &fit, structure.as_ref(), options)
+        summary: summary::end(&found, &fit, structure.as_ref(), options, is_cut)
             + &summary::nowhere(verdict, &found.maps, &regions, &fit),
         shows_over: shows_over(&found, structure.as_ref()),
         model: found.end().effects.clone(),

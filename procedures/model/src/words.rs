@@ -19,6 +19,9 @@ pub fn figure(value: f64, unit: &str) -> String {
     let prefixed = unit.starts_with("Nm") || unit.starts_with("rad") || unit == "N" || unit == "m";
     let (factor, prefix) = if prefixed { prefix(size) } else { (1.0, "") };
     let scaled = value * factor;
+    if scaled != 0.0 && scaled.abs() < 0.01 {
+        return format!("{scaled:.2e} {prefix}{unit}").trim_end().to_owned();
+    }
     let digits = match scaled.abs() {
         s if s >= 100.0 => 0,
         s if s >= 10.0 => 1,
@@ -68,6 +71,7 @@ mod tests {
         assert_eq!(figure(-0.00612, "Nm"), "-6.12 mNm");
         assert_eq!(figure(95.106, "kg"), "95.1 kg");
         assert_eq!(figure(0.226, "1"), "0.23");
+        assert_eq!(figure(-0.00123, "kg·m²"), "-1.23e-3 kg·m²");
         assert_eq!(percent(0.184), "18 %");
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
     }

@@ -3,7 +3,7 @@
 use jointbench_instrument::Motion;
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Options, Parameter,
-    ParameterPair, ParameterState, Region, ResidualKind, Suggestion, words,
+    ParameterPair, ParameterState, Region, ResidualKind, Suggestion, formula, words,
 };
 use std::path::Path;
 
@@ -147,19 +147,25 @@ pub fn discovery(discovery: &Discovery) {
 }
 
 /// What the library lacks, the user may know: over the axes that the summary has named.
-fn own_formula(axes: &[String], fit: &Fit) {
-    if axes.is_empty() {
+fn own_formula(columns: &[String], fit: &Fit) {
+    if columns.is_empty() {
         return;
     }
-    let axes: Vec<String> = axes.iter().map(|axis| words::spoken(axis)).collect();
+    let axes: Vec<String> = columns.iter().map(|column| words::spoken(column)).collect();
     println!();
     println!(
         "what you can do: write what you suspect as a formula of {} with --own (see --help), and see whether the error falls",
         words::list(&axes)
     );
     let turns = fit.scope.as_ref().is_none_or(|scope| scope.motion != Motion::Linear);
-    if turns && axes.iter().any(|axis| axis.ends_with("position")) {
-        println!("  positions are folded into one turn above; a formula folds them with wrap(position - p), -π to π");
+    let angle = formula::signals(fit.kind)
+        .iter()
+        .find(|s| s.name.ends_with("position") && columns.contains(&s.column.to_owned()));
+    if let Some(angle) = angle.filter(|_| turns) {
+        println!(
+            "  angles are folded into one turn above; a formula folds this one with wrap({} - p), -π to π",
+            angle.name
+        );
     }
 }
 

@@ -93,6 +93,7 @@ fn advice_names_the_axes_of_the_summary() {
     let bumped: Vec<String> = bumped.collect();
     std::fs::write(folder.path().join("run.csv"), bumped.join("\n")).expect("a table");
     let told = stdout(&run_in(folder.path(), &["discover", "run.csv", "--max-effects", "0"]));
+    assert!(told.contains("no more effects were asked for"), "{told}");
     let shown = told.split("it shows most over ").nth(1).and_then(|rest| rest.split(", a function").next());
     let shown = shown.unwrap_or_else(|| panic!("structure: {told}"));
     assert!(told.contains(&format!("as a formula of {shown} with --own")), "{told}");

@@ -49,16 +49,20 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         }
         _ => String::new(),
     };
-    format!("{}{gain}{beyond}{}", dead_signal(found), taken_back(found, &fit.unit))
+    format!("{}{gain}{beyond}{}", attention(found), taken_back(found, &fit.unit))
 }
 
-/// What is left when nothing more can be named. `fit` is the model at the end of the search.
-pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Options) -> String {
+/// What is left at the end of the search, where `fit` is its model. `is_cut`: it ended because no more effects were asked for.
+pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Options, is_cut: bool) -> String {
     let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, fit));
     let verdict = found.end_verdict();
     let said = match (verdict, undecided(found, fit, verdict, options)) {
         (Verdict::UnexplainedStructure, _) => format!(
-            "Structure remains that no effect of the library explains: {}; {floor}.",
+            "Structure remains{}: {}; {floor}.",
+            match is_cut {
+                true => ", and no more effects were asked for that could explain it",
+                false => " that no effect of the library explains",
+            },
             structure(found, fit, shown)
         ),
         (_, None) => format!("The model explains this run: its held-out error is {error}, and {floor}."),
@@ -67,18 +71,19 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
              cannot be decided: {why}."
         ),
     };
-    dead_signal(found) + &said + &taken_back(found, &fit.unit)
+    attention(found) + &said + &taken_back(found, &fit.unit)
 }
 
-/// What the model takes as given and the run shows as a constant may not have been connected: then all else bears it.
-fn dead_signal(found: &Exploration) -> String {
+/// What a user has to mend before anything else counts: columns that contradict each other, and what the model takes as given
+/// and the run shows as a constant, which may not have been connected.
+fn attention(found: &Exploration) -> String {
+    let clashes = found.start.prepared.clashes.iter().map(|clash| format!("Attention: {clash}. "));
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
     let is_dead = |id: &str| spec.find(id).is_ok_and(|e| e.is_given() && e.missing(view).is_none());
     let dead = found.start.hidden.iter().find(|h| is_dead(&h.effect));
-    dead.map_or_else(String::new, |h| {
-        format!("Attention: {}; if something did act there, what follows is wrong. ", h.why)
-    })
+    let dead = dead.map(|h| format!("Attention: {}; if something did act there, what follows is wrong. ", h.why));
+    clashes.chain(dead).collect()
 }
 
 /// How well the run repeats itself, and why an error may be smaller than that.
@@ -147,6 +152,9 @@ pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Opt
             Some(format!("{blocks} independent stretches of motion are too few to name anything"))
         }
         Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
+        Verdict::Adequate if !found.start.prepared.clashes.is_empty() => {
+            Some("its columns contradict each other".to_owned())
+        }
         Verdict::Adequate => fit.parameters.iter().find(|p| p.note.as_deref() == Some(IMPOSSIBLE)).map(|p| {
             let (effect, name) = (&p.effect, &p.name);
             format!("{name} of {effect} is {}, which {IMPOSSIBLE}", figure(p.value, &p.unit))

@@ -134,12 +134,13 @@ fn units_that_contradict_each_other_are_told_where_they_do() {
 #[test]
 fn units_that_nobody_can_judge_are_believed() {
     check_units(Kind::Friction, "tau = a * tanh(velocity / 0.3)", ["Nm", "1", "1"], "");
-    check_units(Kind::Friction, "tau = a * velocity", ["furlong", "1", "1"], "");
+    check_units(Kind::Friction, "§tau = a * velocity", ["furlong", "1", "1"], "[furlong] is none");
+    check_units(Kind::Friction, "§tau = a * sign(velocity)", ["mNm", "1", "1"], "not converted");
     check_units(Kind::Friction, "tau = a * velocity + b", ["1", "Nm", "1"], "");
     check_units(Kind::Friction, "tau = a * abs(velocity)^w", ["Nm", "1", "1"], "");
     check_units(Kind::Friction, "tau = a * tanh(velocity / w)", ["N", "1", "m/s"], "a joint that slides");
-    check_units(Kind::Encoder, "error = a * cos(position) + b * velocity", ["µrad", "s", "1"], "");
-    check_units(Kind::Brake, "tau = a * current^2 + b * current", ["Nm/A²", "mNm A⁻¹", "1"], "");
+    check_units(Kind::Encoder, "error = a * cos(position) + b * velocity", ["rad", "s", "1"], "");
+    check_units(Kind::Brake, "tau = a * current^2 + b * current", ["Nm/A²", "Nm·A⁻¹", "1"], "");
     check_units(Kind::Stiffness, "torsion = a * load", ["rad/Nm", "1", "1"], "");
 }
 

@@ -19,7 +19,6 @@ const PLAIN: Unit = Unit([0.0; 5]);
 
 const KNOWN: &[(&str, Unit)] = &[
     ("rad", PLAIN),
-    ("deg", PLAIN),
     ("kg", Unit([1.0, 0.0, 0.0, 0.0, 0.0])),
     ("m", Unit([0.0, 1.0, 0.0, 0.0, 0.0])),
     ("s", Unit([0.0, 0.0, 1.0, 0.0, 0.0])),
@@ -37,6 +36,10 @@ const KNOWN: &[(&str, Unit)] = &[
 ///
 /// `whole` is what stands right of the equals sign of `text`, `units` those of the parameters.
 pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> Result<(), Mistake> {
+    if let Some(scaled) = units.iter().find(|unit| !counts_in_si(unit)) {
+        let message = format!("a formula counts in SI units, and [{scaled}] is none: what is fitted is not converted");
+        return Err(Mistake::new(0..0, message));
+    }
     let units: Vec<Option<Unit>> = units.iter().map(|unit| read(unit)).collect();
     let on = |slides| Check { kind, text, units: &units, slides }.whole(whole);
     on(false).or_else(|mistake| on(true).map_err(|_| mistake))
@@ -44,21 +47,35 @@ pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> Resu
 
 /// `None` for what is not known, and for 1, which is what a parameter has whose unit was left out.
 fn read(text: &str) -> Option<Unit> {
+    let plain = plain(text);
+    if plain == "1" { None } else { of_node(&syntax::tree_of(&plain).ok()?) }
+}
+
+/// As the parser of formulas reads it.
+fn plain(text: &str) -> String {
     let mut plain = text.trim().replace('·', "*").replace("°C", "K").replace('⁻', "^-");
     for (digit, written) in [('²', "2"), ('³', "3"), ('¹', "1"), ('⁴', "4")] {
         plain = plain.replace(digit, &format!("^{written}")).replace("^-^", "^-");
     }
-    if plain == "1" { None } else { of_node(&syntax::tree_of(&plain).ok()?) }
+    plain
+}
+
+/// Nothing in it has a prefix or is not known.
+fn counts_in_si(unit: &str) -> bool {
+    fn holds(node: &Node) -> bool {
+        match &node.what {
+            Syntax::Name(name) => KNOWN.iter().any(|(known, _)| known == name),
+            Syntax::Binary(_, a, b) => holds(a) && holds(b),
+            _ => true,
+        }
+    }
+    unit.trim() == "1" || syntax::tree_of(&plain(unit)).is_ok_and(|node| holds(&node))
 }
 
 fn of_node(node: &Node) -> Option<Unit> {
     match &node.what {
         Syntax::Number(1.0) => Some(PLAIN),
-        Syntax::Name(name) => {
-            let known = |name: &str| KNOWN.iter().find(|(known, _)| *known == name).map(|(_, unit)| *unit);
-            let prefixed = || name.strip_prefix(['m', 'µ', 'u', 'k', 'n']).and_then(known);
-            known(name).or_else(prefixed)
-        }
+        Syntax::Name(name) => KNOWN.iter().find(|(known, _)| known == name).map(|(_, unit)| *unit),
         Syntax::Binary(Operator::Multiply, a, b) => Some(of_node(a)?.times(of_node(b)?, 1.0)),
         Syntax::Binary(Operator::Divide, a, b) => Some(of_node(a)?.times(of_node(b)?, -1.0)),
         Syntax::Binary(Operator::Power, a, b) => {

@@ -9,7 +9,8 @@ use crate::words::figure;
 const WIDE: f64 = 10.0;
 
 /// What is said of a size that contradicts physics, and certainly so.
-pub const IMPOSSIBLE: &str = "is physically impossible: another effect is missing, or a column has the wrong sign";
+pub const IMPOSSIBLE: &str =
+    "is physically impossible: another effect is missing, or a column has another sign or unit";
 
 /// State of a parameter, with words where it is not well determined.
 pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {

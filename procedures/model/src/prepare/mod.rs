@@ -2,6 +2,7 @@
 
 mod brake;
 mod chunks;
+mod clash;
 mod encoder;
 pub mod filter;
 mod friction;
@@ -99,6 +100,8 @@ pub struct Prepared {
     pub load_scale: f64,
     /// Facts of the set-up that made signals or the response of the columns.
     pub constants: Vec<GivenConstant>,
+    /// Columns that contradict each other, in sentences.
+    pub clashes: Vec<String>,
     pub about: Preparation,
 }
 
@@ -160,12 +163,13 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     if run.len() < 16 {
         return Err(ModelError::TooFewSamples { usable: run.len(), needed: 16, what: "samples" });
     }
-    let (prepared, response) = match run.kind() {
+    let (mut prepared, response) = match run.kind() {
         Kind::Friction => (friction::prepare(run, options)?, "motor_current_a"),
         Kind::Encoder => (encoder::prepare(run, options)?, "test_position_rad − reference_position_rad"),
         Kind::Stiffness => (stiffness::prepare(run, options)?, "motor_position_rad / gear_ratio − link_position_rad"),
         Kind::Brake => (brake::prepare(run, options)?, "brake_torque_nm"),
     };
+    prepared.clashes = clash::clashes(run);
     match is_constant(&prepared.main.target) {
         true => Err(ModelError::Constant { column: response.into() }),
         false => Ok(prepared),

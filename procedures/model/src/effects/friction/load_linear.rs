@@ -6,6 +6,9 @@ use jointbench_instrument::Kind;
 
 pub struct LoadLinear;
 
+/// Teeth that take nearly all of the load away lock: what seems larger is a load of another sign or unit.
+const MOST: f64 = 0.9;
+
 static INFO: EffectInfo = EffectInfo {
     id: "load_linear",
     kind: Kind::Friction,
@@ -14,7 +17,7 @@ static INFO: EffectInfo = EffectInfo {
     formula: "μ·|τ_link/N|·sgn ω",
     source: "thesis on joint test benches, eq. 2.6; Duclusaud et al. 2025, M3",
     looks: "a step at zero speed that grows with the load",
-    parameters: &[parameter("mu", "1", f64::NEG_INFINITY, f64::INFINITY)],
+    parameters: &[parameter("mu", "1", -MOST, MOST)],
     needs: &["link_torque_nm"],
 };
 
