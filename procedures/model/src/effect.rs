@@ -142,6 +142,11 @@ pub trait Effect: Sync {
         None
     }
 
+    /// Its formula is no approximation: what is left of the effect is not what the formula cannot follow.
+    fn is_exact(&self) -> bool {
+        false
+    }
+
     /// The effect enters with a factor of one and nothing to fit.
     fn is_given(&self) -> bool {
         false

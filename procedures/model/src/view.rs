@@ -156,12 +156,14 @@ impl View {
         direction.first().is_some_and(|first| *first != 0.0 && direction.iter().all(|d| d == first))
     }
 
-    /// The link carries something: a load that is nothing beside the torque of the motor is its sensor's noise.
+    /// The link carries something now and then: a load that is nothing beside the torque of the motor is its sensor's noise.
     pub fn bears_load(&self) -> bool {
         const NOTHING: f64 = 0.2;
-        let square = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
-        let torque = self.find(Signal::Drive).map_or(0.0, square);
-        square(self.get(Signal::Load)) > NOTHING * NOTHING * torque
+        const NOW_AND_THEN: f64 = 0.05;
+        let load = self.get(Signal::Load);
+        let square: f64 = self.find(Signal::Drive).unwrap_or_default().iter().map(|v| v * v).sum();
+        let least = NOTHING * (square / load.len().max(1) as f64).sqrt();
+        load.iter().filter(|load| load.abs() > least).count() as f64 > NOW_AND_THEN * load.len() as f64
     }
 
     /// Share of a turn that an angle was at.

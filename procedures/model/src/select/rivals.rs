@@ -34,7 +34,7 @@ impl<'p> Rival<'p> {
 /// What an effect must explain to be worth a name.
 #[derive(Clone, Copy)]
 pub struct Bar<'l> {
-    /// Squared error of the baseline.
+    /// Squared error of the baseline, with what formulas explain that are exact.
     pub plain: f64,
     pub options: &'l Options,
 }

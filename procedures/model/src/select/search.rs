@@ -39,7 +39,7 @@ pub struct Search<'l, 'p> {
     pub now: Terms<'p>,
     library: &'l Library<'p>,
     options: &'l Options,
-    /// Squared error of the model without any effect but those of the baseline.
+    /// Squared error of the model without any effect but those of the baseline and those whose formula is exact.
     plain: f64,
     /// Effects of the model that was given.
     kept: Vec<&'p str>,
@@ -66,7 +66,9 @@ impl<'l, 'p> Search<'l, 'p> {
     ) -> Self {
         let kept = start.terms.iter().map(Term::id).collect();
         let mut plain = start.clone();
-        plain.terms.retain(|t| baseline.is_empty() || baseline.iter().any(|b| b == t.id()));
+        plain.terms.retain(|t| baseline.is_empty() || baseline.iter().any(|b| b == t.id()) || t.effect.is_exact());
+        let exact = library.candidates.iter().filter(|c| c.effect.is_exact());
+        plain.terms.extend(exact.map(|c| c.term(start.problem)));
         plain.refine();
         let plain = plain.linear().sse;
         Self {

@@ -46,3 +46,9 @@ fn an_unloaded_joint_that_swings_at_a_few_places_shows_neither_load_nor_waves() 
         assert!(found.contains(&"presliding".to_owned()) && !found.iter().any(false_ones), "{joint:?}: {found:?}");
     }
 }
+
+#[test]
+fn an_arm_is_heavy_and_its_directions_differ() {
+    // A fiftieth of what gravity takes, but gravity's formula leaves no remainder that it could be.
+    assert_eq!(found(Joint::Puma, "puma_friction", json!({})), ["gravity", "viscous_asymmetry"]);
+}

@@ -30,6 +30,10 @@ impl Effect for Gravity {
         if view.constants.slides { Vec::new() } else { vec![Form::linear(&["g_c", "g_s"])] }
     }
 
+    fn is_exact(&self) -> bool {
+        true
+    }
+
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         view.harmonic(Signal::Link, 1.0).into()
     }
