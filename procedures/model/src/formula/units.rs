@@ -1,7 +1,7 @@
 //! Whether the units of a formula fit together.
 //!
 //! A unit is the exponents of five base units; angles have none. A number without a unit may stand for a quantity that
-//! nobody named, so what contains one is not judged, and neither is a unit that is not known here.
+//! nobody named, so what contains one is not judged.
 
 use super::expression::{Expression, What};
 use super::fault::Mistake;
@@ -36,8 +36,8 @@ const KNOWN: &[(&str, Unit)] = &[
 ///
 /// `whole` is what stands right of the equals sign of `text`, `units` those of the parameters.
 pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> Result<(), Mistake> {
-    if let Some(scaled) = units.iter().find(|unit| !counts_in_si(unit)) {
-        let message = format!("a formula counts in SI units, and [{scaled}] is none: what is fitted is not converted");
+    if let Some(foreign) = units.iter().find(|unit| unit.trim() != "1" && read(unit).is_none()) {
+        let message = format!("a formula counts in SI units, and [{foreign}] is none: what is fitted is not converted");
         return Err(Mistake::new(0..0, message));
     }
     let units: Vec<Option<Unit>> = units.iter().map(|unit| read(unit)).collect();
@@ -45,31 +45,13 @@ pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> Resu
     on(false).or_else(|mistake| on(true).map_err(|_| mistake))
 }
 
-/// `None` for what is not known, and for 1, which is what a parameter has whose unit was left out.
+/// `None` for what is no SI unit known here, and for 1, which is what a parameter has whose unit was left out.
 fn read(text: &str) -> Option<Unit> {
-    let plain = plain(text);
-    if plain == "1" { None } else { of_node(&syntax::tree_of(&plain).ok()?) }
-}
-
-/// As the parser of formulas reads it.
-fn plain(text: &str) -> String {
-    let mut plain = text.trim().replace('·', "*").replace("°C", "K").replace('⁻', "^-");
+    let mut spelled = text.trim().replace('·', "*").replace("°C", "K").replace('⁻', "^-");
     for (digit, written) in [('²', "2"), ('³', "3"), ('¹', "1"), ('⁴', "4")] {
-        plain = plain.replace(digit, &format!("^{written}")).replace("^-^", "^-");
+        spelled = spelled.replace(digit, &format!("^{written}")).replace("^-^", "^-");
     }
-    plain
-}
-
-/// Nothing in it has a prefix or is not known.
-fn counts_in_si(unit: &str) -> bool {
-    fn holds(node: &Node) -> bool {
-        match &node.what {
-            Syntax::Name(name) => KNOWN.iter().any(|(known, _)| known == name),
-            Syntax::Binary(_, a, b) => holds(a) && holds(b),
-            _ => true,
-        }
-    }
-    unit.trim() == "1" || syntax::tree_of(&plain(unit)).is_ok_and(|node| holds(&node))
+    if spelled == "1" { None } else { of_node(&syntax::tree_of(&spelled).ok()?) }
 }
 
 fn of_node(node: &Node) -> Option<Unit> {

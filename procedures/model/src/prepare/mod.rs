@@ -163,13 +163,12 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     if run.len() < 16 {
         return Err(ModelError::TooFewSamples { usable: run.len(), needed: 16, what: "samples" });
     }
-    let (mut prepared, response) = match run.kind() {
+    let (prepared, response) = match run.kind() {
         Kind::Friction => (friction::prepare(run, options)?, "motor_current_a"),
         Kind::Encoder => (encoder::prepare(run, options)?, "test_position_rad − reference_position_rad"),
         Kind::Stiffness => (stiffness::prepare(run, options)?, "motor_position_rad / gear_ratio − link_position_rad"),
         Kind::Brake => (brake::prepare(run, options)?, "brake_torque_nm"),
     };
-    prepared.clashes = clash::clashes(run);
     match is_constant(&prepared.main.target) {
         true => Err(ModelError::Constant { column: response.into() }),
         false => Ok(prepared),

@@ -80,7 +80,7 @@ pub fn prepare(
         memory: None,
         load_scale: 1.0,
         constants: super::constants(run),
-        clashes: Vec::new(),
+        clashes: super::clash::clashes(run),
         about,
     })
 }

@@ -121,7 +121,7 @@ pub fn prepare(
         baseline: run.meta().baseline.clone(),
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
         constants: super::super::constants(run),
-        clashes: Vec::new(),
+        clashes: super::super::clash::clashes(run),
         main,
         moving,
         memory,
