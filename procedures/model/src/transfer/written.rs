@@ -91,7 +91,7 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
             ("backlash", _) => formula("tanh(load / tau_b)"),
             ("hardening", "cubic") => formula("load * load * load"),
             ("hardening", "root") => formula("(sqrt(1 + abs(load) / tau_h) - 1) * sign(load)"),
-            ("hardening", _) => formula("tanh(load / tau_h)"),
+            ("hardening", _) => formula("load / (tau_h^n + abs(load)^n)^(1 / n)"),
             ("torsional_hysteresis", _) => memory(rule, "load", "z"),
             ("transmission_error", _) => Some(waves("link_position", "", &orders(term))),
             ("temperature_compliance", _) => formula("(temperature - 25) * load"),

@@ -11,13 +11,14 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Stiffness,
     title: "Hardening",
     sentence: "The joint gets stiffer or softer the more it is loaded, as more teeth come to bear.",
-    formula: "κ·τ³, or φ_h·(√(1 + |τ|/τ_h) − 1)·sgn τ, or φ_h·tanh(τ/τ_h)",
+    formula: "κ·τ³, or φ_h·(√(1 + |τ|/τ_h) − 1)·sgn τ, or φ_h·τ/(τ_hⁿ + |τ|ⁿ)^(1/n)",
     source: "thesis on joint test benches, joint B softer at low torque; Kircanski and Goldenberg 1997",
     looks: "a curve over torque, odd",
     parameters: &[
         parameter("kappa", "rad/Nm³", f64::NEG_INFINITY, f64::INFINITY),
         parameter("phi_h", "rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("tau_h", "Nm", 0.0, f64::INFINITY),
+        parameter("n", "1", 1.0, 5.0),
     ],
     needs: &[],
 };
@@ -29,14 +30,16 @@ impl Effect for Hardening {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
-        let shape = vec![Shape { name: "tau_h", min: 0.01 * peak, max: 2.0 * peak, search: Search::Smooth }];
-        let grid: Vec<Vec<f64>> =
-            crate::effects::log_grid(0.01 * peak, 2.0 * peak, 6).into_iter().map(|t| vec![t]).collect();
-        let curved = |name| Form { name, linear: vec!["phi_h"], shape: shape.clone(), grid: grid.clone() };
+        let bend = |low: f64| Shape { name: "tau_h", min: low * peak, max: 2.0 * peak, search: Search::Smooth };
+        let loads = |low: f64| crate::effects::log_grid(low * peak, 2.0 * peak, 6);
+        let sharpness = Shape { name: "n", min: 1.0, max: 5.0, search: Search::Smooth };
+        let of_root = loads(0.01).into_iter().map(|t| vec![t]).collect();
+        // What ends at lower loads is backlash.
+        let of_start = loads(0.05).into_iter().flat_map(|t| [vec![t, 1.3], vec![t, 2.5]]).collect();
         vec![
             Form { name: "cubic", linear: vec!["kappa"], shape: Vec::new(), grid: vec![Vec::new()] },
-            curved("root"),
-            curved("tanh"),
+            Form { name: "root", linear: vec!["phi_h"], shape: vec![bend(0.01)], grid: of_root },
+            Form { name: "soft_start", linear: vec!["phi_h"], shape: vec![bend(0.05), sharpness], grid: of_start },
         ]
     }
 
@@ -44,7 +47,9 @@ impl Effect for Hardening {
         vec![match form {
             "cubic" => view.map(Signal::Load, |t| t * t * t),
             "root" => view.map(Signal::Load, |t| ((1.0 + t.abs() / shape[0]).sqrt() - 1.0) * t.signum()),
-            _ => view.map(Signal::Load, |t| (t / shape[0]).tanh()),
+            _ => {
+                view.map(Signal::Load, |t| t / (shape[0].powf(shape[1]) + t.abs().powf(shape[1])).powf(1.0 / shape[1]))
+            }
         }]
     }
 }

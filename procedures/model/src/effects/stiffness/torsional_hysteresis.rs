@@ -35,9 +35,8 @@ impl Effect for TorsionalHysteresis {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
-        let shape = vec![Shape { name: "tau_eta", min: 0.004 * peak, max: peak, search: Search::Smooth }];
-        let grid: Vec<Vec<f64>> =
-            crate::effects::log_grid(0.004 * peak, peak, 9).into_iter().map(|t| vec![t]).collect();
+        let shape = vec![Shape { name: "tau_eta", min: 0.02 * peak, max: peak, search: Search::Smooth }];
+        let grid: Vec<Vec<f64>> = crate::effects::log_grid(0.02 * peak, peak, 8).into_iter().map(|t| vec![t]).collect();
         let one = |name| Form { name, linear: vec!["eta"], shape: shape.clone(), grid: grid.clone() };
         vec![one("dahl"), one("stop"), one("maxwell_slip")]
     }

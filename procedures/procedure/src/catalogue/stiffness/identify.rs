@@ -92,18 +92,25 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let bearing = run.meta().bearing_stiffness_nm_per_rad.map_or(0.0, f64::recip);
     let stiffness = |inverse: f64| 1.0 / (inverse - bearing);
     let area = loop_area(run, &held, gear);
+    let of_joint = match bearing > 0.0 {
+        true => "Stiffness of the joint, bearing taken off",
+        false => "Stiffness of joint and bearing",
+    };
     let mut quantities = vec![
         quantity(["inverse_k", "k'⁻¹", "Compliance as measured", "rad/Nm"], inverse, Some(inverse_ci95)),
         quantity(
-            ["k", "k", "Stiffness of the joint, bearing taken off", "Nm/rad"],
+            ["k", "k", of_joint, "Nm/rad"],
             stiffness(inverse),
             Some([stiffness(inverse_ci95[1]), stiffness(inverse_ci95[0])]),
         ),
     ];
-    let offset = if is_curved { (SOFT, "phi") } else { ("directional_offset", "beta_0") };
-    if let Some(found) = of_all(&fits, offset.0, offset.1) {
+    let (effect, name, label) = match is_curved {
+        true => (SOFT, "phi", "Offset of the line through high loads"),
+        false => ("directional_offset", "beta_0", "Directional offset"),
+    };
+    if let Some(found) = of_all(&fits, effect, name) {
         let (value, ci95) = with_steps(found, run, gear);
-        quantities.push(quantity(["beta_0", "β₀", "Directional offset", "rad"], value, Some(ci95)));
+        quantities.push(quantity(["beta_0", "β₀", label, "rad"], value, Some(ci95)));
     }
     if let Some(found) = parameter(best, "offset", "xi") {
         let (value, ci95) = with_steps(interval_of(found, 1.0), run, gear);
