@@ -3,9 +3,10 @@
 use super::arguments::Autopilot as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
+use super::offline::decided;
 use super::progress::RunProgress;
 use super::run::{LOOK_EVERY, choose_bench, is_over, parameters};
-use crate::view::{Autopilot, AutopilotState, AutopilotStep, Model, NewAutopilot, NewExperiment, Run, Verdict};
+use crate::view::{Autopilot, AutopilotState, AutopilotStep, Diagnosis, Model, NewAutopilot, NewExperiment, Run};
 
 pub fn autopilot(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach);
@@ -37,7 +38,7 @@ pub fn autopilot(arguments: &Arguments) -> Done {
     } else if autopilot.state.is_over() {
         conclude(&client, &autopilot)?;
     }
-    ending(&autopilot)
+    ending(&client, &autopilot)
 }
 
 /// Follows it to its end, telling each step as it is made.
@@ -86,12 +87,15 @@ fn conclude(client: &Client, autopilot: &Autopilot) -> Done {
     Ok(())
 }
 
-fn ending(autopilot: &Autopilot) -> Done {
+/// It is done when its last diagnosis is, as `discover` is: a verdict that names nothing is a verdict too.
+fn ending(client: &Client, autopilot: &Autopilot) -> Done {
     let said = || autopilot.reason.clone().unwrap_or_default();
     match autopilot.state {
         AutopilotState::Running => Ok(()),
-        AutopilotState::Finished if autopilot.verdict != Some(Verdict::UnexplainedStructure) => Ok(()),
-        AutopilotState::Finished => Err(Exit::undecided("structure remains that no effect of the library explains")),
+        AutopilotState::Finished => match autopilot.steps.iter().rev().find_map(|step| step.diagnosis) {
+            None => Ok(()),
+            Some(id) => decided(client.get::<Diagnosis>(&format!("/diagnoses/{id}"))?.finding.undecided.as_ref()),
+        },
         AutopilotState::BudgetSpent => Err(Exit::undecided("the budget is spent and something is still open")),
         AutopilotState::Stopped | AutopilotState::Failed | AutopilotState::Interrupted => Err(Exit::failed(said())),
     }

@@ -5,7 +5,7 @@ use jointbench_files::{FileError, OptionFault};
 use jointbench_model::{FormulaFault, ModelError, words};
 use std::path::Path;
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Exit {
     pub code: u8,
     /// For a person; empty where everything is said already.

@@ -6,7 +6,7 @@ use super::files::write;
 use super::serve::runtime;
 use super::transfer::{Way, open};
 use crate::report::with_interval;
-use crate::view::{Identification, Identified, Shown};
+use crate::view::{Identification, Identified, Shown, word};
 use std::path::PathBuf;
 
 pub fn identify(arguments: &Identify) -> Done {
@@ -22,6 +22,11 @@ pub fn identify(arguments: &Identify) -> Done {
     } else {
         print(&found);
     }
+    ending(&found)
+}
+
+/// How a command ends that has told what was found.
+pub(super) fn ending(found: &Identification) -> Done {
     match found.result.verdict {
         Identified::Identified => Ok(()),
         Identified::Inconclusive => Err(Exit::undecided("")),
@@ -42,14 +47,14 @@ pub fn report(arguments: &Report) -> Done {
     Ok(())
 }
 
+pub(super) fn verdict(found: &Identification) -> String {
+    let (procedure, run, result) = (&found.procedure, found.run, &found.result);
+    format!("{procedure} of run {run}: {}. {}", word(result.verdict), result.summary)
+}
+
 pub(super) fn print(found: &Identification) {
     let result = &found.result;
-    let verdict = match result.verdict {
-        Identified::Identified => "identified",
-        Identified::Inconclusive => "inconclusive",
-        Identified::Failed => "failed",
-    };
-    println!("{} of run {}: {verdict}. {}", found.procedure, found.run, result.summary);
+    println!("{}", verdict(found));
     if let Some(advice) = &result.advice {
         println!("next: {advice}");
     }

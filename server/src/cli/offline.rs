@@ -40,7 +40,7 @@ pub fn discover(arguments: &Discover) -> Done {
 }
 
 /// The summary has said why.
-fn decided(undecided: Option<&String>) -> Done {
+pub(super) fn decided(undecided: Option<&String>) -> Done {
     match undecided {
         None => Ok(()),
         Some(_) => Err(Exit::undecided("")),

@@ -105,11 +105,12 @@ fn factor(written: &str, own: &str) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::view::{Identified, Shown};
 
-    fn found() -> Identification {
+    /// A friction of 30.6 mNm ± 0.4 mNm.
+    pub fn found() -> Identification {
         let quantity = Quantity {
             name: "tau_c".to_owned(),
             symbol: "τ_c".to_owned(),

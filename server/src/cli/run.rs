@@ -13,6 +13,9 @@ use std::time::Duration;
 
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 
+/// What the run shows, or why that cannot be told.
+type Found = Result<Identification, Exit>;
+
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach);
     let ended = demand_what_can_be_found(arguments).and_then(|()| start(&client, arguments));
@@ -23,7 +26,7 @@ pub fn run(arguments: &Arguments) -> Done {
         None => Vec::new(),
     };
     if let Some(path) = &arguments.junit {
-        std::fs::write(path, junit(&title(arguments), &ended, &demands))
+        std::fs::write(path, junit(&title(arguments), &ended, found.as_ref(), &demands))
             .map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
     }
     let run = ended?;
@@ -39,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Done {
     }
     match is_over(run.summary.state) && run.summary.state != RunState::Completed {
         true => Err(Exit::failed(if arguments.json { said } else { String::new() })),
-        false => judge(&demands, arguments.json),
+        false => judge(found.as_ref(), &demands, arguments.json),
     }
 }
 
@@ -65,20 +68,20 @@ fn title(arguments: &Arguments) -> String {
     }
 }
 
-/// What the run shows, where its procedure says so.
-fn shown(client: &Client, run: &Run) -> Result<Identification, Exit> {
+fn shown(client: &Client, run: &Run) -> Found {
     client.get(&format!("/runs/{}/identification", run.summary.id))
 }
 
-fn check(demand: &Requirement, found: &Result<Identification, Exit>) -> Kept {
+fn check(demand: &Requirement, found: &Found) -> Kept {
     match found {
         Ok(found) => demand.check(found),
         Err(exit) => Kept::Unknown(exit.said.clone()),
     }
 }
 
-/// Says how each demand was met. What cannot be checked ends with 2; then a broken limit with 1; then an unsure one with 3.
-fn judge(demands: &[(&Requirement, Kept)], quiet: bool) -> Done {
+/// Says how each demand was met. What cannot be checked ends with 2; then a failed result or a broken limit with 1; then
+/// what is not decided with 3.
+fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -> Done {
     let told = demands.iter().map(|(_, kept)| match kept {
         Kept::Yes(said) => ("kept", said, 0),
         Kept::No(said) => ("broken", said, 1),
@@ -88,10 +91,19 @@ fn judge(demands: &[(&Requirement, Kept)], quiet: bool) -> Done {
     if !quiet {
         told.clone().for_each(|(word, said, _)| println!("{word}: {said}"));
     }
-    let worst = [2, 1, 3].into_iter().find_map(|code| told.clone().find(|(_, _, found)| *found == code));
-    match worst {
+    let result = match found {
         None => Ok(()),
-        Some((_, said, code)) => Err(Exit { code, said: if quiet { said.clone() } else { String::new() } }),
+        Some(Ok(found)) => {
+            let said = if quiet { identify::verdict(found) } else { String::new() };
+            identify::ending(found).map_err(|exit| Exit { said, ..exit })
+        }
+        Some(Err(exit)) => Err(exit.clone()),
+    };
+    let of_demands = told.map(|(_, said, code)| Exit { code, said: if quiet { said.clone() } else { String::new() } });
+    let exits: Vec<Exit> = result.err().into_iter().chain(of_demands).collect();
+    match [2, 1, 3].into_iter().find_map(|code| exits.iter().find(|exit| exit.code == code)) {
+        None => Ok(()),
+        Some(worst) => Err(worst.clone()),
     }
 }
 
@@ -184,19 +196,25 @@ pub(super) fn ending(run: &Run) -> String {
     }
 }
 
-/// A test case for the run, a failure where it did not complete, an error where there is no run to tell of; then one for
-/// each demand.
-fn junit(procedure: &str, ended: &Result<Run, Exit>, demands: &[(&Requirement, Kept)]) -> String {
+/// A test case for the run, a failure where it did not complete or nothing was identified, an error where there is no run to
+/// tell of; then one for each demand.
+fn junit(
+    procedure: &str,
+    ended: &Result<Run, Exit>,
+    found: Option<&Found>,
+    demands: &[(&Requirement, Kept)],
+) -> String {
     let (suite, case, time_s) = match ended {
         Ok(Run { summary, .. }) => {
             (summary.bench.clone(), format!("{procedure} run {}", summary.id), summary.duration_s.unwrap_or(0.0))
         }
         Err(_) => ("jointbench".to_owned(), procedure.to_owned(), 0.0),
     };
-    let outcome = match ended {
-        Ok(run) if run.summary.state == RunState::Completed => None,
-        Ok(run) => Some(("failure", ending(run))),
-        Err(exit) => Some(("error", exit.said.clone())),
+    let outcome = match (ended, found) {
+        (Err(exit), _) | (_, Some(Err(exit))) => Some(("error", exit.said.clone())),
+        (_, Some(Ok(found))) if identify::ending(found).is_ok() => None,
+        (_, Some(Ok(found))) => Some(("failure", identify::verdict(found))),
+        (Ok(run), None) => Some(("failure", ending(run))),
     };
     let mut cases = vec![(case, time_s, outcome)];
     cases.extend(demands.iter().map(|(demand, kept)| {
@@ -237,6 +255,7 @@ fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::Identified;
 
     #[test]
     fn values_are_json_where_they_can_be() {
@@ -249,7 +268,7 @@ mod tests {
 
     #[test]
     fn a_run_that_never_was_is_an_error_in_the_report() {
-        let report = junit("friction", &Err(Exit::bad_input("repeats = 0 < 1")), &[]);
+        let report = junit("friction", &Err(Exit::bad_input("repeats = 0 < 1")), None, &[]);
         assert!(
             report.contains("errors=\"1\"") && report.contains("<error message=\"repeats = 0 &lt; 1\"/>"),
             "{report}"
@@ -262,16 +281,34 @@ mod tests {
         let said = || "said".to_owned();
         let code = |kept: &[Kept]| {
             let demands: Vec<_> = kept.iter().map(|kept| (&demand, kept.clone())).collect();
-            judge(&demands, true).err().map_or(0, |exit| exit.code)
+            judge(None, &demands, true).err().map_or(0, |exit| exit.code)
         };
         assert_eq!(code(&[Kept::Yes(said())]), 0);
         assert_eq!(code(&[Kept::Yes(said()), Kept::Unsure(said())]), 3);
         assert_eq!(code(&[Kept::Unsure(said()), Kept::No(said()), Kept::Unsure(said())]), 1);
         assert_eq!(code(&[Kept::No(said()), Kept::Unknown(said())]), 2);
         let demands = [(&demand, Kept::No(said()))];
-        let report = junit("friction", &Err(Exit::bad_input("no run")), &demands);
+        let report = junit("friction", &Err(Exit::bad_input("no run")), None, &demands);
         assert!(report.contains("tests=\"2\" failures=\"1\" errors=\"1\""), "{report}");
         assert!(report.contains("name=\"tau_c &lt; 0.03 Nm\""), "{report}");
+    }
+
+    #[test]
+    fn what_was_not_identified_is_no_success() {
+        let shown = |verdict| {
+            let mut found = super::super::require::tests::found();
+            found.result.verdict = verdict;
+            Ok(found)
+        };
+        let demand: Requirement = "tau_c < 0.03 Nm".parse().unwrap();
+        let code =
+            |found: Found, kept: Kept| judge(Some(&found), &[(&demand, kept)], true).err().map_or(0, |exit| exit.code);
+        let (yes, no) = (Kept::Yes(String::new()), Kept::No(String::new()));
+        assert_eq!(code(shown(Identified::Identified), yes.clone()), 0);
+        assert_eq!(code(shown(Identified::Inconclusive), yes.clone()), 3);
+        assert_eq!(code(shown(Identified::Inconclusive), no), 1);
+        assert_eq!(code(shown(Identified::Failed), yes.clone()), 1);
+        assert_eq!(code(Err(Exit::failed("the daemon is gone")), yes), 1);
     }
 
     #[test]

@@ -100,6 +100,24 @@ fn runs_are_listed_and_ended_from_the_command_line() {
 }
 
 #[test]
+fn a_run_that_decides_nothing_is_no_success() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = bench(folder.path(), "a", 200.0);
+    let daemon = Daemon::serve(&folder.path().join("data"), &config);
+    // Swings above breakaway: the joint slides.
+    let mut arguments = vec!["run", "presliding", "--wait", "--daemon", daemon.base.as_str()];
+    for choice in ["top_torque_nm=0.045", "repeats=2", "amplitudes=2", "swings=1"] {
+        arguments.extend(["--set", choice]);
+    }
+    let ended = run(&arguments);
+    let said = stdout(&ended);
+    assert!(said.contains("run 1 completed") && said.contains("run 1: inconclusive"), "{said} {}", stderr(&ended));
+    assert_eq!(ended.status.code(), Some(3));
+    let again = run(&["identify", "1", "--daemon", daemon.base.as_str()]);
+    assert_eq!(again.status.code(), Some(3), "{}", stdout(&again));
+}
+
+#[test]
 fn a_second_daemon_on_the_same_folder_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = bench(folder.path(), "b", 20.0);

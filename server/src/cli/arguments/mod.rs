@@ -19,7 +19,8 @@ Begin here:
   jointbench demo                              measure a simulated joint, find what its model lacks
   jointbench diagnose RUN.csv                  where does the model fail on my data, and what is missing?
 
-Exit codes: 0 done, 1 the run failed or a limit was broken, 2 bad arguments or bad input, 3 could not be decided.";
+Exit codes: 0 done, 1 the run failed or a limit was broken, 2 bad arguments or bad input, 3 could not be decided.
+A verdict is done, whatever it says: 3 is where the data do not allow one.";
 
 /// Test bench for robot joints: measure, fit a model, find where it fails and which effect it lacks.
 #[derive(Debug, Parser)]
@@ -44,7 +45,8 @@ pub enum Command {
     Ports(Ports),
     /// Start a procedure on a running daemon, or make what is left of a run (--continue)
     #[command(
-        override_usage = "jointbench run <PROCEDURE> [OPTIONS]\n       jointbench run --continue <RUN> [OPTIONS]"
+        override_usage = "jointbench run <PROCEDURE> [OPTIONS]\n       jointbench run --continue <RUN> [OPTIONS]",
+        after_help = RUN
     )]
     Run(Run),
     /// End a run that is on: the brake is unloaded while the shaft turns, and what was measured is kept
@@ -192,8 +194,12 @@ all runs together. Every step is kept with its before and after, and every run p
   jointbench autopilot --bench-time-s 600 --set load_levels=2 --wait
   jointbench autopilot --after 4 --wait                 only the run that diagnosis 4 asks for
 
-Exit codes: 0 nothing is missing any more, 1 a run failed or somebody ended it, 2 bad arguments, 3 the budget is spent and
-something is still open, or structure remains that no effect explains.";
+Exit codes: 0 nothing is left to add (also where structure remains that no effect explains: the verdict says so), 1 a run
+failed or somebody ended it, 2 bad arguments, 3 the data decide too little, or the budget is spent and something is open.";
+
+const RUN: &str = "\
+Exit codes, where the end is waited for: 0 the procedure has identified what it is for and every demand is kept, 1 the run or
+its identification failed or a limit was broken, 2 bad arguments, 3 the identification is inconclusive or a demand unsure.";
 
 #[derive(Debug, Args)]
 pub struct Autopilot {
