@@ -3,7 +3,6 @@
 use jointbench_devices::sim::{EncoderTruth, MockInstrument, PlannedTrouble, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
-use jointbench_procedure::catalogue::can_find;
 use jointbench_procedure::conduct::{ConductFault, conduct};
 use jointbench_procedure::identification::{Identification, Verdict};
 use jointbench_procedure::parameter::Values;
@@ -23,9 +22,11 @@ fn run(bench: &mut Bench, id: &str, parameters: Value) -> Identification {
     let conducted = conduct(bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
     let found = conducted.identification.unwrap();
     println!("{id}: {} in {:.0} s of the bench", found.summary, conducted.duration_s);
+    let finds = procedure(id).unwrap().finds();
     for quantity in &found.quantities {
         println!("  {} = {:.6e} {} {:?}", quantity.name, quantity.value, quantity.unit, quantity.ci95);
-        assert!(can_find(id, &quantity.name), "{id} does not say that it finds {}", quantity.name);
+        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
     }
     assert_eq!(found.verdict, Verdict::Identified);
     found

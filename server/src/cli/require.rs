@@ -1,6 +1,7 @@
 //! What a script demands of a result: `tau_c < 0.035 Nm`.
 
 use crate::view::{Identification, Quantity};
+use jointbench_procedure::catalogue::Findable;
 use std::str::FromStr;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,8 +56,20 @@ impl Requirement {
         &self.text
     }
 
-    pub fn name(&self) -> &str {
-        &self.name
+    /// Whether a run of a procedure that finds these could keep it, or why none can.
+    pub fn could_be_kept_by(&self, procedure: &str, finds: &[Findable]) -> Result<(), String> {
+        match finds.iter().find(|findable| findable.is(&self.name)) {
+            Some(findable) => factor(&self.unit, findable.unit).map(drop).ok_or_else(|| self.in_unit(findable.unit)),
+            None => {
+                let names: Vec<&str> = finds.iter().map(|findable| findable.name.as_str()).collect();
+                Err(format!("{procedure} finds no {}; it finds {}", self.name, names.join(", ")))
+            }
+        }
+    }
+
+    fn in_unit(&self, unit: &str) -> String {
+        let unit = if unit.is_empty() { "no unit" } else { unit };
+        format!("{} is in {unit}: write the limit so", self.name)
     }
 
     pub fn check(&self, found: &Identification) -> Kept {
@@ -67,8 +80,7 @@ impl Requirement {
             return Kept::Unknown(format!("{} is not in the result: there is {there}", self.name));
         };
         let Some(factor) = factor(&self.unit, &quantity.unit) else {
-            let unit = if quantity.unit.is_empty() { "no unit" } else { &quantity.unit };
-            return Kept::Unknown(format!("{} is in {unit}: write the limit so", self.name));
+            return Kept::Unknown(self.in_unit(&quantity.unit));
         };
         self.judge(quantity, self.limit * factor)
     }

@@ -7,7 +7,7 @@ use super::identify;
 use super::progress::RunProgress;
 use super::require::{Kept, Requirement};
 use crate::view::{Bench, Identification, NewRun, Run, RunState, word};
-use jointbench_procedure::catalogue::{can_find, results};
+use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ type Found = Result<Identification, Exit>;
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach);
-    let ended = demand_what_can_be_found(arguments).and_then(|()| start(&client, arguments));
+    let ended = demand_what_can_be_found(&client, arguments).and_then(|()| start(&client, arguments));
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
     let demands: Vec<(&Requirement, Kept)> = match &found {
@@ -47,18 +47,21 @@ pub fn run(arguments: &Arguments) -> Done {
 }
 
 /// A demand that no run of the procedure could keep is refused before anything moves.
-fn demand_what_can_be_found(arguments: &Arguments) -> Done {
-    let Some(procedure) = &arguments.procedure else { return Ok(()) };
-    let known = results(procedure);
-    match arguments.require.iter().find(|demand| !known.is_empty() && !can_find(procedure, demand.name())) {
-        None => Ok(()),
-        Some(demand) => Err(Exit::bad_input(format!(
-            "--require '{}': {procedure} finds no {}; it finds {}",
-            demand.text(),
-            demand.name(),
-            known.join(", ")
-        ))),
+fn demand_what_can_be_found(client: &Client, arguments: &Arguments) -> Done {
+    if arguments.require.is_empty() {
+        return Ok(());
     }
+    let id = match (&arguments.procedure, arguments.continues) {
+        (None, Some(before)) => client.get::<Run>(&format!("/runs/{before}"))?.summary.procedure,
+        (id, _) => id.clone().unwrap_or_default(),
+    };
+    // One that nobody knows is refused by the daemon.
+    let Some(procedure) = procedure(&id) else { return Ok(()) };
+    let finds = procedure.finds();
+    arguments.require.iter().try_for_each(|demand| {
+        let wrong = |why| Exit::bad_input(format!("--require '{}': {why}", demand.text()));
+        demand.could_be_kept_by(&id, &finds).map_err(wrong)
+    })
 }
 
 fn title(arguments: &Arguments) -> String {

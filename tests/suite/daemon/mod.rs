@@ -84,9 +84,11 @@ fn runs_are_listed_and_ended_from_the_command_line() {
     let idle = said(&["stop"]);
     assert_eq!(idle.status.code(), Some(2));
     assert!(stderr(&idle).contains("no run is on"), "{}", stderr(&idle));
-    let vain = said(&["run", "friction", "--require", "tau_x < 1 Nm"]);
-    assert_eq!(vain.status.code(), Some(2));
-    assert!(stderr(&vain).contains("finds no tau_x"), "{}", stderr(&vain));
+    for (demand, why) in [("tau_x < 1 Nm", "finds no tau_x"), ("tau_c < 35 kg", "tau_c is in Nm")] {
+        let vain = said(&["run", "friction", "--require", demand]);
+        assert_eq!(vain.status.code(), Some(2));
+        assert!(stderr(&vain).contains(why), "{}", stderr(&vain));
+    }
     assert_eq!(daemon.get("/runs")["total"], 0, "nothing has moved");
 
     let id = start(&daemon, "friction");
@@ -113,6 +115,9 @@ fn a_run_that_decides_nothing_is_no_success() {
     let said = stdout(&ended);
     assert!(said.contains("run 1 completed") && said.contains("run 1: inconclusive"), "{said} {}", stderr(&ended));
     assert_eq!(ended.status.code(), Some(3));
+    let late = run(&["run", "--continue", "1", "--require", "tau_c < 35 kg", "--daemon", daemon.base.as_str()]);
+    assert_eq!((late.status.code(), daemon.get("/runs")["total"].as_i64()), (Some(2), Some(1)));
+    assert!(stderr(&late).contains("tau_c is in Nm"), "{}", stderr(&late));
     let again = run(&["identify", "1", "--daemon", daemon.base.as_str()]);
     assert_eq!(again.status.code(), Some(3), "{}", stdout(&again));
 }

@@ -11,9 +11,9 @@
 mod everett;
 mod identify;
 
-use super::Procedure;
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate};
+use super::{Findable, Procedure, findable};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -94,6 +94,10 @@ impl Procedure for BrakeHysteresis {
         legs.repeat = Part::Demagnetise as u32;
         legs.way_back(way_rad, speed_rad_s);
         Ok(legs.plan(self, values, brake_run::meta(bench, rate_hz), rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("Nm", "torque_top width drag"), ("", "error_max error_rms error_line"), ("A", "current_error")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

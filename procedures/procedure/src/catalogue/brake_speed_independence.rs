@@ -1,8 +1,8 @@
 //! Does the brake's torque depend on speed (thesis, figures 3.3 to 3.5)? Constant currents, each over all speeds.
 
-use super::Procedure;
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
+use super::{Findable, Procedure, findable};
 use crate::findings::{Line, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -87,6 +87,10 @@ impl Procedure for BrakeSpeedIndependence {
         }
         legs.unload(gear * top, before_a, bench);
         Ok(legs.plan(self, values, brake_run::meta(bench, rate_hz), rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("Nm", "torque_#"), ("Nm·s/rad", "slope_#"), ("", "change_# change_max")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

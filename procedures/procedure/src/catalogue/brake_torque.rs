@@ -4,10 +4,10 @@
 //! torques drawn evenly from all that the brake can give; for each the inverse says the current, from what the current has
 //! gone through so far. What the sensor then feels is compared with what was asked for.
 
-use super::Procedure;
 use super::brake_run;
 use super::demagnetise::rated_nm;
 use super::legs::{ACCELERATION, Legs, sample_rate};
+use super::{Findable, Procedure, findable};
 use crate::catalogue::brake_hysteresis::{BOUND, Everett, History, SETTLED};
 use crate::findings::{Unusable, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
@@ -96,6 +96,10 @@ impl Procedure for BrakeTorque {
         let mut meta = brake_run::meta(bench, rate_hz);
         meta.other.insert(COMMANDED.into(), Value::Array(commanded));
         Ok(legs.plan(self, values, meta, rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("", "error_max error_rms error_mean torques")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

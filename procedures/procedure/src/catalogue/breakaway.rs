@@ -5,8 +5,8 @@
 //! falls with speed creeps before it breaks away, and the faster the torque rises the lower it does (Canudas de Wit,
 //! Olsson, Åström, Lischinsky 1995): only a slow ramp comes near the friction at rest.
 
-use super::Procedure;
 use super::legs::{ACCELERATION, Legs, sample_rate, stroke};
+use super::{Findable, Procedure, findable};
 use crate::findings::{Mean, Unusable, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -76,6 +76,10 @@ impl Procedure for Breakaway {
         // The last of them is caught before the run ends.
         legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
         Ok(legs.friction_plan(self, values, bench, rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("Nm", "tau_b tau_b_positive tau_b_negative deviation")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

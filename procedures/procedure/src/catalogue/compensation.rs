@@ -6,8 +6,8 @@
 
 mod identify;
 
-use super::Procedure;
 use super::legs::{Legs, sample_rate};
+use super::{Findable, Procedure};
 use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
@@ -169,6 +169,14 @@ impl Procedure for Compensation {
             over_compensates(&stated, way, share, values.number("amplitude_rad_s"))?;
         }
         Ok(legs.friction_plan(self, values, bench, rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        let of_way = |way: Way| {
+            let [suffix, _] = way.words();
+            identify::FIGURES.map(|[name, _, _, unit]| Findable { name: format!("{name}_{suffix}"), unit })
+        };
+        Way::ALL.into_iter().flat_map(of_way).collect()
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

@@ -1,8 +1,8 @@
 //! Takes the poles out of a brake that was unloaded at standstill, and looks whether any are left.
 
-use super::Procedure;
 use super::brake_run;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
+use super::{Findable, Procedure, findable};
 use crate::findings::{Unusable, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -61,6 +61,10 @@ impl Procedure for Demagnetise {
         legs.leg(speed_rad_s, turn_s(1.2, speed_rad_s, bench, 1.0), 0.0);
         legs.leg(-speed_rad_s, turn_s(1.2, speed_rad_s, bench, 1.0), 0.0);
         Ok(legs.plan(self, values, brake_run::meta(bench, rate_hz), rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("Nm", "left noise")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

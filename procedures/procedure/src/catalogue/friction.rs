@@ -9,10 +9,10 @@
 //! The warm-up before it is part of the table, as segments of its own in repeat 0 (`warm_up_segments` of the meta
 //! facts counts them): it is where temperature changes most, which is what shows an effect of temperature.
 
-use super::Procedure;
 use super::compensation;
 use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
 use super::warm_up;
+use super::{Findable, Procedure, findable};
 use crate::findings::verdict;
 use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
@@ -106,6 +106,15 @@ impl Procedure for Friction {
             }),
             ..legs.plan(self, values, meta, rate_hz)
         })
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[
+            ("Nm", "tau_c tau_h tau_c_positive tau_h_positive tau_c_negative tau_h_negative tau_c_difference"),
+            ("Nm·s/rad", "c_v c_v_positive c_v_negative c_v_difference"),
+            ("rad/s", "omega_s omega_s_positive omega_s_negative"),
+            ("", "delta_s delta_s_positive delta_s_negative r2_positive r2_negative"),
+        ])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -3,9 +3,9 @@
 //! The plan is that of `friction` with more loads and fewer speeds. What the brake takes is measured by the torque
 //! sensor; what friction takes more under load is what the motor gives beyond it.
 
-use super::Procedure;
 use super::friction::Friction;
 use super::legs::sample_rate;
+use super::{Findable, Procedure, findable};
 use crate::findings::{Unusable, interval_of, keep, legs, parameter, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -56,6 +56,10 @@ impl Procedure for FrictionLoad {
         }
         let plan = Friction.plan(&given, bench)?;
         Ok(Plan { procedure: self.id(), parameters: values.to_json(), ..plan })
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("Nm", "tau_c added"), ("Nm·s/rad", "c_v"), ("", "mu"), ("1/Nm", "mu_2")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

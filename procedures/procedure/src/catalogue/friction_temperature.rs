@@ -3,9 +3,9 @@
 //! The joint is worked until it is warm, then left to cool with a short bout of legs now and then. Up and down the same
 //! temperatures are passed at different times: what depends on temperature and what merely drifts with time show apart.
 
-use super::Procedure;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::warm_up;
+use super::{Findable, Procedure, findable};
 use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -76,6 +76,16 @@ impl Procedure for FrictionTemperature {
             cooled_s = legs.steps[heated..].iter().map(crate::plan::Step::duration_s).sum();
         }
         Ok(legs.friction_plan(self, values, bench, rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[
+            ("°C", "temperature_low temperature_high"),
+            ("Nm", "tau_c"),
+            ("Nm·s/rad", "c_v"),
+            ("Nm/K", "tau_t"),
+            ("Nm·s/(rad·K)", "c_t"),
+        ])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -17,7 +17,7 @@ use super::friction_temperature::FrictionTemperature;
 use super::legs::sample_rate;
 use super::presliding::Presliding;
 use super::stiffness::Stiffness;
-use super::{Procedure, procedure};
+use super::{Findable, Procedure, procedure};
 use crate::findings::{Unusable, verdict};
 use crate::identification::{FollowUp, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -45,7 +45,7 @@ const SCHEMA: &[Parameter] = &[
 const PARTS: &str = "parts";
 
 /// What the campaign consists of.
-pub(super) const PARTS_IN_ORDER: [&str; 8] = [
+const PARTS_IN_ORDER: [&str; 8] = [
     "friction_temperature",
     "friction",
     "breakaway",
@@ -156,6 +156,14 @@ impl Procedure for IdentifyJoint {
         let mut plan = whole.ok_or(PlanFault::Contradiction { what: "a campaign without parts".into(), cure })?;
         plan.meta.other.insert(PARTS.into(), Value::Array(facts));
         Ok(plan)
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        let of_part = |part: &'static dyn Procedure| {
+            let named = |found: Findable| Findable { name: format!("{}.{}", part.id(), found.name), ..found };
+            part.finds().into_iter().map(named).collect::<Vec<_>>()
+        };
+        PARTS_IN_ORDER.into_iter().filter_map(procedure).flat_map(of_part).collect()
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -8,6 +8,7 @@ mod breakaway;
 mod compensation;
 mod demagnetise;
 mod encoder;
+mod findable;
 mod friction;
 mod friction_load;
 mod friction_temperature;
@@ -16,14 +17,14 @@ mod legs;
 mod presliding;
 mod puma_friction;
 mod rest;
-mod results;
 mod stiffness;
 mod strokes;
 mod torque_sensor_zero;
 mod warm_up;
 
 pub use brake_hysteresis::{BrakeModel, brake_model};
-pub use results::{can_find, results};
+pub use findable::Findable;
+use findable::findable;
 
 use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
@@ -43,6 +44,8 @@ pub trait Procedure: Sync {
     fn schema(&self) -> &'static [Parameter];
     /// Plans with checked values.
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault>;
+    /// What `identify` may find.
+    fn finds(&self) -> Vec<Findable>;
     /// What a run of this procedure shows, with the values that it was planned with. Pure; a run that ended early or a
     /// table that says nothing gets its verdict too. `None`: nothing but samples is asked of it.
     fn identify(&self, _values: &Values, _run: &RunTable) -> Option<Identification> {

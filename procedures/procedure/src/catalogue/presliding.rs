@@ -4,8 +4,8 @@
 //! start from the same state. The torque is commanded and the motor's encoder tells the way: a joint moves by a few counts
 //! of it only, so the moments count at which a reading changes.
 
-use super::Procedure;
 use super::legs::{ACCELERATION, Legs, sample_rate};
+use super::{Findable, Procedure, findable};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -87,6 +87,10 @@ impl Procedure for Presliding {
         // The last of them is held before the run ends.
         legs.push("rest".into(), Profile::from(0.0).hold(REST_S), Profile::constant(0.0));
         Ok(legs.friction_plan(self, values, bench, rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("Nm/rad", "sigma_0 element_#_stiffness"), ("Nm", "tau_c bias element_#_slip"), ("rad", "reach")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

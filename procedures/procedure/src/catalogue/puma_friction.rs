@@ -9,8 +9,8 @@
 //! shows it, while the current rose: on the mock bench the figure lies above the friction at rest, by 1.0 to 3.1 % at the
 //! default ramp (30 arms) and by 2.1 to 5.7 % at three times of it (20 arms). Its interval is the scatter between tries.
 
-use super::Procedure;
 use super::legs::{ACCELERATION, Legs, friction_meta, stroke};
+use super::{Findable, Procedure, findable};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -134,6 +134,16 @@ impl Procedure for PumaFriction {
             steady: Some(Steady { cycle_steps: CYCLE_STEPS, temperature_c_per_min: 0.3, current_share_per_min: 0.05 }),
             ..legs.plan(self, values, meta, rate_hz)
         })
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[
+            ("V", "f_positive f_negative f_difference weight stiction_positive stiction_negative"),
+            ("V/(°/s)", "b_positive b_negative b_difference"),
+            ("", "r2_positive r2_negative"),
+            ("Nm", "tau_c_positive tau_c_negative"),
+            ("Nm·s/rad", "c_v_positive c_v_negative"),
+        ])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

@@ -5,8 +5,8 @@
 
 mod identify;
 
-use super::Procedure;
 use super::legs::{ACCELERATION, Legs, sample_rate};
+use super::{Findable, Procedure, findable};
 use crate::findings::verdict;
 use crate::identification::Identification;
 use crate::parameter::{Parameter, Values};
@@ -88,6 +88,10 @@ impl Procedure for Stiffness {
             ..Meta::default()
         };
         Ok(legs.plan(self, values, meta, rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("rad/Nm", "inverse_k"), ("Nm/rad", "k"), ("rad", "beta_0 xi line_rms rms"), ("J", "loop_area")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -3,8 +3,8 @@
 //! Every leg returns to where it began, so that a joint or a slide with little room can be measured. A leg ends when its
 //! time or its way is up, whichever comes first.
 
-use super::Procedure;
 use super::legs::{Legs, sample_rate};
+use super::{Findable, Procedure, findable};
 use crate::findings::{Line, Unusable, curve, keep, legs, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -83,6 +83,14 @@ impl Procedure for Strokes {
             }
         }
         Ok(legs.friction_plan(self, values, bench, rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[
+            ("Nm", "offset_positive offset_negative"),
+            ("Nm·s/rad", "slope_positive slope_negative"),
+            ("", "r2_positive r2_negative"),
+        ])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

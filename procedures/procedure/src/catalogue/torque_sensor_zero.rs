@@ -4,8 +4,8 @@
 //! without load, and the zero is half the sum of both directions: drag has the sign of motion, the zero has not. Then the
 //! brake loads the line in both directions, as far as the smaller range goes: both ranges feel the same torque there.
 
-use super::Procedure;
 use super::legs::{ACCELERATION, Legs, sample_rate};
+use super::{Findable, Procedure, findable};
 use crate::columns::OTHER_RANGE;
 use crate::findings::{Hold, Line, Mean, Unusable, curve, holds, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Verdict};
@@ -76,6 +76,10 @@ impl Procedure for TorqueSensorZero {
             compare(&mut legs, speed_rad_s, values, bench);
         }
         Ok(Plan { both_ranges: bench.has_two_ranges, ..legs.friction_plan(self, values, bench, rate_hz) })
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("Nm", "zero drag zero_other disagreement"), ("Nm/min", "drift drift_other"), ("1", "gain_ratio")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

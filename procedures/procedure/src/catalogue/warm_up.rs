@@ -1,7 +1,7 @@
 //! Work the joint until temperature and friction are steady, or the time is up.
 
-use super::Procedure;
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
+use super::{Findable, Procedure, findable};
 use crate::findings::{Line, Plateau, Unusable, plateaus, quantity, scatter, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -68,6 +68,10 @@ impl Procedure for WarmUp {
             }),
             ..legs.friction_plan(self, values, bench, rate_hz)
         })
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("Nm", "torque"), ("1/min", "current_drift"), ("°C/min", "temperature_drift")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

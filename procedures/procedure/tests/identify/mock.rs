@@ -1,7 +1,7 @@
 //! Short runs on the mock bench. Its truth is read only to be compared with.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
-use jointbench_procedure::catalogue::{brake_model, can_find};
+use jointbench_procedure::catalogue::brake_model;
 use jointbench_procedure::conduct::{conduct, conduct_knowing};
 use jointbench_procedure::identification::{Identification, Verdict};
 use jointbench_procedure::parameter::Values;
@@ -13,8 +13,10 @@ fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Ide
     let mut bench = mock.open_bench("mock").unwrap();
     let done = conduct(&mut bench, procedure(id).unwrap(), parameters.as_object().unwrap()).unwrap();
     let found = done.identification.unwrap();
+    let finds = procedure(id).unwrap().finds();
     for quantity in &found.quantities {
-        assert!(can_find(id, &quantity.name), "{id} does not say that it finds {}", quantity.name);
+        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
     }
     (mock, found)
 }

@@ -118,6 +118,11 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     };
     let (_mock, mut bench) = open();
     let unbroken = conduct(&mut bench, procedure, given).unwrap().identification.unwrap();
+    let finds = procedure.finds();
+    for quantity in &unbroken.quantities {
+        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
+    }
 
     let (_mock, mut bench) = open();
     let facts = BenchFacts::of(&bench);

@@ -13,6 +13,15 @@ const WINDOW_S: f64 = 0.1;
 /// A figure does not need every sample.
 const SHOWN: usize = 1500;
 
+/// What is told of each way: name, symbol, title and unit.
+pub(super) const FIGURES: [[&str; 4]; 5] = [
+    ["rho_1", "ρ₁", "Sum of the errors", "rad"],
+    ["rho_2", "ρ₂", "Sum of the squared errors", "rad²"],
+    ["rho_max", "ρ_max", "Largest error", "rad"],
+    ["ratio", "ρ₁/ρ₁₀", "Sum of the errors, share of none", ""],
+    ["over", "Δτ", "Fed forward beyond what the drive gave", "Nm"],
+];
+
 /// One way of compensating, as it was measured.
 struct Followed {
     way: Way,
@@ -39,17 +48,14 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
     let none = followed[0].rho()[0];
     let mut quantities = Vec::new();
     for one in &followed {
-        let [name, title] = one.way.words();
+        let [suffix, way] = one.way.words();
         let [rho_1, rho_2, rho_max] = one.rho();
-        let mut say = |key: &str, symbol: &str, what: &str, unit: &str, value: f64| {
-            let words = [&format!("{key}_{name}"), symbol, &format!("{what}, {title}"), unit];
+        for ([name, symbol, title, unit], value) in
+            FIGURES.into_iter().zip([rho_1, rho_2, rho_max, rho_1 / none, one.over_nm])
+        {
+            let words = [&format!("{name}_{suffix}"), symbol, &format!("{title}, {way}"), unit];
             quantities.push(quantity(words, value, None));
-        };
-        say("rho_1", "ρ₁", "Sum of the errors", "rad", rho_1);
-        say("rho_2", "ρ₂", "Sum of the squared errors", "rad²", rho_2);
-        say("rho_max", "ρ_max", "Largest error", "rad", rho_max);
-        say("ratio", "ρ₁/ρ₁₀", "Sum of the errors, share of none", "", rho_1 / none);
-        say("over", "Δτ", "Fed forward beyond what the drive gave", "Nm", one.over_nm);
+        }
     }
     let best = followed.iter().min_by(|a, b| a.rho()[0].total_cmp(&b.rho()[0]));
     let active: Vec<&str> = followed.iter().filter(|f| f.over_nm > 0.0).map(|f| f.way.words()[1]).collect();

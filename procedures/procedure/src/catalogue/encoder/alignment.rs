@@ -4,8 +4,8 @@ use super::edges::{Found, WAYS, Way, found};
 use super::say::{quantity, too_little};
 use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
-use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -98,6 +98,16 @@ impl Procedure for EncoderAlignment {
         // Nobody should find the sensor where the map has ended.
         both_ways(&mut legs, speed_rad_s, 1.0, Place::At(Pose::default()));
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[
+            (
+                "m",
+                "radial_negative radial_positive axial_positive vertical_negative vertical_positive best_radial_shift",
+            ),
+            ("rad", "rotation_negative rotation_positive tilt_negative tilt_positive best_harmonic_1"),
+        ])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

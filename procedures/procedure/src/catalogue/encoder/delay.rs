@@ -3,8 +3,8 @@
 use super::say::{quantity, too_little};
 use super::sweeps::sweeps;
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
-use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -64,6 +64,10 @@ impl Procedure for EncoderDelay {
             }
         }
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("s", "delay filter_delay"), ("rad", "offset hysteresis")])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

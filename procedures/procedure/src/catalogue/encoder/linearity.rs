@@ -4,8 +4,8 @@ use super::say::{histogram, quantity, scatter, too_little};
 use super::sweeps::{Sweep, sweeps};
 use super::table::{Class, Table, Terms};
 use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
-use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -78,6 +78,13 @@ impl Procedure for EncoderLinearity {
             }
         }
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[
+            ("", "bits_before bits_table bits_velocity bits_direction pole_period_order"),
+            ("rad", "peak_before peak_table peak_velocity peak_direction harmonic_1 harmonic_2 pole_period"),
+        ])
     }
 
     fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {

@@ -3,8 +3,8 @@
 use super::say::{histogram, quantity, scatter, too_little};
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
-use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::t95;
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -58,6 +58,10 @@ impl Procedure for EncoderOffset {
             both_ways(&mut legs, values.number("speed_rad_s"), values.number("turns"), Place::AsLeft);
         }
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("rad", "offset direction_difference"), ("", "offset_points positions")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

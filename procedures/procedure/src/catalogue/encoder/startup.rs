@@ -4,8 +4,8 @@ use super::offset::step_rad;
 use super::say::{histogram, quantity, too_little};
 use super::sweeps::{Sweep, sweeps};
 use super::{ACCELERATION, both_ways, counts, meta, sample_rate};
-use crate::catalogue::Procedure;
 use crate::catalogue::legs::Legs;
+use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::{Mean, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
@@ -68,6 +68,10 @@ impl Procedure for EncoderStartup {
             legs.steps[first].before = Before::PoweredAnew;
         }
         Ok(legs.plan(self, values, meta(counts, rate_hz), rate_hz))
+    }
+
+    fn finds(&self) -> Vec<Findable> {
+        findable(&[("rad", "offset startup_spread startup_range repeatability"), ("", "power_ups")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
