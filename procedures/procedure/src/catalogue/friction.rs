@@ -23,6 +23,7 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 mod identify;
+mod left_open;
 
 pub(super) struct Friction;
 
@@ -110,15 +111,18 @@ impl Procedure for Friction {
 
     fn finds(&self) -> Vec<Findable> {
         findable(&[
-            ("Nm", "tau_c tau_h tau_c_positive tau_h_positive tau_c_negative tau_h_negative tau_c_difference"),
+            (
+                "Nm",
+                "tau_c tau_h tau_c_positive tau_h_positive tau_c_negative tau_h_negative tau_c_difference tau_s_most",
+            ),
             ("Nm·s/rad", "c_v c_v_positive c_v_negative c_v_difference"),
             ("rad/s", "omega_s omega_s_positive omega_s_negative"),
             ("", "delta_s delta_s_positive delta_s_negative r2_positive r2_negative"),
         ])
     }
 
-    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
-        verdict(identify::identify(run))
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify::identify(values.number("stribeck_speed_rad_s"), run))
     }
 
     fn follow_up(&self, found: &Identification) -> Option<FollowUp> {

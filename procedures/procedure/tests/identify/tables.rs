@@ -8,6 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use serde_json::json;
+use std::cell::Cell;
 
 const GEAR: f64 = 177.8;
 const TORQUE_CONSTANT: f64 = 0.0406;
@@ -88,11 +89,37 @@ fn directions_that_differ_are_told_apart() {
 }
 
 #[test]
-fn without_a_rise_towards_standstill_nothing_is_made_up() {
+fn without_a_rise_towards_standstill_none_is_made_up() {
     let found = identified("friction", &staircase(|v| 0.030 * v.signum() + 1.512e-4 * v));
-    assert_eq!(found.verdict, Verdict::Inconclusive);
-    assert!(found.quantity("tau_h").is_none() && found.advice.is_some(), "{found:?}");
+    assert_eq!(found.verdict, Verdict::Identified, "{}", found.summary);
+    assert!(found.quantity("tau_h").is_none() && found.advice.is_none(), "{found:?}");
     check(&found, "tau_c", 0.030, 0.02);
+    let most_nm = found.quantity("tau_s_most").unwrap().value;
+    assert!(most_nm > 1e-5 && most_nm < 1e-3, "{most_nm}");
+}
+
+#[test]
+fn a_rise_that_could_hide_is_not_decided() {
+    // From speed to speed by so little that speed explains nearly all of it.
+    let wave = |v: f64| 0.002 * (7.0 * v.ln_1p()).sin();
+    let found = identified("friction", &staircase(|v| (0.030 + wave(v.abs())) * v.signum() + 1.512e-4 * v));
+    assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.summary);
+    assert!(found.advice.is_some_and(|advice| advice.contains("To decide the Stribeck part")), "{}", found.summary);
+}
+
+#[test]
+fn what_speed_does_not_explain_is_told() {
+    // From leg to leg the joint meets something else.
+    let sample = Cell::new(0_u32);
+    let found = identified(
+        "friction",
+        &staircase(|v| {
+            let leg = f64::from(sample.replace(sample.get() + 1) / 200);
+            joint_a(v) + 0.008 * (2.4 * leg).sin()
+        }),
+    );
+    assert!(found.summary.contains("follow something else"), "{}", found.summary);
+    assert!(found.advice.is_some_and(|advice| advice.contains("jointbench diagnose")));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Coulomb, viscous and Stribeck friction of the free joint, each direction (seed-facts, tables 4.5 and 4.6).
 
+use super::left_open::{Side, hidden_rise_nm, is_small, rest};
 use crate::findings::{
     Leg, Line, Plateau, Unusable, combined, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter,
 };
@@ -79,7 +80,8 @@ pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
     legs(run).into_iter().filter(|leg| leg.segment >= warm_up && unloaded(leg)).collect()
 }
 
-pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+/// `expected_rad_s` is the Stribeck velocity at the link for which the run was planned.
+pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
     let free = free(run);
     let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
     // A run of hours takes seconds: the directions are looked at beside the whole.
@@ -98,13 +100,10 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let mut quantities = named("", "", "", &whole, gear);
     quantities.extend(named("_positive", "⁺", ", positive direction", &forward, gear));
     quantities.extend(named("_negative", "⁻", ", negative direction", &backward, gear));
-    for (suffix, sign, side) in [("positive", 1.0, &forward), ("negative", -1.0, &backward)] {
-        let r2 = r2(&points, sign, side);
-        quantities.push(quantity(
-            [&format!("r2_{suffix}"), if sign > 0.0 { "r²⁺" } else { "r²⁻" }, "Share of the scatter explained", ""],
-            r2,
-            None,
-        ));
+    let sides = [("positive", Side::of(&points, 1.0, &forward)), ("negative", Side::of(&points, -1.0, &backward))];
+    for ((suffix, side), symbol) in sides.iter().zip(["r²⁺", "r²⁻"]) {
+        let words = [&format!("r2_{suffix}"), symbol, "Share of the scatter explained", ""];
+        quantities.push(quantity(words, side.r2, None));
     }
     let differences = [
         quantity_of(
@@ -121,33 +120,48 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
 
     let directions = if differ { "differ at 95 %" } else { "do not differ at 95 %" };
     let figures = vec![over_speed(&points, &whole), near_zero(&points, &whole, gear)];
-    Ok(match &whole.stribeck {
-        Some(stribeck) => Identification {
-            verdict: Verdict::Identified,
-            summary: format!(
-                "Coulomb friction is {}, viscous friction {}, and below {} at the link friction rises to {}; the directions {directions}.",
-                words::figure(whole.coulomb.0, "Nm"),
-                words::figure(whole.viscous.0, "Nm·s/rad"),
-                words::figure(stribeck.speed.0 / gear, "rad/s"),
-                words::figure(whole.coulomb.0 + stribeck.rise.0, "Nm"),
-            ),
-            advice: None,
-            quantities,
-            figures,
-        },
-        None => Identification {
-            verdict: Verdict::Inconclusive,
-            summary: format!(
-                "Coulomb friction is {}, viscous friction {}; no rise towards standstill is visible; the directions {directions}.",
-                words::figure(whole.coulomb.0, "Nm"),
-                words::figure(whole.viscous.0, "Nm·s/rad"),
-            ),
-            advice: Some(
-                "To decide the Stribeck part, repeat with more repeats or a lower stribeck_speed_rad_s.".into(),
-            ),
-            quantities,
-            figures,
-        },
+    let hidden_nm = match whole.stribeck {
+        Some(_) => None,
+        None => hidden_rise_nm(&points, expected_rad_s * gear),
+    };
+    quantities.extend(hidden_nm.map(|most_nm| {
+        quantity(["tau_s_most", "τ_s", "Largest rise towards standstill that could hide", "Nm"], most_nm, None)
+    }));
+    let (is_decided, rise) = match (&whole.stribeck, hidden_nm) {
+        (Some(stribeck), _) => {
+            let below = words::figure(stribeck.speed.0 / gear, "rad/s");
+            let to = words::figure(whole.coulomb.0 + stribeck.rise.0, "Nm");
+            (true, format!("below {below} at the link friction rises to {to}"))
+        }
+        (None, Some(most_nm)) => {
+            let most = words::figure(most_nm, "Nm");
+            match is_small(most_nm, &whole) {
+                true => (true, format!("towards standstill it rises by no more than {most}")),
+                false => (false, format!("a rise towards standstill of up to {most} could hide")),
+            }
+        }
+        (None, None) => (false, "whether friction rises towards standstill is not decided".to_owned()),
+    };
+    let rest = rest(&sides, &whole);
+    let advice = match (&rest, is_decided) {
+        (Some(_), _) => Some(
+            "To see what the rest follows, open the run in the workbench, or export it and have the file diagnosed \
+             (jointbench export RUN, jointbench diagnose FILE).",
+        ),
+        (None, false) => Some("To decide the Stribeck part, repeat with more repeats or a lower stribeck_speed_rad_s."),
+        (None, true) => None,
+    };
+    Ok(Identification {
+        verdict: if is_decided { Verdict::Identified } else { Verdict::Inconclusive },
+        summary: format!(
+            "Coulomb friction is {}, viscous friction {}, and {rise}; the directions {directions}.{}",
+            words::figure(whole.coulomb.0, "Nm"),
+            words::figure(whole.viscous.0, "Nm·s/rad"),
+            rest.map(|rest| format!(" {rest}")).unwrap_or_default()
+        ),
+        advice: advice.map(str::to_owned),
+        quantities,
+        figures,
     })
 }
 
@@ -180,20 +194,8 @@ fn quantity_of(words: [&str; 4], figure: Figured) -> Quantity {
     quantity(words, figure.0, Some(figure.1))
 }
 
-fn friction_nm(point: &Plateau) -> f64 {
+pub(super) fn friction_nm(point: &Plateau) -> f64 {
     point.target - point.load_nm
-}
-
-/// Of one direction's points against its own curve.
-fn r2(points: &[Plateau], sign: f64, side: &FreeFriction) -> f64 {
-    let points: Vec<&Plateau> = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0).collect();
-    let mean = points.iter().map(|p| friction_nm(p)).sum::<f64>() / points.len() as f64;
-    let (mut left, mut all) = (0.0, 0.0);
-    for point in points {
-        left += (friction_nm(point) - sign * side.at(point.velocity_rad_s.abs())).powi(2);
-        all += (friction_nm(point) - mean).powi(2);
-    }
-    1.0 - left / all
 }
 
 fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
