@@ -91,7 +91,7 @@ impl BenchHandle {
         if slot.is_some() {
             let name = self.name();
             return Err(LabError::Conflict(format!(
-                "bench {name} has a run on: stop it (POST /api/v1/bench/{name}/stop, or in the dashboard), or wait for its end"
+                "bench {name} has a run on: stop it (`jointbench stop`, or in the dashboard), or wait for its end"
             )));
         }
         let (sender, controls) = mpsc::channel();

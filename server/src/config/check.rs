@@ -72,8 +72,22 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
         constants: constants?,
         calibrated: calibrated?,
         record: None,
-        text: text.to_owned(),
+        text: own_part(text, raw.name.span().start).to_owned(),
     })
+}
+
+/// What describes the bench whose name stands at this place: all of the file where it is the only one.
+fn own_part(text: &str, name_at: usize) -> &str {
+    let lines = text.split_inclusive('\n').scan(0, |end, line| {
+        *end += line.len();
+        Some((*end - line.len(), line))
+    });
+    let heads: Vec<usize> =
+        lines.filter(|(_, line)| line.trim_start().starts_with("[[bench]]")).map(|(start, _)| start).collect();
+    match heads.iter().rposition(|head| *head < name_at) {
+        Some(own) if heads.len() > 1 => &text[heads[own]..heads.get(own + 1).copied().unwrap_or(text.len())],
+        _ => text,
+    }
 }
 
 fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {

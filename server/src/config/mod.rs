@@ -41,7 +41,7 @@ pub struct BenchDescription {
     pub calibrated: Vec<(&'static str, Date)>,
     /// Every opening of its instruments writes their traffic down in a new folder in this one.
     pub record: Option<PathBuf>,
-    /// As written, for the provenance of its runs.
+    /// As written, for the provenance of its runs; nothing of other benches in the same file.
     pub text: String,
 }
 

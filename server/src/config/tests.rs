@@ -164,3 +164,14 @@ ninter = 0
     let said = parse("bench.toml", mock).unwrap_err().to_string();
     assert!(said.contains("line 5: this joint has no load"), "{said}");
 }
+
+#[test]
+fn a_run_carries_the_description_of_its_own_bench() {
+    let [one, other] = ["one", "other"].map(|name| {
+        format!("[[bench]]\nname = \"{name}\"\n\n[bench.mock]\njoint = \"a\"\neffects = []\n# The end of {name}.\n\n")
+    });
+    let benches = parse("bench.toml", &format!("# Two of them.\n{one}{other}")).unwrap();
+    assert_eq!([&benches[0].text, &benches[1].text], [&one, &other]);
+    let alone = format!("# Only one.\n{one}");
+    assert_eq!(parse("bench.toml", &alone).unwrap()[0].text, alone);
+}
