@@ -1,18 +1,8 @@
-import { Refusal, asRefusal } from './problem';
-import { authorization } from './token';
+import { request } from './ask';
 
 /** Fetches a file and hands it to the person: an ordinary link can carry no token, and would save a refusal as if it were the file. */
 export async function download(href: string, name: string): Promise<void> {
-	let answer: Response;
-	try {
-		answer = await fetch(href, { headers: authorization() });
-	} catch (failure) {
-		throw asRefusal(failure);
-	}
-	if (!answer.ok) {
-		const problem = (await answer.json().catch(() => ({}))) as object;
-		throw new Refusal({ title: answer.statusText || 'Refused', ...problem, status: answer.status });
-	}
+	const answer = await request(href);
 	save(await answer.blob(), /filename="([^"]+)"/.exec(answer.headers.get('content-disposition') ?? '')?.[1] ?? name);
 }
 

@@ -1,7 +1,6 @@
+import { request } from './ask';
 import { BASE } from './client';
-import { Refusal, asRefusal } from './problem';
-import { authorization } from './token';
-import type { Problem, Run } from './types';
+import type { Run } from './types';
 
 /** A run table and, beside it, its `meta.json`. */
 export interface Upload {
@@ -22,12 +21,6 @@ export async function importRun({ file, meta }: Upload, { map, scale }: { map: s
 	if (meta) form.append('meta', await meta.text());
 	for (const one of map) form.append('map', one);
 	for (const one of scale) form.append('scale', one);
-	try {
-		const response = await fetch(`${BASE}/runs/import`, { method: 'POST', body: form, headers: authorization() });
-		const body: unknown = await response.json();
-		if (!response.ok) throw new Refusal({ ...(body as Problem), status: response.status });
-		return body as Run;
-	} catch (failure) {
-		throw asRefusal(failure);
-	}
+	const answer = await request(`${BASE}/runs/import`, { method: 'POST', body: form });
+	return (await answer.json()) as Run;
 }
