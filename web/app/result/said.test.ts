@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { quantitiesCsv, sayQuantity } from './said';
+import { quantitiesCsv, sayQuantity, tableOf } from './said';
 
 it('says a quantity with one prefix for value and interval', () => {
 	expect(sayQuantity({ value: 3.2e-5, unit: 'Nm·s/rad', ci95: [3.16e-5, 3.24e-5] })).toEqual({ value: '32.00', interval: '± 0.40', unit: 'µNm·s/rad' });
@@ -15,4 +15,17 @@ it('says an uneven interval by its ends, and none where there is none', () => {
 it('copies figures in SI units with all their digits', () => {
 	const one = { name: 'tau_c', symbol: 'τ_c', title: 'Coulomb friction, positive', unit: 'Nm', value: 0.03312345, ci95: [0.033, 0.034] };
 	expect(quantitiesCsv([one])).toBe('name,symbol,quantity,unit,value,ci95 lower,ci95 upper\ntau_c,τ_c,"Coulomb friction, positive",Nm,0.03312345,0.033,0.034\n');
+});
+
+it('sets what was found for several ways side by side, and nothing else', () => {
+	const made = (symbol: string, what: string) => ['none', 'Coulomb, interpolated', 'observer'].map((way, i) => ({ name: `${symbol}${i}`, symbol, title: `${what}, ${way}`, unit: 'rad', value: i }));
+	const found = [...made('ρ_1', 'Sum of the errors'), ...made('ρ_1/ρ_10', 'Sum of the errors, share of none')];
+	const table = tableOf(found);
+	expect(table?.ways).toEqual(['none', 'Coulomb, interpolated', 'observer']);
+	expect(table?.rows.map(({ title, of }) => [title, ...of.map((one) => one.value)])).toEqual([
+		['Sum of the errors', 0, 1, 2],
+		['Sum of the errors, share of none', 0, 1, 2],
+	]);
+	expect(tableOf(found.slice(1))).toBeNull();
+	expect(tableOf(found.map((one) => ({ ...one, ci95: [0, 1] })))).toBeNull();
 });

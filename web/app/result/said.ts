@@ -37,3 +37,23 @@ export function quantitiesCsv(quantities: readonly IdentifiedQuantity[]): string
 		quantities.map(({ name, symbol, title, unit, value, ci95 }) => [name, symbol, title, unit, value, ci95?.[0] ?? null, ci95?.[1] ?? null]),
 	);
 }
+
+/** What was found for each of several ways. */
+export interface Table {
+	ways: string[];
+	rows: { symbol: string; title: string; of: IdentifiedQuantity[] }[];
+}
+
+/** A column for each way, where every symbol has a figure for each: their titles are alike up to a comma, and then name the way. */
+export function tableOf(quantities: readonly IdentifiedQuantity[]): Table | null {
+	const bySymbol = new Map<string, IdentifiedQuantity[]>();
+	for (const one of quantities) bySymbol.set(one.symbol, [...(bySymbol.get(one.symbol) ?? []), one]);
+	const rows = [...bySymbol].map(([symbol, of]) => {
+		const parts = of[0]!.title.split(', ');
+		const begins = parts.map((_, i) => parts.slice(0, i).join(', ')).findLast((begin) => of.every(({ title }) => title.startsWith(`${begin}, `)));
+		return { symbol, title: begins ?? '', of };
+	});
+	const [ways = [], ...others] = rows.map(({ title, of }) => of.map((one) => one.title.slice(title.length + 2)));
+	const whole = ways.length > 2 && others.length > 0 && others.every((more) => more.join('\n') === ways.join('\n'));
+	return whole && quantities.every((one) => !one.ci95) ? { ways, rows } : null;
+}
