@@ -1,0 +1,60 @@
+import { api } from '../api/client';
+import { type Refusal, asRefusal } from '../api/problem';
+import type { Identification } from '../api/types';
+import { lab } from '../state/lab.svelte';
+import type { Said } from './soFar';
+
+const EVERY_MS = 4000;
+/** A run that takes long to work out is asked less often: a tenth of the daemon's time at most. */
+const PATIENCE = 10;
+
+/** What a run says before it is over: the procedure's own figures, asked for again and again. `null` asks nothing. Call while a component is being set up. */
+export function askSoFar(running: () => number | null) {
+	let found = $state.raw<Identification | null>(null);
+	let story: Said[] = $state.raw([]);
+	let refused = $state.raw<Refusal | null>(null);
+
+	const asked = $derived(running());
+	$effect(() => {
+		const run = asked;
+		found = null;
+		story = [];
+		if (run === null) return;
+		const abort = new AbortController();
+		let timer: ReturnType<typeof setTimeout>;
+		const ask = async () => {
+			const begun = performance.now();
+			try {
+				// A run without a sample is refused: it is not asked.
+				if ((await api.run(run, abort.signal)).rows > 0) {
+					found = await api.identification(run, abort.signal);
+					story = [...story, { at_s: lab.tape?.last_s ?? story.length, quantities: found.quantities }];
+				}
+				refused = null;
+			} catch (failure) {
+				if (abort.signal.aborted) return;
+				refused = asRefusal(failure);
+			}
+			timer = setTimeout(() => void ask(), Math.max(EVERY_MS, PATIENCE * (performance.now() - begun)));
+		};
+		timer = setTimeout(() => void ask(), EVERY_MS / 2);
+		return () => {
+			abort.abort();
+			clearTimeout(timer);
+		};
+	});
+
+	return {
+		get found() {
+			return found;
+		},
+		get story() {
+			return story;
+		},
+		get refused() {
+			return refused;
+		},
+	};
+}
+
+export type SoFar = ReturnType<typeof askSoFar>;
