@@ -56,7 +56,10 @@ export function resource<K, T>(key: () => K | null, load: (key: K, signal: Abort
 		get loading() {
 			return loading;
 		},
-		reload: () => (turn += 1),
+		reload: () => {
+			loading = true;
+			turn += 1;
+		},
 		put: (value: T) => {
 			data = value;
 			error = null;

@@ -37,11 +37,18 @@ export function openWorkbench(id: number) {
 		(_key, signal) => api.effects(run.data?.kind ?? '', signal),
 	);
 	const versions: Model[] = $derived(models.data ?? []);
+	const asked = $derived(router.query.get('model'));
+	const named = $derived(versions.find((one) => String(one.id) === asked));
+	/** A version made elsewhere may stand in the address before the list has it: the list is asked for once more. */
+	let sought: string | null = $state(null);
+	$effect(() => {
+		if (models.data && asked !== null && !named && asked !== sought) untrack(() => ((sought = asked), models.reload()));
+	});
+	const awaited = $derived(asked !== null && !named && (asked !== sought || models.loading));
+	/** While the version of the address is awaited, the one that was here stays, and no other takes its place. */
+	let former: Model | null = null;
 	const model: Model | null = $derived(
-		versions.find((one) => String(one.id) === router.query.get('model')) ??
-			versions.findLast((one) => !tries.has(one.id)) ??
-			versions.at(-1) ??
-			null,
+		(former = awaited ? former : (named ?? versions.findLast((one) => !tries.has(one.id)) ?? versions.at(-1) ?? null)),
 	);
 	/** From now on the address says which version it shows, so that a version made elsewhere does not take its place. */
 	$effect(() => {
@@ -269,11 +276,11 @@ export function openWorkbench(id: number) {
 		},
 		/** The residuals on the screen belong to the version on the screen. */
 		get settled() {
-			return residuals.data?.version === model?.id;
+			return !awaited && residuals.data?.version === model?.id;
 		},
 		/** The diagnosis on the screen belongs to the version on the screen. */
 		get diagnosed() {
-			return diagnosis.data?.model_id === model?.id;
+			return !awaited && diagnosis.data?.model_id === model?.id;
 		},
 	};
 }
