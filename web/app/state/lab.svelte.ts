@@ -3,6 +3,7 @@ import { connectLive } from '../api/live';
 import { asRefusal } from '../api/problem';
 import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
 import type { Frame } from '../api/frame';
+import { chase } from '../plot/chase';
 import { Tape } from '../plot/tape';
 import { renewed } from './benches';
 
@@ -10,6 +11,8 @@ import { renewed } from './benches';
 const QUIET_MS = 1500;
 /** Older than this is no contact. */
 export const STALE_MS = 4000;
+
+const calm = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** What the daemon last said: the one state that every page draws. */
 class LabState {
@@ -36,6 +39,8 @@ class LabState {
 	now_ms = $state(performance.now());
 	/** Samples of the run that is on. The columns grow in place; `frames` tells of it. */
 	tape: Tape | null = $state.raw(null);
+	/** Where plots end that follow the run [s]. */
+	shown_s: number | null = $state(null);
 
 	/** The bench that the pages are about: as the address says, or the run that is looked at, or a person. */
 	chosen: string | null = $state(null);
@@ -134,23 +139,37 @@ class LabState {
 		this.liveRun = run;
 		this.events = [];
 		this.tape = null;
+		this.shown_s = null;
 		this.dropped = 0;
 	}
 
 	private drawing = false;
+	private fresh = false;
+	private drawn_ms = 0;
 
 	/** However many frames come, plots are drawn once for each picture of the screen, and not at all in a hidden tab. */
 	private takeFrame(frame: Frame): void {
 		this.hear();
 		this.tape?.push(frame);
 		this.dropped = frame.dropped;
+		this.fresh = true;
 		if (this.drawing) return;
 		this.drawing = true;
-		requestAnimationFrame(() => {
-			this.drawing = false;
-			this.frames += 1;
-		});
+		this.drawn_ms = performance.now();
+		requestAnimationFrame(this.draw);
 	}
+
+	/** Goes on between two frames until the newest sample is shown. Where less motion is asked for, plots move with the frames. */
+	private readonly draw = (now_ms: number): void => {
+		const newest_s = this.tape?.last_s ?? null;
+		const passed_ms = calm.matches ? Infinity : Math.max(0, now_ms - this.drawn_ms);
+		this.shown_s = newest_s === null ? null : chase(this.shown_s, newest_s, passed_ms);
+		this.drawn_ms = now_ms;
+		if (this.fresh) this.frames += 1;
+		this.fresh = false;
+		this.drawing = this.shown_s !== newest_s;
+		if (this.drawing) requestAnimationFrame(this.draw);
+	};
 }
 
 export const lab = new LabState();
