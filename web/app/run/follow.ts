@@ -28,3 +28,10 @@ export function readLook(text: string | null, live: boolean): Look {
 	const whole = second !== '' && Number.isFinite(from) && Number.isFinite(to) && from < to;
 	return { follow: false, view: whole ? [from, to] : null };
 }
+
+/** `Nm:3:5,A:all`: looks of plots that are zoomed on their own, by unit. */
+export const writeOwns = (owns: ReadonlyMap<string, string>): string => [...owns].map(([unit, look]) => `${unit}:${look}`).join();
+
+export function readOwns(text: string | null): Map<string, string> {
+	return new Map(Array.from((text ?? '').matchAll(/([^:,]*):([^,]+)/g), ([, unit = '', look = '']) => [unit, look]));
+}

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { afterHand, readLook, viewOf, writeLook } from './follow';
+import { afterHand, readLook, readOwns, viewOf, writeLook, writeOwns } from './follow';
 import { groupsOf } from './groups';
 import { stepOn } from './progress';
 
@@ -23,6 +23,12 @@ describe('following the live end', () => {
 		expect(readLook('nonsense', true)).toEqual({ follow: false, view: null });
 		expect(readLook(null, false)).toEqual({ follow: false, view: null });
 	});
+});
+
+it('keeps the zooms of single plots in the address', () => {
+	const owns = new Map([['rad/s', 'follow:2'], ['', '3:5']]);
+	expect(readOwns(writeOwns(owns))).toEqual(owns);
+	expect(readOwns(null).size + readOwns('').size).toBe(0);
 });
 
 it('draws channels of one unit together', () => {
