@@ -63,6 +63,18 @@ export async function watchRun(page) {
 	return open;
 }
 
+/** Zooms the second plot on its own; the others stay as they were. */
+export async function zoomAlone(page) {
+	const plot = page.locator('figure:has(.uplot)').nth(1);
+	await plot.locator('summary').click();
+	await plot.getByRole('button', { name: 'Zoom on its own' }).click();
+	await page.waitForURL(/own=/);
+	await plot.locator('.u-over').hover();
+	await page.mouse.wheel(0, -300);
+	await page.waitForURL(/own=[^&]*:[\d.]+:[\d.]+/, { timeout: 10_000 }).catch(() => expect(false, `the wheel does not zoom the plot: ${page.url()}`));
+	expect(!/view=/.test(page.url()), `the other plots are zoomed with it: ${page.url()}`);
+}
+
 /** Reads the result on a run's page, by keyboard alone: its first figure as a table, and back. Says the verdict and how many numbers the table has. */
 export async function readResult(page) {
 	const card = page.locator('[data-result]');
@@ -103,6 +115,29 @@ export async function toAnotherVersion(page, act, patience_ms = FIT_MS) {
 	const before = new URL(page.url()).searchParams.get('model');
 	await act();
 	await page.waitForFunction((id) => new URL(location.href).searchParams.get('model') !== id, before, { timeout: patience_ms });
+	return readVersion(page);
+}
+
+/** A version that somebody else makes of the one at hand, with an effect more: shown when the address names it, and meanwhile no third in its place. Goes back. */
+export async function showForeign(page, base, run, at, effect) {
+	const ask = async (path, body) => (await fetch(`${base}/api/v1${path}`, body && { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) })).json();
+	const from = (await ask(`/models?run=${run}`)).find((model) => String(model.id) === at.model);
+	const made = await ask('/models', { run, effects: [...from.effects, effect], parent: from.id, more_runs: from.more_runs });
+	await page.evaluate((model) => {
+		window.shown = new Set();
+		const look = () => {
+			window.shown.add(document.querySelector('h1').innerText);
+			requestAnimationFrame(look);
+		};
+		look();
+		history.pushState(null, '', `${location.pathname}?model=${model}`);
+		dispatchEvent(new PopStateEvent('popstate'));
+	}, made.id);
+	const there = await readVersion(page);
+	expect(there.model === String(made.id), `the page shows version ${there.model}, not ${made.id}, which was made elsewhere`);
+	const shown = await page.evaluate(() => [...window.shown]);
+	expect(shown.length === 2, `on its way to version ${made.id} the page shows ${shown.join(', ')}`);
+	await page.goBack();
 	return readVersion(page);
 }
 

@@ -1,12 +1,12 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Lose the daemon and find it again; start the procedure, watch it finish, read its result by keyboard, open the workbench, have the run made that would tell more, see where the model fails on
-// both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table; the software stop by key;
+// Lose the daemon and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
+// both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { BARE, brush, excludeAndUndo, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, observe, readResult, readVersion, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect } from './steps.mjs';
+import { BARE, brush, excludeAndUndo, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, observe, readResult, readVersion, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** With typeset formulas; without them there would be still less. */
@@ -33,6 +33,7 @@ await tell('walk', async () => {
 	const toWorkbench = await watchRun(page);
 	const result = await readResult(page);
 	expect(result.verdict !== 'failed' && result.quantities > 2 && result.rows > 10, `the result says too little: ${JSON.stringify(result)}`);
+	await zoomAlone(page);
 	await audit(page, 'the run');
 	console.log(`run ${run} is done`);
 
@@ -71,6 +72,9 @@ await tell('walk', async () => {
 
 	const undone = await toAnotherVersion(page, () => page.keyboard.press('z'));
 	expect(undone.held === first.held, `undo should lead back to ${first.held}, but shows ${undone.held}`);
+
+	const back = await showForeign(page, where.base, run, undone, 'viscous_quadratic');
+	expect(back.model === undone.model, `back from the version made elsewhere the page shows ${back.model}`);
 
 	const models = await rest(`/models?run=${run}`);
 	const [parent, child] = [undone.model, second.model].map((id) => models.find((model) => String(model.id) === id));
