@@ -20,7 +20,7 @@ pub struct Advance<'p> {
     pub after: Assembly<'p>,
 }
 
-/// An effect that came in and was taken back, with the held-out RMS that the model had with it.
+/// An effect that came in and was taken back, with the held-out RMS that the last model would have with it.
 pub struct Withdrawn<'p> {
     pub effect: &'p str,
     pub why: Withdrawal,
@@ -81,7 +81,7 @@ impl<'p> Exploration<'p> {
         let mut search = Search::new(start.main.clone(), &library, &prepared.baseline, most, options);
         let mut advances: Vec<Advance> = Vec::new();
         let mut effects = start.effects.clone();
-        let mut withdrawn = Vec::new();
+        let mut taken_back = Vec::new();
         let (maps, residual) = loop {
             let made = match search.next() {
                 Some(made) => made,
@@ -96,7 +96,7 @@ impl<'p> Exploration<'p> {
                         let Some(id) = half else { break (maps, residual) };
                         (id, Withdrawal::HalfExplains)
                     };
-                    withdrawn.push(Withdrawn { effect, why, held_out_rms: held_out_rms(&search.now) });
+                    taken_back.push((effect, why));
                     search.closed |= why == Withdrawal::HalfExplains;
                     search.withdraw(effect)
                 }
@@ -115,6 +115,9 @@ impl<'p> Exploration<'p> {
             advances.push(Advance { added, removed, ties, after });
             advances.last().into_iter().for_each(&mut *on_advance);
         };
+        let taken_back = taken_back.into_iter().filter(|(effect, _)| !search.now.contains(effect));
+        let with = |effect| held_out_rms(&search.laid_with(effect));
+        let withdrawn = taken_back.map(|(effect, why)| Withdrawn { effect, why, held_out_rms: with(effect) }).collect();
         let silent = search.silences();
         let ties = open_ties(&search, &advances);
         let now = advances.last().map_or(&start, |a| &a.after);

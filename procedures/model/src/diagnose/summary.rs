@@ -168,23 +168,22 @@ fn taken_back(found: &Exploration, unit: &str) -> String {
     let of = |why: Withdrawal| found.withdrawn.iter().filter(move |w| w.why == why);
     // What could stand in the place of an effect of the model is named there.
     let is_rival = |e: &str| found.end().effects.iter().any(|effect| found.is_open_tie(effect, e));
-    let is_out = |e: &&str| !found.end().effects.iter().any(|f| f == e) && !is_rival(e);
+    let present = found.end_held_out_rms();
     let named = |why: Withdrawal| {
-        let brings =
-            |w: &&Withdrawn| why != Withdrawal::Undecided || w.held_out_rms < WORTH_TELLING * found.end_held_out_rms();
-        let mut names: Vec<&str> = of(why).filter(brings).map(|w| w.effect).filter(is_out).collect();
+        let brings = |w: &&Withdrawn| why != Withdrawal::Undecided || w.held_out_rms < WORTH_TELLING * present;
+        let mut names: Vec<&str> = of(why).filter(brings).map(|w| w.effect).filter(|e| !is_rival(e)).collect();
         names.reverse();
         let several = names.len() > 1;
         (!names.is_empty()).then(|| (list(&names), several))
     };
     let open = named(Withdrawal::Undecided).map(|(names, several)| {
         let with = of(Withdrawal::Undecided).map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
-        let (object, are) = if several { ("them", "they are") } else { ("it", "it is") };
+        let (object, are) = if several { ("the best of them", "they are") } else { ("it", "it is") };
         format!(
             " Left out: {names}. With {object} the held-out error would be {} instead of {}, but this run does not decide \
              how large {are}.",
             figure(with, unit),
-            figure(found.end_held_out_rms(), unit)
+            figure(present, unit)
         )
     });
     let half = named(Withdrawal::HalfExplains).map(|(names, several)| {

@@ -34,6 +34,9 @@ pub(super) fn losses(columns: &[&[f64]], residual: &[f64], problem: &Problem) ->
 /// Effects that are exchanged for others at most.
 const EXCHANGES: usize = 2;
 
+/// A model that leaves less than this share of another's squared error explains clearly more, however it scatters.
+const STANDS_IN: f64 = 0.9;
+
 /// Adds the best effect again and again until none passes, and drops what lost its reason: one move at a time.
 pub struct Search<'l, 'p> {
     pub now: Terms<'p>,
@@ -140,6 +143,12 @@ impl<'l, 'p> Search<'l, 'p> {
         (least.1 < self.options.practical_share).then_some(least.0)
     }
 
+    /// The model with one effect more.
+    pub fn laid_with(&self, id: &'p str) -> Terms<'p> {
+        let with: Vec<&str> = self.now.terms.iter().map(Term::id).chain([id]).collect();
+        lay(&self.now, &with, self.library, self.options)
+    }
+
     fn laid_without(&self, id: &str) -> Terms<'p> {
         let rest: Vec<&str> = self.now.terms.iter().map(Term::id).filter(|other| *other != id).collect();
         lay(&self.now, &rest, self.library, self.options)
@@ -175,8 +184,10 @@ impl<'p> Iterator for Search<'_, 'p> {
         }
         // What explains clearly less than an effect that was withdrawn only stands in for it.
         let stands_in = |rival: &Rival| {
-            let clearly =
-                |losses: &Vec<f64>| losses.iter().sum::<f64>() < rival.held_out && !is_tie(losses, &rival.losses);
+            let clearly = |losses: &Vec<f64>| {
+                let given_up: f64 = losses.iter().sum();
+                given_up < STANDS_IN * rival.held_out || given_up < rival.held_out && !is_tie(losses, &rival.losses)
+            };
             self.given_up.iter().any(clearly)
         };
         let found = if self.left > 0 { self.step(&self.now) } else { None };
@@ -192,8 +203,7 @@ impl<'p> Iterator for Search<'_, 'p> {
         };
         self.left -= 1;
         let id = rival.term.id();
-        let with: Vec<&str> = self.now.terms.iter().map(Term::id).chain([id]).collect();
-        self.now = lay(&self.now, &with, self.library, self.options);
+        self.now = self.laid_with(id);
         self.last = Some(id);
         Some(Move::Added { rival: rival.into(), ties })
     }
