@@ -117,8 +117,10 @@ fn choose(table: &RunTable) -> Result<(&'static [&'static str], Fit), Unusable> 
         ModelSpec::new(table.kind(), effects).and_then(|spec| fit(table, &spec, &Options::default()))
     };
     let plain = of(&[], &[])?;
+    // A rise that the run does not decide only takes the certainty from Coulomb friction.
+    let is_decided = |rich: &Fit| ["tau_s", "omega_s"].iter().all(|name| parameter(rich, "stribeck", name).is_some());
     let stribeck: &[&str] = match of(&[], &["stribeck"]) {
-        Ok(rich) if rich.validation_rms < plain.validation_rms => &["stribeck"],
+        Ok(rich) if rich.validation_rms < plain.validation_rms && is_decided(&rich) => &["stribeck"],
         _ => &[],
     };
     let mut best = (LAWS[0], of(LAWS[0], stribeck)?);
