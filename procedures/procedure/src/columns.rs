@@ -12,6 +12,9 @@ const TIME_STEP_S: f64 = 1e-6;
 /// Velocity set-points are sent, and kept, in these steps.
 pub(crate) const VELOCITY_STEP_RAD_S: f64 = 1e-4;
 
+/// Only of a plan that commands motor current; what is left of one may command none.
+pub(crate) const MOTOR_CURRENT_SETPOINT: &str = "motor_current_setpoint_a";
+
 /// The torque as the sensor's other range tells it.
 pub(crate) const OTHER_RANGE: &str = "other_range_torque_nm";
 
@@ -141,7 +144,7 @@ impl Columns {
         }
         channels.push(channel("velocity_setpoint_rad_s", Some(VELOCITY_STEP_RAD_S)));
         if commands_current {
-            channels.push(channel("motor_current_setpoint_a", None));
+            channels.push(channel(MOTOR_CURRENT_SETPOINT, None));
         }
         let told = match plan.kind {
             Kind::Brake => Some("velocity_rad_s"),

@@ -1,5 +1,6 @@
 //! Runs that go on where an earlier one ended too soon: which steps that had done, and both as one measurement.
 
+use crate::columns::MOTOR_CURRENT_SETPOINT;
 use crate::findings::keep_rows;
 use crate::recorder::RunId;
 use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
@@ -75,7 +76,11 @@ pub fn joined(first: &RunTable, done: &Done, second: &RunTable, later_s: f64) ->
     let begins_s = rest.column("time_s").and_then(|time_s| time_s.first()).copied().unwrap_or(0.0);
     let shift_s = later_s.max(ended_s + PAUSE_S - begins_s);
     // In the order of the first, which decides what there is.
-    let column = |name: &str| rest.column(name).map(<[f64]>::to_vec);
+    let column = |name: &str| match rest.column(name) {
+        Some(values) => Some(values.to_vec()),
+        // Nothing that is left commands one.
+        None => (name == MOTOR_CURRENT_SETPOINT).then(|| vec![0.0; rest.len()]),
+    };
     let found: Option<Vec<Vec<f64>>> = whole.channels().iter().map(|channel| column(&channel.name)).collect();
     let Some(mut columns) = found else {
         let missing = whole.channels().iter().find(|channel| rest.index_of(&channel.name).is_none());

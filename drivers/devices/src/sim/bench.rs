@@ -265,6 +265,12 @@ impl MockBench {
         Ok(Bench { power: Some(self.power_switch()), ..bench })
     }
 
+    /// As if the process that has the instruments open were killed: they stay as they are, and can be opened again. Only for
+    /// instruments within this process; the system does it for its own ports.
+    pub fn orphan(&self) {
+        self.ports.iter().for_each(|(_, port)| port.release());
+    }
+
     /// Takes the power of an encoder away, with its counter's, and gives it back; by the names of [`MockBench::instruments`].
     pub fn power_switch(&self) -> Box<dyn PowerSwitch> {
         Box::new(Switch(Arc::clone(&self.rig)))

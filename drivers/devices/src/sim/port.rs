@@ -25,6 +25,8 @@ pub struct Port {
     instrument: MockInstrument,
     address: Mutex<Address>,
     closing: Arc<AtomicBool>,
+    /// A cord is plugged in, where there is no port of the system that would know.
+    taken: Arc<AtomicBool>,
     line: Line,
 }
 
@@ -69,6 +71,11 @@ impl Port {
         self.closing.store(true, Ordering::Release);
     }
 
+    /// Whoever had it open is no more.
+    pub fn release(&self) {
+        self.taken.store(false, Ordering::Release);
+    }
+
     fn is_closing(&self) -> bool {
         self.closing.load(Ordering::Acquire)
     }
@@ -90,6 +97,7 @@ pub fn serve_terminal(
         instrument,
         address: Mutex::new(Address::Serial(pty.path().to_owned())),
         closing: Arc::default(),
+        taken: Arc::default(),
         line,
     });
     let shared = Arc::clone(&port);
@@ -130,6 +138,7 @@ pub fn serve_tcp(
         instrument,
         address: Mutex::new(Address::Tcp(listener.local_addr()?.to_string())),
         closing: Arc::default(),
+        taken: Arc::default(),
         line,
     });
     let shared = Arc::clone(&port);
@@ -153,10 +162,10 @@ pub fn serve_tcp(
 
 /// Needs no thread: the instrument is asked when its bytes are.
 pub fn serve_inside(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> Arc<Port> {
-    let closing = Arc::new(AtomicBool::new(false));
-    let connector = Connector { instrument, closing: Arc::clone(&closing), taken: Arc::default(), rig };
+    let (closing, taken) = (Arc::default(), Arc::default());
+    let connector = Connector { instrument, closing: Arc::clone(&closing), taken: Arc::clone(&taken), rig };
     let address = Mutex::new(Address::Inside(Inside(Arc::new(connector))));
-    Arc::new(Port { instrument, address, closing, line: Line::default() })
+    Arc::new(Port { instrument, address, closing, taken, line: Line::default() })
 }
 
 /// A connector without a port: whoever is in this process plugs a cord in.
@@ -164,7 +173,6 @@ pub fn serve_inside(instrument: MockInstrument, rig: Arc<Mutex<Rig>>) -> Arc<Por
 struct Connector {
     instrument: MockInstrument,
     closing: Arc<AtomicBool>,
-    /// A cord is plugged in.
     taken: Arc<AtomicBool>,
     rig: Arc<Mutex<Rig>>,
 }

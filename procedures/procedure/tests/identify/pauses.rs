@@ -1,9 +1,9 @@
-//! A run that is paused in a step of every kind, or ended and gone on with, says what an unbroken one says.
+//! A run that is paused in a step of every kind, or killed and gone on with, says what an unbroken one says.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
-use jointbench_procedure::catalogue::Procedure;
-use jointbench_procedure::conduct::conduct;
+use jointbench_procedure::catalogue::{BrakeModel, Procedure, brake_model};
+use jointbench_procedure::conduct::{conduct, conduct_knowing};
 use jointbench_procedure::continuing::{Continues, Done, joined};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::place::Place;
@@ -11,18 +11,36 @@ use jointbench_procedure::plan::{Drive, Phase};
 use jointbench_procedure::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::{park, spawn};
+
+/// Steps, how long after their start [s], and what is asked for then. `None`: its process is killed.
+type Due = BTreeMap<usize, (f64, Option<Control>)>;
+
+/// Rows, and what they are of the plan.
+type Acknowledged = (Option<Trace>, Done);
 
 /// Steers a run at some of its steps, and resumes it soon after it has paused.
 struct Steer {
     controls: Sender<Control>,
-    /// Steps, how long after their start [s], and what is asked for then.
-    due: BTreeMap<usize, (f64, Control)>,
+    due: Due,
     step: (usize, f64),
     waited: u32,
     rows: Option<Trace>,
     done: Done,
     continues: Option<Continues>,
+    /// Gets what was acknowledged when the process is killed.
+    killed: Sender<Acknowledged>,
+}
+
+impl Steer {
+    fn new(plan: &Plan, due: Due) -> (Self, Receiver<Control>, Receiver<Acknowledged>) {
+        let ((controls, heard), (killed, left)) = (channel(), channel());
+        let continues = Continues::of(&plan.meta);
+        let done = Done { steps: continues.map_or(0, |continues| continues.from_step), ..Done::default() };
+        let step = (usize::MAX, 0.0);
+        (Self { controls, due, step, waited: 0, rows: None, done, continues, killed }, heard, left)
+    }
 }
 
 impl Recorder for Steer {
@@ -60,24 +78,39 @@ impl Recorder for Steer {
         } else if self.due.get(&step).is_some_and(|(after_s, _)| elapsed_s - self.step.1 >= *after_s)
             && let Some((_, control)) = self.due.remove(&step)
         {
-            self.controls.send(control).unwrap();
+            match control {
+                Some(control) => self.controls.send(control).unwrap(),
+                None => {
+                    self.killed.send((self.rows.take(), self.done.clone())).unwrap();
+                    // Nothing is ever done again: no ramp, no securing.
+                    loop {
+                        park();
+                    }
+                }
+            }
         }
     }
 }
 
 /// Carries a plan out under these controls.
-fn steered(bench: &mut Bench, plan: &Plan, due: BTreeMap<usize, (f64, Control)>) -> (RunEnd, RunTable, Done) {
-    let (controls, heard) = channel();
-    let continues = Continues::of(&plan.meta);
-    let done = Done { steps: continues.map_or(0, |continues| continues.from_step), ..Done::default() };
-    let mut steer = Steer { controls, due, step: (usize::MAX, 0.0), waited: 0, rows: None, done, continues };
+fn steered(bench: &mut Bench, plan: &Plan, due: Due) -> (RunEnd, RunTable, Done) {
+    let (mut steer, heard, _left) = Steer::new(plan, due);
     let end = run(bench, plan, 1, &heard, &mut steer);
     assert!(steer.due.is_empty(), "{}: not reached: {:?}", plan.procedure, steer.due);
     (end, RunTable::new(plan.meta.clone(), steer.rows.unwrap()).unwrap(), steer.done)
 }
 
+/// Carries a plan out until its process is killed; the instruments are left as they are then.
+fn killed(mut bench: Bench, plan: &Plan, due: Due) -> (RunTable, Done) {
+    let (mut steer, heard, left) = Steer::new(plan, due);
+    let whole = plan.clone();
+    spawn(move || run(&mut bench, &whole, 1, &heard, &mut steer));
+    let (rows, done) = left.recv().unwrap();
+    (RunTable::new(plan.meta.clone(), rows.unwrap()).unwrap(), done)
+}
+
 /// The first step of every kind, and a moment within it.
-fn one_of_each_kind(plan: &Plan) -> BTreeMap<usize, (f64, Control)> {
+fn one_of_each_kind(plan: &Plan) -> Due {
     let mut kinds = BTreeMap::new();
     for (index, step) in plan.steps.iter().enumerate() {
         let way = step.velocity.knots().iter().map(|(_, v)| *v).find(|v| *v != 0.0).map(|v| v > 0.0);
@@ -90,7 +123,7 @@ fn one_of_each_kind(plan: &Plan) -> BTreeMap<usize, (f64, Control)> {
             (_, Place::Edge(_)) => 1.0,
             _ => 0.5 * step.duration_s(),
         };
-        kinds.entry(kind).or_insert((index, (within_s, Control::Pause)));
+        kinds.entry(kind).or_insert((index, (within_s, Some(Control::Pause))));
     }
     kinds.into_values().collect()
 }
@@ -117,7 +150,11 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
         (mock, bench)
     };
     let (_mock, mut bench) = open();
-    let unbroken = conduct(&mut bench, procedure, given).unwrap().identification.unwrap();
+    let mut facts = BenchFacts::of(&bench);
+    if procedure.brake_model(&values).is_some() {
+        facts.brake_model = Some(measured_brake(&mut open().1));
+    }
+    let unbroken = conduct_knowing(&mut bench, &facts, procedure, given).unwrap().identification.unwrap();
     let finds = procedure.finds();
     for quantity in &unbroken.quantities {
         let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
@@ -125,27 +162,40 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     }
 
     let (_mock, mut bench) = open();
-    let facts = BenchFacts::of(&bench);
     let plan = procedure.plan(given, &facts).unwrap();
     let (end, table, _) = steered(&mut bench, &plan, one_of_each_kind(&plan));
     assert_eq!(end.state, RunState::Completed, "{id}: {:?}", end.reason);
     same(&format!("{id}, paused"), &procedure.identify(&values, &table).unwrap(), &unbroken);
 
-    let (_mock, mut bench) = open();
     let measured = plan.steps.iter().filter(|step| step.phase == Phase::Measure).count();
     // A plan of nothing but a warm-up may end as soon as the joint is warm.
     let middle = if measured > 0 { plan.steps.len() - measured.div_ceil(2) } else { 1 };
     let within_s = 0.3_f64.min(0.5 * plan.steps[middle].duration_s());
-    let (end, first, done) = steered(&mut bench, &plan, [(middle, (within_s, Control::Abort))].into());
+
+    let (_mock, mut bench) = open();
+    let (end, _, _) = steered(&mut bench, &plan, [(middle, (within_s, Some(Control::Abort)))].into());
     assert_eq!((end.state, end.safe), (RunState::Aborted, Safe::SafeVerified), "{id}: {:?}", end.reason);
     if procedure.goes_on().is_err() {
         return;
     }
+
+    let (mock, bench) = open();
+    let (first, done) = killed(bench, &plan, [(middle, (within_s, None))].into());
+    mock.orphan();
+    let mut bench = mock.open_bench("mock").unwrap();
+    let secured = secure(&mut bench);
+    assert_eq!(secured.safe, Safe::SafeVerified, "{id}: {:?}", secured.notes);
     let rest = plan.rest(1, done.steps, done.next_segment, &facts).unwrap();
-    let (end, second, _) = steered(&mut bench, &rest, BTreeMap::new());
+    let (end, second, _) = steered(&mut bench, &rest, Due::new());
     assert_eq!(end.state, RunState::Completed, "{id}: {:?}", end.reason);
     let whole = joined(&first, &done, &second, 0.0).unwrap();
     same(&format!("{id}, gone on with"), &procedure.identify(&values, &whole).unwrap(), &unbroken);
+}
+
+fn measured_brake(bench: &mut Bench) -> BrakeModel {
+    let given = json!({"levels": 6, "loops": 1, "random_turns": 4, "dwell_s": 0.8, "speed_rad_s": 3.0});
+    let hysteresis = procedure("brake_hysteresis").unwrap();
+    brake_model(&conduct(bench, hysteresis, given.as_object().unwrap()).unwrap().table).unwrap()
 }
 
 #[test]
@@ -172,11 +222,18 @@ fn a_joint_is_the_same_joint() {
 }
 
 #[test]
+fn a_campaign_is_the_same_campaign() {
+    let given = json!({"heat_s": 0.0, "warm_up_s": 4.0, "load_levels": 3, "sample_rate_hz": 100.0});
+    check(&MockSettings::new(Joint::JointA, 1), "identify_joint", given);
+}
+
+#[test]
 fn a_brake_is_the_same_brake() {
     let joint = MockSettings::new(Joint::JointB, 3);
     for (id, given) in [
         ("brake_speed_independence", json!({"currents": 2, "speeds": 3, "dwell_s": 0.6})),
         ("brake_hysteresis", json!({"levels": 5, "loops": 2, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0})),
+        ("brake_torque", json!({"histories": 2, "torques": 8, "speed_rad_s": 3.0})),
         ("demagnetise", json!({"turns": 1.0, "speed_rad_s": 3.0, "sample_rate_hz": 100.0})),
         ("torque_sensor_zero", json!({"duration_s": 45.0, "loads": 2, "speed_rad_s": 1.0, "dwell_s": 1.2})),
         ("friction_temperature", json!({"heat_s": 40.0, "cool_s": 40.0, "rest_s": 10.0})),
