@@ -92,10 +92,10 @@ impl Stream {
                 self.frames.push(&bytes);
                 bytes.clear();
             }
-            if self.arrived() >= self.placed.due(now_s) {
+            patience = PATIENCE.min(silent.saturating_sub(self.heard.elapsed()));
+            if self.arrived() >= self.placed.due(now_s) || patience.is_zero() {
                 break;
             }
-            patience = PATIENCE;
         }
         let waited = self.heard.elapsed();
         if waited > silent || now_s - self.heard_s > silent.as_secs_f64() {

@@ -34,7 +34,7 @@ pub struct Link {
     wire: Option<Wire>,
     recorder: Option<Recorder>,
     trust: Trust,
-    /// The last exchange has failed: whoever answers again has half a deadline, so that a fault is known within two.
+    /// The last exchange has failed: whoever answers again has less than a deadline, so that a fault is known within two.
     missed: bool,
     outgoing: Vec<u8>,
     received: Vec<u8>,
@@ -146,7 +146,7 @@ impl Link {
     }
 
     /// Opens a lost port again, ends whatever line or telegram was begun by sending `wake`, and throws away what comes in
-    /// until the line is quiet. `answered`: the wake itself has a reply, which is waited for (half a deadline at most).
+    /// until the line is quiet. `answered`: the wake itself has a reply, which is waited for.
     pub fn drain(&mut self, wake: &[u8], answered: bool) -> Result<(), Fault> {
         self.received.clear();
         if self.trust == Trust::Lost {
@@ -196,7 +196,12 @@ impl Link {
     }
 
     fn patience(&self) -> Duration {
-        if self.missed { self.deadline / 2 } else { self.deadline }
+        if self.missed { self.second_chance() } else { self.deadline }
+    }
+
+    /// What one that missed its deadline is given for each of two more replies: it is given up within two deadlines in all.
+    fn second_chance(&self) -> Duration {
+        self.deadline * 2 / 5
     }
 
     fn nothing_came(&self, request: String) -> FaultKind {
@@ -209,7 +214,7 @@ impl Link {
 
     fn discard(&mut self, deadline: Instant, answered: bool) -> Result<(), FaultKind> {
         self.write(deadline)?;
-        let mut wait = if answered { self.deadline / 2 } else { QUIET };
+        let mut wait = if answered { self.second_chance() } else { QUIET };
         while Instant::now() < deadline {
             if self.read(deadline.min(Instant::now() + wait))? == 0 {
                 return Ok(());
