@@ -194,12 +194,14 @@ all runs together. Every step is kept with its before and after, and every run p
   jointbench autopilot --bench-time-s 600 --set load_levels=2 --wait
   jointbench autopilot --after 4 --wait                 only the run that diagnosis 4 asks for
 
-Exit codes: 0 nothing is left to add (also where structure remains that no effect explains: the verdict says so), 1 a run
-failed or somebody ended it, 2 bad arguments, 3 the data decide too little, or the budget is spent and something is open.";
+Exit codes: 0 nothing is left to add (also where structure remains that no effect explains: the \
+verdict says so), 1 a run failed or somebody ended it, 2 bad arguments, 3 the data decide too little, \
+or the budget is spent and something is still open.";
 
 const RUN: &str = "\
-Exit codes, where the end is waited for: 0 the procedure has identified what it is for and every demand is kept, 1 the run or
-its identification failed or a limit was broken, 2 bad arguments, 3 the identification is inconclusive or a demand unsure.";
+Exit codes, where the end is waited for: 0 the procedure has identified what it is for and every \
+demand is kept, 1 the run or its identification failed or a limit was broken, 2 bad arguments, \
+3 the identification is inconclusive or a demand unsure.";
 
 #[derive(Debug, Args)]
 pub struct Autopilot {
