@@ -2,6 +2,7 @@
 
 use crate::identification::{Identification, Mark, Quantity, Series};
 use jointbench_instrument::TableFault;
+use jointbench_model::words;
 use jointbench_model::{Fit, ModelError, Parameter, ParameterState};
 
 /// A parameter that the run decides.
@@ -50,6 +51,12 @@ pub(crate) enum Unusable {
     Table(#[from] TableFault),
     #[error("{0}")]
     TooLittle(&'static str),
+    #[error(
+        "speed leaves {} (RMS) of the torque unexplained, beside which friction is not decided: see what the rest follows in \
+         the workbench or in the exported file (jointbench export RUN, jointbench diagnose FILE), or add repeats",
+        words::figure(*.rest_nm, "Nm")
+    )]
+    Scattered { rest_nm: f64 },
 }
 
 /// A run that says nothing gets its verdict too.

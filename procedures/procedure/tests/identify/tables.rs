@@ -123,6 +123,19 @@ fn what_speed_does_not_explain_is_told() {
 }
 
 #[test]
+fn friction_that_drowns_in_something_else_is_not_asked_for_a_higher_speed() {
+    let sample = Cell::new(0);
+    let leg = || f64::from(sample.replace(sample.get() + 1_u32) / 200);
+    let found = identified("friction", &staircase(|v| joint_a(v) + 0.3 * (2.4 * leg()).sin()));
+    assert_eq!(found.verdict, Verdict::Failed, "{}", found.summary);
+    let advice = found.advice.unwrap();
+    assert!(
+        advice.contains("mNm (RMS) of the torque unexplained") && advice.contains("jointbench diagnose"),
+        "{advice}"
+    );
+}
+
+#[test]
 fn strokes_draw_a_line_through_each_direction() {
     let found = identified("strokes", &staircase(|v| 0.030 * v.signum() + 1.512e-4 * v));
     check(&found, "slope_positive", 1.512e-4, 0.03);

@@ -56,7 +56,7 @@ impl FreeFriction {
         let viscous = figure("viscous", "c_v");
         match (coulomb, viscous) {
             (Some(coulomb), Some(viscous)) => Ok(Self { coulomb, viscous, stribeck }),
-            _ => Err(Unusable::TooLittle("the run does not decide friction: add repeats, or a higher top speed")),
+            _ => Err(Unusable::Scattered { rest_nm: fit.rms }),
         }
     }
 
