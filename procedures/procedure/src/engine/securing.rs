@@ -3,6 +3,7 @@
 use super::ending::{Ending, Urgency};
 use super::safe_state::secure;
 use super::session::Session;
+use super::tick::BRAKE_EVERY_S;
 use crate::event::{EventKind, Safe};
 use crate::guard::STANDSTILL_LINK_RAD_S;
 use crate::profile::Profile;
@@ -109,8 +110,9 @@ impl Session<'_> {
         let velocity_rad_s = self.commanded.velocity_rad_s;
         let rest_s = QUICK_S.max(velocity_rad_s.abs() / self.plan.acceleration_rad_s2);
         let velocity = Profile::from(velocity_rad_s).to(0.0, rest_s);
-        // At half the time half the speed is left: the brake's last command still finds the shaft well on its way.
-        let turning = velocity_rad_s.abs() / self.bench.constants.gear_ratio > 3.0 * STANDSTILL_LINK_RAD_S;
+        // The brake's last command may come so late, and still has to find the shaft turning.
+        let last_s = 0.5 * rest_s + BRAKE_EVERY_S + self.beat.period_s;
+        let turning = velocity.at(last_s).abs() / self.bench.constants.gear_ratio > STANDSTILL_LINK_RAD_S;
         let brake = Profile::from(self.commanded.brake_a);
         let brake = if turning { brake.to(0.0, 0.5 * rest_s) } else { brake };
         self.drive(&velocity, &brake)

@@ -1,7 +1,7 @@
 //! Stop, abort and software stop at every step and at any time.
 
 use crate::fakes::Call;
-use crate::ledger::{Done, loaded_plan, middles_s, play_controlled};
+use crate::ledger::{Done, loaded_plan, middles_s, play_controlled, play_controlled_at};
 use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 use proptest::prelude::*;
@@ -65,6 +65,18 @@ fn an_abort_hurries_a_stop() {
     assert!(moved_on_s(&done, at_s) <= 1.2, "{} s", moved_on_s(&done, at_s));
 }
 
+/// The supply takes a command ten times a second: where the last one would find the shaft at rest, the current stays.
+#[test]
+fn an_abort_on_the_way_to_rest_drops_no_current_at_standstill() {
+    for rate_hz in [50.0, 250.0] {
+        for later in 0..60 {
+            let at_s = 0.84 + 0.01 * f64::from(later);
+            let done = play_controlled_at(rate_hz, &[(0.84, Control::Pause), (at_s, Control::Abort)]);
+            done.check_safe(RunState::Aborted).check_no_cogging();
+        }
+    }
+}
+
 #[test]
 fn a_control_that_does_not_fit_is_told_and_changes_nothing() {
     let done = play_controlled(&[(0.5, Control::Resume)]);
@@ -84,15 +96,18 @@ fn nobody_left_to_control_is_a_stop() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Any sequence of controls at any times: the run ends, secured, its states legal and its table valid.
+    /// Any sequence of controls at any times and any rate: the run ends, secured, its states legal and its table valid.
     #[test]
-    fn any_history_ends_safely(history in prop::collection::vec((0.0..20.0, 0usize..5), 0..8)) {
+    fn any_history_ends_safely(
+        history in prop::collection::vec((0.0..20.0, 0usize..5), 0..8),
+        rate_hz in prop::sample::select(vec![50.0, 250.0, 1000.0]),
+    ) {
         let all = [Control::Pause, Control::Resume, Control::Stop, Control::Abort, Control::EStop];
         let mut controls: Vec<_> = history.iter().map(|(at_s, pick)| (*at_s, all[*pick])).collect();
         // Nobody may be left waiting in a pause.
         controls.push((21.0, Control::Resume));
         controls.push((60.0, Control::Abort));
-        let done = play_controlled(&controls);
+        let done = play_controlled_at(rate_hz, &controls);
         prop_assert!(done.end.state.is_final());
         prop_assert_eq!(done.end.safe, Safe::SafeVerified);
         prop_assert!(done.world.is_safe());

@@ -165,6 +165,10 @@ pub fn play_with(
 
 /// Plays the loaded plan while a person gives controls at times after the start of the run.
 pub fn play_controlled(controls: &[(f64, Control)]) -> Done {
+    play_controlled_at(loaded_plan().rate_hz, controls)
+}
+
+pub fn play_controlled_at(rate_hz: f64, controls: &[(f64, Control)]) -> Done {
     let (sender, receiver): (Sender<Control>, _) = channel();
     let mut due = controls.to_vec();
     due.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -176,7 +180,7 @@ pub fn play_controlled(controls: &[(f64, Control)]) -> Done {
         }
         Ok(())
     });
-    play_with(&fakes, &mut bench, &loaded_plan(), &receiver, |_| {})
+    play_with(&fakes, &mut bench, &Plan { rate_hz, ..loaded_plan() }, &receiver, |_| {})
 }
 
 impl Done {
