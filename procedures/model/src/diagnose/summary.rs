@@ -43,7 +43,8 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
             let them = if more.is_empty() { "it" } else { "them" };
             let shown = found.maps.structure(found.start.prepared);
             format!(
-                " Even with {them} structure remains that no effect of the library explains: {}.",
+                " Even with {them} structure remains that {}: {}.",
+                unexplained(found),
                 structure(found, complete, shown.as_ref())
             )
         }
@@ -60,8 +61,8 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
         (Verdict::UnexplainedStructure, _) => format!(
             "Structure remains{}: {}; {floor}.",
             match is_cut {
-                true => ", and no more effects were asked for that could explain it",
-                false => " that no effect of the library explains",
+                true => ", and no more effects were asked for that could explain it".into(),
+                false => format!(" that {}", unexplained(found)),
             },
             structure(found, fit, shown)
         ),
@@ -163,33 +164,43 @@ pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Opt
     }
 }
 
+/// What is said of structure, where something that was left out might be it.
+fn unexplained(found: &Exploration) -> &'static str {
+    match left_out(found).next() {
+        Some(_) => "no effect of the library is sure to explain",
+        None => "no effect of the library explains",
+    }
+}
+
+/// Effects that would bring something, and whose size the run does not decide.
+fn left_out<'f, 'p>(found: &'f Exploration<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
+    let bound = WORTH_TELLING * found.end_held_out_rms();
+    found.withdrawn.iter().filter(move |w| w.why == Withdrawal::Undecided && w.held_out_rms < bound)
+}
+
 /// Effects that came in and were taken back, and what that cost.
 fn taken_back(found: &Exploration, unit: &str) -> String {
-    let of = |why: Withdrawal| found.withdrawn.iter().filter(move |w| w.why == why);
     // What could stand in the place of an effect of the model is named there.
     let is_rival = |e: &str| found.end().effects.iter().any(|effect| found.is_open_tie(effect, e));
-    let present = found.end_held_out_rms();
-    let named = |why: Withdrawal| {
-        let brings = |w: &&Withdrawn| why != Withdrawal::Undecided || w.held_out_rms < WORTH_TELLING * present;
-        let mut names: Vec<&str> = of(why).filter(brings).map(|w| w.effect).filter(|e| !is_rival(e)).collect();
-        names.reverse();
-        let several = names.len() > 1;
-        (!names.is_empty()).then(|| (list(&names), several))
-    };
-    let open = named(Withdrawal::Undecided).map(|(names, several)| {
-        let with = of(Withdrawal::Undecided).map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
-        let (object, are) = if several { ("the best of them", "they are") } else { ("it", "it is") };
+    let open: Vec<&Withdrawn> = left_out(found).filter(|w| !is_rival(w.effect)).collect();
+    let half = found.withdrawn.iter().filter(|w| w.why == Withdrawal::HalfExplains && !is_rival(w.effect));
+    let half: Vec<&str> = half.map(|w| w.effect).rev().collect();
+    let named: Vec<&str> = open.iter().map(|w| w.effect).rev().collect();
+    let with = open.iter().map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
+    let open = (!open.is_empty()).then(|| {
+        let (object, are) = if open.len() > 1 { ("the best of them", "they are") } else { ("it", "it is") };
         format!(
-            " Left out: {names}. With {object} the held-out error would be {} instead of {}, but this run does not decide \
+            " Left out: {}. With {object} the held-out error would be {} instead of {}, but this run does not decide \
              how large {are}.",
+            list(&named),
             figure(with, unit),
-            figure(present, unit)
+            figure(found.end_held_out_rms(), unit)
         )
     });
-    let half = named(Withdrawal::HalfExplains).map(|(names, several)| {
+    let half = (!half.is_empty()).then(|| {
         let (explains, own) =
-            if several { ("they explain", "their own axes") } else { ("it explains", "its own axis") };
-        format!(" Taken back: {names}, because {explains} only a part of what shows over {own}.")
+            if half.len() > 1 { ("they explain", "their own axes") } else { ("it explains", "its own axis") };
+        format!(" Taken back: {}, because {explains} only a part of what shows over {own}.", list(&half))
     });
     open.into_iter().chain(half).collect()
 }

@@ -66,6 +66,22 @@ pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -
     if one_way { vec![ahead; direction.len()] } else { direction }
 }
 
+/// The direction of a run that goes the other way for a moment only, as to its beginning: too little to tell anything of
+/// that way from what the haste brings.
+pub fn ahead(direction: &[f64]) -> Option<f64> {
+    const MOMENT: f64 = 0.1;
+    let ahead: f64 = direction.iter().sum::<f64>().signum();
+    let back = direction.iter().filter(|d| **d == -ahead).count() as f64;
+    (back > 0.0 && back < MOMENT * direction.len() as f64).then_some(ahead)
+}
+
+/// The rows of a way back, with those beside them, where filters see both ways.
+pub fn way_back(direction: &[f64], ahead: f64) -> Vec<bool> {
+    const BESIDE: usize = 3;
+    let near = |i: usize| i.saturating_sub(BESIDE)..(i + BESIDE + 1).min(direction.len());
+    (0..direction.len()).map(|i| direction[near(i)].contains(&-ahead)).collect()
+}
+
 /// The integers of a column, where the run has it.
 pub fn integers(run: &RunTable, column: &str) -> Option<Vec<i64>> {
     run.column(column).map(|values| values.iter().map(|v| *v as i64).collect())

@@ -30,7 +30,14 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         })
     };
     let velocity = pick(samples.signals.find(Signal::Velocity).unwrap_or_default());
-    let rests = standstill(&velocity);
+    let direction = samples.signals.find(Signal::Direction).unwrap_or_default();
+    let mut rests = standstill(&velocity);
+    if let Some(ahead) = segments::ahead(direction) {
+        let back = segments::way_back(&pick(direction), ahead);
+        rests = if rests.is_empty() { back } else { rests.iter().zip(back).map(|(r, b)| *r || b).collect() };
+        let one_way = vec![ahead; direction.len()];
+        samples.signals.set(Signal::Direction, one_way);
+    }
     let velocity = without(velocity, &rests);
     let run_of: Vec<usize> =
         without(pick(&run_number(run.len(), &samples.runs)), &rests).into_iter().map(|n| n as usize).collect();
