@@ -300,8 +300,11 @@ fn every_edge_is_within_a_step_of_the_stage_and_the_best_place_is_found() {
     // Behind the run the sensor is back in its place, and the best one is better.
     let at_m = bench.stage.as_mut().unwrap().pose().unwrap().shift_m[0];
     assert!(at_m.abs() < 1e-6, "{at_m} m");
-    let shift_m = found.quantity("best_radial_shift").unwrap().value;
-    let best = run(&mut bench, "encoder_linearity", json!({"radial_shift_m": shift_m, "turns": 4.0}));
+    let next = procedure("encoder_alignment").unwrap().follow_up(&found).unwrap();
+    let best = run(&mut bench, next.procedure, next.parameters.into());
     assert!(best.quantity("harmonic_1").unwrap().value < 0.05 * truth.eccentricity_rad);
+    run(&mut bench, next.procedure, json!({"turns": 4.0}));
+    let back_m = bench.stage.as_mut().unwrap().pose().unwrap().shift_m[0];
+    assert!(back_m.abs() < 1e-6, "the sensor was taken back to 0, not to {back_m} m");
     drop(mock);
 }

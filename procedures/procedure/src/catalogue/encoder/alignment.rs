@@ -3,11 +3,11 @@
 use super::edges::{Found, WAYS, Way, found};
 use super::say::{quantity, too_little};
 use super::sweeps::sweeps;
-use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
+use super::{ACCELERATION, EncoderLinearity, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
-use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
+use crate::identification::{Axis, Figure, FollowUp, Form, Identification, Mark, Quantity, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::{Edge, Place};
 use crate::plan::{BenchFacts, Plan, PlanFault};
@@ -135,8 +135,17 @@ impl Procedure for EncoderAlignment {
         }
         let mut figures = vec![tolerances(&found)];
         figures.extend(map.map(|map| map.figure()));
-        let advice = "Run encoder_linearity with radial_shift_m at the best shift.";
-        Some(Identification { verdict: Verdict::Identified, summary, advice: Some(advice.into()), quantities, figures })
+        Some(Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures })
+    }
+
+    fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
+        let best_m = found.quantity("best_radial_shift")?.value;
+        // To a tenth of a micrometre, which is finer than the stage.
+        let parameters =
+            serde_json::Map::from_iter([("radial_shift_m".to_owned(), ((1e7 * best_m).round() / 1e7).into())]);
+        Values::parse(EncoderLinearity.schema(), &parameters).ok()?;
+        let why = "take the sensor to its best place and see what precision is left; an earlier run of it, planned again, takes it back";
+        Some(FollowUp { procedure: EncoderLinearity.id(), parameters, why })
     }
 }
 

@@ -63,12 +63,13 @@ impl Procedure for EncoderLinearity {
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         let counts = counts(bench)?;
         let rate_hz = values.number("sample_rate_hz");
-        let place = match values.number("radial_shift_m") {
-            0.0 => Place::AsLeft,
-            shift_m => {
-                stage(bench)?;
-                Place::At(radial(shift_m))
-            }
+        let shift_m = values.number("radial_shift_m");
+        // Where there is a stage it is taken to 0 too: nobody should believe so of a sensor that a run before has moved.
+        let place = if shift_m == 0.0 && !bench.has_stage {
+            Place::AsLeft
+        } else {
+            stage(bench)?;
+            Place::At(radial(shift_m))
         };
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
         for repeat in 0..values.count("repeats") {
