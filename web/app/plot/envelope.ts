@@ -24,3 +24,15 @@ export function findGaps(time_s: readonly number[]): [number, number][] {
 	const typical = [...steps].sort((a, b) => a - b)[Math.floor(steps.length * 0.9)]!;
 	return steps.flatMap((step, i) => (step > 5 * typical ? [[time_s[i]!, time_s[i + 1]!] as [number, number]] : []));
 }
+
+/** Columns, and behind them those that follow: what overlaps is taken from the latter. */
+export function follow(early: readonly (readonly (number | null)[])[], late: readonly ArrayLike<number | null>[]): Float64Array[] {
+	const begins = late[0]?.[0] ?? Infinity;
+	const count = early[0]!.filter((at) => at! < begins).length;
+	return late.map((column, c) => {
+		const both = new Float64Array(count + column.length).fill(Number.NaN);
+		for (let i = 0; i < count; i++) both[i] = early[c]?.[i] ?? Number.NaN;
+		both.set(column as ArrayLike<number>, count);
+		return both;
+	});
+}

@@ -1,13 +1,17 @@
 import { api } from '../api/client';
 import type { Run } from '../api/types';
 import { settle } from '../overview/settle.svelte';
-import { envelope } from '../plot/envelope';
+import { envelope, follow } from '../plot/envelope';
 import type { View } from '../plot/gestures';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
 import { type Look, viewOf } from './follow';
 
 const PIXELS = 1600;
+/** A run is written down every two seconds. */
+const COMMITTED_MS = 2500;
+/** [s] Less than this is not missed. */
+const HOLE_S = 0.1;
 
 /** What plots show of a run along time, and the samples for it: from memory while the run is on, else from the store. Call while a component is being set up. */
 export function stretchOf(run: () => Run, live: () => boolean, look: () => Look) {
@@ -16,12 +20,27 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 	/** A stretch that is no longer in memory, or a run that is over, comes from the store. */
 	const stored = $derived(!here || (!look().follow && (lab.tape?.first_s ?? Infinity) > (view?.[0] ?? -Infinity) + 0.05));
 	const asked = settle(() => (stored ? JSON.stringify([run().id, look(), live()]) : null), 90);
+	const load = async (from_s: number | undefined, to_s: number | undefined, signal: AbortSignal) => {
+		const samples = await api.samples(run().id, { from_s, to_s, px: PIXELS }, signal);
+		return { ...envelope(samples), names: samples.channels.map((channel) => channel.name) };
+	};
 	const history = resource(
 		() => asked.value,
-		async (_key, signal) => {
-			const [from_s, to_s] = view ?? [undefined, undefined];
-			const samples = await api.samples(run().id, { from_s, to_s, px: PIXELS }, signal);
-			return { ...envelope(samples), names: samples.channels.map((channel) => channel.name) };
+		(_key, signal) => load(view?.[0], view?.[1], signal),
+	);
+	/** What came before the page listened. The store has the last of it two seconds later. */
+	const missed = $derived.by(() => {
+		const now = look();
+		const first_s = here && now.follow ? (lab.tape?.first_s ?? 0) : 0;
+		const from_s = now.follow ? Math.max(0, first_s - now.width_s) : 0;
+		return first_s > Math.max(0, view?.[0] ?? 0) + HOLE_S ? `${from_s}:${first_s}` : null;
+	});
+	const wanted = settle(() => missed, COMMITTED_MS);
+	const before = resource(
+		() => missed && wanted.value,
+		(key, signal) => {
+			const [from_s, to_s] = key.split(':').map(Number);
+			return load(from_s, to_s, signal);
 		},
 	);
 	return {
@@ -43,7 +62,10 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 			return stored && !history.data ? history.error : null;
 		},
 		get gaps() {
-			return stored ? (history.data?.gaps ?? []) : (lab.tape?.gaps ?? []);
+			if (stored) return history.data?.gaps ?? [];
+			const [first_s, last_s] = [lab.tape?.first_s, before.data?.time.at(-1)];
+			const hole: [number, number][] = first_s != null && last_s !== undefined && first_s - last_s > HOLE_S ? [[last_s, first_s]] : [];
+			return [...(before.data?.gaps ?? []), ...hole, ...(lab.tape?.gaps ?? [])];
 		},
 		reload: history.reload,
 		/** Time, and then one column for each name. */
@@ -51,12 +73,20 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 			void lab.frames;
 			if (!stored && lab.tape) {
 				const { time, columns } = lab.tape.window(...(view ?? ([-Infinity, Infinity] as const)));
-				return [time, ...names.map((name) => columns[lab.tape!.names.indexOf(name)] ?? [])];
+				const seen = [time, ...names.map((name) => columns[lab.tape!.names.indexOf(name)] ?? [])];
+				return before.data ? follow(named(before.data, names), seen) : seen;
 			}
-			const { data } = history;
-			return [data?.time ?? [], ...names.map((name) => data?.columns[data.names.indexOf(name)] ?? [])];
+			return named(history.data, names);
 		},
 	};
 }
+
+interface Named {
+	time: number[];
+	columns: (number | null)[][];
+	names: string[];
+}
+
+const named = (of: Named | undefined, names: readonly string[]) => [of?.time ?? [], ...names.map((name) => of?.columns[of.names.indexOf(name)] ?? [])];
 
 export type Stretch = ReturnType<typeof stretchOf>;
