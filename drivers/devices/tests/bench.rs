@@ -4,6 +4,8 @@ use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::Bench;
 use jointbench_instrument::roles::Regulation;
 use jointbench_instrument::units::{Amperes, RadPerSec, Volts};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 const PERIOD_S: f64 = 0.004;
 
@@ -197,4 +199,15 @@ fn one_port_has_one_owner() {
     assert!(matches!(fault.kind, jointbench_instrument::FaultKind::NotOpened { .. }), "{fault}");
     drop(bench);
     mock.open_bench("third").unwrap();
+}
+
+#[test]
+fn a_bench_that_stood_still_does_not_race_to_make_up_for_it() {
+    let mock = MockBench::start(MockSettings { pace: Some(10.0), ..MockSettings::new(Joint::JointA, 1) }).unwrap();
+    let clock = mock.clock();
+    sleep(Duration::from_millis(400));
+    let begun = Instant::now();
+    clock.sleep_until_s(clock.now_s() + 4.0);
+    let took_s = begun.elapsed().as_secs_f64();
+    assert!(took_s > 0.28, "4 s at ten times the pace of the wall passed in {took_s} s");
 }

@@ -8,26 +8,32 @@ use std::time::{Duration, Instant};
 
 /// The rig is let go between slices of this length, so that instruments can be asked meanwhile.
 const SLICE_S: f64 = 0.02;
+/// What is made up for after a delay. A bench that nobody has waited on for minutes does not race through the next run.
+const FORGIVEN: Duration = Duration::from_millis(100);
 
 pub struct SteppedClock {
     rig: Arc<Mutex<Rig>>,
     now_bits: AtomicU64,
     /// Bench seconds for each second of wall time; `None`: as fast as it goes.
     pace: Option<f64>,
-    opened: Instant,
+    /// When the wall's clock may show what this one does.
+    due: Mutex<Instant>,
 }
 
 impl SteppedClock {
     pub fn new(rig: Arc<Mutex<Rig>>, pace: Option<f64>) -> Self {
-        Self { rig, now_bits: AtomicU64::new(0), pace, opened: Instant::now() }
+        Self { rig, now_bits: AtomicU64::new(0), pace, due: Mutex::new(Instant::now()) }
     }
 
-    fn keep_pace(&self, now_s: f64) {
+    fn keep_pace(&self, passed_s: f64) {
         let Some(pace) = self.pace else { return };
-        let ahead_s = now_s / pace - self.opened.elapsed().as_secs_f64();
-        if ahead_s > 0.0 {
-            std::thread::sleep(Duration::from_secs_f64(ahead_s));
-        }
+        let now = Instant::now();
+        let wait = {
+            let mut due = self.due.lock().unwrap_or_else(PoisonError::into_inner);
+            *due = (*due + Duration::from_secs_f64(passed_s / pace)).max(now.checked_sub(FORGIVEN).unwrap_or(now));
+            due.saturating_duration_since(now)
+        };
+        std::thread::sleep(wait);
     }
 }
 
@@ -38,14 +44,17 @@ impl Clock for SteppedClock {
 
     fn sleep_until_s(&self, t_s: f64) {
         while self.now_s() < t_s {
-            let slice_s = t_s.min(self.now_s() + SLICE_S);
-            {
+            let passed_s = {
                 let mut rig = self.rig.lock().unwrap_or_else(PoisonError::into_inner);
+                // Who else waits may have moved it meanwhile.
+                let before_s = self.now_s();
+                let slice_s = before_s.max(t_s.min(before_s + SLICE_S));
                 rig.advance_until(slice_s);
                 // The time asked for, not the substep's: readings a period apart then differ by exactly that period.
                 self.now_bits.store(slice_s.to_bits(), Ordering::Release);
-            }
-            self.keep_pace(slice_s);
+                slice_s - before_s
+            };
+            self.keep_pace(passed_s);
         }
     }
 }
