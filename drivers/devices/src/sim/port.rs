@@ -103,9 +103,11 @@ pub fn serve_terminal(
     let shared = Arc::clone(&port);
     let thread = std::thread::Builder::new().name(format!("mock {}", instrument.label())).spawn(move || {
         let mut wire = Some(pty);
+        // Another bench's port would come up where this one was, and be taken for it.
+        let mut pulled = Vec::new();
         while !shared.is_closing() {
             if shared.is_unplugged(&rig) {
-                wire = None;
+                pulled.extend(wire.take().map(Pty::pull));
                 std::thread::sleep(GLANCE);
             } else if let Some(wire) = &mut wire {
                 converse(&shared, &rig, wire);

@@ -12,7 +12,7 @@ use std::time::Duration;
 pub struct Pty {
     master: File,
     /// Kept open: without it the instrument's reads fail as soon as a client leaves.
-    _slave: OwnedFd,
+    slave: OwnedFd,
     path: String,
 }
 
@@ -29,11 +29,16 @@ impl Pty {
         tcsetattr(&slave, OptionalActions::Now, &attributes)?;
         rustix::fs::fcntl_setfl(&master, OFlags::RDWR | OFlags::NONBLOCK)?;
         let path = name.into_string().map_err(|_| io::Error::from(ErrorKind::InvalidData))?;
-        Ok(Self { master: master.into(), _slave: slave, path })
+        Ok(Self { master: master.into(), slave, path })
     }
 
     pub fn path(&self) -> &str {
         &self.path
+    }
+
+    /// The cable is out. While what is returned is there, the name of the port is nobody else's.
+    pub fn pull(self) -> OwnedFd {
+        self.slave
     }
 
     /// What came in, or nothing within `wait`.
