@@ -45,6 +45,14 @@ fn a_formula_is_fitted_with_its_shape() {
 }
 
 #[test]
+fn a_size_beyond_its_range_is_told_with_the_range() {
+    let run = measured(1);
+    let found = fit(&run, &spec(&run, &["rub"], &RUB.replace("0..1;", "0..0.01;")), &Options::default()).unwrap();
+    let note = found.parameters.iter().find(|p| p.name == "a").unwrap().note.as_ref().unwrap();
+    assert!(note.starts_with("lies beyond what is possible, 0.00 to 0.01: "), "{note}");
+}
+
+#[test]
 fn a_fit_carries_its_formulas() {
     let run = measured(2);
     let found = fit(&run, &spec(&run, &["rub"], RUB), &Options::default()).unwrap();

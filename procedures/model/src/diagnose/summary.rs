@@ -139,6 +139,9 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
     match verdict {
         Verdict::Adequate => String::new(),
         _ if !regions.is_empty() => String::new(),
+        Verdict::UnexplainedStructure => {
+            format!(" It is spread: no part of an axis stands out for sure{}.", maps.nowhere(&fit.unit))
+        }
         _ => format!(" No part of an axis stands out for sure{}.", maps.nowhere(&fit.unit)),
     }
 }
@@ -156,10 +159,13 @@ pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Opt
         Verdict::Adequate if !found.start.prepared.clashes.is_empty() => {
             Some("its columns contradict each other".to_owned())
         }
-        Verdict::Adequate => fit.parameters.iter().find(|p| p.note.as_deref() == Some(IMPOSSIBLE)).map(|p| {
-            let (effect, name) = (&p.effect, &p.name);
-            format!("{name} of {effect} is {}, which {IMPOSSIBLE}", figure(p.value, &p.unit))
-        }),
+        Verdict::Adequate => {
+            let said = fit.parameters.iter().filter_map(|p| Some((p, p.note.as_ref()?)));
+            let mut impossible = said.filter(|(_, note)| note.starts_with(IMPOSSIBLE));
+            impossible
+                .next()
+                .map(|(p, note)| format!("{} of {} is {}, which {note}", p.name, p.effect, figure(p.value, &p.unit)))
+        }
         _ => None,
     }
 }

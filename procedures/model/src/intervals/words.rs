@@ -8,9 +8,8 @@ use crate::words::figure;
 /// An interval of a shape parameter that is wider than this factor does not decide it.
 const WIDE: f64 = 10.0;
 
-/// What is said of a size that contradicts physics, and certainly so.
-pub const IMPOSSIBLE: &str =
-    "is physically impossible: another effect is missing, or a column has another sign or unit";
+/// How what is said of a size begins that contradicts physics, or the range that a user gave it, and certainly so.
+pub const IMPOSSIBLE: &str = "lies beyond what is possible";
 
 /// State of a parameter, with words where it is not well determined.
 pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {
@@ -26,7 +25,13 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
             return (ParameterState::Unidentified, Some("not identified by this run: it may be zero".into()));
         }
         if slot.value < least || slot.value > most {
-            return (ParameterState::AtBound, Some(IMPOSSIBLE.into()));
+            let possible = match (least.is_finite(), most.is_finite()) {
+                (true, true) => format!("{} to {}", say(least), say(most)),
+                (true, false) => format!("at least {}", say(least)),
+                _ => format!("at most {}", say(most)),
+            };
+            let cure = "another effect is missing, or a column has another sign or unit";
+            return (ParameterState::AtBound, Some(format!("{IMPOSSIBLE}, {possible}: {cure}")));
         }
         return (ParameterState::Ok, None);
     };

@@ -70,7 +70,13 @@ impl<'f> Parts<'f> {
 
     /// Whether any part depends on a signal.
     pub fn uses(&self, signal: Signal) -> bool {
-        self.parts.iter().flat_map(|p| &p.columns).any(|column| match column {
+        self.parts.iter().any(|part| part.uses(signal))
+    }
+}
+
+impl Part<'_> {
+    pub fn uses(&self, signal: Signal) -> bool {
+        self.columns.iter().any(|column| match column {
             PartColumn::Formula(formula) => formula.uses_signal(signal),
             PartColumn::Memory { signal: of, formula, .. } => *of == signal || formula.uses_signal(signal),
             PartColumn::Band { .. } => signal == Signal::Current,

@@ -1,6 +1,6 @@
 //! A look-up table over the signals that the model depends on most.
 
-use super::parts::{PartColumn, Parts};
+use super::parts::{Part, PartColumn, Parts};
 use super::{about, predict, suffix};
 use crate::ModelError;
 use crate::formula::{NamedSignal, signals};
@@ -14,11 +14,12 @@ const EVEN: usize = 21;
 /// Points of each direction on a speed axis: a tenth of a decade apart over three decades.
 const DECADES: f64 = 3.0;
 const EACH_DECADE: usize = 10;
+const ANGLES: [Signal; 2] = [Signal::Position, Signal::Link];
 /// Where temperature effects are zero [°C].
 const REFERENCE_C: f64 = 25.0;
 
-/// CSV with comments. At most two axes; every other signal rests, and effects that remember are left out: the table
-/// holds the settled value.
+/// CSV with comments. At most two axes; every other signal rests. Effects that remember are left out, because the table
+/// holds the settled value, and those that turn with an angle that has no axis.
 pub fn table(fit: &Fit) -> Result<String, ModelError> {
     let scope = fit.scope.as_ref().ok_or(ModelError::NoScope)?;
     let mut parts = Parts::of(fit)?;
@@ -27,6 +28,14 @@ pub fn table(fit: &Fit) -> Result<String, ModelError> {
     parts.left_out.extend(states.iter().map(|p| (p.effect, "it remembers; the table holds the settled value".into())));
     parts.parts = settled;
     let axes = axes(fit.kind, scope, &parts);
+    // No angle stands for all of a wave: at rest it would be whatever it is at 0.
+    let has_axis = |signal: Signal| axes.iter().any(|(axis, _)| axis.signal == signal);
+    let waves = |p: &Part| ANGLES.into_iter().any(|angle| p.uses(angle) && !has_axis(angle));
+    let (turning, held): (Vec<_>, Vec<_>) = parts.parts.drain(..).partition(waves);
+    parts
+        .left_out
+        .extend(turning.iter().map(|p| (p.effect, "it turns with an angle, for which the table has no axis".into())));
+    parts.parts = held;
     let still = Fit {
         effects: fit.effects.iter().filter(|id| parts.parts.iter().any(|p| p.effect == *id)).cloned().collect(),
         terms: fit.terms.iter().filter(|t| parts.parts.iter().any(|p| p.effect == t.effect)).cloned().collect(),
