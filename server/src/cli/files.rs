@@ -28,7 +28,8 @@ pub fn table(named: &Path) -> Result<PathBuf, Exit> {
     }
 }
 
-pub fn write(path: &Path, bytes: &[u8]) -> Done {
+/// Refuses a path at which no file could be, before the work whose result is to be kept there.
+pub fn writable(path: &Path) -> Done {
     if path.is_dir() {
         let folder = path.display();
         return Err(Exit::bad_input(format!("{folder} is a folder: name the file in it that is to be written")));
@@ -37,5 +38,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Done {
         let (path, folder) = (path.display(), folder.display());
         return Err(Exit::bad_input(format!("{path} cannot be written: there is no folder {folder}")));
     }
+    Ok(())
+}
+
+pub fn write(path: &Path, bytes: &[u8]) -> Done {
+    writable(path)?;
     fs::write(path, bytes).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))
 }

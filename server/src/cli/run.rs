@@ -3,9 +3,9 @@
 use super::arguments::Run as Arguments;
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::identify;
 use super::progress::RunProgress;
 use super::require::{Kept, Requirement};
+use super::{files, identify};
 use crate::view::{Bench, Identification, NewRun, Run, RunState, word};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
@@ -18,6 +18,7 @@ type Found = Result<Identification, Exit>;
 
 pub fn run(arguments: &Arguments) -> Done {
     let client = Client::new(&arguments.reach);
+    arguments.junit.iter().try_for_each(|path| files::writable(path))?;
     let ended = demand_what_can_be_found(&client, arguments).and_then(|()| start(&client, arguments));
     let found =
         ended.as_ref().ok().filter(|run| run.summary.state == RunState::Completed).map(|run| shown(&client, run));
@@ -26,8 +27,7 @@ pub fn run(arguments: &Arguments) -> Done {
         None => Vec::new(),
     };
     if let Some(path) = &arguments.junit {
-        std::fs::write(path, junit(&title(arguments), &ended, found.as_ref(), &demands))
-            .map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
+        files::write(path, junit(&title(arguments), &ended, found.as_ref(), &demands).as_bytes())?;
     }
     let run = ended?;
     let said = if is_over(run.summary.state) { ending(&run) } else { String::new() };

@@ -84,8 +84,12 @@ fn runs_are_listed_and_ended_from_the_command_line() {
     let idle = said(&["stop"]);
     assert_eq!(idle.status.code(), Some(2));
     assert!(stderr(&idle).contains("no run is on"), "{}", stderr(&idle));
-    for (demand, why) in [("tau_x < 1 Nm", "finds no tau_x"), ("tau_c < 35 kg", "tau_c is in Nm")] {
-        let vain = said(&["run", "friction", "--require", demand]);
+    for (option, value, why) in [
+        ("--require", "tau_x < 1 Nm", "finds no tau_x"),
+        ("--require", "tau_c < 35 kg", "tau_c is in Nm"),
+        ("--junit", "/nowhere/out.xml", "there is no folder /nowhere"),
+    ] {
+        let vain = said(&["run", "friction", option, value]);
         assert_eq!(vain.status.code(), Some(2));
         assert!(stderr(&vain).contains(why), "{}", stderr(&vain));
     }

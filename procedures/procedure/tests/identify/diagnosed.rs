@@ -23,6 +23,8 @@ fn a_brake_saturates_and_remembers() {
     // The supply tells the current ten times a second at best: held readings would hide both.
     let given = json!({"levels": 6, "loops": 1, "random_turns": 6, "speed_rad_s": 3.0});
     assert_eq!(found(Joint::JointA, "brake_hysteresis", given), ["hysteresis", "saturation"]);
+    // At one speed a dependence on it is the torque itself.
+    assert!(!found(Joint::JointB, "brake_hysteresis", json!({})).contains(&"velocity_dependence".to_owned()));
 }
 
 #[test]

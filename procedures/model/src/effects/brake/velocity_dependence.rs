@@ -6,6 +6,9 @@ use jointbench_instrument::Kind;
 
 pub struct VelocityDependence;
 
+/// Speeds that differ less than by this factor are one.
+const SEVERAL: f64 = 1.5;
+
 static INFO: EffectInfo = EffectInfo {
     id: "velocity_dependence",
     kind: Kind::Brake,
@@ -13,7 +16,7 @@ static INFO: EffectInfo = EffectInfo {
     sentence: "The brake holds more or less at higher speed: eddy currents and windage.",
     formula: "c_v·|ω|, or c_v·i·|ω|, or c_v·τ·|ω| with the torque τ that current and history explain",
     source: "makers' data of hysteresis brakes (eddy currents)",
-    looks: "a line over speed",
+    looks: "a line over speed, of which it takes more than one",
     parameters: &[
         parameter("c_v", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_v_i", "Nm·s/(rad·A)", f64::NEG_INFINITY, f64::INFINITY),
@@ -27,7 +30,12 @@ impl Effect for VelocityDependence {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        // At one speed it is one with the torque itself.
+        let several = crate::effects::speed_range(view).is_some_and(|(slow, fast)| fast > SEVERAL * slow);
+        if !several {
+            return Vec::new();
+        }
         let form = |name, linear| Form { name, ..Form::linear(linear) };
         vec![form("plain", &["c_v"]), form("excited", &["c_v_i"]), form("scaled", &["c_v_tau"])]
     }
