@@ -76,8 +76,9 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
     }
     if prepared.main.view.goes_one_way() && main.contains("coulomb") {
-        let note = "the motion goes one way only, but for less than a tenth of the run, which is left out: Coulomb friction and an \
-                    offset cannot be told apart, and tau_c is both together; measure the other direction as well";
+        let note = "the motion goes one way only (less than a tenth of a trajectory the other way is left out): Coulomb \
+                    friction and an offset cannot be told apart, and tau_c is both together; measure the other direction \
+                    as well";
         notes.push(note.into());
     }
     Ok(Fit {

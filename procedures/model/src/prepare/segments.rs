@@ -45,13 +45,19 @@ pub fn direction(velocity: &[f64], band: f64) -> Vec<f64> {
         .collect()
 }
 
+/// The direction of a run that goes the other way in less than a tenth of its samples, if at all.
+pub fn main_direction(direction: &[f64]) -> Option<f64> {
+    const FEW: f64 = 0.1;
+    let ahead = direction.iter().sum::<f64>().signum();
+    let back = direction.iter().filter(|d| **d == -ahead).count() as f64;
+    (back < FEW * direction.len() as f64).then_some(ahead)
+}
+
 /// A joint that creeps over its own teeth swings back a little again and again: that is no motion the other way. Where
 /// these swings are short and few, the direction of the whole run is that of its way.
 pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -> Vec<f64> {
-    const FEW: f64 = 0.1;
     const SHORT: f64 = 0.01;
-    let ahead: f64 = direction.iter().sum::<f64>().signum();
-    let back = direction.iter().filter(|d| **d == -ahead).count() as f64;
+    let Some(ahead) = main_direction(&direction) else { return direction };
     let (mut reached, mut deepest, mut way) = (f64::NEG_INFINITY, 0.0f64, 0.0f64);
     for (i, q) in position.iter().enumerate() {
         if starts.contains(&i) {
@@ -62,17 +68,7 @@ pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -
         reached = reached.max(ahead * q);
         deepest = deepest.max(reached - ahead * q);
     }
-    let one_way = back < FEW * direction.len() as f64 && deepest < SHORT * way;
-    if one_way { vec![ahead; direction.len()] } else { direction }
-}
-
-/// The direction of a run that goes the other way for a moment only, as to its beginning: too little to tell anything of
-/// that way from what the haste brings.
-pub fn ahead(direction: &[f64]) -> Option<f64> {
-    const MOMENT: f64 = 0.1;
-    let ahead: f64 = direction.iter().sum::<f64>().signum();
-    let back = direction.iter().filter(|d| **d == -ahead).count() as f64;
-    (back > 0.0 && back < MOMENT * direction.len() as f64).then_some(ahead)
+    if deepest < SHORT * way { vec![ahead; direction.len()] } else { direction }
 }
 
 /// The rows of a way back, with those beside them, where filters see both ways.

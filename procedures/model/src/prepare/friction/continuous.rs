@@ -32,7 +32,8 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     let velocity = pick(samples.signals.find(Signal::Velocity).unwrap_or_default());
     let direction = samples.signals.find(Signal::Direction).unwrap_or_default();
     let mut rests = standstill(&velocity);
-    if let Some(ahead) = segments::ahead(direction) {
+    if let Some(ahead) = segments::main_direction(direction).filter(|ahead| direction.contains(&-ahead)) {
+        // Too little to tell anything of that way from what its haste brings.
         let back = segments::way_back(&pick(direction), ahead);
         rests = if rests.is_empty() { back } else { rests.iter().zip(back).map(|(r, b)| *r || b).collect() };
         let one_way = vec![ahead; direction.len()];
