@@ -1,13 +1,18 @@
-//! Columns that tell the same motion in different units or signs: what is fitted to them is wrong, however well it fits.
+//! Columns that tell the same motion or torque in different units or signs: what is fitted to them is wrong, however well it
+//! fits.
 
+use crate::linear::{Basis, dot};
 use jointbench_instrument::{Kind, Motion, RunTable};
+use std::ops::Range;
 
 /// Ways are taken over pieces of this length: short enough for a reversal, long enough for coarse encoders.
 const PIECE_S: f64 = 0.2;
 /// Columns that differ by less may be filtered, late, or have a joint that winds up between them.
 const CLASH: f64 = 1.2;
-/// Share of the variance in common, below which the columns do not tell the same motion at all.
-const SAME_MOTION: f64 = 0.9;
+/// Torques of motor and link differ by the gear's efficiency too, and by friction that grows with the load.
+const TORQUE_CLASH: f64 = 2.0;
+/// Share of the variance in common, below which the columns do not tell the same at all.
+const SAME: f64 = 0.9;
 
 /// Each in a sentence.
 pub fn clashes(run: &RunTable) -> Vec<String> {
@@ -26,33 +31,72 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
         }
         Kind::Brake => &[("velocity_rad_s", "position_rad", 1.0)],
     };
-    pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor)).collect()
+    let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
+    let torques = (run.kind() == Kind::Friction).then(|| torque_clash(run)).flatten();
+    motions.chain(torques).collect()
+}
+
+/// Pieces of the run that do not reach over the end of a recording, with the time that passes in each.
+fn pieces(time_s: &[f64]) -> impl Iterator<Item = (Range<usize>, f64)> {
+    let step_s = super::sample_s(time_s);
+    let n = ((PIECE_S / step_s) as usize).max(1);
+    (0..time_s.len().saturating_sub(n)).step_by(n).filter_map(move |start| {
+        let passed_s = time_s[start + n] - time_s[start];
+        (passed_s > 0.0 && passed_s < 2.0 * n as f64 * step_s).then_some((start..start + n, passed_s))
+    })
+}
+
+/// What the load asks of the motor beside friction and inertia should be the link's torque over the gear ratio.
+fn torque_clash(run: &RunTable) -> Option<String> {
+    let column = |name: &str| run.column(name);
+    let (time_s, position) = (column("time_s")?, column("motor_position_rad")?);
+    let (current, load) = (column("motor_current_a")?, column("link_torque_nm")?);
+    let per_link = run.meta().torque_constant_nm_per_a? * run.meta().gear_ratio.unwrap_or(1.0);
+    let (mut velocity, mut torque, mut link) = (Vec::new(), Vec::new(), Vec::new());
+    for (piece, passed_s) in pieces(time_s) {
+        let mean = |values: &[f64]| values[piece.clone()].iter().sum::<f64>() / piece.len() as f64;
+        velocity.push((position[piece.end] - position[piece.start]) / passed_s);
+        torque.push(per_link * mean(current));
+        link.push(mean(load));
+    }
+    let n = velocity.len();
+    let change = |i: usize| velocity[(i + 1).min(n - 1)] - velocity[i.saturating_sub(1)];
+    let beside = Basis::of(&[
+        vec![1.0; n],
+        velocity.iter().map(|v| v.signum()).collect(),
+        (0..n).map(change).collect(),
+        velocity.clone(),
+    ]);
+    let (torque, link) = (beside.rest(&torque), beside.rest(&link));
+    let (tt, tl, ll) = (dot(&torque, &torque), dot(&torque, &link), dot(&link, &link));
+    let times = tt / tl;
+    let tells = tl * tl > SAME * tt * ll && !(1.0 / TORQUE_CLASH..=TORQUE_CLASH).contains(&times);
+    tells.then(|| {
+        format!(
+            "motor_current_a with the torque constant and the gear ratio is {times:.3} times what link_torque_nm asks \
+             for: one of these has another unit or sign"
+        )
+    })
 }
 
 /// `factor · one` should move as `other` does.
 fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<String> {
     let (time_s, a, b) = (run.column("time_s")?, run.column(one)?, run.column(other)?);
     let is_speed = one.ends_with("_rad_s");
-    let step_s = super::sample_s(time_s);
-    let n = ((PIECE_S / step_s) as usize).max(1);
     let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
-    for start in (0..time_s.len().saturating_sub(n)).step_by(n) {
-        let end = start + n;
-        let passed_s = time_s[end] - time_s[start];
-        // Not over the end of a recording.
-        if !(passed_s > 0.0 && passed_s < 2.0 * n as f64 * step_s) {
-            continue;
-        }
+    for (Range { start, end }, passed_s) in pieces(time_s) {
         let way = match is_speed {
             // By the trapezoidal rule.
-            true => a[start..=end].windows(2).map(|v| 0.5 * (v[0] + v[1])).sum::<f64>() * passed_s / n as f64,
+            true => {
+                a[start..=end].windows(2).map(|v| 0.5 * (v[0] + v[1])).sum::<f64>() * passed_s / (end - start) as f64
+            }
             false => factor * (a[end] - a[start]),
         };
         let turned = b[end] - b[start];
         (aa, ab, bb) = (aa + way * way, ab + way * turned, bb + turned * turned);
     }
     let times = aa / ab;
-    let tells = ab * ab > SAME_MOTION * aa * bb && !(1.0 / CLASH..=CLASH).contains(&times);
+    let tells = ab * ab > SAME * aa * bb && !(1.0 / CLASH..=CLASH).contains(&times);
     tells.then(|| {
         let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
         format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign")
@@ -74,6 +118,32 @@ mod tests {
         }
         let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(50.0), ..Meta::default() };
         RunTable::new(meta, trace).unwrap()
+    }
+
+    #[test]
+    fn a_load_that_the_motor_does_not_carry_is_told() {
+        let loaded = |current_scale: f64, load_scale: f64| {
+            let names = ["time_s", "motor_position_rad", "motor_current_a", "link_torque_nm"];
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            for i in 0..4000 {
+                let t = 0.01 * f64::from(i);
+                let (q, v) = (30.0 * (0.5 * t).sin(), (0.5 * t).cos());
+                let link = 40.0 * (0.31 * t).sin();
+                let torque = 0.02 * v.signum() + 0.03 * v + link / 50.0 * (1.0 + 0.3 * (v * link).signum());
+                trace.push_row(&[t, q, current_scale * torque / 0.05, load_scale * link]);
+            }
+            let meta = Meta {
+                kind: Some(Kind::Friction),
+                gear_ratio: Some(50.0),
+                torque_constant_nm_per_a: Some(0.05),
+                ..Meta::default()
+            };
+            clashes(&RunTable::new(meta, trace).unwrap())
+        };
+        assert_eq!(loaded(1.0, 1.0), Vec::<String>::new(), "a gear that loses three tenths");
+        assert_eq!(loaded(1.0, 0.0), Vec::<String>::new(), "a sensor that shows nothing");
+        let told = |scale, load| matches!(&loaded(scale, load)[..], [one] if one.starts_with("motor_current_a with"));
+        assert!(told(1000.0, 1.0) && told(-1.0, 1.0) && told(1.0, 1000.0) && told(1.0, -1.0));
     }
 
     #[test]
