@@ -1,6 +1,6 @@
 //! What to measure next: the menu of a bench, or of what a run itself has shown, put to the model.
 
-use super::{Answer, Lab, convert};
+use super::{Answer, Lab, LabError, convert};
 use crate::store::{DiagnosisRecord, ModelRecord};
 use crate::view;
 use jointbench_instrument::RunTable;
@@ -62,9 +62,26 @@ impl Lab {
         let model = self.inner.store.model(record.model).await?;
         let table = self.tables(&model.runs()).await?;
         let offer = self.offer(&table, &model.runs(), Some(bench)).await?;
+        check_same_joint(&table, &offer.bench)?;
         let found: jointbench_model::Diagnosis = convert::reread(&record.diagnosis)?;
         let open = Open { own: self.own_effects(table.kind()).await?, ..Open::from(&found) };
         let next = super::models::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
         Ok((model, next.map(|next| convert::reread(&next)).transpose()?))
+    }
+}
+
+/// A run of another joint than the bench carries could not be looked at together with one made there.
+fn check_same_joint(run: &RunTable, bench: &BenchFacts) -> Answer<()> {
+    let (meta, constants) = (run.meta(), &bench.constants);
+    let facts = [
+        ("gear ratio", meta.gear_ratio, constants.gear_ratio),
+        ("torque constant", meta.torque_constant_nm_per_a, constants.torque_constant_nm_per_a),
+    ];
+    match facts.into_iter().find(|(_, of_run, of_bench)| of_run.is_some_and(|value| value != *of_bench)) {
+        Some((fact, Some(of_run), of_bench)) => Err(LabError::Invalid(format!(
+            "{} carries another joint than this run was made with: its {fact} is {of_bench}, that of the run {of_run}",
+            bench.name
+        ))),
+        _ => Ok(()),
     }
 }

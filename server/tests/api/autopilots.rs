@@ -1,6 +1,7 @@
 //! What to measure next, made with one call, and the autopilot.
 
 use crate::daemon::{BENCH, TestDaemon, settings};
+use crate::import::upload;
 use jointbench::config::BenchDescription;
 use jointbench::daemon::Daemon;
 use jointbench::store::Store;
@@ -96,6 +97,20 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
     assert_eq!(before["suggestions"], json!([]), "{}", before["summary"]);
     let separates = before["experiment"]["separates"].as_array().unwrap();
     assert!(separates.contains(&"load_linear".into()), "{}", before["experiment"]);
+
+    let raw = |what: &str| {
+        daemon.get_raw(&format!("/api/v1/runs/{}/{what}", run["id"])).into_body().read_to_string().unwrap()
+    };
+    let table = raw("export?format=csv");
+    let other = raw("meta").replace("177.8", "100");
+    let (_, stranger) = upload(&daemon, &table, &[("meta", &other)]);
+    let body = json!({"run": stranger["id"], "effects": model["effects"]});
+    let (_, its_model) = daemon.post("/api/v1/models", &body.to_string());
+    let (_, found) = daemon.post("/api/v1/diagnoses", &json!({"model": its_model["id"]}).to_string());
+    let path = format!("/api/v1/diagnoses/{}/experiment", found["id"]);
+    let (status, problem) = daemon.post(&path, &json!({"bench": BENCH}).to_string());
+    assert_eq!(status, 422, "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("its gear ratio is 177.8"), "{problem}");
 
     let path = format!("/api/v1/diagnoses/{}/experiment", before["id"]);
     let (status, autopilot) = daemon.post(&path, &json!({"bench": BENCH}).to_string());
