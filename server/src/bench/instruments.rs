@@ -14,7 +14,7 @@ pub struct Opened {
     pub instruments: Vec<Instrument>,
     pub bench: Option<Bench>,
     /// Answers for as long as it is held.
-    _mock: Option<MockBench>,
+    pub mock: Option<MockBench>,
 }
 
 /// Opens and identifies every instrument. Nothing is commanded. A fault is data here, and stands beside its instrument.
@@ -25,9 +25,9 @@ pub fn open(description: &BenchDescription) -> Opened {
             let (limits, constants) = (description.limits, description.constants);
             let bench = slots.into_bench(&description.name, description.is_simulated(), clock, limits, constants);
             let power = mock.as_ref().map(MockBench::power_switch);
-            Opened { instruments, bench: bench.map(|bench| Bench { power, ..bench }), _mock: mock }
+            Opened { instruments, bench: bench.map(|bench| Bench { power, ..bench }), mock }
         }
-        Err(fault) => Opened { instruments: vec![unreached(description, fault)], bench: None, _mock: None },
+        Err(fault) => Opened { instruments: vec![unreached(description, fault)], bench: None, mock: None },
     }
 }
 

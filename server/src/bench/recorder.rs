@@ -2,10 +2,11 @@
 
 use super::status::{Status, readings};
 use super::thread::Start;
-use crate::lab::{run_event, safe_view, state_view};
+use crate::lab::{run_event, state_view};
 use crate::live::Rows;
 use crate::view::{BenchState, LiveMessage, Progress};
-use jointbench_procedure::{Commit, Live, Recorder, RecorderFault, RunEnd, RunId, RunState};
+use jointbench_devices::MockBench;
+use jointbench_procedure::{Commit, Live, Recorder, RecorderFault, RunId, RunState};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 use tokio::sync::watch;
@@ -17,6 +18,8 @@ pub(super) struct StoreRecorder<'a> {
     start: &'a Start,
     status: &'a watch::Sender<Status>,
     runtime: &'a Handle,
+    /// Its disk may have a bad day, which is the store's.
+    mock: Option<&'a MockBench>,
     run: RunId,
     told_events: u64,
     told_progress: Option<Instant>,
@@ -24,8 +27,14 @@ pub(super) struct StoreRecorder<'a> {
 }
 
 impl<'a> StoreRecorder<'a> {
-    pub fn new(start: &'a Start, status: &'a watch::Sender<Status>, runtime: &'a Handle, run: RunId) -> Self {
-        Self { start, status, runtime, run, told_events: 0, told_progress: None, state: RunState::Queued }
+    pub fn new(
+        start: &'a Start,
+        status: &'a watch::Sender<Status>,
+        runtime: &'a Handle,
+        mock: Option<&'a MockBench>,
+        run: RunId,
+    ) -> Self {
+        Self { start, status, runtime, mock, run, told_events: 0, told_progress: None, state: RunState::Queued }
     }
 
     fn bench(&self) -> &str {
@@ -69,22 +78,6 @@ impl<'a> StoreRecorder<'a> {
             self.start.hub.tell(LiveMessage::Event { bench, run: self.run, event });
         }
     }
-
-    /// What the engine says of the end.
-    pub fn end(&mut self, end: &RunEnd) {
-        let kept = self.runtime.block_on(self.start.store.end_run(self.run, end.safe, end.reason.as_deref()));
-        if let Err(fault) = kept {
-            tracing::error!(run.id = self.run, %fault, "how the run ended could not be kept");
-        }
-        let message = LiveMessage::State {
-            bench: self.bench().to_owned(),
-            run: self.run,
-            state: state_view(end.state),
-            safe: Some(safe_view(end.safe)),
-            reason: end.reason.clone(),
-        };
-        self.start.hub.tell(message);
-    }
 }
 
 impl Recorder for StoreRecorder<'_> {
@@ -95,7 +88,11 @@ impl Recorder for StoreRecorder<'_> {
 
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
         let Commit { run, state, events, rows } = commit;
-        self.runtime.block_on(self.start.store.commit(run, state, events, rows)).map_err(fault)?;
+        let store = &self.start.store;
+        if let Some(mock) = self.mock {
+            self.runtime.block_on(store.fill_disk(mock.disk_is_full())).map_err(fault)?;
+        }
+        self.runtime.block_on(store.commit(run, state, events, rows)).map_err(fault)?;
         self.tell_state(state);
         self.tell_events();
         Ok(())

@@ -5,13 +5,15 @@ use super::instruments::{Opened, open};
 use super::recorder::StoreRecorder;
 use super::status::Status;
 use crate::config::BenchDescription;
+use crate::lab::{safe_view, state_view};
 use crate::live::Hub;
 use crate::store::Store;
 use crate::view::{BenchState, Blocked, LiveMessage};
-use jointbench_procedure::{Control, Plan, RunId, Safe};
+use jointbench_procedure::{Control, Plan, RunEnd, RunId, RunState, Safe};
 use std::io;
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::JoinHandle;
+use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::sync::{oneshot, watch};
 
@@ -34,6 +36,9 @@ pub(super) struct Start {
 
 const INTERRUPTED: &str = "the daemon ended before the run did; all committed samples are kept";
 
+/// So often it is tried again to keep how a run ended.
+const KEEP_EVERY: Duration = Duration::from_secs(1);
+
 type Spawned = (Sender<Command>, watch::Receiver<Status>, JoinHandle<()>);
 
 /// Must be called inside the runtime, which the thread uses to wait for the store.
@@ -43,7 +48,7 @@ pub(super) fn spawn(start: Start) -> io::Result<Spawned> {
     let runtime = Handle::current();
     let name = format!("bench {}", start.description.name);
     let thread = std::thread::Builder::new().name(name).spawn(move || {
-        Owner { start, status, runtime, opened: None }.serve(&receiver);
+        Owner { start, status, runtime, opened: None, unkept: Vec::new() }.serve(&receiver);
     })?;
     Ok((commands, watched, thread))
 }
@@ -53,6 +58,8 @@ struct Owner {
     status: watch::Sender<Status>,
     runtime: Handle,
     opened: Option<Opened>,
+    /// Runs of whose end the store does not know yet.
+    unkept: Vec<(RunId, RunEnd)>,
 }
 
 impl Owner {
@@ -63,13 +70,14 @@ impl Owner {
         let safe = self.secure();
         for run in std::mem::take(&mut self.start.interrupted) {
             tracing::warn!(run.id = run, bench = self.name(), %safe, "run was interrupted, the bench is secured now");
-            let ended = self.runtime.block_on(self.start.store.end_run(run, safe, Some(INTERRUPTED)));
+            let ended =
+                self.runtime.block_on(self.start.store.end_run(run, RunState::Interrupted, safe, Some(INTERRUPTED)));
             if let Err(fault) = ended {
                 tracing::error!(run.id = run, %fault, "how the run ended could not be kept");
             }
         }
         self.change(|status| status.settled = true);
-        while let Ok(command) = commands.recv() {
+        while let Some(command) = self.next(commands) {
             match command {
                 Command::Run { run, plan, controls } => self.run(run, &plan, &controls),
                 Command::Secure { taken } => {
@@ -94,6 +102,51 @@ impl Owner {
             }
         }
         tracing::debug!(bench = self.name(), "bench thread ends");
+    }
+
+    /// `None`: nobody is left to command.
+    fn next(&mut self, commands: &Receiver<Command>) -> Option<Command> {
+        while !self.unkept.is_empty() {
+            match commands.recv_timeout(KEEP_EVERY) {
+                Ok(command) => return Some(command),
+                Err(RecvTimeoutError::Disconnected) => return None,
+                Err(RecvTimeoutError::Timeout) => {
+                    self.let_time_pass();
+                    self.keep_ends();
+                }
+            }
+        }
+        commands.recv().ok()
+    }
+
+    /// Moves the clock of a mock bench, which nobody else does between runs: the full disk that it has may be over.
+    fn let_time_pass(&self) {
+        let Some(mock) = self.opened.as_ref().and_then(|opened| opened.mock.as_ref()) else { return };
+        let clock = mock.clock();
+        clock.sleep_until_s(clock.now_s() + KEEP_EVERY.as_secs_f64());
+        if let Err(fault) = self.runtime.block_on(self.start.store.fill_disk(mock.disk_is_full())) {
+            tracing::error!(bench = self.name(), %fault, "the mock bench's full disk is not what it should be");
+        }
+    }
+
+    /// Says of runs that are over how they ended: on a full disk as soon as there is room for it.
+    fn keep_ends(&mut self) {
+        for (run, end) in std::mem::take(&mut self.unkept) {
+            let RunEnd { state, safe, reason, .. } = &end;
+            let kept = self.runtime.block_on(self.start.store.end_run(run, *state, *safe, reason.as_deref()));
+            let message = LiveMessage::State {
+                bench: self.name().to_owned(),
+                run,
+                state: state_view(*state),
+                safe: Some(safe_view(*safe)),
+                reason: reason.clone(),
+            };
+            self.start.hub.tell(message);
+            if let Err(fault) = kept {
+                tracing::error!(run.id = run, %fault, "how the run ended could not be kept, and will be tried again");
+                self.unkept.push((run, end));
+            }
+        }
     }
 
     fn name(&self) -> &str {
@@ -129,15 +182,16 @@ impl Owner {
     }
 
     fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Control>) {
-        let Some(bench) = self.opened.as_mut().and_then(|opened| opened.bench.as_mut()) else {
+        let Some(Opened { bench: Some(bench), mock, .. }) = self.opened.as_mut() else {
             // The lab opens a bench before it starts a run; a bench that went away in between has no instruments to move.
             tracing::error!(run.id = run, "run started on a bench that is not open");
             lock(&self.start.slot).take();
             return;
         };
-        let mut recorder = StoreRecorder::new(&self.start, &self.status, &self.runtime, run);
+        let mut recorder = StoreRecorder::new(&self.start, &self.status, &self.runtime, mock.as_ref(), run);
         let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
-        recorder.end(&end);
+        self.unkept.push((run, end.clone()));
+        self.keep_ends();
         self.refresh_with(end.safe, end.reason.as_deref(), Some(run));
         // Free before it is told: whoever hears of the end may start the next run.
         lock(&self.start.slot).take();

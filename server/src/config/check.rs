@@ -6,8 +6,9 @@ use super::mistake::{Collector, Mistakes};
 use super::raw::{RawBench, RawFile, RawMock};
 use super::values::{choice, positive};
 use super::{BenchDescription, Source};
-use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, MockInstrument, Supply, Transport};
+use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, MockInstrument, PlannedTrouble, Supply, Transport, Trouble};
 use jointbench_devices::{Joint, MockSettings};
+use toml::Spanned;
 
 pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
     let mut wrong = Collector::new(text);
@@ -90,6 +91,20 @@ fn own_part(text: &str, name_at: usize) -> &str {
     }
 }
 
+/// A disk can only be full, and nothing else can be.
+fn troubles(given: &[Spanned<PlannedTrouble>], wrong: &mut Collector) -> Vec<PlannedTrouble> {
+    for planned in given {
+        let PlannedTrouble { instrument, trouble, .. } = planned.get_ref();
+        if (*instrument == MockInstrument::Disk) != (*trouble == Trouble::DiskFull) {
+            wrong.add(
+                planned.span(),
+                "instrument \"disk\" and trouble \"disk_full\" belong together: give both or neither",
+            );
+        }
+    }
+    given.iter().map(|planned| *planned.get_ref()).collect()
+}
+
 fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     let joints =
         [("a", Joint::JointA), ("b", Joint::JointB), ("encoder_shaft", Joint::EncoderShaft), ("puma", Joint::Puma)];
@@ -113,7 +128,7 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
         settings.others.push(MockInstrument::Thermometer);
     }
     let load = load.unwrap_or(Some(settings.load))?;
-    let (filter, supply, troubles) = (raw.filter, supply?, raw.troubles.clone());
+    let (filter, supply, troubles) = (raw.filter, supply?, troubles(&raw.troubles, wrong));
     // A bench that keeps time is one that other programs may listen to; in a time-lapse they could not follow.
     let transport = if pace.is_some() { Transport::Terminal } else { settings.transport };
     Some(MockSettings { load, effects, pace, filter, supply, troubles, transport, ..settings })

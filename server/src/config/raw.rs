@@ -58,7 +58,7 @@ pub struct RawMock {
     #[serde(default)]
     pub thermometer: bool,
     #[serde(default)]
-    pub troubles: Vec<PlannedTrouble>,
+    pub troubles: Vec<Spanned<PlannedTrouble>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -166,6 +166,19 @@ ninter = 0
 }
 
 #[test]
+fn only_a_disk_is_full() {
+    let bench = |instrument: &str, trouble: &str| {
+        let planned = format!("{{ instrument = \"{instrument}\", trouble = \"{trouble}\", from_s = 3.0 }}");
+        parse("b.toml", &format!("[[bench]]\nname = \"a\"\n[bench.mock]\njoint = \"a\"\ntroubles = [{planned}]\n"))
+    };
+    assert!(bench("disk", "disk_full").is_ok());
+    for (instrument, trouble) in [("brake", "disk_full"), ("disk", "silent")] {
+        let said = bench(instrument, trouble).unwrap_err().to_string();
+        assert!(said.contains("line 5: instrument \"disk\" and trouble \"disk_full\" belong together"), "{said}");
+    }
+}
+
+#[test]
 fn a_run_carries_the_description_of_its_own_bench() {
     let [one, other] = ["one", "other"].map(|name| {
         format!("[[bench]]\nname = \"{name}\"\n\n[bench.mock]\njoint = \"a\"\neffects = []\n# The end of {name}.\n\n")

@@ -31,6 +31,7 @@ use crate::live::Hub;
 use crate::store::Store;
 use crate::view::AutopilotState;
 use autopilot::Flights;
+use jointbench_procedure::{RunState, Safe};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -76,7 +77,7 @@ impl Lab {
                 "a run was interrupted, and the bench is not in the description that the daemon was started with";
             store.block_bench(&bench, runs.last().copied(), reason).await?;
             for run in runs {
-                store.end_run(run, jointbench_procedure::Safe::UnsafeUnknown, Some(reason)).await?;
+                store.end_run(run, RunState::Interrupted, Safe::UnsafeUnknown, Some(reason)).await?;
             }
         }
         let lab = Lab {

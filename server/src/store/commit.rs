@@ -35,7 +35,8 @@ impl Store {
     }
 }
 
-async fn append(
+/// What [`Store::commit`] does, within a transaction.
+pub(super) async fn append(
     writer: &mut SqliteConnection,
     run: RunId,
     state: RunState,

@@ -8,6 +8,7 @@ mod autopilots;
 pub mod codec;
 mod commit;
 mod error;
+mod full_disk;
 mod kept;
 mod migrations;
 mod models;
@@ -33,6 +34,7 @@ pub use records::{
 use sqlx::SqlitePool;
 use std::fs::File;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Rows of a full block.
 pub const BLOCK_ROWS: usize = 32_768;
@@ -46,4 +48,6 @@ pub struct Store {
     readers: SqlitePool,
     /// Held for as long as the store is open: one daemon for each data folder.
     lock: Arc<File>,
+    /// Whether a mock bench has a full disk.
+    is_full: Arc<AtomicBool>,
 }

@@ -1,5 +1,6 @@
 //! Opening: one daemon for each data folder, one schema, settings that keep what was committed.
 
+use super::full_disk::{give_back, limit};
 use super::migrations::Migrations;
 use super::{Store, StoreError};
 use sqlx::migrate::{MigrateError, Migrator};
@@ -9,6 +10,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Marks the file as ours: "JBen".
@@ -38,10 +40,13 @@ impl Store {
 
         let options = options.page_size(PAGE_BYTES).journal_mode(SqliteJournalMode::Wal);
         let options = options.synchronous(SqliteSynchronous::Full);
-        let writer = pool(1).connect_with(options.clone()).await.map_err(|fault| not_ours(fault, &file))?;
+        let is_full = Arc::<AtomicBool>::default();
+        let writer = writer(is_full.clone());
+        let writer = writer.connect_with(options.clone()).await.map_err(|fault| not_ours(fault, &file))?;
         migrate(&writer, &file).await?;
+        give_back(&mut *writer.acquire().await?).await?;
         let readers = pool(READERS).connect_with(options.read_only(true)).await?;
-        Ok(Store { writer, readers, lock: Arc::new(lock) })
+        Ok(Store { writer, readers, lock: Arc::new(lock), is_full })
     }
 
     /// Whether a store was made in the folder.
@@ -62,6 +67,22 @@ impl Store {
 
 fn pool(most: u32) -> SqlitePoolOptions {
     SqlitePoolOptions::new().max_connections(most).idle_timeout(None).max_lifetime(None)
+}
+
+/// The one connection that writes. On a full disk SQLite may end a transaction by itself; to sqlx it is still on then, and none
+/// could begin any more: such a connection is exchanged for another.
+fn writer(is_full: Arc<AtomicBool>) -> SqlitePoolOptions {
+    let writer = pool(1).after_connect(move |connection, _| {
+        let full = is_full.load(Ordering::Acquire);
+        Box::pin(limit(connection, full))
+    });
+    writer.after_release(|connection, _| {
+        Box::pin(async move {
+            // Behind the rollback of what was given up.
+            connection.ping().await?;
+            Ok(!connection.is_in_transaction())
+        })
+    })
 }
 
 fn lock(folder: &Path) -> Result<File, StoreError> {

@@ -1,9 +1,10 @@
 //! Runs and their journal.
 
+use super::commit::append;
 use super::search::Search;
 use super::{EventRecord, NewRun, RunFilter, RunRecord, Store, StoreError};
 use jiff::Timestamp;
-use jointbench_instrument::Channel;
+use jointbench_instrument::{Channel, Trace};
 use jointbench_procedure::{Event, EventKind, RunId, RunState, Safe};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
@@ -113,17 +114,28 @@ impl Store {
             .collect()
     }
 
-    /// Says how a run that is over was secured, and why it ended, where its own last commit could not say so.
-    pub async fn end_run(&self, run: RunId, safe: Safe, reason: Option<&str>) -> Result<(), StoreError> {
-        let mut writer = self.writer.begin().await?;
-        let told: Option<Option<String>> =
-            sqlx::query_scalar("SELECT safe FROM runs WHERE id = ?").bind(run).fetch_optional(&mut *writer).await?;
-        if told.ok_or(StoreError::NoRun(run))?.is_none() {
-            let at_s: f64 = sqlx::query_scalar("SELECT COALESCE(MAX(at_s), 0.0) FROM events WHERE run = ?")
-                .bind(run)
-                .fetch_one(&mut *writer)
-                .await?;
+    /// Says of a run that is over how it ended, how it was secured, and why, where its own last commit could not say so.
+    pub async fn end_run(
+        &self,
+        run: RunId,
+        state: RunState,
+        safe: Safe,
+        reason: Option<&str>,
+    ) -> Result<(), StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let told: Option<(String, Option<String>)> =
+            sqlx::query_as("SELECT state, safe FROM runs WHERE id = ?").bind(run).fetch_optional(&mut *writer).await?;
+        let (before, secured) = told.ok_or(StoreError::NoRun(run))?;
+        let at_s: f64 = sqlx::query_scalar("SELECT COALESCE(MAX(at_s), 0.0) FROM events WHERE run = ?")
+            .bind(run)
+            .fetch_one(&mut *writer)
+            .await?;
+        if secured.is_none() {
             insert_events(&mut writer, run, &[Event { at_s, kind: EventKind::Safe { safe } }]).await?;
+        }
+        if !word::<RunState>(&before)?.is_final() {
+            let end = Event { at_s, kind: EventKind::State { state } };
+            append(&mut writer, run, state, &[end], Trace::default()).await?;
         }
         sqlx::query("UPDATE runs SET reason = COALESCE(reason, ?) WHERE id = ?")
             .bind(reason)

@@ -2,6 +2,7 @@
 
 mod autopilots;
 mod daemon;
+mod disk;
 mod door;
 mod import;
 mod live;

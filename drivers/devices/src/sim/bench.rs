@@ -199,6 +199,11 @@ impl MockBench {
         lock(&self.rig).afflict(instrument, trouble);
     }
 
+    /// Whether whoever keeps the readings of this bench is to find no room for them.
+    pub fn disk_is_full(&self) -> bool {
+        lock(&self.rig).trouble(MockInstrument::Disk) == Trouble::DiskFull
+    }
+
     fn joint(&self) -> JointSettings {
         let (name, deadline_ms) = ("joint".into(), self.settings.deadline_ms);
         let address = self.address(MockInstrument::Joint).expect("every mock bench has a joint");

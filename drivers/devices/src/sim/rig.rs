@@ -22,6 +22,8 @@ pub enum MockInstrument {
     Stage,
     /// On the analogue output of the torque sensor's small range, 10 V for 20 Nm.
     Multimeter,
+    /// No instrument and on no wire: where the readings are kept. Whoever keeps them asks [`super::MockBench::disk_is_full`].
+    Disk,
 }
 
 impl MockInstrument {
@@ -33,7 +35,7 @@ impl MockInstrument {
     pub const ENCODER_BENCH: [MockInstrument; 4] =
         [MockInstrument::CounterS1, MockInstrument::CounterS2, MockInstrument::Stage, MockInstrument::Thermometer];
 
-    const COUNT: usize = 8;
+    const COUNT: usize = 9;
 
     pub(super) fn label(self) -> &'static str {
         match self {
@@ -45,6 +47,7 @@ impl MockInstrument {
             MockInstrument::Thermometer => "thermometer",
             MockInstrument::Stage => "stage",
             MockInstrument::Multimeter => "multimeter",
+            MockInstrument::Disk => "disk",
         }
     }
 
@@ -55,13 +58,14 @@ impl MockInstrument {
             MockInstrument::TorqueSensor | MockInstrument::CounterS1 | MockInstrument::CounterS2 => 230_400,
             MockInstrument::Brake | MockInstrument::Stage => 115_200,
             MockInstrument::Thermometer | MockInstrument::Multimeter => 9600,
+            MockInstrument::Disk => 0,
         }
     }
 
     /// The firmware of an instrument that not every mock bench has.
     fn other(self) -> Option<Box<dyn Firmware + Send>> {
         match self {
-            MockInstrument::Joint | MockInstrument::TorqueSensor | MockInstrument::Brake => None,
+            MockInstrument::Joint | MockInstrument::TorqueSensor | MockInstrument::Brake | MockInstrument::Disk => None,
             MockInstrument::CounterS1 => Some(Box::new(Qsb::new(Encoder::S1))),
             MockInstrument::CounterS2 => Some(Box::new(Qsb::new(Encoder::S2))),
             MockInstrument::Thermometer => Some(Box::new(Adam::new())),

@@ -37,6 +37,8 @@ pub enum Trouble {
     CurrentLost,
     /// The joint's thermistor shows far too much.
     OverTemperature,
+    /// What is recorded finds no room: not an instrument's, but [`MockInstrument::Disk`]'s.
+    DiskFull,
 }
 
 /// A bad day that begins by itself.

@@ -33,7 +33,10 @@ fn every_committed_row_is_there_once_after_a_kill() {
         );
         assert_eq!(found.interrupt_open_runs().await.unwrap(), []);
         check_rows(&found, run, 33_500).await;
-        found.end_run(run, Safe::SafeCommanded, Some("the daemon ended in mid-run")).await.unwrap();
+        found
+            .end_run(run, RunState::Interrupted, Safe::SafeCommanded, Some("the daemon ended in mid-run"))
+            .await
+            .unwrap();
         let record = found.run(run).await.unwrap();
         assert_eq!((record.safe, record.state), (Some(Safe::SafeCommanded), RunState::Interrupted));
         let kinds: Vec<String> = found.events(run, 0).await.unwrap().into_iter().map(|event| event.kind).collect();
@@ -42,22 +45,34 @@ fn every_committed_row_is_there_once_after_a_kill() {
 }
 
 #[test]
-fn a_full_disk_keeps_all_before_it() {
+fn a_full_disk_keeps_all_before_it_and_the_end_of_a_run_when_it_is_healed() {
     block_on(async {
         let (_folder, store) = fresh().await;
+        // What was packed leaves free pages behind, which are no room either.
+        let before = store.create_run(&new_run()).await.unwrap();
+        commit(&store, before, RunState::Running, rows(0, 20_000)).await;
+        commit(&store, before, RunState::Completed, Trace::default()).await;
         let run = store.create_run(&new_run()).await.unwrap();
-        commit(&store, run, RunState::Running, rows(0, 500)).await;
-        let pages: i64 = sqlx::query_scalar("PRAGMA page_count").fetch_one(&store.writer).await.unwrap();
-        let limit = sqlx::AssertSqlSafe(format!("PRAGMA max_page_count = {}", pages + 2));
-        sqlx::query(limit).execute(&store.writer).await.unwrap();
+        commit(&store, run, RunState::Running, rows(0, 20_000)).await;
+        store.fill_disk(true).await.unwrap();
 
-        let full = store.commit(run, RunState::Running, &[note(2.0, "lost")], rows(500, 32_768)).await.unwrap_err();
+        let full = store.commit(run, RunState::Running, &[note(2.0, "lost")], rows(20_000, 2_000)).await.unwrap_err();
         assert!(matches!(full, StoreError::DiskFull), "{full}");
-        check_rows(&store, run, 500).await;
+        check_rows(&store, run, 20_000).await;
         assert_eq!(store.events(run, 0).await.unwrap(), []);
+        let why = Some("the disk is full");
+        let end = async || store.end_run(run, RunState::Failed, Safe::SafeVerified, why).await;
+        let full = end().await.unwrap_err();
+        assert!(matches!(full, StoreError::DiskFull), "{full}");
+        assert_eq!(store.run(run).await.unwrap().state, RunState::Running, "all of it, or nothing");
 
-        sqlx::query("PRAGMA max_page_count = 100000").execute(&store.writer).await.unwrap();
-        commit(&store, run, RunState::Running, rows(500, 32_768)).await;
-        check_rows(&store, run, 33_268).await;
+        store.fill_disk(false).await.unwrap();
+        end().await.unwrap();
+        let told = store.run(run).await.unwrap();
+        assert_eq!((told.state, told.safe, told.reason.as_deref()), (RunState::Failed, Some(Safe::SafeVerified), why));
+        check_rows(&store, run, 20_000).await;
+        let next = store.create_run(&new_run()).await.unwrap();
+        commit(&store, next, RunState::Running, rows(0, 33_000)).await;
+        check_rows(&store, next, 33_000).await;
     });
 }

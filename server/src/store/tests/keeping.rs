@@ -19,7 +19,7 @@ fn a_run_is_kept_with_all_that_it_was_started_with() {
         let safe = Event { at_s: 2.5, kind: EventKind::Safe { safe: Safe::SafeVerified } };
         store.commit(run, RunState::Securing, &[safe], Trace::default()).await.unwrap();
         store.commit(run, RunState::Stopped, &[note(3.0, "over")], Trace::default()).await.unwrap();
-        store.end_run(run, Safe::SafeVerified, Some("a person stopped it")).await.unwrap();
+        store.end_run(run, RunState::Aborted, Safe::SafeVerified, Some("a person stopped it")).await.unwrap();
 
         let record = store.run(run).await.unwrap();
         assert_eq!((record.state, record.rows, record.safe), (RunState::Stopped, 500, Some(Safe::SafeVerified)));

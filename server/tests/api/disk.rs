@@ -1,0 +1,57 @@
+//! A full disk under a run: a bad day of the mock bench by name, with SQLite's own refusal.
+
+use crate::daemon::{BENCH, TestDaemon};
+use jointbench::config::BenchDescription;
+use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Trouble};
+use jointbench_devices::{Joint, MockSettings};
+
+/// Of a minute.
+const RUN: &str = r#"{"bench": "joint-a-mock", "procedure": "friction", "parameters":
+    {"repeats": 2, "load_levels": 1, "dwell_s": 0.5, "warm_up_s": 1.0, "top_speed_rad_s": 60.0}}"#;
+/// In the middle of the strokes.
+const FULL_S: f64 = 30.0;
+/// Long after the run is over.
+const HEALED_S: f64 = 42.0;
+/// Rows are committed so often.
+const COMMIT_EVERY_S: f64 = 2.0;
+
+#[test]
+fn a_full_disk_ends_a_run_which_keeps_what_was_acknowledged() {
+    let full = PlannedTrouble {
+        instrument: MockInstrument::Disk,
+        trouble: Trouble::DiskFull,
+        from_s: FULL_S,
+        until_s: Some(HEALED_S),
+    };
+    let mock = MockSettings { troubles: vec![full], ..MockSettings::new(Joint::JointA, 7) };
+    let daemon = TestDaemon::start_with(None, |settings| settings.benches = vec![BenchDescription::mock(BENCH, mock)]);
+    let (status, run) = daemon.post("/api/v1/runs", RUN);
+    assert_eq!(status, 201, "{run}");
+    let path = format!("/api/v1/runs/{}", run["id"]);
+
+    let run = daemon.wait_for(&path, |run| run["state"] == "failed");
+    assert!(run["rows"].as_u64() > Some(100), "{run}");
+    assert_eq!(run["safe"], "safe_verified", "{run}");
+    let reason = run["reason"].as_str().unwrap();
+    assert!(reason.contains("the disk is full") && reason.contains("free some space"), "{reason}");
+
+    let (_, csv) = daemon.get(&format!("{path}/export?format=csv"));
+    let times: Vec<f64> =
+        csv.as_str().unwrap().lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
+    assert_eq!(times.len() as u64, run["rows"].as_u64().unwrap());
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
+    // A few rows still fit into pages that were there before.
+    assert!(times.last().is_some_and(|last_s| *last_s >= FULL_S - COMMIT_EVERY_S), "{:?}", times.last());
+
+    let (status, next) = daemon.post("/api/v1/runs", RUN);
+    assert_eq!(status, 201, "{next}");
+    let next = daemon.wait_for_end(next["id"].as_i64().unwrap());
+    assert_eq!(
+        (&next["state"], &next["safe"]),
+        (&"completed".into(), &"safe_verified".into()),
+        "{} {}",
+        next["reason"],
+        next["rows"]
+    );
+    assert!(next["rows"].as_u64() > run["rows"].as_u64(), "{next}");
+}
