@@ -22,6 +22,8 @@ const MICRO_TURN_RAD: f64 = TAU * 1e-6;
 const WATCHDOG_S: f64 = 0.25;
 /// A drive that has not closed its loop after so long will not.
 const ARMING_S: f64 = 0.5;
+/// The drive's control loop of 8 kHz: a reply tells what the last one has made of the encoder.
+const ESTIMATES_EVERY_S: f64 = 125e-6;
 const VELOCITY_MODE: f64 = 2.0;
 /// Set-points go straight through, without the drive's own ramp.
 const PASSTHROUGH: f64 = 1.0;
@@ -232,7 +234,7 @@ impl JointController for OdriveJoint {
         let (at_s, uncertainty_s) = between(asked_s, self.clock.now_s());
         Ok(JointReading {
             at_s,
-            uncertainty_s,
+            uncertainty_s: uncertainty_s + ESTIMATES_EVERY_S,
             motor_position: Radians(position_micro_turns as f64 * MICRO_TURN_RAD),
             motor_velocity: RadPerSec(velocity_micro_turns_s as f64 * MICRO_TURN_RAD),
             motor_current: Amperes(current_a),

@@ -12,6 +12,7 @@ mod power;
 mod safe_state;
 mod securing;
 mod session;
+mod shaft;
 mod skew;
 mod steps;
 mod tick;
@@ -82,6 +83,7 @@ impl Session<'_> {
         let told = [self.skews.and_then(Skews::told), self.stood.map(Stood::told)];
         told.into_iter().flatten().for_each(|told| self.note(told));
         let safe = self.make_safe(&ending);
+        std::mem::take(&mut self.shaft).told().into_iter().for_each(|told| self.note(told));
         let _told = self.caught(Session::stop_torque_stream);
         self.look_behind(&mut ending);
         let now_s = self.bench.clock.now_s();

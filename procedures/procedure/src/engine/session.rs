@@ -5,6 +5,7 @@ use super::encoders::Stood;
 use super::ending::Ending;
 use super::journal::Journal;
 use super::pace::Pace;
+use super::shaft::Shaft;
 use super::skew::Skews;
 use super::torque::Streaming;
 use crate::columns::Columns;
@@ -51,6 +52,8 @@ pub(super) struct Session<'a> {
     /// The latest reading of the torque sensor.
     pub link_torque_nm: Option<f64>,
     pub skews: Option<Skews>,
+    /// What the instruments of one shaft have told of it.
+    pub shaft: Shaft,
     /// While the torque sensor sends by itself.
     pub streaming: Option<Streaming>,
     /// Time of the newest row, which the next one has to exceed.
@@ -156,6 +159,7 @@ impl<'a> Session<'a> {
             warm_from_rad: None,
             link_torque_nm: None,
             skews: None,
+            shaft: Shaft::default(),
             streaming: None,
             row_s: f64::NEG_INFINITY,
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),

@@ -1,4 +1,4 @@
-//! How much later than the joint the torque is felt, by the bench's clock: earlier, where a stream has sent it before.
+//! How much later one instrument is read than another, by the bench's clock: earlier, where a stream has sent it before.
 
 use jointbench_instrument::clock::Timed;
 use jointbench_instrument::roles::JointReading;
@@ -9,7 +9,7 @@ use jointbench_instrument::skew::Skew;
 pub(super) struct Skews {
     least_s: f64,
     most_s: f64,
-    uncertainty_s: f64,
+    pub uncertainty_s: f64,
 }
 
 pub(super) fn of<T>(joint: &JointReading, felt: &Timed<T>) -> Skew {
@@ -28,19 +28,22 @@ impl Skews {
 
     /// For people. `None` where the clock stood still between the two, as that of a mock bench without a pace does.
     pub fn told(self) -> Option<String> {
-        let Self { least_s, most_s, uncertainty_s } = self;
-        let (from_ms, to_ms, known_ms) = (1e3 * least_s, 1e3 * most_s, 1e3 * uncertainty_s);
-        let told = if most_s > 0.0 {
-            format!("read {from_ms:.2} to {to_ms:.2} ms after")
-        } else if least_s < 0.0 {
-            format!("felt {:.2} to {:.2} ms before", -to_ms, -from_ms)
-        } else {
+        let Self { least_s, most_s, .. } = self;
+        if (least_s, most_s) == (0.0, 0.0) {
             return None;
-        };
-        Some(format!(
-            "the torque was {told} the joint, each known to ±{known_ms:.2} ms or better; column torque_skew_s has it for \
-             every row"
-        ))
+        }
+        let felt = if most_s > 0.0 { "read" } else { "felt" };
+        Some(format!("the torque was {felt} {} the joint; column torque_skew_s has it for every row", self.span()))
+    }
+
+    /// As in "1 to 2 ms after".
+    pub fn span(self) -> String {
+        let [least_ms, most_ms, known_ms] = [self.least_s, self.most_s, self.uncertainty_s].map(|s| 1e3 * s);
+        let known = format!("(each known to ±{known_ms:.2} ms or better)");
+        if least_ms < 0.0 && most_ms <= 0.0 {
+            return format!("{:.2} to {:.2} ms {known} before", most_ms.abs(), -least_ms);
+        }
+        format!("{least_ms:.2} to {most_ms:.2} ms {known} after")
     }
 }
 
@@ -69,6 +72,6 @@ mod tests {
         let now = Timed { value: (), at_s: 10.0, uncertainty_s: 0.0 };
         assert_eq!(Skews::add(None, of(&still, &now)).told(), None);
         let streamed = Skews::add(Some(Skews::add(None, felt(9.997, 1e-4))), felt(9.998, 1e-4));
-        assert!(streamed.told().unwrap().contains("felt 2.00 to 3.00 ms before"), "{streamed:?}");
+        assert!(streamed.told().unwrap().contains("felt 2.00 to 3.00 ms"), "{streamed:?}");
     }
 }

@@ -266,6 +266,9 @@ impl Session<'_> {
         let row = columns.row(moment, &self.felt_c, segment, repeat);
         if keep.is_some() {
             self.journal.keep(row);
+            if let Some(encoders) = &moment.encoders {
+                self.shaft.add(segment, &moment.joint, encoders);
+            }
         }
         let (pace, started_s) = (&self.pace, self.journal.started_s);
         self.journal.show(now_s, row, || pace.progress(started_s, now_s, keep.is_some()));

@@ -1,0 +1,68 @@
+//! Instruments that tell the position of one shaft: how much later they tell it than the first by the bench's clock, and by
+//! what they tell.
+//!
+//! Only such are held against each other. What torque and current tell of one motion differs by friction, compliance and the
+//! drive's own control: a lag between them is physics.
+
+use super::skew::Skews;
+use crate::encoder_columns::Encoders;
+use crate::findings::{Lag, Told, lag};
+use jointbench_instrument::roles::JointReading;
+use jointbench_instrument::skew::Skew;
+
+/// More rows than this tell a lag no better.
+const MOST_ROWS: usize = 50_000;
+
+/// One instrument against the reference encoder.
+#[derive(Debug, Clone, Default)]
+struct Pair {
+    told: Vec<Told>,
+    skews: Option<Skews>,
+}
+
+#[derive(Debug, Clone, Default)]
+pub(super) struct Shaft {
+    motor: Pair,
+    test: Pair,
+}
+
+impl Shaft {
+    pub fn add(&mut self, stretch: u32, joint: &JointReading, encoders: &Encoders) {
+        let Encoders { reference, test, .. } = encoders;
+        let motor = (joint.at_s, joint.uncertainty_s, joint.motor_position.0);
+        let test = (test.at_s, test.uncertainty_s, test.position.0);
+        for (pair, (at_s, uncertainty_s, rad)) in [(&mut self.motor, motor), (&mut self.test, test)] {
+            if pair.told.len() == MOST_ROWS {
+                continue;
+            }
+            let skew = Skew { s: at_s - reference.at_s, uncertainty_s: uncertainty_s + reference.uncertainty_s };
+            pair.skews = Some(Skews::add(pair.skews, skew));
+            let (first_s, first_rad) = (reference.at_s, reference.position.0);
+            pair.told.push(Told { stretch, first_s, first_rad, second_s: at_s, second_rad: rad });
+        }
+    }
+
+    /// For people. Nothing where no two instruments were on one shaft.
+    pub fn told(&self) -> Vec<String> {
+        let motor = ("the motor's own encoder", &self.motor, UNKNOWN);
+        let test = ("the encoder under test", &self.test, OWN);
+        let told = |(name, pair, beyond): (&str, &Pair, &str)| Some(told(name, pair.skews?, lag(&pair.told), beyond));
+        [motor, test].into_iter().filter_map(told).collect()
+    }
+}
+
+/// What stands behind a lag that the clock does not know.
+const UNKNOWN: &str =
+    "clock and values contradict each other, look for a delay that no clock knows: a filter, a buffer, an adapter";
+const OWN: &str = "its own delay (encoder_delay), or one that no clock knows";
+
+fn told(name: &str, skews: Skews, lag: Option<Lag>, beyond: &str) -> String {
+    let by_clock = format!("{name} was read {} the reference encoder by the clock", skews.span());
+    let Some(Lag { s, reach_s }) = lag else {
+        return format!("{by_clock}; what both tell cannot show it here: the shaft moves too little, or too evenly");
+    };
+    let way = if s < 0.0 { "earlier" } else { "later" };
+    let by_values = format!("it tells {:.4} ± {:.4} ms {way} than that", 1e3 * s.abs(), 1e3 * reach_s);
+    let verdict = if s.abs() <= reach_s + skews.uncertainty_s { "clock and values agree" } else { beyond };
+    format!("{by_clock}; by what both tell {by_values}: {verdict}")
+}

@@ -1,0 +1,158 @@
+//! How much later one instrument tells of a motion than another, from what both have told: what no clock knows.
+//!
+//! Where both sit on one shaft, the later one tells where the shaft was a while before: their difference follows the speed. The
+//! lag is the one at which it no longer does, with the first one's positions taken between its readings. What an encoder adds
+//! once and twice a turn is no lag and is fitted beside it; zeros and hysteresis, which differ from one stretch of the motion to
+//! the next, are left to each stretch.
+
+use super::solve::{solve, t95};
+
+/// Readings of both in one tick, each with its moment by the bench's clock.
+#[derive(Debug, Clone, Copy)]
+pub struct Told {
+    /// Readings of one stretch follow each other without a break.
+    pub stretch: u32,
+    pub first_s: f64,
+    pub first_rad: f64,
+    pub second_s: f64,
+    pub second_rad: f64,
+}
+
+/// So much later the second tells than its moments say, with half the width of the 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lag {
+    pub s: f64,
+    pub reach_s: f64,
+}
+
+/// Of the lag: the difference falls with it as the speed rises. Beside it cosine and sine of an angle and of twice the angle.
+type Row = [f64; 5];
+
+const ROUNDS: usize = 10;
+/// A tenth of what a moment is kept in.
+const FOUND_S: f64 = 1e-7;
+/// The interval is that of the estimates that each leave one of so many parts of the run out: readings near to each other err
+/// alike.
+const PARTS: usize = 10;
+/// Less than this is no motion to tell a lag from.
+const TURNED_RAD: f64 = 1.0;
+
+/// `None` where the motion does not tell it to less than half a period of the readings.
+pub fn lag(told: &[Told]) -> Option<Lag> {
+    let stretches: Vec<&[Told]> = told.chunk_by(|a, b| a.stretch == b.stretch).collect();
+    let turned_rad =
+        |stretch: &&[Told]| stretch.windows(2).map(|w| (w[1].first_rad - w[0].first_rad).abs()).sum::<f64>();
+    if stretches.iter().map(turned_rad).sum::<f64>() < TURNED_RAD {
+        return None;
+    }
+    let mut lag_s = 0.0;
+    for _ in 0..ROUNDS {
+        let (rows, y) = equations(&stretches, lag_s);
+        let step_s = solve(&rows, &y)?.values[0];
+        lag_s += step_s;
+        if step_s.abs() < FOUND_S {
+            let reach_s = reach(&rows, &y)?;
+            return (reach_s < 0.5 * period_s(told)?).then_some(Lag { s: lag_s, reach_s });
+        }
+    }
+    None
+}
+
+fn period_s(told: &[Told]) -> Option<f64> {
+    let mut steps_s: Vec<f64> = told.windows(2).map(|w| w[1].first_s - w[0].first_s).collect();
+    steps_s.sort_by(f64::total_cmp);
+    steps_s.get(steps_s.len() / 2).copied()
+}
+
+/// What is left between both if the second lags by this.
+fn equations(stretches: &[&[Told]], lag_s: f64) -> (Vec<Row>, Vec<f64>) {
+    let (mut rows, mut y) = (Vec::new(), Vec::new());
+    for stretch in stretches {
+        let start = rows.len();
+        let mut behind = 1;
+        for told in *stretch {
+            let moment_s = told.second_s - lag_s;
+            while behind < stretch.len() && stretch[behind].first_s < moment_s {
+                behind += 1;
+            }
+            let Some([a, b]) = stretch.get(behind - 1..=behind) else { break };
+            if a.first_s > moment_s {
+                continue;
+            }
+            let speed_rad_s = (b.first_rad - a.first_rad) / (b.first_s - a.first_s);
+            let angle_rad = a.first_rad + speed_rad_s * (moment_s - a.first_s);
+            let twice_rad = 2.0 * angle_rad;
+            rows.push([-speed_rad_s, angle_rad.cos(), angle_rad.sin(), twice_rad.cos(), twice_rad.sin()]);
+            y.push(told.second_rad - angle_rad);
+        }
+        about_their_mean(&mut rows[start..], &mut y[start..]);
+    }
+    (rows, y)
+}
+
+fn about_their_mean(rows: &mut [Row], y: &mut [f64]) {
+    let count = rows.len() as f64;
+    let mean: Row = std::array::from_fn(|i| rows.iter().map(|row| row[i]).sum::<f64>() / count);
+    let mean_y = y.iter().sum::<f64>() / count;
+    rows.iter_mut().for_each(|row| row.iter_mut().zip(mean).for_each(|(value, mean)| *value -= mean));
+    y.iter_mut().for_each(|y| *y -= mean_y);
+}
+
+/// The jackknife's, with whole parts of the run left out.
+fn reach(rows: &[Row], y: &[f64]) -> Option<f64> {
+    let without = |part: usize| {
+        let [from, to] = [part, part + 1].map(|end| end * rows.len() / PARTS);
+        let rows = [&rows[..from], &rows[to..]].concat();
+        let y = [&y[..from], &y[to..]].concat();
+        Some(solve(&rows, &y)?.values[0])
+    };
+    let left: Vec<f64> = (0..PARTS).map(without).collect::<Option<_>>()?;
+    let parts = PARTS as f64;
+    let mean = left.iter().sum::<f64>() / parts;
+    let variance = left.iter().map(|s| (s - mean).powi(2)).sum::<f64>() * (parts - 1.0) / parts;
+    Some(t95(parts - 1.0) * variance.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Strokes there and back at 250 Hz, with a once-a-turn error and counts, the second `lag_s` behind its moments, which are
+    /// 0.8 ms behind the first's.
+    fn strokes(lag_s: f64, top_rad_s: f64) -> Vec<Told> {
+        let counted = |rad: f64, counts: f64| (rad / TAU * counts).floor() / counts * TAU;
+        let shaft = |t_s: f64| -top_rad_s / 3.0 * (3.0 * t_s).cos();
+        let tick = |i: u32| {
+            let first_s = f64::from(i) * 4e-3;
+            let second_s = first_s + 0.8e-3;
+            let truly_rad = shaft(second_s - lag_s);
+            let second_rad = counted(truly_rad + 4e-3 * (truly_rad + 1.0).sin() + 0.3, 262_144.0);
+            Told { stretch: i / 500, first_s, first_rad: counted(shaft(first_s), 16_384.0), second_s, second_rad }
+        };
+        (0..3000).map(tick).collect()
+    }
+
+    #[test]
+    fn a_lag_is_found_however_long_and_its_interval_holds_it() {
+        for lag_s in [0.0, 64e-6, 1.3e-3, -2e-3, 9e-3] {
+            let found = lag(&strokes(lag_s, 40.0)).unwrap();
+            assert!((found.s - lag_s).abs() <= found.reach_s, "{lag_s}: {found:?}");
+            assert!(found.reach_s < 20e-6, "{lag_s}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_move_tells_no_lag() {
+        for top_rad_s in [0.0, 1e-4, 1e-2] {
+            assert_eq!(lag(&strokes(1e-3, top_rad_s)), None, "{top_rad_s} rad/s");
+        }
+        assert_eq!(lag(&[]), None);
+        // At one speed a lag and a shifted zero are one and the same.
+        let even: Vec<Told> = strokes(0.0, 0.0)
+            .iter()
+            .map(|told| Told { first_rad: 40.0 * told.first_s, second_rad: 40.0 * told.second_s - 0.01, ..*told })
+            .collect();
+        assert_eq!(lag(&even), None);
+    }
+}
