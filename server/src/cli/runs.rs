@@ -9,11 +9,21 @@ use super::serve::runtime;
 use super::transfer::{Way, open};
 use crate::view::{Run, RunList, RunSummary, word};
 
+/// Of a run that is not over, in a folder that no daemon has.
+const NO_DAEMON: &str =
+    "its daemon is gone: `jointbench serve` with this folder secures the bench and calls it interrupted";
+
 pub fn runs(arguments: &Runs) -> Done {
     let runtime = runtime()?;
     let search = arguments.search.join(" ");
     let list: RunList = match open(&runtime, &arguments.store, false)? {
-        Way::Folder(lab) => runtime.block_on(lab.runs(arguments.limit, 0, Some(&search)))?,
+        Way::Folder(lab) => {
+            let mut list = runtime.block_on(lab.runs(arguments.limit, 0, Some(&search)))?;
+            for run in list.runs.iter_mut().filter(|run| !is_over(run.state)) {
+                run.reason = Some(NO_DAEMON.to_owned());
+            }
+            list
+        }
         Way::Daemon(client) => client.get(&format!("/runs?limit={}&search={}", arguments.limit, encoded(&search)))?,
     };
     if arguments.json {

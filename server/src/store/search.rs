@@ -4,6 +4,9 @@
 //! notes; `key:value` in one field; `rows>1000` compares; `-` before a term means that it must not hold; `"two words"` are one.
 
 use super::StoreError;
+use jointbench_instrument::Kind;
+use jointbench_procedure::{RunState, Safe};
+use serde::de::{DeserializeOwned, IntoDeserializer, value};
 use sqlx::{QueryBuilder, Sqlite};
 
 /// Words that are compared whole, with the column that they are in.
@@ -103,6 +106,13 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
     }
     let Some((key, value)) = term.split_once(':') else { return Ok(Condition::Word(term.to_owned())) };
     if let Some((_, column)) = FIELDS.iter().find(|(name, _)| *name == key) {
+        match key {
+            "kind" => known::<Kind>(value),
+            "state" => known::<RunState>(value),
+            "safe" => known::<Safe>(value),
+            _ => Ok(()),
+        }
+        .map_err(|fault| refuse(fault.to_string()))?;
         return Ok(Condition::Field(column, value.to_owned()));
     }
     match (key, value) {
@@ -118,6 +128,11 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
         }
         _ => Err(refuse(format!("there is no field {key}; there are {KEYS}"))),
     }
+}
+
+/// Whether it is one of the words of a type; the fault names them all.
+fn known<T: DeserializeOwned>(word: &str) -> Result<(), value::Error> {
+    T::deserialize(word.into_deserializer()).map(drop)
 }
 
 /// Split at blanks outside quotation marks, in lower case.
@@ -154,6 +169,9 @@ mod tests {
             ("rows>many", "\"many\" is no number"),
             ("tag:", "a value is missing"),
             ("after:tomorrow", "2026-01-31"),
+            ("state:bogus", "unknown variant `bogus`, expected one of `queued`, `arming`"),
+            ("kind:motor", "expected one of `friction`"),
+            ("-safe:yes", "`safe_verified`"),
             ("simulated:perhaps", "simulated:yes or simulated:no"),
         ] {
             let refused = Search::parse(text).unwrap_err().to_string();

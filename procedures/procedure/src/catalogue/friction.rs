@@ -177,7 +177,10 @@ impl Speeds {
 fn loads(values: &Values, bench: &BenchFacts) -> Result<Vec<f64>, PlanFault> {
     let levels = values.count("load_levels");
     if levels > 1 {
-        let cure = "choose load_levels = 1, or connect it";
+        let cure = match bench.amperes_per_volt {
+            Some(_) => "puma_friction is the procedure for an arm's axis",
+            None => "choose load_levels = 1, or connect it",
+        };
         let missing = |role| PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure };
         if !bench.has_brake {
             return Err(missing("brake"));

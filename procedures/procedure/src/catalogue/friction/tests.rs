@@ -155,6 +155,9 @@ fn a_bench_without_brake_can_do_with_one_load() {
     (facts.has_brake, facts.has_torque_sensor) = (false, false);
     let refused = Friction.plan(&Map::new(), &facts).unwrap_err();
     assert_eq!(refused.to_string(), "bench a has no brake: choose load_levels = 1, or connect it");
+    let arm = BenchFacts { amperes_per_volt: Some(1.0), ..facts.clone() };
+    let refused = Friction.plan(&Map::new(), &arm).unwrap_err();
+    assert_eq!(refused.to_string(), "bench a has no brake: puma_friction is the procedure for an arm's axis");
     let free = plan(json!({"load_levels": 1}), &facts);
     assert_eq!(free.top_brake_current_a(), 0.0);
     assert!(free.preview(&facts).is_allowed());
