@@ -1,5 +1,5 @@
-"""One simulator of somebody else's for one of our drivers: simulators.py SIMULATOR WORDS. Prints where it answers, and ends with
-its standard input; with 77 where it is missing."""
+"""One simulator of somebody else's for one of our drivers: simulators.py SIMULATOR WORDS. Prints where it answers, or that
+it is missing, and ends with its standard input."""
 
 import asyncio
 import os
@@ -8,9 +8,6 @@ import socket
 import sys
 import threading
 import tty
-
-MISSING = 77
-
 
 def terminal():
     """Both ends of a serial cable: the instrument's, and the name of the driver's."""
@@ -118,8 +115,7 @@ def main():
     try:
         simulate(word)
     except ModuleNotFoundError as missing:
-        print(missing, flush=True)
-        os._exit(MISSING)
+        told(missing)
 
 
 if __name__ == "__main__":
