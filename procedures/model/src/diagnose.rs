@@ -53,6 +53,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
             _ => summary::end(&found, &complete, structure.as_ref(), options, false),
         } + &summary::nowhere(verdict, maps, &regions, &fit),
         shows_over: shows_over(&found, structure.as_ref()),
+        structure_remains: found.end_verdict() == Verdict::UnexplainedStructure,
         regions,
         structure,
         experiment: experiment(&found, &prepared),
@@ -162,7 +163,9 @@ fn suggestions(
         } else {
             let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
             let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };
-            format!("Without this effect the complete model's squared error would be {times} times as large.")
+            format!(
+                "Without this effect the complete model's squared error on the fitted data would be {times} times as large."
+            )
         };
         let why = format!("{} {evidence}{tie}", info.sentence);
         out.push(Suggestion {

@@ -97,6 +97,7 @@ fn placid_starts_like_a_square_and_cannot_show_hysteresis() {
     assert_eq!(found.suggestions[0].effect, "saturation", "{}", found.summary);
     assert!((found.fit.validation_rms - 3.09e-3).abs() < 3e-5, "a straight line: {}", found.fit.validation_rms);
     assert!(found.suggestions[0].validation_rms < 4.2e-4, "{}", found.suggestions[0].validation_rms);
+    assert_eq!(found.regions[0].axis, "brake_current_a", "and not the moment at which that current was");
     let hidden: Vec<&str> = found.not_visible.iter().map(|n| n.effect.as_str()).collect();
     assert_eq!(hidden, ["hysteresis", "velocity_dependence", "cogging", "temperature_dependence"]);
 }

@@ -56,6 +56,9 @@ pub struct Finding {
     /// Regions where the model is wrong, the worst first.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
+    /// Whether structure remains even beside all suggestions: then no run is proposed for effects that nothing points to.
+    #[serde(default)]
+    pub structure_remains: bool,
     /// Ranked; empty unless the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
     /// The run that would tell more.

@@ -56,6 +56,8 @@ struct Stretch<'m> {
 pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
     let mut stretches: Vec<Stretch> = maps.axes.iter().chain(&maps.by_direction).flat_map(|m| join(maps, m)).collect();
     stretches.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
+    // What lies at a time lies there because of what was done then, where another axis tells it too.
+    stretches.sort_by_key(|stretch| stretch.map.x.name == "time_s");
     let mut told: Vec<(&Stretch, Vec<usize>)> = Vec::new();
     for stretch in &stretches {
         let rows = stretch.rows();
@@ -67,6 +69,7 @@ pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Re
             told.push((stretch, rows));
         }
     }
+    told.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
     told.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
 }
 

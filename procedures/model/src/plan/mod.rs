@@ -66,7 +66,7 @@ impl From<&Diagnosis> for Open {
             model: diagnosis.model.iter().cloned().chain(named).collect(),
             ties: tied.map(|s| (s.effect.clone(), s.confounded_with.clone())).collect(),
             has_noise_floor: diagnosis.noise_floor_rms.is_some(),
-            has_structure: diagnosis.verdict == Verdict::UnexplainedStructure,
+            has_structure: diagnosis.structure_remains,
             own: Vec::new(),
         }
     }

@@ -45,6 +45,9 @@ pub struct Diagnosis {
     /// The columns that the summary names as those over which what remains shows most. Empty where none does.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shows_over: Vec<String>,
+    /// Whether structure remains even beside all suggestions.
+    #[serde(default)]
+    pub structure_remains: bool,
     /// Missing effects, the most important first. Empty unless the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
     pub experiment: Option<Experiment>,
