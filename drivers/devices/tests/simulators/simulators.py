@@ -9,6 +9,7 @@ import sys
 import threading
 import tty
 
+
 def terminal():
     """Both ends of a serial cable: the instrument's, and the name of the driver's."""
     instrument, driver = pty.openpty()

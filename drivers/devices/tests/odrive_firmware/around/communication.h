@@ -1,0 +1,2 @@
+// Included by the parser, which uses nothing of it.
+#pragma once

@@ -1,0 +1,162 @@
+//! The joint's driver on the parser of an ODrive's own firmware (0.5.6), which answers on a pseudo-terminal. The firmware's
+//! sources are not part of this project: they are compiled from the folder `Firmware` of a checkout that `JOINTBENCH_ODRIVE_FIRMWARE`
+//! names, with a drive around them that is ours. Without it the tests say that they are skipped.
+#![cfg(unix)]
+
+use jointbench_devices::driver::{OdriveSettings, Thermistor};
+use jointbench_devices::{OdriveJoint, PortSettings};
+use jointbench_instrument::roles::{Instrument, JointController};
+use jointbench_instrument::units::{Amperes, RadPerSec};
+use jointbench_instrument::{Clock, SystemClock};
+use std::fs::OpenOptions;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Arc, LazyLock};
+
+const OURS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/odrive_firmware");
+const BUILT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/odrive_firmware");
+const PARSER: [&str; 2] = ["ascii_protocol.cpp", "ascii_protocol.hpp"];
+
+/// The program, or why there is none.
+static PROGRAM: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| {
+    let firmware = std::env::var_os("JOINTBENCH_ODRIVE_FIRMWARE").ok_or("JOINTBENCH_ODRIVE_FIRMWARE is not set")?;
+    let firmware = Path::new(&firmware);
+    let built = Path::new(BUILT);
+    // Out of its folder: beside it lie headers of the firmware that nothing but the drive itself compiles.
+    std::fs::create_dir_all(built).unwrap();
+    for name in PARSER {
+        let source = firmware.join("communication").join(name);
+        std::fs::copy(&source, built.join(name)).map_err(|error| format!("{}: {error}", source.display()))?;
+    }
+    let program = built.join("drive");
+    let mut compiler = Command::new(std::env::var("CXX").unwrap_or_else(|_| "c++".into()));
+    compiler.args(["-std=gnu++17", "-O1", "-w", "-o"]).arg(&program);
+    for folder in [Path::new(OURS).join("around"), built.to_owned(), firmware.join("fibre-cpp/include")] {
+        compiler.arg("-I").arg(folder);
+    }
+    compiler.arg(Path::new(OURS).join("drive.cpp")).arg(built.join(PARSER[0]));
+    let output = compiler.output().map_err(|error| format!("no C++ compiler: {error}"))?;
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Ok(program)
+});
+
+/// Answers until it is dropped.
+struct Drive {
+    program: Child,
+    port: String,
+}
+
+impl Drive {
+    fn start() -> Option<Self> {
+        let program = match &*PROGRAM {
+            Ok(program) => program,
+            Err(why) => {
+                eprintln!("SKIPPED: {why}");
+                return None;
+            }
+        };
+        let mut program = Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let mut port = String::new();
+        BufReader::new(program.stdout.as_mut().unwrap()).read_line(&mut port).unwrap();
+        Some(Self { program, port: port.trim().to_owned() })
+    }
+
+    fn open(&self) -> (OdriveJoint, Arc<dyn Clock>) {
+        let clock: Arc<dyn Clock> = Arc::new(SystemClock::start());
+        let settings = OdriveSettings {
+            name: "joint".into(),
+            port: PortSettings::new(self.port.as_str(), 921_600),
+            deadline_ms: 300,
+            link_encoder: true,
+            thermistor: Some(Thermistor::Motor),
+        };
+        (OdriveJoint::open(settings, Arc::clone(&clock)).unwrap(), clock)
+    }
+}
+
+impl Drop for Drive {
+    fn drop(&mut self) {
+        drop(self.program.stdin.take());
+        let _ended = self.program.wait();
+    }
+}
+
+/// Feeds a velocity for a while, as a run does.
+fn turn(joint: &mut OdriveJoint, clock: &Arc<dyn Clock>, velocity: RadPerSec, seconds: f64) {
+    let end_s = clock.now_s() + seconds;
+    while clock.now_s() < end_s {
+        joint.set_velocity(velocity).unwrap();
+        clock.sleep_until_s(clock.now_s() + 4e-3);
+    }
+}
+
+#[test]
+fn it_is_identified_armed_turned_and_stood_down() {
+    let Some(drive) = Drive::start() else { return };
+    let (mut joint, clock) = drive.open();
+    let identity = joint.identify().unwrap();
+    assert_eq!((identity.model.as_str(), identity.firmware.as_str()), ("ODrive 3.6-56V", "0.5.6"));
+    assert_eq!(identity.serial, "376E36573131");
+    let health = joint.health().unwrap();
+    assert!(!health.armed && health.errors.is_empty(), "{health:?}");
+    assert!((health.bus_voltage.unwrap().0 - 24.087_744).abs() < 1e-6);
+    assert!((health.temperature.unwrap().0 - 28.25).abs() < 1e-6);
+
+    joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
+    for velocity_rad_s in [40.0, -25.5] {
+        turn(&mut joint, &clock, RadPerSec(velocity_rad_s), 0.4);
+        let (first, from_s) = (joint.read().unwrap(), clock.now_s());
+        assert!((first.motor_velocity.0 - velocity_rad_s).abs() < 0.1, "{first:?}");
+        turn(&mut joint, &clock, RadPerSec(velocity_rad_s), 0.2);
+        let (second, passed_s) = (joint.read().unwrap(), clock.now_s() - from_s);
+        let turned_rad = second.motor_position.0 - first.motor_position.0;
+        assert!((turned_rad / (velocity_rad_s * passed_s) - 1.0).abs() < 0.05, "{turned_rad} rad in {passed_s} s");
+        let link_rad = second.link_position.unwrap().0;
+        assert!((link_rad - second.motor_position.0 / 50.0).abs() < 0.01, "{second:?}");
+    }
+    // A current alone: torque mode.
+    joint.set_motor_current(Amperes(0.5)).unwrap();
+    clock.sleep_until_s(clock.now_s() + 0.02);
+    assert!((joint.read().unwrap().motor_current.0 - 0.5).abs() < 1e-3);
+    joint.set_velocity(RadPerSec(f64::NAN)).unwrap_err();
+
+    joint.disarm().unwrap();
+    clock.sleep_until_s(clock.now_s() + 0.02);
+    assert!(!joint.health().unwrap().armed);
+}
+
+#[test]
+fn a_drive_that_nobody_feeds_stands_down_and_says_why_and_is_armed_again() {
+    let Some(drive) = Drive::start() else { return };
+    let (mut joint, clock) = drive.open();
+    joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
+    turn(&mut joint, &clock, RadPerSec(10.0), 0.1);
+    clock.sleep_until_s(clock.now_s() + 0.4);
+    let health = joint.health().unwrap();
+    assert!(!health.armed, "{health:?}");
+    assert!(health.errors.iter().any(|error| error.contains("WATCHDOG_TIMER_EXPIRED")), "{health:?}");
+    joint.disarm().unwrap();
+    joint.arm(RadPerSec(200.0), Amperes(5.0)).unwrap();
+    turn(&mut joint, &clock, RadPerSec(10.0), 0.1);
+    assert!(joint.health().unwrap().armed);
+}
+
+/// A line that is not the driver's: it swallows the next command, whose checksum is wrong then, and the parser says nothing.
+#[test]
+fn what_somebody_else_leaves_on_the_line_is_gone_when_the_driver_has_recovered() {
+    let Some(drive) = Drive::start() else { return };
+    let (mut joint, _clock) = drive.open();
+    for rubbish in [&b"f 0"[..], b"r axis0.error *1", &[b'x'; 700], b"\r\n\r\n", b"nothing known\n"] {
+        OpenOptions::new().write(true).open(&drive.port).unwrap().write_all(rubbish).unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        if let Err(fault) = joint.read() {
+            assert!(fault.is_retryable(), "{fault}");
+            joint.recover().unwrap();
+        }
+        for _ in 0..50 {
+            let reading = joint.read().unwrap();
+            assert_eq!((reading.motor_position.0, reading.motor_velocity.0), (0.0, 0.0));
+        }
+    }
+}
