@@ -3,6 +3,7 @@
 use jointbench_devices::sim::{EncoderTruth, MockInstrument, PlannedTrouble, Trouble};
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
+use jointbench_model::{ModelSpec, Options, fit};
 use jointbench_procedure::conduct::{ConductFault, conduct};
 use jointbench_procedure::identification::{Identification, Verdict};
 use jointbench_procedure::parameter::Values;
@@ -256,8 +257,20 @@ const POINT_RAD: f64 = std::f64::consts::TAU / 262_144.0;
 #[test]
 fn offset_and_delay_are_those_that_the_mock_was_given() {
     let (truth, _mock, mut bench) = open(3, false);
-    let offset = run(&mut bench, "encoder_offset", json!({}));
+    let conducted = conduct(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();
+    let offset = conducted.identification.unwrap();
     check(&offset, "offset", truth.startup_rad, POINT_RAD);
+    let effects = ["offset", "harmonic_1", "harmonic_2", "delay"].map(String::from);
+    let spec = ModelSpec::new(conducted.table.kind(), &effects).unwrap();
+    let model = fit(&conducted.table, &spec, &Options::default()).unwrap();
+    let told = offset.summary.split("an offset of ").nth(1).and_then(|rest| rest.split(' ').next());
+    let told_rad = 1e-3 * told.unwrap().parse::<f64>().unwrap();
+    assert!(
+        (told_rad - model.parameters[0].value).abs() < POINT_RAD,
+        "{}: {}",
+        offset.summary,
+        model.parameters[0].value
+    );
     let delay = run(&mut bench, "encoder_delay", json!({}));
     check(&delay, "delay", truth.delay_s, 1e-6);
     check(&delay, "hysteresis", truth.hysteresis_rad, 2.0 * POINT_RAD);

@@ -80,14 +80,17 @@ impl Procedure for EncoderOffset {
         let (apart_rad, apart_reach) = mean(pairs.iter().map(|[up, down]| up - down));
         let positions: usize = sweeps.iter().map(|sweep| sweep.error_rad.len()).sum();
         let around = |value: f64, reach: f64| Some([value - reach, value + reach]);
-        let step_rad = step_rad(run);
+        let step_rad = step_rad(run, "test_position_rad");
+        let half_rad = 0.5 * (self::step_rad(run, "reference_position_rad") - step_rad);
         let points = offset_rad / step_rad;
         Some(Identification {
             verdict: Verdict::Identified,
             summary: format!(
                 "The encoder under test reads {:.3} mrad ({points:.1} of its points) more than the reference, over \
-                 {positions} positions in both directions.",
-                1e3 * offset_rad
+                 {positions} positions in both directions. That is where the reference steps; a model of the readings as \
+                 they are has an offset of {:.3} mrad, as each reading stays at the step below.",
+                1e3 * offset_rad,
+                1e3 * (offset_rad + half_rad)
             ),
             advice: Some("After the next power-up measure it again: the start-up error changes it.".into()),
             quantities: vec![
@@ -122,9 +125,9 @@ fn mean(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (mean, t95(n - 1.0) * (variance / n).sqrt())
 }
 
-/// One point of the encoder under test.
-pub(super) fn step_rad(run: &RunTable) -> f64 {
-    let channel = run.trace().channels().iter().find(|channel| channel.name == "test_position_rad");
+/// One point of an encoder.
+pub(super) fn step_rad(run: &RunTable, column: &str) -> f64 {
+    let channel = run.trace().channels().iter().find(|channel| channel.name == column);
     channel.and_then(|channel| channel.resolution).unwrap_or(TAU / 262_144.0)
 }
 

@@ -97,7 +97,7 @@ impl Procedure for EncoderStartup {
         let repeats_to = (within / pairs).sqrt();
         let ends = |pick: fn(f64, f64) -> f64| zeros.iter().copied().reduce(pick).unwrap_or(0.0);
         let range = ends(f64::max) - ends(f64::min);
-        let point_rad = step_rad(run);
+        let point_rad = step_rad(run, "test_position_rad");
         let differs = spread > APART * repeats_to.max(point_rad / 12_f64.sqrt());
         let summary = match differs {
             true => format!(
