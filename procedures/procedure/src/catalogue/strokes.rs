@@ -104,7 +104,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let heaviest = legs.iter().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
     let points = plateaus(&keep(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?;
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
-    let (mut quantities, mut series) = (Vec::new(), Vec::new());
+    let (mut quantities, mut series, mut flat) = (Vec::new(), Vec::new(), Vec::new());
     for (suffix, mark, sign) in [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)] {
         let side = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0);
         let side: Vec<(f64, f64)> = side.map(|p| (p.velocity_rad_s, p.target - p.load_nm)).collect();
@@ -113,6 +113,9 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         let Some(line) = line else { continue };
         let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
         series.push(curve(&format!("line, {suffix}"), ends, 1, |v| line.at(v)));
+        if line.slope_ci95[0] <= 0.0 && line.slope_ci95[1] >= 0.0 {
+            flat.push(format!("{suffix} motion (r² {:.2})", line.r2));
+        }
         let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95: Option<[f64; 2]>| {
             let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), title, unit];
             quantity(words, value, ci95)
@@ -123,11 +126,16 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             named("r2", "r²", "Share of the scatter explained", "", line.r2, None),
         ]);
     }
-    let identified = quantities.len() == 6;
+    let advice = if quantities.len() < 6 {
+        Some("A line needs two speeds or more: raise speeds.".to_owned())
+    } else {
+        let other = "what differs between the strokes is something else: diagnose the run, or raise top_speed_rad_s.";
+        (!flat.is_empty()).then(|| format!("Friction follows no line over speed in {}; {other}", flat.join(" and ")))
+    };
     Ok(Identification {
-        verdict: if identified { Verdict::Identified } else { Verdict::Inconclusive },
+        verdict: if advice.is_none() { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!("{} strokes up to {top:.1} rad/s at the motor, each direction with its line.", points.len()),
-        advice: (!identified).then(|| "A line needs two speeds or more: raise speeds.".into()),
+        advice,
         quantities,
         figures: vec![Figure {
             name: "friction_over_speed".into(),

@@ -140,6 +140,11 @@ fn strokes_draw_a_line_through_each_direction() {
     let found = identified("strokes", &staircase(|v| 0.030 * v.signum() + 1.512e-4 * v));
     check(&found, "slope_positive", 1.512e-4, 0.03);
     check(&found, "offset_positive", 0.030, 0.02);
+    assert_eq!((found.verdict, found.advice), (Verdict::Identified, None));
+    let found = identified("strokes", &staircase(|v| 0.030 * v.signum() + 0.002 * (7.0 * v).sin()));
+    assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.summary);
+    let advice = found.advice.unwrap();
+    assert!(advice.contains("no line over speed in positive motion (r² 0.") && advice.contains("diagnose"), "{advice}");
 }
 
 #[test]
