@@ -4,7 +4,8 @@
 #![cfg(unix)]
 
 use jointbench_devices::driver::{OdriveSettings, Thermistor};
-use jointbench_devices::{OdriveJoint, PortSettings};
+use jointbench_devices::sim::{MockInstrument, Transport};
+use jointbench_devices::{Joint, MockBench, MockSettings, OdriveJoint, PortSettings};
 use jointbench_instrument::roles::{Instrument, JointController};
 use jointbench_instrument::units::{Amperes, RadPerSec};
 use jointbench_instrument::{Clock, SystemClock};
@@ -13,6 +14,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, LazyLock};
+use std::time::Duration;
 
 const OURS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/odrive_firmware");
 const BUILT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/odrive_firmware");
@@ -149,7 +151,7 @@ fn what_somebody_else_leaves_on_the_line_is_gone_when_the_driver_has_recovered()
     let (mut joint, _clock) = drive.open();
     for rubbish in [&b"f 0"[..], b"r axis0.error *1", &[b'x'; 700], b"\r\n\r\n", b"nothing known\n"] {
         OpenOptions::new().write(true).open(&drive.port).unwrap().write_all(rubbish).unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(20));
+        std::thread::sleep(Duration::from_millis(20));
         if let Err(fault) = joint.read() {
             assert!(fault.is_retryable(), "{fault}");
             joint.recover().unwrap();
@@ -158,5 +160,133 @@ fn what_somebody_else_leaves_on_the_line_is_gone_when_the_driver_has_recovered()
             let reading = joint.read().unwrap();
             assert_eq!((reading.motor_position.0, reading.motor_velocity.0), (0.0, 0.0));
         }
+    }
+}
+
+/// Lines whose replies say nothing of the shaft: the forms of every command, and what C makes of numbers.
+const LINES: &[&str] = &[
+    "f",
+    "f x",
+    "f 5",
+    "f -1",
+    "x",
+    "",
+    " f 0",
+    "r",
+    "r nothing",
+    "r axis0",
+    "r axis0.",
+    "r .axis0",
+    "r axis2.error",
+    "r axis0.error",
+    "r\taxis0.error",
+    "r axis0.error ; why",
+    "r axis0.error extra",
+    "r axis0.error *1",
+    "r axis0.error *123",
+    "r axis0.error*91",
+    "r axis0.error*91junk",
+    "r axis0.error*",
+    "r axis0.error*x",
+    "w",
+    "w nothing 1",
+    "; a comment",
+    "f 5*83",
+    "v",
+    "v 0",
+    "v x 1",
+    "v 5 1",
+    "v 0.5 1",
+    "vel 0 1",
+    "c 0",
+    "c 9 1",
+    "c 0 x",
+    "t",
+    "t 9 1",
+    "p 0",
+    "p 9 1",
+    "q 0",
+    "q 9 1",
+    "u",
+    "u x",
+    "u 9",
+    "u 0",
+    "e",
+    "es",
+    "esx",
+    "esl 0",
+    "esl 7 1",
+    "esl 0 100",
+    "esl 0 -5",
+    "s",
+    "sx",
+    "sc",
+    "h",
+    "v 0 2 0.5",
+    "v 0 3 junk",
+    "r axis0.controller.input_vel",
+    "r axis0.controller.input_torque",
+    "v 0 0 0",
+    "p 0 1",
+    "r axis0.controller.input_vel",
+    "w axis0.controller.input_vel -123.456",
+    "r axis0.controller.input_vel",
+    "w axis0.controller.input_vel 123456.789",
+    "r axis0.controller.input_vel",
+    "w axis0.controller.input_vel 1e-3",
+    "r axis0.controller.input_vel",
+    "w axis0.controller.input_vel inf",
+    "r axis0.controller.input_vel",
+    "w axis0.controller.input_vel nan",
+    "r axis0.controller.input_vel",
+    "w axis0.controller.input_vel abc",
+    "w axis0.controller.input_vel 5 6",
+    "r axis0.controller.input_vel",
+    "w axis0.controller.input_vel 0",
+    "w axis0.config.enable_watchdog 2",
+    "r axis0.config.enable_watchdog",
+    "w axis0.config.enable_watchdog 0.5",
+    "r axis0.config.enable_watchdog",
+    "w axis0.config.enable_watchdog -1",
+    "r axis0.config.enable_watchdog",
+    "w axis0.config.enable_watchdog 0",
+    "w axis0.controller.config.control_mode 2.9",
+    "r axis0.controller.config.control_mode",
+    "r axis0.controller.config.input_mode",
+    "t 0 0",
+    "r axis0.controller.config.input_mode",
+    "w axis0.motor.error 68719476735",
+    "r axis0.motor.error",
+    "sc",
+    "r axis0.motor.error",
+    "r axis0.current_state",
+    "r axis0.requested_state",
+];
+/// What no line is answered with, after each of them.
+const LAST: (&str, &str) = ("f 77\n", "invalid motor 77\r\n");
+
+fn said(port: &mut dyn serialport::SerialPort, line: &str) -> String {
+    port.write_all(format!("{line}\n{}", LAST.0).as_bytes()).unwrap();
+    let mut said = Vec::new();
+    while !said.ends_with(LAST.1.as_bytes()) {
+        let mut bytes = [0; 256];
+        let count = port.read(&mut bytes).unwrap_or_else(|error| panic!("{line:?}: {error} after {said:?}"));
+        said.extend(&bytes[..count]);
+    }
+    String::from_utf8(said).unwrap()
+}
+
+#[test]
+fn the_mock_says_what_the_firmware_says() {
+    let Some(drive) = Drive::start() else { return };
+    let settings = MockSettings { transport: Transport::Terminal, ..MockSettings::new(Joint::JointA, 1) };
+    let mock = MockBench::start(settings).unwrap();
+    let path = mock.address(MockInstrument::Joint).unwrap().to_string();
+    let mut ports = [drive.port.as_str(), path.as_str()]
+        .map(|path| serialport::new(path, 921_600).timeout(Duration::from_secs(2)).open().unwrap());
+    let long = [254, 255, 256, 257, 600].map(|length| "x".repeat(length));
+    for line in LINES.iter().copied().chain(long.iter().map(String::as_str)) {
+        let [firmware, mock] = ports.each_mut().map(|port| said(port.as_mut(), line));
+        assert_eq!(mock, firmware, "{line:?}");
     }
 }

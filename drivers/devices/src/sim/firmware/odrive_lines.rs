@@ -13,7 +13,7 @@ const LONGEST_REPLY: usize = 64;
 /// Characters that `r` keeps: a buffer of ten with its terminating zero.
 const LONGEST_VALUE: usize = 9;
 
-const HELP: [&str; 13] = [
+const HELP: [&str; 15] = [
     "Please see documentation for more details",
     "",
     "Available commands syntax reference:",
@@ -27,18 +27,20 @@ const HELP: [&str; 13] = [
     "Write: w property value",
     "",
     "Save config: ss",
+    "Erase config: se",
+    "Reboot: sr",
 ];
 
 /// Takes whole lines out of `input`. `\n`, `\r` and `!` each end one, so `\r\n` ends two.
 pub fn receive(drive: &mut Odrive, input: &mut Vec<u8>, plant: &Plant, output: &mut Vec<u8>) {
     while let Some(end) = input.iter().position(|byte| matches!(byte, b'\n' | b'\r' | b'!')) {
         let line: Vec<u8> = input.drain(..=end).collect();
-        if end <= LONGEST_LINE && !drive.is_booting() {
+        if end < LONGEST_LINE && !drive.is_booting() {
             answer(drive, &line[..end], plant, output);
         }
     }
-    // One byte more than fits marks the line as too long, however much of it comes.
-    input.truncate(LONGEST_LINE + 1);
+    // A full buffer without a line's end marks the line as too long, however much of it comes.
+    input.truncate(LONGEST_LINE);
 }
 
 fn sum(bytes: &[u8]) -> u8 {
@@ -68,7 +70,8 @@ impl Reply<'_> {
 
 fn answer(drive: &mut Odrive, line: &[u8], plant: &Plant, output: &mut Vec<u8>) {
     let uncommented = line.split(|byte| *byte == b';').next().unwrap_or_default();
-    let star = uncommented.iter().position(|byte| *byte == b'*');
+    // With nothing behind it an asterisk is a character like any other.
+    let star = uncommented.iter().position(|byte| *byte == b'*').filter(|star| star + 1 < uncommented.len());
     let body = &uncommented[..star.unwrap_or(uncommented.len())];
     if let Some(star) = star {
         let told = String::from_utf8_lossy(&uncommented[star + 1..]).into_owned();
@@ -125,7 +128,8 @@ fn setpoint(drive: &mut Odrive, letter: char, rest: &str, reply: &mut Reply<'_>)
         'v' => {
             drive.config.control_mode = 2;
             drive.input_vel = first;
-            drive.input_torque = second.unwrap_or(0.0);
+            // What is not given stays.
+            drive.input_torque = second.unwrap_or(drive.input_torque);
         }
         'c' => {
             drive.config.control_mode = 1;
@@ -147,8 +151,8 @@ fn setpoint(drive: &mut Odrive, letter: char, rest: &str, reply: &mut Reply<'_>)
         _ => {
             drive.config.control_mode = 3;
             drive.input_pos = first;
-            drive.input_vel = second.unwrap_or(0.0);
-            drive.input_torque = third.unwrap_or(0.0);
+            drive.input_vel = second.unwrap_or(drive.input_vel);
+            drive.input_torque = third.unwrap_or(drive.input_torque);
         }
     }
     drive.feed_watchdog();
@@ -173,7 +177,8 @@ fn encoder(drive: &mut Odrive, rest: &str, reply: &mut Reply<'_>) {
     if axis > 1 {
         return reply.line(&format!("invalid motor {axis}"));
     }
-    drive.encoders[axis as usize].set_count(count.into());
+    // Read with its sign, printed without.
+    drive.encoders[axis as usize].set_count((count as i32).into());
     drive.feed_watchdog();
     reply.line(&format!("encoder set to {count}"));
 }

@@ -127,7 +127,7 @@ pub fn write(drive: &mut Odrive, plant: &Plant, path: &str, text: &str) -> Resul
         // `nan` and `inf` are taken, whatever they do to the controller.
         Some(Slot::Float(value)) => *value = float(text).ok_or(Refused::NotPossible)?.0,
         Some(Slot::Switch(on)) => *on = number? != 0,
-        Some(Slot::Choice(value)) => *value = number?.min(255) as u8,
+        Some(Slot::Choice(value)) => *value = number? as u8,
         Some(Slot::Errors(bits)) => *bits = number?,
         Some(Slot::LongErrors(bits)) => *bits = text.parse().map_err(|_| Refused::NotPossible)?,
         None if read_only => return Err(Refused::NotPossible),

@@ -1,12 +1,20 @@
 //! What C's `sscanf` takes from the front of a text.
 
-/// `%u` after optional blanks: the number and the rest.
+/// `%u` after optional blanks: the number and the rest. A negative number is taken too, and wraps.
 pub fn unsigned(text: &str) -> Option<(u32, &str)> {
     let text = text.trim_start();
-    let digits = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
-    let (number, rest) = text.split_at(digits);
+    if let Some(size) = text.strip_prefix('-') {
+        let (size, rest) = digits(size)?;
+        return Some((size.wrapping_neg(), rest));
+    }
+    digits(text.strip_prefix('+').unwrap_or(text))
+}
+
+fn digits(text: &str) -> Option<(u32, &str)> {
+    let count = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    let (number, rest) = text.split_at(count);
     // Too many digits wrap in C; here they saturate, which names no motor either.
-    (digits > 0).then(|| (number.parse().unwrap_or(u32::MAX), rest))
+    (count > 0).then(|| (number.parse().unwrap_or(u32::MAX), rest))
 }
 
 /// `%f` after optional blanks: `nan` and `inf` are numbers, a tail that is no number stays.
@@ -61,6 +69,8 @@ mod tests {
         assert_eq!(float("el"), None);
         assert_eq!(unsigned("  0 1"), Some((0, " 1")));
         assert_eq!(unsigned("x"), None);
+        assert_eq!(unsigned("-5 rest"), Some((4_294_967_291, " rest")));
+        assert_eq!((unsigned("+7"), unsigned("- 7"), unsigned("+-7")), (Some((7, "")), None, None));
         assert_eq!(print_float(-123.456), "-123.456001");
     }
 }
