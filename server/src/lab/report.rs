@@ -13,12 +13,14 @@ impl Lab {
             Err(LabError::NotFound(_) | LabError::Invalid(_)) => None,
             Err(error) => return Err(error),
         };
+        let journal = self.events(id, None).await?;
+        let notes = journal.into_iter().filter(|event| event.kind == "note").map(|event| event.text).collect();
         let versions = lineage(self.models(id).await?);
         let diagnosis = match versions.last() {
             Some(newest) => self.diagnoses(newest.id).await?.pop(),
             None => None,
         };
-        let report = Report { run, identification, versions, diagnosis };
+        let report = Report { run, notes, identification, versions, diagnosis };
         tokio::task::spawn_blocking(move || report.html())
             .await
             .map_err(|fault| LabError::Internal(format!("the report of run {id} failed: {fault}")))

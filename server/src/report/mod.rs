@@ -16,6 +16,8 @@ use std::collections::BTreeSet;
 /// What is told of a run.
 pub struct Report {
     pub run: Run,
+    /// What its journal notes: how well moments are known, what was made of its instruments.
+    pub notes: Vec<String>,
     /// What its procedure makes of it.
     pub identification: Option<Identification>,
     /// The newest model version, with its forebears before it.
@@ -58,6 +60,7 @@ impl Report {
                 @if let Some(safe) = summary.safe { " · bench " (word(safe).replace('_', " ")) }
             }
             @if let Some(reason) = &summary.reason { p { (reason) } }
+            @if !self.notes.is_empty() { ul.quiet { @for note in &self.notes { li { (note) } } } }
         }
     }
 

@@ -1,8 +1,10 @@
 //! The life of a run on the mock bench, over HTTP.
 
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon, settings};
+use jointbench::config::BenchDescription;
 use jointbench::daemon::Daemon;
 use jointbench::store::{NewRun, Store};
+use jointbench_devices::{Joint, MockSettings};
 use serde_json::{Value, json};
 use tokio::runtime::Runtime;
 
@@ -79,6 +81,23 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
         "the newest version and where it came from"
     );
     assert!(!page.contains("<script") && !page.contains("src="), "complete in itself");
+}
+
+#[test]
+fn how_late_an_instrument_tells_is_in_the_journal_and_in_the_report() {
+    let mock = MockSettings::new(Joint::EncoderShaft, 4);
+    let daemon = TestDaemon::start_with(None, |settings| settings.benches = vec![BenchDescription::mock(BENCH, mock)]);
+    let new = json!({ "bench": BENCH, "procedure": "encoder_delay",
+        "parameters": { "top_speed_rad_s": 60.0, "speeds": 2, "repeats": 1, "dwell_s": 1.0 } });
+    let (status, run) = daemon.post("/api/v1/runs", &new.to_string());
+    assert_eq!(status, 201, "{run}");
+    let id = run["id"].as_i64().unwrap();
+    assert_eq!(daemon.wait_for_end(id)["state"], "completed");
+    let (_, events) = daemon.get(&format!("/api/v1/runs/{id}/events"));
+    let told = "clock and values agree";
+    assert!(events.as_array().unwrap().iter().any(|event| event["text"].as_str().unwrap().contains(told)), "{events}");
+    let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
+    assert!(page.contains(told) && page.contains("the encoder under test was read"), "{page}");
 }
 
 #[test]
