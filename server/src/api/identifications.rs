@@ -3,7 +3,7 @@
 use super::extract::{Answer, Json, Path};
 use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
-use crate::view::Identification;
+use crate::view::{Beside, Identification};
 use axum::extract::State;
 use axum::response::Html;
 
@@ -12,6 +12,13 @@ use axum::response::Html;
     responses((status = 200, description = "What the run shows", body = Identification), Refusals))]
 pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Identification> {
     Ok(Json(lab.identification(id).await?))
+}
+
+/// The run, also one that is on, beside the last model of its kind from another run of its bench; `null` without one
+#[utoipa::path(get, path = "/runs/{id}/beside", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "Measured, model and what it leaves", body = Option<Beside>), Refusals))]
+pub async fn beside(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Option<Beside>> {
+    Ok(Json(lab.beside(id).await?))
 }
 
 /// The run as one page to send and to print: result, figures, model, diagnosis, provenance

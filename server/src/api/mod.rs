@@ -99,6 +99,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(runs::samples))
         .routes(routes!(runs::statistics))
         .routes(routes!(identifications::get))
+        .routes(routes!(identifications::beside))
         .routes(routes!(identifications::report))
         .routes(routes!(transfer::export))
         .routes(routes!(transfer::export_meta))

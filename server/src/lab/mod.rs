@@ -3,6 +3,7 @@
 
 mod autopilot;
 mod benches;
+mod beside;
 mod continuing;
 mod convert;
 mod error;

@@ -77,6 +77,14 @@ impl Store {
         record(&row.ok_or(StoreError::NoModel(id))?)
     }
 
+    /// The last version of a kind that was fitted to another run of a bench.
+    pub async fn last_model(&self, bench: &str, kind: &str, but: RunId) -> Result<Option<ModelRecord>, StoreError> {
+        let asked = "SELECT models.* FROM models JOIN runs ON runs.id = models.run \
+            WHERE runs.bench = ? AND models.kind = ? AND models.run <> ? ORDER BY models.id DESC LIMIT 1";
+        let row = sqlx::query(asked).bind(bench).bind(kind).bind(but).fetch_optional(&self.readers).await?;
+        row.as_ref().map(record).transpose()
+    }
+
     /// All versions of a run, oldest first: parents before their children.
     pub async fn models(&self, run: RunId) -> Result<Vec<ModelRecord>, StoreError> {
         exists(&mut *self.readers.acquire().await?, run).await?;

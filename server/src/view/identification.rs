@@ -49,6 +49,26 @@ pub struct Shown {
     pub figures: Vec<Figure>,
 }
 
+/// A run beside the last model of its kind that its bench has from another run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Beside {
+    pub model: i64,
+    /// The run that the model was fitted to first.
+    pub model_run: i64,
+    /// How far the model's own run scatters about it, in the unit of the figures.
+    pub noise_rms: f64,
+    /// Whether that is the noise floor of its run, or the model's held-out error where no floor is known.
+    pub has_noise_floor: bool,
+    /// Points of this run that the model speaks of.
+    pub points: usize,
+    /// Share of them further from the model than two of its standard deviations; 0.05 where the model explains the run.
+    pub outside: Option<f64>,
+    /// Why there is nothing to show yet.
+    pub why_not: Option<String>,
+    /// Measured and model over time, and what it leaves with the band of the noise.
+    pub figures: Vec<Figure>,
+}
+
 /// One figure of a result, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Quantity {

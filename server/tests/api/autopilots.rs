@@ -112,6 +112,9 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
     assert_eq!(status, 422, "{problem}");
     assert!(problem["detail"].as_str().unwrap().contains("its gear ratio is 177.8"), "{problem}");
 
+    let (status, none) = daemon.get(&format!("/api/v1/runs/{}/beside", run["id"]));
+    assert_eq!((status, none), (200, Value::Null), "no other run of its bench has a model");
+
     let path = format!("/api/v1/diagnoses/{}/experiment", before["id"]);
     let (status, autopilot) = daemon.post(&path, &json!({"bench": BENCH}).to_string());
     assert_eq!(status, 201, "{autopilot}");
@@ -122,6 +125,22 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
     assert_eq!((&again["more_runs"], &again["effects"]), (&ended["runs"], &model["effects"]), "{again}");
     let (_, after) = daemon.post("/api/v1/diagnoses", &json!({"model": again["id"]}).to_string());
     assert_eq!(after["suggestions"][0]["effect"], "load_linear", "{}", after["summary"]);
+
+    let share_outside = |parameters: Value| {
+        let body = json!({"bench": BENCH, "procedure": "friction", "parameters": parameters});
+        let (_, run) = daemon.post("/api/v1/runs", &body.to_string());
+        daemon.wait_for_end(run["id"].as_i64().unwrap());
+        let (_, beside) = daemon.get(&format!("/api/v1/runs/{}/beside", run["id"]));
+        beside["outside"].as_f64().unwrap()
+    };
+    let fit = json!({"run": run["id"], "effects": model["effects"]});
+    daemon.post("/api/v1/models", &fit.to_string());
+    let unloaded = share_outside(no_load());
+    assert!(unloaded < 0.12, "{unloaded}");
+    let mut loaded = no_load();
+    loaded["load_levels"] = 3.into();
+    let loaded = share_outside(loaded);
+    assert!(loaded > 0.3, "what the model lacks leaves the band: {loaded}");
 }
 
 #[test]

@@ -14,6 +14,7 @@ export type EffectCheck = Schemas['EffectCheck'];
 export type EffectDefinition = Schemas['EffectDefinition'];
 export type Exclusion = Schemas['Exclusion'];
 export type Experiment = Schemas['Experiment'];
+export type Beside = Schemas['Beside'];
 export type Identification = Schemas['Identification'];
 export type IdentifiedQuantity = Schemas['Quantity'];
 export type LiveMessage = Schemas['LiveMessage'];

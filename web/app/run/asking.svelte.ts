@@ -1,6 +1,6 @@
 import { api } from '../api/client';
 import { type Refusal, asRefusal } from '../api/problem';
-import type { Identification } from '../api/types';
+import type { Beside, Identification } from '../api/types';
 import { lab } from '../state/lab.svelte';
 import type { Said } from './soFar';
 
@@ -8,16 +8,18 @@ const EVERY_MS = 4000;
 /** A run that takes long to work out is asked less often: a tenth of the daemon's time at most. */
 const PATIENCE = 10;
 
-/** What a run says before it is over: the procedure's own figures, asked for again and again. `null` asks nothing. Call while a component is being set up. */
+/** What a run says before it is over: the procedure's own figures and how it keeps to the bench's last model, asked for again and again. `null` asks nothing. Call while a component is being set up. */
 export function askSoFar(running: () => number | null) {
 	let found = $state.raw<Identification | null>(null);
 	let story: Said[] = $state.raw([]);
+	let beside = $state.raw<Beside | null>(null);
 	let refused = $state.raw<Refusal | null>(null);
 
 	const asked = $derived(running());
 	$effect(() => {
 		const run = asked;
 		found = null;
+		beside = null;
 		story = [];
 		if (run === null) return;
 		const abort = new AbortController();
@@ -28,6 +30,7 @@ export function askSoFar(running: () => number | null) {
 				// A run without a sample is refused: it is not asked.
 				if ((await api.run(run, abort.signal)).rows > 0) {
 					found = await api.identification(run, abort.signal);
+					beside = await api.beside(run, abort.signal);
 					story = [...story, { at_s: lab.tape?.last_s ?? story.length, quantities: found.quantities }];
 				}
 				refused = null;
@@ -47,6 +50,9 @@ export function askSoFar(running: () => number | null) {
 	return {
 		get found() {
 			return found;
+		},
+		get beside() {
+			return beside;
 		},
 		get story() {
 			return story;
