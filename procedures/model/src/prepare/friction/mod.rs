@@ -1,6 +1,7 @@
 //! Friction runs: motor torque k_m·i_q over motion, load and temperature.
 
 mod continuous;
+mod lag;
 mod plateaus;
 
 use super::chunks::Source;
@@ -11,7 +12,7 @@ use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
 
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
-    let samples = read(run, options)?;
+    let samples = read(run, options, Velocity::AsMeasured)?;
     let plateaus = plateaus::find(&samples, options);
     let settled: usize = plateaus.iter().map(|p| p.len()).sum();
     // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
@@ -21,11 +22,20 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let kind = options.residual.unwrap_or(if in_steps { ResidualKind::PlateauMean } else { ResidualKind::Raw });
     match kind {
         ResidualKind::PlateauMean => plateaus::prepare(run, samples, plateaus, options),
-        ResidualKind::Raw => continuous::prepare(run, samples, options),
+        // Of settled motion a lag takes nothing. What is judged sample by sample has to be of one moment.
+        ResidualKind::Raw => continuous::prepare(run, read(run, options, Velocity::Aligned)?, options),
     }
 }
 
-fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
+/// What becomes of a measured velocity.
+#[derive(Clone, Copy, PartialEq)]
+enum Velocity {
+    AsMeasured,
+    /// Moved to the moments of the position.
+    Aligned,
+}
+
+fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<Source, ModelError> {
     let column = |name: &str| run.column(name).unwrap_or_default();
     let km = run
         .meta()
@@ -46,6 +56,11 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
 
     let measured = run.column("motor_velocity_rad_s");
     let (velocity, smooth_velocity) = match measured {
+        Some(v) if wanted == Velocity::Aligned => {
+            let v = lag::aligned(&time_s, v, &smoothed(v), &slope(&smoothed(position)), &starts, cutoff_hz);
+            let smooth_velocity = smoothed(&v);
+            (v, smooth_velocity)
+        }
         Some(v) => (v.to_vec(), smoothed(v)),
         None => {
             let v = slope(&smoothed(position));
