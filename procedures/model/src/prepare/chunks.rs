@@ -131,7 +131,11 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
     }
     let target = mean(&samples.target);
     let (block, blocks) = layout::blocks(&group, 48);
-    let (fold, folds) = layout::folds(&condition, &block, 10);
+    let (mut fold, folds) = layout::folds(&condition, &block, 10);
+    // What a brake remembers of its largest current no smaller loop tells.
+    if let Some(current) = points.find(Signal::Current) {
+        layout::share_edges(&mut fold, folds, &group, current);
+    }
     let first = |values: &Option<Vec<i64>>| -> Vec<i64> {
         values.as_ref().map_or_else(|| vec![0; chunks.len()], |v| chunks.iter().map(|c| v[c.start]).collect())
     };

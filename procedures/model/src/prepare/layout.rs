@@ -1,6 +1,6 @@
 //! Rows into blocks, folds and twins.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Cuts groups of consecutive rows into blocks of about equal length, so that a slow trend cannot hide in one of them.
 ///
@@ -58,6 +58,27 @@ pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, 
     ((0..block.len()).map(|i| i / stretch % n).collect(), n)
 }
 
+/// Stretches of consecutive rows (`group`) that alone reach beyond everything that the other folds hold can be predicted from
+/// nothing: they are held out in parts.
+pub fn share_edges(fold: &mut [usize], folds: usize, group: &[usize], values: &[f64]) {
+    const BEYOND: f64 = 0.02;
+    let range = |without: Option<usize>| {
+        let held = values.iter().zip(fold.iter()).filter(|(_, f)| Some(**f) != without).map(|(v, _)| *v);
+        held.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
+    };
+    let (low, high) = range(None);
+    let margin = BEYOND * (high - low);
+    let others: Vec<(f64, f64)> = (0..folds).map(|f| range(Some(f))).collect();
+    let is_beyond = |row: usize| {
+        let (low, high) = others[fold[row]];
+        values[row] < low - margin || values[row] > high + margin
+    };
+    let alone: BTreeSet<usize> = (0..fold.len()).filter(|row| is_beyond(*row)).map(|row| group[row]).collect();
+    let rows: Vec<usize> = (0..fold.len()).filter(|row| alone.contains(&group[*row])).collect();
+    let stretch = (rows.len() / (4 * folds)).max(4);
+    rows.into_iter().enumerate().for_each(|(i, row)| fold[row] = i / stretch % folds);
+}
+
 /// Pairs of one row at most: a run of hundreds of repeats says no more by pairing each with each.
 const MOST_TWINS: usize = 8;
 
@@ -104,6 +125,25 @@ mod tests {
     #[test]
     fn close_values_are_one_condition() {
         assert_eq!(clusters(&[1.0, 5.0, 1.01, 5.02, -3.0], |_| 0.1), vec![1, 2, 1, 2, 0]);
+    }
+
+    #[test]
+    fn a_stretch_that_goes_beyond_all_others_is_held_out_in_parts() {
+        let group: Vec<usize> = (0..120).map(|row| row / 20).collect();
+        let given: Vec<usize> = group.iter().map(|g| g % 3).collect();
+        let loops = |largest: f64| -> Vec<f64> {
+            let peak = |g: usize| if g == 4 { largest } else { 0.5 };
+            (0..120).map(|row| peak(row / 20) * (row % 20) as f64 / 19.0).collect()
+        };
+        let shared = |largest: f64| {
+            let mut fold = given.clone();
+            share_edges(&mut fold, 3, &group, &loops(largest));
+            fold
+        };
+        assert_eq!(shared(0.5), given);
+        let fold = shared(0.6);
+        assert_eq!((&fold[..80], &fold[100..]), (&given[..80], &given[100..]));
+        assert!((0..3).all(|f| fold[80..100].contains(&f)), "{:?}", &fold[80..100]);
     }
 
     #[test]
