@@ -90,13 +90,23 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
     steps.sort_by(f64::total_cmp);
     let Some(slow) = steps.get(steps.len() / 10) else { return Vec::new() };
     let highest = std::f64::consts::PI / slow;
+    whole_orders(orders, highest, "harmonic", &["a", "b"])
+}
+
+/// A wave over the whole orders up to the highest.
+fn whole_orders(
+    orders: RangeInclusive<u32>,
+    highest: f64,
+    name: &'static str,
+    linear: &[&'static str],
+) -> Vec<Form<'static>> {
     let (first, last) = (f64::from(*orders.start()), f64::from(*orders.end()));
     let grid: Vec<Vec<f64>> = orders.map(f64::from).filter(|h| *h <= highest).map(|h| vec![h]).collect();
     if grid.is_empty() {
         return Vec::new();
     }
-    let shape = vec![Shape { name: "harmonic", min: first, max: last, search: Search::Whole }];
-    vec![Form { name: "harmonic", linear: vec!["a", "b"], shape, grid }]
+    let shape = vec![Shape { name, min: first, max: last, search: Search::Whole }];
+    vec![Form { name: "harmonic", linear: linear.to_vec(), shape, grid }]
 }
 
 /// The same of an axis that may turn only a part of a turn: an order counts where the angle went all the way round, or

@@ -1,6 +1,6 @@
 //! Pole period error.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 
@@ -29,17 +29,14 @@ impl Effect for PolePeriod {
         INFO
     }
 
+    /// However far it turns between two samples: their angles are known, and a wave that is left out comes back as a lower
+    /// order that is none.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let orders = match view.constants.pole_pairs {
             Some(p) => p..=p,
             None => 16..=128,
         };
-        let mut forms = crate::effects::harmonic_form(view, Signal::Position, orders);
-        for form in &mut forms {
-            form.linear = vec!["a", "b", "c", "d"];
-            form.shape = vec![Shape { name: "pole_pairs", min: 1.0, max: 128.0, search: Search::Whole }];
-        }
-        forms
+        crate::effects::whole_orders(orders, f64::INFINITY, "pole_pairs", &["a", "b", "c", "d"])
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
