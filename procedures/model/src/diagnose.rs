@@ -86,10 +86,9 @@ pub fn discover(
         on_step(&step);
         steps.push(step);
     })?;
-    // Of a tie only what is still open.
+    // Ties are those of the last model.
     for step in &mut steps {
-        let added = step.added.clone().unwrap_or_default();
-        step.confounded_with.retain(|rival| found.is_open_tie(&added, rival));
+        step.confounded_with = step.added.as_deref().map_or_else(Vec::new, |added| found.ties_of(added));
     }
     let is_cut = steps.iter().filter(|step| step.added.is_some()).count() >= max_effects;
     let fit = report(found.end())?;
@@ -151,8 +150,7 @@ fn suggestions(
             1.0 - with.validation_rms / fit.validation_rms
         };
         let info = rival.term.effect.info();
-        let confounded_with: Vec<String> =
-            advance.ties.iter().filter(|t| found.is_open_tie(id, t)).map(|t| (*t).into()).collect();
+        let confounded_with = found.ties_of(id);
         let tie = if confounded_with.is_empty() {
             String::new()
         } else {

@@ -151,10 +151,14 @@ impl<'p> Exploration<'p> {
         self.start.hidden.iter().chain(&self.invisible).cloned().collect()
     }
 
-    /// Whether a rival that tied with an effect when it came in is still one: not where both are in the model now, nor
-    /// where the last model would be worse with it in place of the effect.
-    pub fn is_open_tie(&self, effect: &str, rival: &str) -> bool {
-        self.ties.iter().any(|(e, r)| *e == effect && *r == rival)
+    /// What this run cannot tell an effect of the last model from: the model is as good with it in its place.
+    pub fn ties_of(&self, effect: &str) -> Vec<String> {
+        self.ties.iter().filter(|(e, _)| *e == effect).map(|(_, rival)| (*rival).into()).collect()
+    }
+
+    /// This run cannot tell it from an effect of the last model.
+    pub fn is_rival(&self, effect: &str) -> bool {
+        self.ties.iter().any(|(_, rival)| *rival == effect)
     }
 
     /// Verdict on the last model.
@@ -258,7 +262,8 @@ fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str
     open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }
 
-/// Of what tied with an effect when it came in, what still does beside everything that came later.
+/// Of what tied with an effect when it came in, what still does beside everything that came later, and what does only
+/// since then.
 fn open_ties<'p>(search: &Search<'_, 'p>, advances: &[Advance<'p>]) -> Vec<(&'p str, &'p str)> {
     let mut open = Vec::new();
     for advance in advances {
@@ -268,6 +273,11 @@ fn open_ties<'p>(search: &Search<'_, 'p>, advances: &[Advance<'p>]) -> Vec<(&'p 
             let rivals: Vec<&'p str> = advance.ties.iter().filter(is_new).copied().collect();
             open.extend(rivals.into_iter().filter(|rival| search.ties(effect, rival)).map(|rival| (effect, rival)));
         }
+    }
+    for term in search.added() {
+        let stand_ins = search.stand_ins(term).into_iter().map(|rival| (term.id(), rival));
+        let new: Vec<_> = stand_ins.filter(|tie| !open.contains(tie)).collect();
+        open.extend(new);
     }
     open
 }

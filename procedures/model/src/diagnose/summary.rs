@@ -187,9 +187,8 @@ fn left_out<'f, 'p>(found: &'f Exploration<'p>) -> impl Iterator<Item = &'f With
 /// Effects that came in and were taken back, and what that cost.
 fn taken_back(found: &Exploration, unit: &str) -> String {
     // What could stand in the place of an effect of the model is named there.
-    let is_rival = |e: &str| found.end().effects.iter().any(|effect| found.is_open_tie(effect, e));
-    let open: Vec<&Withdrawn> = left_out(found).filter(|w| !is_rival(w.effect)).collect();
-    let half = found.withdrawn.iter().filter(|w| w.why == Withdrawal::HalfExplains && !is_rival(w.effect));
+    let open: Vec<&Withdrawn> = left_out(found).filter(|w| !found.is_rival(w.effect)).collect();
+    let half = found.withdrawn.iter().filter(|w| w.why == Withdrawal::HalfExplains && !found.is_rival(w.effect));
     let half: Vec<&str> = half.map(|w| w.effect).rev().collect();
     let named: Vec<&str> = open.iter().map(|w| w.effect).rev().collect();
     let with = open.iter().map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);

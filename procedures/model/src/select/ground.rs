@@ -30,6 +30,8 @@ pub struct Ground {
 pub struct Own {
     /// Share of the squared residual that they explain.
     pub share: f64,
+    /// Share of the squared columns that is their own: the rest looks like the model.
+    pub visible: f64,
     /// Columns that have something of their own.
     kept: Vec<usize>,
     /// Products with the vectors of the basis, column by column.
@@ -66,12 +68,13 @@ impl Ground {
         let along: Vec<Vec<f64>> =
             columns.iter().map(|c| self.basis.vectors().iter().map(|q| dot(q, c)).collect()).collect();
         let mut gram = vec![0.0; p * p];
-        let mut largest = 0.0f64;
+        let (mut largest, mut sum) = (0.0f64, 0.0);
         for a in 0..p {
             for b in 0..=a {
                 let whole = dot(&columns[a], &columns[b]);
                 if a == b {
                     largest = largest.max(whole);
+                    sum += whole;
                 }
                 gram[a * p + b] = whole - dot(&along[a], &along[b]);
                 gram[b * p + a] = gram[a * p + b];
@@ -84,7 +87,8 @@ impl Ground {
         let side_of_kept: Vec<f64> = kept.iter().map(|a| side[*a]).collect();
         let explained: f64 = Spd::new(&of_kept, kept.len(), 0.0).whiten(&side_of_kept).iter().map(|v| v * v).sum();
         let share = if self.energy > 0.0 { explained / self.energy } else { 0.0 };
-        Own { share, kept, along, gram, side }
+        let visible = (0..p).map(|a| gram[a * p + a]).sum::<f64>() / sum;
+        Own { share, visible, kept, along, gram, side }
     }
 
     /// Products of what each kept column has of its own with the residual, group by group.

@@ -2,8 +2,8 @@
 
 use super::ground::Ground;
 use super::layout::lay;
-use super::library::Library;
-use super::rivals::{Bar, Rival, is_tie, step};
+use super::library::{Candidate, Library};
+use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, form_error, is_tie, left_by_memory, step};
 use crate::Options;
 use crate::linear::{BlockGrams, dot};
 use crate::prepare::Problem;
@@ -90,7 +90,12 @@ impl<'l, 'p> Search<'l, 'p> {
     }
 
     fn step(&self, now: &Terms<'p>) -> Option<(Rival<'p>, Vec<&'p str>)> {
-        step(now, self.library, &self.withdrawn, Bar { plain: self.plain, options: self.options })
+        step(now, self.library, &self.withdrawn, self.bar())
+    }
+
+    fn bar(&self) -> Bar<'_> {
+        let kind = self.library.effects.first().map(|effect| effect.info().kind);
+        Bar { plain: self.plain, form_error: kind.map_or(0.0, form_error), options: self.options }
     }
 
     /// Takes an effect back that turned out not to be the answer.
@@ -137,10 +142,14 @@ impl<'l, 'p> Search<'l, 'p> {
     /// The added effect that brings least on what was held out, where that is not worth a name: whatever came in since
     /// explains the rest of it. Asked when nothing more can be added, because on the way two effects may mask each other.
     fn idle(&self) -> Option<&'p str> {
-        let present: f64 = held_out(&self.now).iter().sum();
-        let share = |id: &'p str| (id, 1.0 - present / held_out(&self.laid_without(id)).iter().sum::<f64>());
-        let least = self.added().map(|term| share(term.id())).min_by(|a, b| a.1.total_cmp(&b.1))?;
-        (least.1 < self.options.practical_share).then_some(least.0)
+        let (present, sse) = (held_out(&self.now).iter().sum::<f64>(), self.now.linear().sse);
+        let idle = self.added().filter_map(|term| {
+            let without = self.laid_without(term.id());
+            let share = 1.0 - present / held_out(&without).iter().sum::<f64>();
+            let is_remainder = without.linear().sse - sse < left_by_memory(&without);
+            (share < self.options.practical_share || is_remainder).then_some((term.id(), share))
+        });
+        idle.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
     }
 
     /// The model with one effect more.
@@ -154,12 +163,39 @@ impl<'l, 'p> Search<'l, 'p> {
         lay(&self.now, &rest, self.library, self.options)
     }
 
-    /// The model is as good with another effect in place of one.
+    /// The model is as good with another effect in place of one, of a size that is physically possible.
     pub fn ties(&self, effect: &str, rival: &'p str) -> bool {
         let others = self.now.terms.iter().map(Term::id).filter(|id| *id != effect);
         let with: Vec<&str> = others.chain([rival]).collect();
         let other = lay(&self.now, &with, self.library, self.options);
-        is_tie(&held_out(&self.now), &held_out(&other))
+        let mut sized = other.terms.iter().zip(other.linear().factors);
+        let is_possible = sized.all(|(term, factors)| term.id() != rival || term.allows(&factors));
+        is_possible && is_tie(&held_out(&self.now), &held_out(&other))
+    }
+
+    /// Effects that explain nearly as much in the place of one, and with which the model is as good.
+    pub fn stand_ins(&self, term: &Term<'p>) -> Vec<&'p str> {
+        let without = self.now.without(term.id());
+        let ground = Ground::of(&without);
+        let enough = MOST_OF_GAIN * (1.0 - self.now.linear().sse / ground.energy);
+        let mut near: Vec<(f64, &Candidate<'p>)> = Vec::new();
+        for candidate in &self.library.candidates {
+            let id = candidate.id();
+            if id == term.id() || self.now.contains(id) || self.withdrawn.contains(&id) {
+                continue;
+            }
+            let share = ground.own(&candidate.columns).share;
+            match near.iter_mut().find(|known| known.1.id() == id) {
+                Some(known) if share > known.0 => *known = (share, candidate),
+                None if share >= enough => near.push((share, candidate)),
+                _ => {}
+            }
+        }
+        near.retain(|(_, other)| {
+            self.ties(term.id(), other.id())
+                && !encompasses(&without, term, &other.term(self.now.problem), self.options)
+        });
+        near.into_iter().map(|(_, candidate)| candidate.id()).collect()
     }
 
     /// Effects that were added and are still there.
@@ -168,7 +204,7 @@ impl<'l, 'p> Search<'l, 'p> {
     }
 
     pub fn silences(&self) -> Vec<Silence<'p>> {
-        silences(&self.now, self.library, &self.withdrawn, self.options)
+        silences(&self.now, self.library, &self.withdrawn, self.bar())
     }
 }
 
@@ -210,24 +246,24 @@ impl<'p> Iterator for Search<'_, 'p> {
 }
 
 /// For each effect that is not in the model, its best form and shape: what would have been seen.
-fn silences<'p>(end: &Terms<'p>, library: &Library<'p>, withdrawn: &[&'p str], options: &Options) -> Vec<Silence<'p>> {
+fn silences<'p>(end: &Terms<'p>, library: &Library<'p>, withdrawn: &[&'p str], bar: Bar) -> Vec<Silence<'p>> {
     let ground = Ground::of(end);
     let n = end.problem.rows() as f64;
-    let rms = (ground.energy / n).sqrt();
+    let least = bar.least_share(end, ground.energy) * ground.energy;
     let mut out: Vec<Silence> = Vec::new();
     let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
     for candidate in library.candidates.iter().filter(|c| is_out(c.id())) {
         let own = ground.own(&candidate.columns);
         let sums = ground.sums(&candidate.columns, &own);
-        // z₀.₉₇₅ + z₀.₈ standard errors of the amplitude, and never less than the practical share.
-        let noise = sums.iter().zip(own.squares()).map(|(s, square)| 2.8 * (dot(s, s) / square / n).sqrt());
-        let noise = noise.fold(0.0, f64::max);
-        let detectable_rms = if sums.is_empty() { f64::MAX } else { noise.max(options.practical_share.sqrt() * rms) };
+        // z₀.₉₇₅ + z₀.₈ standard errors of the amplitude, and never less than what is worth a name.
+        let noise = sums.iter().zip(own.squares()).map(|(s, square)| 2.8 * (dot(s, s) / square).sqrt());
+        let Some(noise) = noise.reduce(f64::max) else { continue };
+        // Of the effect itself the model's own columns take their part.
+        let detectable_rms = noise.max(least.sqrt()) / (own.visible * n).sqrt();
         match out.iter_mut().find(|s| s.effect == candidate.id()) {
             Some(s) => s.detectable_rms = s.detectable_rms.min(detectable_rms),
             None => out.push(Silence { effect: candidate.id(), detectable_rms }),
         }
     }
-    out.retain(|s| s.detectable_rms < f64::MAX);
     out
 }
