@@ -17,17 +17,12 @@ use jointbench_instrument::RunTable;
 /// blocks. Effects that the run cannot show stay in the model at zero and are named in the notes.
 /// [`ModelError::Collinear`] where two effects are proportional in this data.
 pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
-    fit_each(run, std::slice::from_ref(spec), options)?.remove(0)
+    fit_prepared(&prepare(run, options)?, spec, options)
 }
 
-/// As [`fit`], several models on one run, which is prepared once: on a long one that is most of the work.
-pub fn fit_each(
-    run: &RunTable,
-    specs: &[ModelSpec],
-    options: &Options,
-) -> Result<Vec<Result<Fit, ModelError>>, ModelError> {
-    let prepared = prepare(run, options)?;
-    Ok(specs.iter().map(|spec| report(&Assembly::new(&prepared, spec, options)?)).collect())
+/// As [`fit`], of a run that is prepared once for several models: on a long one that is most of the work.
+pub fn fit_prepared(prepared: &Prepared, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
+    report(&Assembly::new(prepared, spec, options)?)
 }
 
 /// The contract's object of a model that is laid out.

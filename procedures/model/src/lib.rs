@@ -33,7 +33,7 @@ pub use diagnose::{diagnose, discover};
 pub use effect::{Effect, EffectInfo, ParameterInfo};
 pub use effects::effects;
 pub use error::ModelError;
-pub use fit::{evaluate, fit, fit_each};
+pub use fit::{evaluate, fit, fit_prepared};
 pub use formula::FormulaFault;
 pub use maps::maps;
 pub use own::{Definition, OwnEffect, OwnParameter};

@@ -6,7 +6,7 @@
 use super::friction::Friction;
 use super::legs::sample_rate;
 use super::{Findable, Procedure, findable};
-use crate::findings::{Unusable, interval_of, keep, legs, parameter, plateaus, quantity, scatter, verdict};
+use crate::findings::{Unusable, interval_of, keep, legs, parameter, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
@@ -139,7 +139,7 @@ fn choose(table: &RunTable) -> Result<(&'static [&'static str], Fit), Unusable> 
 
 /// Friction over load, one series for each speed, both directions as magnitudes.
 fn over_load(table: &RunTable, gear: f64) -> Result<Figure, Unusable> {
-    let mut points = plateaus(table)?;
+    let mut points = plateaus(&settled(table)?);
     points.sort_by(|a, b| a.velocity_rad_s.abs().total_cmp(&b.velocity_rad_s.abs()));
     let alike = |a: &crate::findings::Plateau, b: &crate::findings::Plateau| {
         (a.velocity_rad_s.abs() / b.velocity_rad_s.abs() - 1.0).abs() < 0.05

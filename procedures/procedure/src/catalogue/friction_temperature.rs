@@ -6,13 +6,13 @@
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::warm_up;
 use super::{Findable, Procedure, findable};
-use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, verdict};
+use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault};
 use crate::profile::Profile;
 use jointbench_instrument::{Kind, RunTable};
-use jointbench_model::{ModelSpec, Options, ResidualKind, fit};
+use jointbench_model::{ModelSpec, Options, fit_prepared};
 
 pub(super) struct FrictionTemperature;
 
@@ -97,14 +97,15 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     if run.column("temperature_c").is_none() {
         return Err(Unusable::TooLittle("the joint reports no temperature: connect a thermistor or a thermometer"));
     }
-    let points = plateaus(run)?;
+    let prepared = settled(run)?;
+    let points = plateaus(&prepared);
     let (low_c, high_c) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
         (p.temperature_c.min(low), p.temperature_c.max(high))
     });
     let given = run.column("link_torque_nm").map(|_| "load_transmission");
     let effects = ["coulomb", "viscous", "temperature_coulomb", "temperature_viscous"];
-    let options = Options { residual: Some(ResidualKind::PlateauMean), ..Options::default() };
-    let fit = fit(run, &ModelSpec::new(run.kind(), given.into_iter().chain(effects))?, &options)?;
+    let spec = ModelSpec::new(run.kind(), given.into_iter().chain(effects))?;
+    let fit = fit_prepared(&prepared, &spec, &Options::default())?;
     let mut quantities = vec![
         quantity(["temperature_low", "T₁", "Lowest temperature", "°C"], low_c, None),
         quantity(["temperature_high", "T₂", "Highest temperature", "°C"], high_c, None),

@@ -5,7 +5,7 @@
 
 use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure, findable};
-use crate::findings::{Line, Unusable, curve, keep, legs, plateaus, quantity, scatter, verdict};
+use crate::findings::{Line, Unusable, curve, keep, legs, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
@@ -102,7 +102,7 @@ impl Procedure for Strokes {
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let legs = legs(run);
     let heaviest = legs.iter().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
-    let points = plateaus(&keep(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?;
+    let points = plateaus(&settled(&keep(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?);
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let (mut quantities, mut series, mut flat) = (Vec::new(), Vec::new(), Vec::new());
     for (suffix, mark, sign) in [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)] {

@@ -2,7 +2,7 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::{Findable, Procedure, findable};
-use crate::findings::{Line, Plateau, Unusable, plateaus, quantity, scatter, verdict};
+use crate::findings::{Line, Plateau, Unusable, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
@@ -83,7 +83,7 @@ impl Procedure for WarmUp {
 const JUDGED: usize = 6;
 
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
-    let points = plateaus(run)?;
+    let points = plateaus(&settled(run)?);
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let fast: Vec<Plateau> = points.into_iter().filter(|p| p.velocity_rad_s.abs() > 0.9 * top).collect();
     let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());

@@ -13,6 +13,6 @@ pub(crate) use holds::{Hold, holds};
 pub(crate) use lag::{Lag, Told, lag};
 pub(crate) use line::{Line, Mean};
 pub(crate) use part::{Leg, keep, keep_rows, legs};
-pub(crate) use plateaus::{Plateau, plateaus};
+pub(crate) use plateaus::{Plateau, plateaus, settled};
 pub(crate) use say::{Unusable, combined, curve, interval_of, parameter, quantity, scatter, verdict};
 pub(crate) use solve::{solve, t95};

@@ -1,7 +1,7 @@
 //! The settled stretch of every leg as one point: what a figure shows and a line is drawn through.
 
 use jointbench_instrument::RunTable;
-use jointbench_model::prepare::prepare;
+use jointbench_model::prepare::{Prepared, prepare};
 use jointbench_model::view::Signal;
 use jointbench_model::{ModelError, Options, ResidualKind};
 
@@ -20,10 +20,13 @@ pub(crate) struct Plateau {
     chunks: f64,
 }
 
-/// In the order of the run. A segment without settled motion has none.
-pub(crate) fn plateaus(run: &RunTable) -> Result<Vec<Plateau>, ModelError> {
-    let options = Options { residual: Some(ResidualKind::PlateauMean), ..Options::default() };
-    let prepared = prepare(run, &options)?;
+/// A run for its settled stretches.
+pub(crate) fn settled(run: &RunTable) -> Result<Prepared, ModelError> {
+    prepare(run, &Options { residual: Some(ResidualKind::PlateauMean), ..Options::default() })
+}
+
+/// Of a run as [`settled`] prepares it, in its order. A segment without settled motion has none.
+pub(crate) fn plateaus(prepared: &Prepared) -> Vec<Plateau> {
     let (problem, view) = (&prepared.main, &prepared.main.view);
     let mut plateaus: Vec<Plateau> = Vec::new();
     for row in 0..problem.rows() {
@@ -47,5 +50,5 @@ pub(crate) fn plateaus(run: &RunTable) -> Result<Vec<Plateau>, ModelError> {
             *sum /= *chunks;
         }
     }
-    Ok(plateaus)
+    plateaus
 }

@@ -3,11 +3,13 @@
 use super::left_open::{Side, hidden_rise_nm, is_small, rest};
 use crate::findings::{
     Leg, Line, Plateau, Unusable, combined, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter,
+    settled,
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
-use jointbench_model::words;
-use jointbench_model::{Fit, ModelSpec, Options, fit_each};
+use jointbench_model::prepare::Prepared;
+use jointbench_model::view::Signal;
+use jointbench_model::{Fit, ModelSpec, Options, fit_prepared, words};
 use std::panic::resume_unwind;
 use std::thread;
 
@@ -31,13 +33,14 @@ pub(crate) struct Stribeck {
 
 impl FreeFriction {
     /// Fits the free legs; the Stribeck part where the run decides it and predicts itself the better for it.
-    pub fn of(run: &RunTable) -> Result<Self, Unusable> {
-        let given = if run.column("link_torque_nm").is_some() { vec!["load_transmission"] } else { Vec::new() };
+    fn of(run: &Prepared) -> Result<Self, Unusable> {
+        let has_load = run.main.view.find(Signal::Load).is_some();
+        let given = if has_load { vec!["load_transmission"] } else { Vec::new() };
         let with = |more: &[&'static str]| {
-            ModelSpec::new(run.kind(), given.iter().chain(["coulomb", "viscous"].iter()).chain(more).copied())
+            let effects = given.iter().chain(["coulomb", "viscous"].iter()).chain(more).copied();
+            fit_prepared(run, &ModelSpec::new(run.kind, effects)?, &Options::default())
         };
-        let mut fits = fit_each(run, &[with(&[])?, with(&["stribeck"])?], &Options::default())?;
-        let (rich, plain) = (fits.remove(1), fits.remove(0)?);
+        let (rich, plain) = (with(&["stribeck"]), with(&[])?);
         if let Ok(rich) = rich
             && rich.validation_rms < plain.validation_rms
             && let Some(rise) = parameter(&rich, "stribeck", "tau_s")
@@ -86,10 +89,10 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
     let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
     // A run of hours takes seconds: the directions are looked at beside the whole.
     let (whole, sides) = thread::scope(|scope| {
-        let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&part(sign)?)));
+        let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&settled(&part(sign)?)?)));
         let whole = || -> Result<_, Unusable> {
-            let both = keep(run, &free)?;
-            Ok((FreeFriction::of(&both)?, plateaus(&both)?))
+            let both = settled(&keep(run, &free)?)?;
+            Ok((FreeFriction::of(&both)?, plateaus(&both)))
         };
         (whole(), sides.join())
     });
