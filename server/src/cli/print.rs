@@ -319,6 +319,9 @@ fn prepared(fit: &Fit) -> String {
     if let Some(cutoff_hz) = prepared.cutoff_hz {
         said += &format!(", low-pass {cutoff_hz:.1} Hz");
     }
+    if let Some(lag_s) = prepared.velocity_lag_s.filter(|lag_s| lag_s.abs() * prepared.sample_rate_hz > 0.01) {
+        said += &format!(", velocity {:.1} ms late and moved back", 1e3 * lag_s);
+    }
     if prepared.decimation > 1 {
         said += &format!(", one of {}", prepared.decimation);
     }

@@ -184,6 +184,9 @@ pub struct Preparation {
     pub residual: ResidualKind,
     pub sample_rate_hz: f64,
     pub cutoff_hz: Option<f64>,
+    /// By how much the measured velocity came after its position, and was moved back.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity_lag_s: Option<f64>,
     pub decimation: u64,
     pub chunk_s: Option<f64>,
     pub samples: u64,

@@ -98,6 +98,9 @@ pub struct Preparation {
     pub sample_rate_hz: f64,
     /// `None` where nothing was filtered.
     pub cutoff_hz: Option<f64>,
+    /// By how much the measured velocity came after its position, and was moved back. `None` where it stays as it was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity_lag_s: Option<f64>,
     pub decimation: usize,
     /// Length of a chunk. A row of a long run in steps is the mean of several neighbours.
     pub chunk_s: Option<f64>,

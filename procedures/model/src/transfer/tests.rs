@@ -85,6 +85,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             residual: ResidualKind::Raw,
             sample_rate_hz: 1.0 / STEP_S,
             cutoff_hz: None,
+            velocity_lag_s: None,
             decimation: 1,
             chunk_s: None,
             samples: ROWS,

@@ -94,6 +94,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         residual: ResidualKind::Raw,
         sample_rate_hz: 1.0 / samples.step_s,
         cutoff_hz: Some(samples.cutoff_hz),
+        velocity_lag_s: None,
         decimation: every,
         chunk_s: None,
         samples: run.len(),

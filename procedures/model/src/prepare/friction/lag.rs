@@ -6,23 +6,24 @@ use crate::prepare::filter::{by_recording, derivative};
 /// Beyond this share of a period at the corner of the low-pass filter a lag is not what two slopes can tell.
 const LONGEST: f64 = 0.5;
 
-/// The velocity moved to the moments of the position. Both smoothed ones tell by how much: what the slope of the position is
-/// ahead by is the acceleration times the lag.
-pub fn aligned(
+/// By how much the velocity comes after its position. Both smoothed ones tell: what the slope of the position is ahead by is
+/// the acceleration times the lag.
+pub fn of(
     time_s: &[f64],
-    velocity: &[f64],
     smooth_velocity: &[f64],
     slope_of_position: &[f64],
     starts: &[usize],
     cutoff_hz: f64,
-) -> Vec<f64> {
+) -> Option<f64> {
     let acceleration = by_recording(smooth_velocity, starts, |range, v| derivative(&time_s[range], v));
     let ahead: Vec<f64> = slope_of_position.iter().zip(smooth_velocity).map(|(q, v)| q - v).collect();
     let lag_s = dot(&ahead, &acceleration) / dot(&acceleration, &acceleration).max(f64::MIN_POSITIVE);
-    match lag_s.abs() * cutoff_hz <= LONGEST {
-        true => by_recording(velocity, starts, |range, v| later(&time_s[range], v, lag_s)),
-        false => velocity.to_vec(),
-    }
+    Some(lag_s).filter(|lag_s| lag_s.abs() * cutoff_hz <= LONGEST)
+}
+
+/// The velocity at the moments of its position.
+pub fn moved(time_s: &[f64], velocity: &[f64], starts: &[usize], lag_s: f64) -> Vec<f64> {
+    by_recording(velocity, starts, |range, v| later(&time_s[range], v, lag_s))
 }
 
 /// The values as they are so much later, on the straight line between two of them. The ends go on as they are.
@@ -48,7 +49,9 @@ mod tests {
         let velocity = |delay_s: f64| -> Vec<f64> { time_s.iter().map(|t| (7.0 * (t - delay_s)).sin()).collect() };
         for lag_s in [0.0019, -0.01, 0.0] {
             let late = velocity(lag_s);
-            let moved = aligned(&time_s, &late, &late, &velocity(0.0), &[0], 25.0);
+            let found_s = of(&time_s, &late, &velocity(0.0), &[0], 25.0).unwrap();
+            assert!((found_s - lag_s).abs() < 2e-4, "{lag_s} s: {found_s} s");
+            let moved = moved(&time_s, &late, &[0], found_s);
             let worst = (5..995).map(|i| (moved[i] - velocity(0.0)[i]).abs()).fold(0.0, f64::max);
             assert!(worst < 5e-3, "{lag_s} s: {worst}");
         }
@@ -59,6 +62,6 @@ mod tests {
         let time_s: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.004).collect();
         let slow: Vec<f64> = time_s.iter().map(|t| (1.5 * t).sin()).collect();
         let other: Vec<f64> = time_s.iter().map(|t| (1.5 * t).cos()).collect();
-        assert_eq!(aligned(&time_s, &slow, &slow, &other, &[0], 25.0), slow);
+        assert_eq!(of(&time_s, &slow, &other, &[0], 25.0), None);
     }
 }

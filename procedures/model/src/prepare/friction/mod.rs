@@ -12,7 +12,7 @@ use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
 
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
-    let samples = read(run, options, Velocity::AsMeasured)?;
+    let (samples, _) = read(run, options, Velocity::AsMeasured)?;
     let plateaus = plateaus::find(&samples, options);
     let settled: usize = plateaus.iter().map(|p| p.len()).sum();
     // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
@@ -23,7 +23,12 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     match kind {
         ResidualKind::PlateauMean => plateaus::prepare(run, samples, plateaus, options),
         // Of settled motion a lag takes nothing. What is judged sample by sample has to be of one moment.
-        ResidualKind::Raw => continuous::prepare(run, read(run, options, Velocity::Aligned)?, options),
+        ResidualKind::Raw => {
+            let (samples, velocity_lag_s) = read(run, options, Velocity::Aligned)?;
+            let mut prepared = continuous::prepare(run, samples, options)?;
+            prepared.about.velocity_lag_s = velocity_lag_s;
+            Ok(prepared)
+        }
     }
 }
 
@@ -35,7 +40,8 @@ enum Velocity {
     Aligned,
 }
 
-fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<Source, ModelError> {
+/// With the lag that the velocity had, where it was moved.
+fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, Option<f64>), ModelError> {
     let column = |name: &str| run.column(name).unwrap_or_default();
     let km = run
         .meta()
@@ -55,16 +61,17 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<Source, M
         |values: &[f64]| filter::by_recording(values, &starts, |range, v| filter::derivative(&time_s[range], v));
 
     let measured = run.column("motor_velocity_rad_s");
-    let (velocity, smooth_velocity) = match measured {
+    let (velocity, smooth_velocity, lag_s) = match measured {
         Some(v) if wanted == Velocity::Aligned => {
-            let v = lag::aligned(&time_s, v, &smoothed(v), &slope(&smoothed(position)), &starts, cutoff_hz);
+            let lag_s = lag::of(&time_s, &smoothed(v), &slope(&smoothed(position)), &starts, cutoff_hz);
+            let v = lag_s.map_or_else(|| v.to_vec(), |lag_s| lag::moved(&time_s, v, &starts, lag_s));
             let smooth_velocity = smoothed(&v);
-            (v, smooth_velocity)
+            (v, smooth_velocity, lag_s)
         }
-        Some(v) => (v.to_vec(), smoothed(v)),
+        Some(v) => (v.to_vec(), smoothed(v), None),
         None => {
             let v = slope(&smoothed(position));
-            (v.clone(), v)
+            (v.clone(), v, None)
         }
     };
     let acceleration = slope(&smooth_velocity);
@@ -94,7 +101,7 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<Source, M
     if let Some(temperature) = run.column("temperature_c") {
         signals.set(Signal::Temperature, temperature.to_vec());
     }
-    Ok(Source {
+    let source = Source {
         signals,
         target: torque_nm,
         step_s,
@@ -106,7 +113,8 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<Source, M
         derived_velocity: measured.is_none(),
         constants: Constants { slides: run.meta().motion == Motion::Linear, ..Constants::default() },
         time_s,
-    })
+    };
+    Ok((source, lag_s))
 }
 
 /// The motor torque as load, direction, speed and acceleration explain it: the measured one without its own noise, which

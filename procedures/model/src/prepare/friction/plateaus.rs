@@ -107,6 +107,7 @@ pub fn prepare(
         residual: ResidualKind::PlateauMean,
         sample_rate_hz: 1.0 / samples.step_s,
         cutoff_hz: samples.derived_velocity.then_some(samples.cutoff_hz),
+        velocity_lag_s: None,
         decimation: 1,
         chunk_s: Some(n as f64 * samples.step_s),
         samples: run.len(),
