@@ -9,6 +9,8 @@ use utoipa::ToSchema;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Health {
     pub version: String,
+    /// The number of its process, which the lock of its data folder names too.
+    pub process: u32,
     /// Why the dashboard is not part of this build, where it is not.
     pub dashboard_missing: Option<String>,
 }
@@ -18,7 +20,7 @@ pub struct Health {
     responses((status = 200, description = "It is", body = Health), Refusals))]
 pub async fn health() -> Answer<Health> {
     let dashboard_missing = jointbench_ui::missing().map(str::to_owned);
-    Ok(Json(Health { version: env!("CARGO_PKG_VERSION").to_owned(), dashboard_missing }))
+    Ok(Json(Health { version: env!("CARGO_PKG_VERSION").to_owned(), process: std::process::id(), dashboard_missing }))
 }
 
 /// This description

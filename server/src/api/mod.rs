@@ -21,6 +21,7 @@ mod specification;
 mod transfer;
 
 pub use door::Door;
+pub use health::Health;
 pub use problem::Problem;
 
 use crate::lab::Lab;

@@ -5,6 +5,7 @@ use super::client::Client;
 use super::exit::{Done, Exit};
 use super::files::{table, write};
 use super::serve::runtime;
+use crate::api::Health;
 use crate::lab::{FileFormat, ImportRequest, Lab, LabError};
 use crate::view::Run;
 use jointbench_files::meta_path_of;
@@ -88,12 +89,16 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
     match runtime.block_on(crate::store::Store::open(data)) {
         Ok(store) => Ok(Way::Folder(Lab::of_store(store))),
         Err(in_use @ crate::store::StoreError::InUse { .. }) => {
-            // Most likely by the daemon on this machine's usual address.
+            // Most likely by the daemon on this machine's usual address, but another one may be there.
             let client = Client::new(&place.reach);
-            let _: serde_json::Value = client.get("/health").map_err(|_| {
-                Exit::bad_input(format!("{in_use}; give the address of the daemon that has it with --daemon"))
-            })?;
-            Ok(Way::Daemon(client))
+            match client.get::<Health>("/health") {
+                Ok(health) if in_use.to_string().contains(&format!("(process {})", health.process)) => {
+                    Ok(Way::Daemon(client))
+                }
+                _ => {
+                    Err(Exit::bad_input(format!("{in_use}; give the address of the daemon that has it with --daemon")))
+                }
+            }
         }
         Err(fault) => Err(LabError::from(fault).into()),
     }

@@ -127,7 +127,7 @@ fn sentence(kind: &EventKind) -> String {
             format!("{instrument} on {port}: {} {}{firmware}", identity.maker, identity.model)
         }
         EventKind::StepStarted { label, repeat, .. } => format!("{label} (repeat {})", repeat + 1),
-        EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows in the run by then", step + 1),
+        EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows", step + 1),
         EventKind::Control { control } => {
             let asked = serde_json::to_value(control).ok();
             format!("a person asked: {}", asked.as_ref().and_then(Value::as_str).unwrap_or("control"))

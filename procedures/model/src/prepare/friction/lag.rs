@@ -1,6 +1,6 @@
 //! A velocity that a drive estimates comes later than the position that it is told with: a filter stands between them.
 
-use crate::linear::dot;
+use crate::linear::{Basis, dot};
 use crate::prepare::filter::{by_recording, derivative};
 
 /// Beyond this share of a period at the corner of the low-pass filter a lag is not what two slopes can tell.
@@ -19,6 +19,19 @@ pub fn of(
     let ahead: Vec<f64> = slope_of_position.iter().zip(smooth_velocity).map(|(q, v)| q - v).collect();
     let lag_s = dot(&ahead, &acceleration) / dot(&acceleration, &acceleration).max(f64::MIN_POSITIVE);
     Some(lag_s).filter(|lag_s| lag_s.abs() * cutoff_hz <= LONGEST)
+}
+
+/// What a torque keeps, squared, beside friction, inertia and load of this motion.
+pub fn left(torque: &[f64], velocity: &[f64], acceleration: &[f64], load: Option<&[f64]>) -> f64 {
+    let mut columns = vec![
+        vec![1.0; torque.len()],
+        velocity.iter().map(|v| v.signum()).collect(),
+        velocity.to_vec(),
+        acceleration.to_vec(),
+    ];
+    columns.extend(load.map(<[f64]>::to_vec));
+    let rest = Basis::of(&columns).rest(torque);
+    dot(&rest, &rest)
 }
 
 /// The velocity at the moments of its position.
@@ -55,6 +68,19 @@ mod tests {
             let worst = (5..995).map(|i| (moved[i] - velocity(0.0)[i]).abs()).fold(0.0, f64::max);
             assert!(worst < 5e-3, "{lag_s} s: {worst}");
         }
+    }
+
+    #[test]
+    fn the_torque_says_of_which_moments_it_is() {
+        let time_s: Vec<f64> = (0..1000).map(|i| f64::from(i) * 0.004).collect();
+        let motion = |delay_s: f64| -> [Vec<f64>; 2] {
+            let phase = |t: f64| 7.0 * (t - delay_s);
+            [time_s.iter().map(|t| phase(*t).sin()).collect(), time_s.iter().map(|t| 7.0 * phase(*t).cos()).collect()]
+        };
+        let [v, a] = motion(0.0);
+        let torque: Vec<f64> = v.iter().zip(&a).map(|(v, a)| 0.03 * v.signum() + 0.01 * v + 1e-3 * a).collect();
+        let [late, late_a] = motion(0.002);
+        assert!(left(&torque, &v, &a, None) < 0.5 * left(&torque, &late, &late_a, None));
     }
 
     #[test]

@@ -63,10 +63,19 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
     let measured = run.column("motor_velocity_rad_s");
     let (velocity, smooth_velocity, lag_s) = match measured {
         Some(v) if wanted == Velocity::Aligned => {
-            let lag_s = lag::of(&time_s, &smoothed(v), &slope(&smoothed(position)), &starts, cutoff_hz);
-            let v = lag_s.map_or_else(|| v.to_vec(), |lag_s| lag::moved(&time_s, v, &starts, lag_s));
-            let smooth_velocity = smoothed(&v);
-            (v, smooth_velocity, lag_s)
+            let torque = smoothed(column("motor_current_a"));
+            let load = run.column("link_torque_nm").map(&smoothed);
+            // A current is mostly of the moments of the position. Where it clearly is of those of the velocity, that stays.
+            let left = |v: &[f64]| lag::left(&torque, v, &slope(v), load.as_deref());
+            let measured = smoothed(v);
+            let lag_s = lag::of(&time_s, &measured, &slope(&smoothed(position)), &starts, cutoff_hz);
+            let moved = lag_s.map(|lag_s| (lag::moved(&time_s, v, &starts, lag_s), lag_s));
+            let moved = moved.map(|(v, lag_s)| (smoothed(&v), v, lag_s));
+            let at_most = (1.0 + options.practical_share) * left(&measured);
+            match moved.filter(|(smooth, _, _)| left(smooth) < at_most) {
+                Some((smooth, v, lag_s)) => (v, smooth, Some(lag_s)),
+                None => (v.to_vec(), measured, None),
+            }
         }
         Some(v) => (v.to_vec(), smoothed(v), None),
         None => {
