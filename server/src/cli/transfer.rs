@@ -95,9 +95,9 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
                 Ok(health) if in_use.to_string().contains(&format!("(process {})", health.process)) => {
                     Ok(Way::Daemon(client))
                 }
-                _ => {
-                    Err(Exit::bad_input(format!("{in_use}; give the address of the daemon that has it with --daemon")))
-                }
+                _ => Err(Exit::bad_input(format!(
+                    "{in_use}, or give the address of the daemon that has it with --daemon"
+                ))),
             }
         }
         Err(fault) => Err(LabError::from(fault).into()),
