@@ -213,7 +213,7 @@ impl Recorder for Hand {
     }
 
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
-        let waits = EventKind::State { state: RunState::Paused };
+        let waits = EventKind::State { state: RunState::Paused, reason: None };
         if commit.events.iter().any(|event| event.kind == waits) {
             self.asked += 1;
             if self.asked > 1 {

@@ -118,7 +118,7 @@ pub fn run_event(record: EventRecord) -> view::RunEvent {
 
 fn sentence(kind: &EventKind) -> String {
     match kind {
-        EventKind::State { state } => format!("run {state}"),
+        EventKind::State { state, .. } => format!("run {state}"),
         EventKind::Identified { instrument, port, identity } => {
             let firmware = match identity.firmware.as_str() {
                 "" => String::new(),

@@ -134,14 +134,11 @@ impl Store {
             insert_events(&mut writer, run, &[Event { at_s, kind: EventKind::Safe { safe } }]).await?;
         }
         if !word::<RunState>(&before)?.is_final() {
-            let end = Event { at_s, kind: EventKind::State { state } };
+            let end = Event { at_s, kind: EventKind::State { state, reason: reason.map(str::to_owned) } };
             append(&mut writer, run, state, &[end], Trace::default()).await?;
+        } else {
+            keep_reason(&mut writer, run, reason).await?;
         }
-        sqlx::query("UPDATE runs SET reason = COALESCE(reason, ?) WHERE id = ?")
-            .bind(reason)
-            .bind(run)
-            .execute(&mut *writer)
-            .await?;
         Ok(writer.commit().await?)
     }
 
@@ -158,7 +155,7 @@ impl Store {
                 .bind(run)
                 .fetch_one(&self.writer)
                 .await?;
-            let event = Event { at_s, kind: EventKind::State { state: RunState::Interrupted } };
+            let event = Event { at_s, kind: EventKind::State { state: RunState::Interrupted, reason: None } };
             self.commit(run, RunState::Interrupted, &[event], Default::default()).await?;
             interrupted.push(self.run(run).await?);
         }
@@ -184,7 +181,8 @@ pub(super) async fn insert_run(writer: &mut SqliteConnection, new: &NewRun) -> R
     Ok(inserted.last_insert_rowid())
 }
 
-/// Appends to the journal; what an event says about safety is taken over into the run and the bench.
+/// Appends to the journal; what an event says about safety is taken over into the run and the bench, and why a run ended
+/// into the run: whoever finds it over finds its reason.
 pub(super) async fn insert_events(
     writer: &mut SqliteConnection,
     run: RunId,
@@ -208,10 +206,19 @@ pub(super) async fn insert_events(
             .bind(serde_json::to_string(&data)?)
             .execute(&mut *writer)
             .await?;
-        if let EventKind::Safe { safe } = &event.kind {
-            super::safety::keep_safe(writer, run, *safe).await?;
+        match &event.kind {
+            EventKind::Safe { safe } => super::safety::keep_safe(writer, run, *safe).await?,
+            EventKind::State { reason: Some(reason), .. } => keep_reason(writer, run, Some(reason)).await?,
+            _ => {}
         }
     }
+    Ok(())
+}
+
+/// The first reason that is told stays.
+async fn keep_reason(writer: &mut SqliteConnection, run: RunId, reason: Option<&str>) -> Result<(), StoreError> {
+    let update = sqlx::query("UPDATE runs SET reason = COALESCE(reason, ?) WHERE id = ?");
+    update.bind(reason).bind(run).execute(writer).await?;
     Ok(())
 }
 

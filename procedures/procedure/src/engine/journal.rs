@@ -62,10 +62,10 @@ impl<'a> Journal<'a> {
     }
 
     /// The one place where a run changes its state; durable when this returns.
-    pub fn enter(&mut self, now_s: f64, transition: Transition) -> Result<(), Ending> {
+    pub fn enter(&mut self, now_s: f64, transition: Transition, reason: Option<String>) -> Result<(), Ending> {
         self.state = self.state.after(transition).map_err(Ending::Illegal)?;
         tracing::info!(run.id = self.run, state = %self.state, "run state");
-        self.tell(now_s, EventKind::State { state: self.state });
+        self.tell(now_s, EventKind::State { state: self.state, reason });
         Ok(self.commit(now_s)?)
     }
 

@@ -88,7 +88,7 @@ impl Session<'_> {
         self.look_behind(&mut ending);
         let now_s = self.bench.clock.now_s();
         self.journal.tell(now_s, Some(EventKind::Safe { safe }));
-        if let Err(unkept) = self.enter(Transition::End(ending.outcome())) {
+        if let Err(unkept) = self.end(&ending) {
             tracing::error!(run.id = self.journal.run, "the end of the run was not kept: {unkept}");
             if matches!(ending, Ending::Completed) {
                 ending = unkept;

@@ -173,7 +173,12 @@ impl<'a> Session<'a> {
     }
 
     pub fn enter(&mut self, transition: Transition) -> Result<(), Ending> {
-        self.journal.enter(self.bench.clock.now_s(), transition)
+        self.journal.enter(self.bench.clock.now_s(), transition, None)
+    }
+
+    /// The last state, with why it came to that.
+    pub fn end(&mut self, ending: &Ending) -> Result<(), Ending> {
+        self.journal.enter(self.bench.clock.now_s(), Transition::End(ending.outcome()), ending.reason())
     }
 
     pub fn note(&mut self, text: impl Into<String>) {

@@ -1,7 +1,7 @@
 //! What is kept of a run, and when.
 
 use crate::fakes::Fakes;
-use crate::ledger::{loaded_plan, play};
+use crate::ledger::{loaded_plan, play, play_controlled};
 use jointbench_procedure::*;
 
 #[test]
@@ -45,6 +45,14 @@ fn a_whole_run_is_kept_once_and_in_order() {
     let closest_s = sent.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::MAX, f64::min);
     assert!(closest_s >= 0.099, "the supply takes a new current every 0.1 s, not {closest_s} s");
     assert!(done.ledger.live_rows >= table.len() - 9, "all but the last rows were shown");
+}
+
+#[test]
+fn the_commit_that_ends_a_run_says_why() {
+    let done = play_controlled(&[(3.0, Control::Stop)]);
+    let last = done.ledger.kept.last().and_then(|kept| kept.events.last()).expect("an end");
+    let reason = done.end.reason.clone();
+    assert_eq!((reason.is_some(), &last.kind), (true, &EventKind::State { state: RunState::Stopped, reason }));
 }
 
 #[test]

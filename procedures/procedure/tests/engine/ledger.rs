@@ -47,7 +47,7 @@ impl Ledger {
 
     pub fn states(&self) -> Vec<RunState> {
         let state = |event: &Event| match event.kind {
-            EventKind::State { state } => Some(state),
+            EventKind::State { state, .. } => Some(state),
             _ => None,
         };
         self.events().filter_map(state).collect()

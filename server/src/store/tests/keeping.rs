@@ -34,6 +34,13 @@ fn a_run_is_kept_with_all_that_it_was_started_with() {
         assert_eq!((events[1].kind.as_str(), &events[1].data["safe"]), ("safe", &json!("safe_verified")));
         assert_eq!(store.events(run, 2).await.unwrap(), events[2..]);
 
+        let failed = store.create_run(&new_run()).await.unwrap();
+        let why = EventKind::State { state: RunState::Failed, reason: Some("the drive has a fault".into()) };
+        let end = Event { at_s: 0.0, kind: why };
+        store.commit(failed, RunState::Failed, &[end], Trace::default()).await.unwrap();
+        let kept = store.run(failed).await.unwrap().reason;
+        assert_eq!(kept.as_deref(), Some("the drive has a fault"), "with the state that it is the reason of");
+
         let over = store.commit(run, RunState::Running, &[], rows(500, 1)).await.unwrap_err();
         assert!(matches!(over, StoreError::RunOver { .. }), "{over}");
         assert!(matches!(store.run(99).await.unwrap_err(), StoreError::NoRun(99)));
