@@ -1,9 +1,12 @@
 //! What a procedure makes of its run: a verdict in words, quantities with their intervals, figures. A pure function of the
 //! stored run, so that it can be repeated later with newer code.
 
+use crate::recorder::RunId;
 use crate::state::RunState;
 use serde::Serialize;
 use serde_json::{Map, Value};
+
+const NOT_AT_ITS_END: &str = "The run did not come to its end";
 
 /// Whether the run has shown what it was made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -19,9 +22,9 @@ pub enum Verdict {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Identification {
     pub verdict: Verdict,
-    /// One plain sentence.
+    /// One plain sentence. A `RUN` in its commands stands for the number of the run, which [`Self::of_run`] writes.
     pub summary: String,
-    /// What to measure or mend next.
+    /// What to measure or mend next, with commands alike.
     pub advice: Option<String>,
     pub quantities: Vec<Quantity>,
     pub figures: Vec<Figure>,
@@ -39,24 +42,27 @@ impl Identification {
         }
     }
 
-    /// The same, made of a run that is in this state: a run that did not come to its end has not shown what it was made
-    /// for, whatever its part says.
-    pub fn of_run_in(mut self, state: RunState) -> Self {
-        if state == RunState::Completed {
-            return self;
+    /// The same, made of this run, which is in this state: a run that did not come to its end has not shown what it was made
+    /// for, whatever its part says. `goes_on`: what is left of it may be made later.
+    pub fn of_run(mut self, run: RunId, state: RunState, goes_on: bool) -> Self {
+        if state != RunState::Completed {
+            let (part, next) = match (state.is_final(), goes_on) {
+                (false, _) => ("The run is not at its end yet", "let it come to its end"),
+                (true, false) => (NOT_AT_ITS_END, "make it again"),
+                (true, true) => {
+                    (NOT_AT_ITS_END, "make the rest of it (jointbench run --continue RUN), or make it again")
+                }
+            };
+            self.summary = format!("{part} ({state}), this is what its part says: {}", self.summary);
+            // What a part lacks is no fault of how the run was planned.
+            self.advice = Some(next.to_owned());
+            if self.verdict == Verdict::Identified {
+                self.verdict = Verdict::Inconclusive;
+            }
         }
-        let (part, next) = if state.is_final() {
-            ("The run did not come to its end", "make the rest of it (jointbench run --continue RUN), or make it again")
-        } else {
-            ("The run is not at its end yet", "let it come to its end")
-        };
-        self.summary = format!("{part} ({state}), this is what its part says: {}", self.summary);
-        // What a part lacks is no fault of how the run was planned.
-        self.advice = Some(next.to_owned());
-        if self.verdict == Verdict::Identified {
-            self.verdict = Verdict::Inconclusive;
-        }
-        self
+        // Commands are there to be typed as they stand.
+        let numbered = |text: String| text.replace("RUN", &run.to_string());
+        Self { summary: numbered(self.summary), advice: self.advice.map(numbered), ..self }
     }
 
     /// The first quantity of that name.
@@ -155,5 +161,22 @@ impl Series {
     pub fn new(label: &str, mark: Mark, x: Vec<f64>, y: Vec<f64>) -> Self {
         assert_eq!(x.len(), y.len(), "series {label}");
         Self { label: label.to_owned(), mark, x, y, band: Vec::new() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_to_do_next_can_be_typed() {
+        let said = |state, goes_on| {
+            let made = Identification::failed("Too few steps.", "look closer (jointbench export RUN)");
+            made.of_run(12, state, goes_on).advice.unwrap()
+        };
+        assert_eq!(said(RunState::Completed, true), "look closer (jointbench export 12)");
+        assert!(said(RunState::Stopped, true).contains("jointbench run --continue 12"));
+        assert_eq!(said(RunState::Failed, false), "make it again");
+        assert_eq!(said(RunState::Paused, true), "let it come to its end");
     }
 }

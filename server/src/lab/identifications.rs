@@ -24,7 +24,7 @@ impl Lab {
             .await
             .map_err(|fault| LabError::Internal(format!("the identification of run {id} failed: {fault}")))?
             .ok_or_else(none)?
-            .of_run_in(record.state);
+            .of_run(id, record.state, procedure.goes_on().is_ok());
         if let [before @ .., last] = runs.as_slice()
             && !before.is_empty()
         {

@@ -53,7 +53,7 @@ pub(crate) enum Unusable {
     TooLittle(&'static str),
     #[error(
         "speed leaves {} (RMS) of the torque unexplained, beside which friction is not decided: see what the rest follows in \
-         the workbench or in the exported file (jointbench export RUN, jointbench diagnose FILE), or add repeats",
+         the workbench or in the exported file (jointbench export RUN, jointbench diagnose run-RUN.csv), or add repeats",
         words::figure(*.rest_nm, "Nm")
     )]
     Scattered { rest_nm: f64 },

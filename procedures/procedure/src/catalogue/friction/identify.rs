@@ -149,7 +149,7 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
     let advice = match (&rest, is_decided) {
         (Some(_), _) => Some(
             "To see what the rest follows, open the run in the workbench, or export it and have the file diagnosed \
-             (jointbench export RUN, jointbench diagnose FILE).",
+             (jointbench export RUN, jointbench diagnose run-RUN.csv).",
         ),
         (None, false) => Some("To decide the Stribeck part, repeat with more repeats or a lower stribeck_speed_rad_s."),
         (None, true) => None,
