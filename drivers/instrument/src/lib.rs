@@ -11,6 +11,7 @@ pub mod limits;
 pub mod meta;
 pub mod roles;
 pub mod skew;
+pub mod spelling;
 pub mod table;
 pub mod trace;
 pub mod units;

@@ -14,7 +14,7 @@ use utoipa::{IntoResponses, ToSchema};
 /// RFC 9457 problem document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
-    /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `bench_fault`, `malformed`,
+    /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `over`, `bench_fault`, `malformed`,
     /// `forbidden`, `unauthorized`, `not_allowed`, `too_large`, `internal`.
     #[serde(rename = "type")]
     #[schema(value_type = String)]
@@ -41,6 +41,9 @@ pub struct Problem {
     pub place: Option<Box<Place>>,
 }
 
+/// Kind of what no waiting will change.
+const OVER: &str = "over";
+
 /// A mistake in a text that a user wrote.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Place {
@@ -66,6 +69,15 @@ impl Problem {
             line: None,
             column: None,
             place: None,
+        }
+    }
+
+    /// As [`LabError::exit_code`] says it of the same refusal.
+    pub fn exit_code(&self) -> u8 {
+        match self.status {
+            409 if self.type_.ends_with(OVER) => 2,
+            409 | 500.. => 1,
+            _ => 2,
         }
     }
 
@@ -121,6 +133,7 @@ impl From<LabError> for Problem {
                 ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "formula", "The formula is wrong", detail)
             },
             LabError::Conflict(_) => Self::new(StatusCode::CONFLICT, "conflict", "Not at this moment", detail),
+            LabError::Over(_) => Self::new(StatusCode::CONFLICT, OVER, "Not any more", detail),
             LabError::Bench(_) => {
                 Self::new(StatusCode::SERVICE_UNAVAILABLE, "bench_fault", "The bench does not answer", detail)
             }

@@ -75,9 +75,7 @@ impl Client {
             return Ok(bytes);
         }
         Err(match serde_json::from_slice::<Problem>(&bytes) {
-            Ok(problem) => {
-                Exit { code: if problem.status < 500 && problem.status != 409 { 2 } else { 1 }, said: problem.detail }
-            }
+            Ok(problem) => Exit { code: problem.exit_code(), said: problem.detail },
             Err(_) => Exit::failed(format!("{} answered {status}: is a jointbench daemon there?", self.base)),
         })
     }

@@ -1,6 +1,7 @@
 //! What a script demands of a result: `tau_c < 0.035 Nm`.
 
 use crate::view::{Identification, Quantity};
+use jointbench_instrument::spelling::nearest;
 use jointbench_procedure::catalogue::Findable;
 use std::str::FromStr;
 
@@ -62,9 +63,16 @@ impl Requirement {
             Some(findable) => factor(&self.unit, findable.unit).map(drop).ok_or_else(|| self.in_unit(findable.unit)),
             None => {
                 let names: Vec<&str> = finds.iter().map(|findable| findable.name.as_str()).collect();
-                Err(format!("{procedure} finds no {}; it finds {}", self.name, names.join(", ")))
+                Err(format!("{procedure} finds no {}; {}", self.name, self.instead(&names)))
             }
         }
+    }
+
+    /// What could be demanded instead.
+    fn instead(&self, names: &[&str]) -> String {
+        let meant = nearest(&self.name, names.iter().copied());
+        let meant = meant.map(|near| format!("did you mean {near}? ")).unwrap_or_default();
+        format!("{meant}there are {}", names.join(", "))
     }
 
     fn in_unit(&self, unit: &str) -> String {
@@ -76,8 +84,8 @@ impl Requirement {
         let quantities = &found.result.quantities;
         let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {
             let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
-            let there = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
-            return Kept::Unknown(format!("{} is not in the result: there is {there}", self.name));
+            let there = if names.is_empty() { "it is without any figure".to_owned() } else { self.instead(&names) };
+            return Kept::Unknown(format!("--require '{}': the result has no {}; {there}", self.text, self.name));
         };
         let Some(factor) = factor(&self.unit, &quantity.unit) else {
             return Kept::Unknown(self.in_unit(&quantity.unit));
@@ -154,7 +162,8 @@ pub(super) mod tests {
     #[test]
     fn what_cannot_be_checked_says_why() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
-        assert_eq!(check("tau_x < 1 Nm"), Kept::Unknown("tau_x is not in the result: there is tau_c".to_owned()));
+        let why = "--require 'tau_x < 1 Nm': the result has no tau_x; did you mean tau_c? there are tau_c";
+        assert_eq!(check("tau_x < 1 Nm"), Kept::Unknown(why.to_owned()));
         assert_eq!(check("tau_c < 1 A"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
         assert_eq!(check("tau_c < 1"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
         for text in ["tau_c", "< 3 Nm", "tau_c < much", "tau_c < NaN Nm"] {

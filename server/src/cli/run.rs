@@ -89,10 +89,11 @@ fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -
         Kept::Yes(said) => ("kept", said, 0),
         Kept::No(said) => ("broken", said, 1),
         Kept::Unsure(said) => ("unsure", said, 3),
-        Kept::Unknown(said) => ("not checked", said, 2),
+        Kept::Unknown(said) => ("unknown", said, 2),
     });
+    // What cannot be checked is an error of use, which the command ends with.
     if !quiet {
-        told.clone().for_each(|(word, said, _)| println!("{word}: {said}"));
+        told.clone().filter(|(_, _, code)| *code != 2).for_each(|(word, said, _)| println!("{word}: {said}"));
     }
     let result = match found {
         None => Ok(()),
@@ -102,7 +103,8 @@ fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -
         }
         Some(Err(exit)) => Err(exit.clone()),
     };
-    let of_demands = told.map(|(_, said, code)| Exit { code, said: if quiet { said.clone() } else { String::new() } });
+    let of_demands =
+        told.map(|(_, said, code)| Exit { code, said: if quiet || code == 2 { said.clone() } else { String::new() } });
     let exits: Vec<Exit> = result.err().into_iter().chain(of_demands).collect();
     match [2, 1, 3].into_iter().find_map(|code| exits.iter().find(|exit| exit.code == code)) {
         None => Ok(()),
@@ -167,7 +169,7 @@ pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
     let mut shown = RunProgress::begin();
     loop {
         let run: Run = client.get(&format!("/runs/{id}"))?;
-        // The end is written in two strokes: the state with the last samples, then how the bench was secured.
+        // A run that its daemon has left is told in two strokes: its end, then how the bench was secured and why.
         if is_over(run.summary.state) && run.summary.safe.is_some() {
             shown.end();
             return Ok(run);

@@ -7,7 +7,7 @@ use super::offline::json_out;
 use super::run::{ending, is_over, wait};
 use super::serve::runtime;
 use super::transfer::{Way, open};
-use crate::view::{Run, RunList, RunSummary, word};
+use crate::view::{Run, RunList, RunState, RunSummary, Safe, word};
 
 /// Of a run that is not over, in a folder that no daemon has.
 const NO_DAEMON: &str =
@@ -66,7 +66,11 @@ pub fn stop(arguments: &Stop) -> Done {
     let _: Run = client.post(&format!("/runs/{id}/{how}"), &())?;
     let run = wait(&client, id)?;
     println!("{}", ending(&run));
-    Ok(())
+    let failed = matches!(run.summary.state, RunState::Failed | RunState::Interrupted);
+    match failed || run.summary.safe == Some(Safe::UnsafeUnknown) {
+        true => Err(Exit::failed("")),
+        false => Ok(()),
+    }
 }
 
 fn the_one_that_is_on(client: &Client) -> Result<i64, Exit> {

@@ -126,7 +126,7 @@ impl Lab {
         let told = self.inner.flights.lock().get(&id).is_some_and(|flight| flight.stop.send(true).is_ok());
         let now = self.autopilot(id).await?;
         if !told {
-            return Err(LabError::Conflict(format!("autopilot {id} is over: there is nothing to stop")));
+            return Err(LabError::Over(format!("autopilot {id} is over: there is nothing to stop")));
         }
         Ok(now)
     }

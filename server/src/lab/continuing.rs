@@ -15,7 +15,7 @@ impl Lab {
         let name = &record.procedure;
         match record.state {
             RunState::Completed => {
-                return Err(LabError::Conflict(format!("run {id} is complete: nothing is left of it")));
+                return Err(LabError::Over(format!("run {id} is complete: nothing is left of it")));
             }
             state if !state.is_final() => {
                 return Err(LabError::Conflict(format!("run {id} is {state}: resume it, or wait for its end")));
@@ -23,7 +23,7 @@ impl Lab {
             _ => {}
         }
         if let Some(later) = self.inner.store.continued_by(id).await? {
-            return Err(LabError::Conflict(format!(
+            return Err(LabError::Over(format!(
                 "run {id} was gone on with already, by run {later}: go on with that one, or look at it"
             )));
         }

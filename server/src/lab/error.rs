@@ -4,7 +4,8 @@
 //! * [`LabError::Invalid`]: the request is understood, but its values make no sense here; say what to do instead.
 //! * [`LabError::File`]: a measurement file or description was refused; carries file, line and column where known.
 //! * [`LabError::Formula`]: a user's effect is wrong at a character.
-//! * [`LabError::Conflict`]: right request, wrong moment (bench busy, bench blocked, run already over).
+//! * [`LabError::Conflict`]: right request, wrong moment (bench busy, bench blocked).
+//! * [`LabError::Over`]: too late for ever, whatever is waited for (a run that has ended, or was gone on with).
 //! * [`LabError::Bench`]: an instrument does not do what it should.
 //! * [`LabError::Setup`]: the daemon cannot start as it was asked to (port taken, folder unwritable, old database).
 //! * [`LabError::Internal`]: ours; the detail goes to the log as well.
@@ -23,6 +24,8 @@ pub enum LabError {
     Formula(Box<jointbench_model::FormulaFault>),
     #[error("{0}")]
     Conflict(String),
+    #[error("{0}")]
+    Over(String),
     #[error("{0}")]
     Bench(String),
     #[error("{0}")]
@@ -45,6 +48,7 @@ impl LabError {
         match self {
             LabError::Conflict(_) | LabError::Bench(_) | LabError::Internal(_) => 1,
             LabError::NotFound(_)
+            | LabError::Over(_)
             | LabError::Invalid(_)
             | LabError::File { .. }
             | LabError::Formula(_)

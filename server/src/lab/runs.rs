@@ -64,10 +64,11 @@ impl Lab {
 
     pub async fn control(&self, id: i64, control: Control) -> Answer<Run> {
         let record = self.inner.store.run(id).await?;
-        let on = !record.state.is_final()
-            && self.inner.benches.iter().any(|bench| bench.name() == record.bench && bench.control(control));
-        if !on {
-            return Err(LabError::Conflict(format!("run {id} is {}: there is nothing to steer", record.state)));
+        if record.state.is_final() {
+            return Err(LabError::Over(format!("run {id} is over ({}): there is nothing to steer", record.state)));
+        }
+        if !self.inner.benches.iter().any(|bench| bench.name() == record.bench && bench.control(control)) {
+            return Err(LabError::Conflict(format!("run {id} is {}, and not to be steered now", record.state)));
         }
         self.run(id).await
     }

@@ -85,7 +85,7 @@ fn runs_are_listed_and_ended_from_the_command_line() {
     assert_eq!(idle.status.code(), Some(2));
     assert!(stderr(&idle).contains("no run is on"), "{}", stderr(&idle));
     for (option, value, why) in [
-        ("--require", "tau_x < 1 Nm", "finds no tau_x"),
+        ("--require", "tau_x < 1 Nm", "finds no tau_x; did you mean tau_c? there are tau_c, tau_h"),
         ("--require", "tau_c < 35 kg", "tau_c is in Nm"),
         ("--junit", "/nowhere/out.xml", "there is no folder /nowhere"),
     ] {
@@ -100,6 +100,11 @@ fn runs_are_listed_and_ended_from_the_command_line() {
     let stopped = said(&["stop"]);
     assert!(stopped.status.success(), "{}", stderr(&stopped));
     assert!(stdout(&stopped).contains(&format!("run {id} stopped")), "{}", stdout(&stopped));
+    for (late, why) in [(&["stop", "1"][..], "run 1 is over (stopped)"), (&["stop", "9"], "there is no run 9")] {
+        let late = said(late);
+        assert_eq!(late.status.code(), Some(2), "{}", stderr(&late));
+        assert!(stderr(&late).contains(why), "{}", stderr(&late));
+    }
     let listed = stdout(&said(&["runs", "state:stopped"]));
     assert!(listed.lines().count() == 1 && listed.contains("friction"), "{listed}");
     assert!(stdout(&said(&["runs", "state:failed"])).contains("no run matches"));
@@ -122,6 +127,9 @@ fn a_run_that_decides_nothing_is_no_success() {
     let late = run(&["run", "--continue", "1", "--require", "tau_c < 35 kg", "--daemon", daemon.base.as_str()]);
     assert_eq!((late.status.code(), daemon.get("/runs")["total"].as_i64()), (Some(2), Some(1)));
     assert!(stderr(&late).contains("tau_c is in Nm"), "{}", stderr(&late));
+    let complete = run(&["run", "--continue", "1", "--daemon", daemon.base.as_str()]);
+    assert_eq!(complete.status.code(), Some(2));
+    assert!(stderr(&complete).contains("run 1 is complete: nothing is left of it"), "{}", stderr(&complete));
     let again = run(&["identify", "1", "--daemon", daemon.base.as_str()]);
     assert_eq!(again.status.code(), Some(3), "{}", stdout(&again));
 }

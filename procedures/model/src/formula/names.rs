@@ -5,6 +5,7 @@ use super::fault::Mistake;
 use super::function::Function;
 use super::signals::{NamedSignal, signals};
 use jointbench_instrument::Kind;
+use jointbench_instrument::spelling::{instead, nearest};
 use std::ops::Range;
 
 pub struct Names<'n> {
@@ -41,7 +42,7 @@ impl<'n> Names<'n> {
             format!("write {} ({})", signal.name, signal.meaning)
         } else if Function::find(name).is_some() {
             format!("{name} is a function: write its arguments in brackets")
-        } else if let Some(near) = known().chain(self.parameters.iter().copied()).find(|known| is_near(name, known)) {
+        } else if let Some(near) = nearest(name, known().chain(self.parameters.iter().copied())) {
             format!("did you mean {near}?")
         } else {
             let declare = format!("declare it as a parameter with its unit and range, such as `{name} [Nm] 0..1`");
@@ -79,19 +80,5 @@ fn signal_or_constant(name: &str, kind: Kind) -> Option<What> {
 fn no_function(name: &str, start: usize) -> Mistake {
     let at = start..start + name.len();
     let names: Vec<&str> = Function::ALL.iter().map(|f| f.name()).collect();
-    let hint = match names.iter().find(|known| is_near(name, known)) {
-        Some(near) => format!("did you mean {near}?"),
-        None => format!("there are {}", names.join(", ")),
-    };
-    Mistake::new(at, format!("there is no function {name}; {hint}"))
-}
-
-/// One letter wrong, missing, too many, or two in the wrong order.
-fn is_near(a: &str, b: &str) -> bool {
-    let (a, b): (Vec<char>, Vec<char>) = (a.to_lowercase().chars().collect(), b.to_lowercase().chars().collect());
-    let head = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
-    let tail = a[head..].iter().rev().zip(b[head..].iter().rev()).take_while(|(a, b)| a == b).count();
-    let (left_a, left_b) = (&a[head..a.len() - tail], &b[head..b.len() - tail]);
-    let swapped = left_a.len() == 2 && left_b.len() == 2 && left_a[0] == left_b[1] && left_a[1] == left_b[0];
-    a.len().max(b.len()) > 2 && (swapped || left_a.len().max(left_b.len()) <= 1)
+    Mistake::new(at, format!("there is no function {name}; {}", instead(name, &names)))
 }

@@ -50,6 +50,7 @@ pub enum Command {
     )]
     Run(Run),
     /// End a run that is on: the brake is unloaded while the shaft turns, and what was measured is kept
+    #[command(after_help = STOP)]
     Stop(Stop),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
@@ -185,6 +186,10 @@ pub struct Stop {
     pub reach: Reach,
 }
 
+const STOP: &str = "\
+Exit codes: 0 the run has ended and the bench is safe, 1 the run failed before it could be ended or the bench is not known \
+to be safe, 2 nothing is there to be ended: no run is on, or the one that is named is over.";
+
 const AUTOPILOT: &str = "\
 It makes a run, fits the baseline and diagnoses it. What is missing and certain is added. Where two effects explain the
 data equally well, or an effect could not have shown, it makes the run that is expected to decide, and begins again with
@@ -200,8 +205,8 @@ or the budget is spent and something is still open.";
 
 const RUN: &str = "\
 Exit codes, where the end is waited for: 0 the procedure has identified what it is for and every \
-demand is kept, 1 the run or its identification failed or a limit was broken, 2 bad arguments, \
-3 the identification is inconclusive or a demand unsure.";
+demand is kept, 1 the run or its identification failed or a limit was broken, 2 bad arguments (also \
+--continue of a run of which nothing is left, and --require of a quantity that the result does not have), 3 the identification is inconclusive or a demand unsure.";
 
 #[derive(Debug, Args)]
 pub struct Autopilot {
