@@ -28,7 +28,8 @@ pub enum Control {
     Resume,
     /// Orderly end: the brake is ramped down while the shaft turns, then the shaft comes to rest.
     Stop,
-    /// End at once: shaft and brake ramp down together, as fast as the ramps of the plan allow.
+    /// End at once: the shaft ramps down as fast as the plan allows, and the brake's current is taken away behind it, which leaves
+    /// poles in the brake.
     Abort,
     /// Drive torque off before anything else.
     #[serde(rename = "estop")]

@@ -44,7 +44,7 @@ impl Ending {
 pub(super) enum Urgency {
     /// Unload the brake while the shaft turns, then come to rest.
     Orderly,
-    /// Shaft and brake ramp down together.
+    /// The shaft ramps down, and the brake's current is taken away behind it.
     Quick,
     /// Drive torque off first.
     Cut,

@@ -3,7 +3,6 @@
 use super::ending::{Ending, Urgency};
 use super::safe_state::secure;
 use super::session::Session;
-use super::tick::BRAKE_EVERY_S;
 use crate::event::{EventKind, Safe};
 use crate::guard::STANDSTILL_LINK_RAD_S;
 use crate::profile::Profile;
@@ -105,16 +104,13 @@ impl Session<'_> {
         speed_rad_s.copysign(ahead)
     }
 
-    /// Shaft and brake go down together, the brake a little sooner. Nothing is sped up for it.
+    /// The shaft comes to rest, and nothing is sped up for it. The brake's current stays for securing to take away: no supply
+    /// answers in time for the shaft to turn until it has fallen, and what a fall at standstill leaves is told there, with the
+    /// current that has left it.
     fn come_to_rest(&mut self) -> Result<(), Ending> {
         let velocity_rad_s = self.commanded.velocity_rad_s;
         let rest_s = QUICK_S.max(velocity_rad_s.abs() / self.plan.acceleration_rad_s2);
         let velocity = Profile::from(velocity_rad_s).to(0.0, rest_s);
-        // The brake's last command may come so late, and still has to find the shaft turning.
-        let last_s = 0.5 * rest_s + BRAKE_EVERY_S + self.beat.period_s;
-        let turning = velocity.at(last_s).abs() / self.bench.constants.gear_ratio > STANDSTILL_LINK_RAD_S;
-        let brake = Profile::from(self.commanded.brake_a);
-        let brake = if turning { brake.to(0.0, 0.5 * rest_s) } else { brake };
-        self.drive(&velocity, &brake)
+        self.drive(&velocity, &Profile::constant(self.commanded.brake_a))
     }
 }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::sync::mpsc::TryRecvError;
 
 /// A supply needs up to 118 ms for a new current (scpi-current-source, timing): more commands would only queue.
-pub(super) const BRAKE_EVERY_S: f64 = 0.1;
+const BRAKE_EVERY_S: f64 = 0.1;
 /// Temperature and supply are read this often and held in between.
 const SLOW_EVERY_S: f64 = 0.5;
 /// A supply is good for 10 to 20 readings a second (scpi-current-source, timing): so often while its current changes.

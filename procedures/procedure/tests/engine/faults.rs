@@ -73,10 +73,10 @@ fn a_lost_sensor_ends_the_run_safely() {
     let done = failing(Role::Torque, lost, |_| true);
     done.check_safe(RunState::Failed).check_no_cogging();
     assert!(done.end.reason.as_ref().unwrap().contains("torque_sensor on pty1"));
-    // The joint still obeys: it comes to rest on its ramp, and the brake is unloaded on the way.
+    // The joint still obeys: it comes to rest on its ramp.
     let setpoints = done.world.commands(|call| matches!(call, Call::SetVelocity(_)));
     assert!(setpoints.last().is_some_and(|(at_s, call)| *call == Call::SetVelocity(0.0) && *at_s < 102.5));
-    assert!(!done.ledger.notes().iter().any(|note| note.contains("harder") || note.contains("demagnetise")));
+    assert!(!done.ledger.notes().iter().any(|note| note.contains("harder")));
 }
 
 /// A supply that hears and does, but does not answer any more.

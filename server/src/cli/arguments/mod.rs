@@ -179,7 +179,8 @@ pub struct Run {
 pub struct Stop {
     /// Number of the run [default: the one that is on]
     pub run: Option<i64>,
-    /// End it at once: shaft and brake come down together
+    /// End it at once: the shaft comes to rest, then the brake's current is taken away. That leaves poles in a brake that
+    /// was loaded: make `demagnetise` before the next run that counts on it
     #[arg(long)]
     pub now: bool,
     #[command(flatten)]
