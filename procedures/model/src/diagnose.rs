@@ -171,6 +171,7 @@ fn suggestions(
             validation_rms: with.validation_rms,
             error_reduction: reduction,
             p_value: rival.p_value,
+            p_at_most: rival.p_value * (options.flips + 1) as f64 <= 1.001,
             error_reduction_together: found.lost_without(rival.term.id()),
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
             confounded_with,

@@ -2,8 +2,8 @@
 
 use jointbench_instrument::Motion;
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Options, Parameter,
-    ParameterPair, ParameterState, Region, ResidualKind, Suggestion, formula, words,
+    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Parameter, ParameterPair,
+    ParameterState, Region, ResidualKind, Suggestion, formula, words,
 };
 use std::path::Path;
 
@@ -244,7 +244,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
             true => format!(" alone, {:+.1} % beside the others", -100.0 * suggestion.error_reduction_together),
             false => String::new(),
         };
-        println!("  {}. {}: {gain}{together}, {}", i + 1, suggestion.effect, chance(suggestion.p_value));
+        println!("  {}. {}: {gain}{together}, {}", i + 1, suggestion.effect, chance(suggestion));
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
             let [low, high] = parameter.ci95;
@@ -255,10 +255,8 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     }
 }
 
-/// No flip can show less than one in all of them.
-fn chance(p_value: f64) -> String {
-    let least = 1.0 / (Options::default().flips + 1) as f64;
-    if p_value <= 1.001 * least { format!("p ≤ {least:.3}") } else { format!("p = {p_value:.3}") }
+fn chance(suggestion: &Suggestion) -> String {
+    format!("p {} {:.3}", if suggestion.p_at_most { '≤' } else { '=' }, suggestion.p_value)
 }
 
 /// A whole number that was chosen has no width, and neither has what the run cannot show.

@@ -9,7 +9,6 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 
 pub struct RunProgress {
     bar: Option<ProgressBar>,
-    began: Instant,
     told: Option<Instant>,
 }
 
@@ -20,16 +19,13 @@ impl RunProgress {
             ProgressBar::new(1000)
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("##-"))
         });
-        Self { bar, began: Instant::now(), told: None }
+        Self { bar, told: None }
     }
 
     pub fn show(&mut self, progress: &Progress) {
         let whole_s = progress.elapsed_s + progress.remaining_s;
         let share = if whole_s > 0.0 { (progress.elapsed_s / whole_s).clamp(0.0, 1.0) } else { 0.0 };
-        // Bench time may run faster than the clock on the wall.
-        let wall_s = self.began.elapsed().as_secs_f64();
-        let left =
-            if share > 0.02 { format!("{:.0} s left", wall_s * (1.0 - share) / share) } else { "…".to_owned() };
+        let left = format!("{:.0} s left", progress.remaining_s);
         let step = format!("step {}/{}", (progress.step + 1).min(progress.steps), progress.steps);
         if let Some(bar) = &self.bar {
             bar.set_position((1000.0 * share) as u64);

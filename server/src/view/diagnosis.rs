@@ -110,6 +110,9 @@ pub struct Suggestion {
     pub error_reduction_together: f64,
     /// Family-wise, from sign flips of whole blocks.
     pub p_value: f64,
+    /// No flip scored as high: the chance is `p_value` at most.
+    #[serde(default)]
+    pub p_at_most: bool,
     pub parameters: Vec<FittedParameter>,
     /// Effects that this data cannot tell from this one.
     pub confounded_with: Vec<String>,

@@ -141,6 +141,7 @@ pub struct Progress {
     pub steps: usize,
     /// What is done now.
     pub label: String,
+    /// On the clock of the person who waits, like what remains.
     pub elapsed_s: f64,
     pub remaining_s: f64,
 }

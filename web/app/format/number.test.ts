@@ -40,6 +40,7 @@ describe('numbers as an instrument shows them', () => {
 		expect(chance(3e-10)).toBe('p < 10⁻⁹');
 		expect(chance(0)).toBe('p < 10⁻¹⁶');
 		expect(chance(0.02)).toBe('p = 0.020');
+		expect(chance(0.002, true)).toBe('p ≤ 0.002');
 		expect(percent(-0.42)).toBe('−42 %');
 	});
 });

@@ -63,10 +63,10 @@ export function percent(share: number, digits = 0): string {
 }
 
 /** `p < 10⁻⁹` rather than a row of zeros. */
-export function chance(p: number): string {
+export function chance(p: number, atMost = false): string {
 	if (p <= 0) return 'p < 10⁻¹⁶';
 	if (p < 1e-3) return `p < 10${superscript(Math.ceil(Math.log10(p)))}`;
-	return `p = ${p.toFixed(p < 0.1 ? 3 : 2)}`;
+	return `p ${atMost ? '≤' : '='} ${p.toFixed(p < 0.1 ? 3 : 2)}`;
 }
 
 /** Ends of an interval; `null` where the data sets no bound. */

@@ -11,8 +11,11 @@ const HALF = 5;
 function each(u: uPlot, index: number, from: number, to: number, cell: readonly [number, number] | null, put: (x: number, y: number, value: number) => void): void {
 	const { left, top, x0, y1, kx, ky } = placesOf(u);
 	const [xs, ys] = [u.data[0]!, u.data[index]!];
-	const columns = cell ? Math.ceil(u.bbox.width / cell[0]) + 1 : 0;
-	const rows = cell ? Math.ceil(u.bbox.height / cell[1]) + 1 : 0;
+	const { width, height } = u.bbox;
+	// A page that is still being laid out may be narrower than the axis alone.
+	if (!(width > 0 && height > 0)) return;
+	const columns = cell ? Math.ceil(width / cell[0]) + 1 : 0;
+	const rows = cell ? Math.ceil(height / cell[1]) + 1 : 0;
 	const taken = new Uint8Array(columns * rows);
 	for (let i = from; i <= to; i++) {
 		const value = ys[i];

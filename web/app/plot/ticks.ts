@@ -1,14 +1,23 @@
 import { figure } from '../format/number';
 
-/** Round positions for an axis, about `count` of them: steps of 1, 2 or 5 times a power of ten. */
+/** Three are the fewest by which a scale can be read. */
+const FEWEST = 3;
+
+/** Round positions for an axis, about `count` of them and never fewer than three: steps of 1, 2, 2.5 or 5 times a power of ten. */
 export function ticks(low: number, high: number, count: number): number[] {
 	const span = high - low;
 	if (!(span > 0) || !Number.isFinite(span)) return Number.isFinite(low) ? [low] : [];
 	const rough = span / Math.max(1, count);
 	const power = 10 ** Math.floor(Math.log10(rough));
-	const step = [1, 2, 5, 10].map((m) => m * power).find((candidate) => candidate >= rough * 0.999)!;
-	const first = Math.ceil(low / step - 1e-9);
-	const last = Math.floor(high / step + 1e-9);
+	const wanted = [1, 2, 5, 10].find((one) => one * power >= rough * 0.999)!;
+	const finer = [5, 2.5, 2, 1, 0.5, 0.25].filter((one) => one < wanted);
+	const reach = (step: number) => [Math.ceil(low / step - 1e-9), Math.floor(high / step + 1e-9)] as const;
+	const enough = [wanted, ...finer].find((one) => {
+		const [first, last] = reach(one * power);
+		return last - first + 1 >= FEWEST;
+	})!;
+	const step = enough * power;
+	const [first, last] = reach(step);
 	return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
 }
 

@@ -177,6 +177,8 @@ impl Stretch<'_> {
         }
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         if x.name == "repeat" {
+            // People count from one, whatever the column begins with.
+            let [from, to] = [from, to].map(|repeat| repeat - x.bins[0].from + 1.0);
             return if from == to { format!("in repeat {from}") } else { format!("in repeats {from} to {to}") };
         }
         let say = |value: f64| figure(value, &x.unit);

@@ -99,6 +99,9 @@ pub struct Suggestion {
     pub error_reduction_together: f64,
     /// Family-wise, from sign flips of whole blocks.
     pub p_value: f64,
+    /// No flip scored as high: the chance is `p_value` at most.
+    #[serde(default)]
+    pub p_at_most: bool,
     /// As they are in the complete model, where `discover` ends: beside all other suggestions.
     pub parameters: Vec<Parameter>,
     /// Effects that explain this data as well.
