@@ -55,9 +55,12 @@ export function words(id: string): string {
 /** A unit that can be nothing else; `tau_c` is no temperature. */
 const SPELT_UNIT = /_(nm_rad|rad_s2?|rad|nm|hz)$/;
 
-/** A sentence of the daemon as people write it: ids as words, without the unit at their end; a capital at its start. */
-export function prose(sentence: string): string {
-	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, (id) => words(id.replace(SPELT_UNIT, '')));
+/** A sentence of the daemon as people write it: effects by their titles, other ids as words, without the unit at their end; a capital at its start. */
+export function prose(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
+	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, (id) => {
+		const title = effects.find((one) => one.id === id)?.title;
+		return title ? title.charAt(0).toLowerCase() + title.slice(1) : words(id.replace(SPELT_UNIT, ''));
+	});
 	return spoken.charAt(0).toUpperCase() + spoken.slice(1);
 }
 
