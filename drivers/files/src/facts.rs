@@ -1,6 +1,7 @@
 //! The facts beside a table: one JSON object, in a file or embedded.
 
 use crate::error::{FileError, FileFault};
+use jointbench_instrument::spelling::plainly;
 use jointbench_instrument::{Channel, Meta};
 use serde_json::{Map, Value};
 use std::fs;
@@ -13,15 +14,24 @@ const RESOLUTION: &str = "resolution";
 
 /// Reads the facts from JSON. `name` stands in messages.
 pub fn parse_meta(name: &str, json: &[u8]) -> Result<Meta, FileError> {
-    serde_json::from_slice(json).map_err(|fault| {
+    let meta: Meta = serde_json::from_slice(json).map_err(|fault| {
         let text = fault.to_string();
         // serde_json appends the place, which the message already leads with.
-        let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what).to_owned();
+        let what = plainly(text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what));
         match fault.line() {
             0 => FileFault::Meta { what }.in_file(name),
             line => FileFault::Meta { what }.at_line(name, line as u64),
         }
-    })
+    })?;
+    match meta.misspelt() {
+        Some((found, meant)) => {
+            let text = String::from_utf8_lossy(json);
+            let before = text.split(&format!("\"{found}\"")).next().unwrap_or_default();
+            let line = before.matches('\n').count() as u64 + 1;
+            Err(FileFault::Misspelt { found: found.to_owned(), meant }.at_line(name, line))
+        }
+        None => Ok(meta),
+    }
 }
 
 pub(crate) fn read_meta(path: &Path) -> Result<Meta, FileError> {

@@ -66,6 +66,16 @@ fn text_is_refused_where_it_is_wrong() {
 }
 
 #[test]
+fn a_fact_with_a_slip_in_its_name_is_refused_where_it_stands() {
+    let refused = parse_meta("meta.json", b"{\n  \"kind\": \"friction\",\n  \"gear_ratoi\": 50\n}").unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "meta.json, line 3: gear_ratoi is not known: did you mean gear_ratio? A fact of your own needs a name that is less like it"
+    );
+    assert_eq!(parse_meta("meta.json", b"{\"kind\": \"friction\", \"oil\": \"VG 32\"}").unwrap().other["oil"], "VG 32");
+}
+
+#[test]
 fn editors_marks_and_line_ends_are_let_pass() {
     let text = format!("\u{feff}{NAMES}\r\n0, 1 ,2e0\r\n1,1,+2\r\n");
     assert_eq!(take("run.csv", text.as_bytes()).unwrap().column("motor_current_a"), Some(&[2.0, 2.0][..]));

@@ -1,5 +1,7 @@
 //! The facts about a set-up that travel beside a run table (`meta.json`).
 
+use crate::spelling::nearest;
+use crate::units::quantity_of;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -128,6 +130,38 @@ pub struct Meta {
     pub other: serde_json::Map<String, serde_json::Value>,
 }
 
+impl Meta {
+    /// Every fact that is known by name.
+    pub const FACTS: [&str; 13] = [
+        "kind",
+        "motion",
+        "baseline",
+        "sample_rate_hz",
+        "torque_constant_nm_per_a",
+        "gear_ratio",
+        "rotor_inertia_kg_m2",
+        "bearing_stiffness_nm_per_rad",
+        "reference_bits",
+        "test_bits",
+        "pole_pairs",
+        "rated_current_a",
+        "poles",
+    ];
+
+    /// A fact of the user's own whose name is nearly that of one that is known and not there, and that one: most likely
+    /// misspelt, or with another unit.
+    pub fn misspelt(&self) -> Option<(&str, &'static str)> {
+        let given = serde_json::to_value(self).unwrap_or_default();
+        let missing: Vec<&'static str> = Self::FACTS.into_iter().filter(|fact| given.get(fact).is_none()).collect();
+        let meant = |name: &str| {
+            // The same quantity without a unit, or with another.
+            let same = |fact: &&str| quantity_of(fact).is_some_and(|q| q == name || Some(q) == quantity_of(name));
+            nearest(name, missing.iter().copied()).or_else(|| missing.iter().copied().find(same))
+        };
+        self.other.keys().find_map(|name| Some((name.as_str(), meant(name)?)))
+    }
+}
+
 fn is_rotary(motion: &Motion) -> bool {
     *motion == Motion::Rotary
 }
@@ -135,6 +169,22 @@ fn is_rotary(motion: &Motion) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_fact_that_is_nearly_known_is_told_from_one_of_the_users_own() {
+        let misspelt = |text: &str| {
+            let meta: Meta = serde_json::from_str(text).unwrap();
+            meta.misspelt().map(|(found, meant)| (found.to_owned(), meant))
+        };
+        let meant = |found: &str, meant| Some((found.to_owned(), meant));
+        assert_eq!(misspelt(r#"{"gear_ratoi": 50}"#), meant("gear_ratoi", "gear_ratio"));
+        assert_eq!(misspelt(r#"{"sample_rate": 50}"#), meant("sample_rate", "sample_rate_hz"));
+        assert_eq!(misspelt(r#"{"pole": 50}"#), meant("pole", "poles"));
+        assert_eq!(misspelt(r#"{"note": "dry", "oil": "x", "rated_torque_nm": 13}"#), None);
+        assert_eq!(misspelt(r#"{"gear_ratio": 50, "gear_ratio_2": 3}"#), None, "the known one is there");
+        let all: Vec<String> = Meta::FACTS.iter().map(|fact| format!("\"{fact}\": null")).collect();
+        assert!(serde_json::from_str::<Meta>(&format!("{{{}}}", all[3..].join(","))).unwrap().other.is_empty());
+    }
 
     #[test]
     fn unknown_facts_survive_a_round_trip() {

@@ -24,6 +24,18 @@ pub fn instead(name: &str, known: &[&str]) -> String {
     }
 }
 
+/// What serde says of a word that it does not know, as a person says it. Any other sentence stays as it is.
+pub fn plainly(fault: &str) -> String {
+    let parts: Vec<&str> = fault.split('`').collect();
+    match parts.as_slice() {
+        ["unknown variant " | "unknown field ", word, _, known @ ..] if !known.is_empty() => {
+            let known: Vec<&str> = known.iter().step_by(2).copied().collect();
+            format!("{word} is not known here: {}", instead(word, &known))
+        }
+        _ => fault.to_owned(),
+    }
+}
+
 /// Fewest letters to change, to add, to take away or to swap with the next (optimal string alignment).
 fn mistakes(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
@@ -55,6 +67,18 @@ mod tests {
         assert_eq!(meant("Gearratios"), Some("gear_ratio"), "two mistakes in a long name");
         assert_eq!((meant("tau_x"), meant("tua_x"), meant("pole")), (Some("tau_c"), None, Some("poles")));
         assert_eq!((meant("note"), meant("si"), meant("x")), (None, Some("sin"), None));
+    }
+
+    #[test]
+    fn serde_speaks_plainly() {
+        let said = plainly("unknown variant `silnet`, expected one of `none`, `silent`, `late`");
+        assert_eq!(said, "silnet is not known here: did you mean silent?");
+        let said = plainly("unknown field `mok`, expected `joint` or `load`");
+        assert_eq!(said, "mok is not known here: there are joint, load");
+        assert_eq!(
+            plainly("invalid type: integer `3`, expected a string"),
+            "invalid type: integer `3`, expected a string"
+        );
     }
 
     #[test]

@@ -47,25 +47,31 @@ unit!(/// Power.
 ///
 /// `None` for names without a unit suffix (`segment`, `repeat`, `kp`).
 pub fn unit_of(name: &str) -> Option<&'static str> {
-    // Longest suffix first: `_rad_s` before `_s`, `_nm_per_a` before `_a`.
-    const SUFFIXES: [(&str, &str); 14] = [
-        ("_nm_per_rad", "Nm/rad"),
-        ("_nm_per_a", "Nm/A"),
-        ("_kg_m2", "kg·m²"),
-        ("_rad_s2", "rad/s²"),
-        ("_rad_s", "rad/s"),
-        ("_rad", "rad"),
-        ("_nm", "Nm"),
-        ("_ms", "ms"),
-        ("_hz", "Hz"),
-        ("_c", "°C"),
-        ("_a", "A"),
-        ("_v", "V"),
-        ("_w", "W"),
-        ("_s", "s"),
-    ];
     SUFFIXES.iter().find(|(suffix, _)| name.ends_with(suffix)).map(|(_, unit)| *unit)
 }
+
+/// What is left of a name without the suffix of its unit.
+pub fn quantity_of(name: &str) -> Option<&str> {
+    SUFFIXES.iter().find_map(|(suffix, _)| name.strip_suffix(suffix))
+}
+
+/// Longest first: `_rad_s` before `_s`, `_nm_per_a` before `_a`.
+const SUFFIXES: [(&str, &str); 14] = [
+    ("_nm_per_rad", "Nm/rad"),
+    ("_nm_per_a", "Nm/A"),
+    ("_kg_m2", "kg·m²"),
+    ("_rad_s2", "rad/s²"),
+    ("_rad_s", "rad/s"),
+    ("_rad", "rad"),
+    ("_nm", "Nm"),
+    ("_ms", "ms"),
+    ("_hz", "Hz"),
+    ("_c", "°C"),
+    ("_a", "A"),
+    ("_v", "V"),
+    ("_w", "W"),
+    ("_s", "s"),
+];
 
 /// The same unit on a linear axis (`"motion": "linear"` in the meta file): rad → m, Nm → N, kg·m² → kg.
 pub fn linear_unit(unit: &str) -> String {

@@ -3,6 +3,7 @@
 mod brake;
 mod chunks;
 mod clash;
+mod doubts;
 mod encoder;
 pub mod filter;
 mod friction;
@@ -102,6 +103,8 @@ pub struct Prepared {
     pub constants: Vec<GivenConstant>,
     /// Columns that contradict each other, in sentences.
     pub clashes: Vec<String>,
+    /// What the facts lack or have wrong, in sentences.
+    pub doubts: Vec<String>,
     pub about: Preparation,
 }
 

@@ -82,6 +82,7 @@ pub fn prepare(
         load_scale: 1.0,
         constants: super::constants(run),
         clashes: super::clash::clashes(run),
+        doubts: super::doubts::doubts(run),
         about,
     })
 }

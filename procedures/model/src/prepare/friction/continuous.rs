@@ -132,6 +132,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
         constants: super::super::constants(run),
         clashes: super::super::clash::clashes(run),
+        doubts: super::super::doubts::doubts(run),
         main,
         moving: None,
         memory: None,

@@ -123,6 +123,7 @@ pub fn prepare(
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
         constants: super::super::constants(run),
         clashes: super::super::clash::clashes(run),
+        doubts: super::super::doubts::doubts(run),
         main,
         moving,
         memory,
