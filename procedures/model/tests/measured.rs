@@ -53,6 +53,28 @@ fn emps_goes_on_to_the_flexibility() {
     assert!(coulomb.ci95[0] > 5.0 && coulomb.ci95[1] < 22.0, "{coulomb:?}");
 }
 
+/// A sixth of what the servo's motor does beside friction is no matter of the load.
+#[test]
+fn a_current_of_another_unit_or_sign_is_told_before_all_else() {
+    let Some(data) = shared("data") else { return };
+    let run = read(&data.join("bam-xl330"));
+    let diagnosed = |factor: f64| {
+        let mut columns = run.trace().columns().to_vec();
+        let place = run.trace().channels().iter().position(|channel| channel.name == "motor_current_a").unwrap();
+        columns[place].iter_mut().for_each(|current_a| *current_a *= factor);
+        let run =
+            RunTable::new(run.meta().clone(), Trace::from_columns(run.trace().channels().to_vec(), columns)).unwrap();
+        diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap()
+    };
+    assert!(!diagnosed(1.0).summary.contains("Attention"));
+    for factor in [1000.0, -1.0] {
+        let found = diagnosed(factor);
+        let first = found.summary.split(". Mend that first").next().unwrap();
+        assert!(first.starts_with("Attention: motor_current_a with the torque constant"), "{}", found.summary);
+        assert!(first.len() < found.summary.len() && found.undecided.is_some(), "{factor}: {}", found.summary);
+    }
+}
+
 /// A hobby servo under a pendulum. Its authors found friction that grows with the load; a pendulum's load is a curve over the
 /// angle too, and a wave over the angle that was never seen to come again is no rival.
 #[test]

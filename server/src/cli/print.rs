@@ -3,7 +3,7 @@
 use jointbench_instrument::Motion;
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Parameter, ParameterPair,
-    ParameterState, Region, ResidualKind, Suggestion, formula, words,
+    ParameterState, Region, ResidualKind, Suggestion, Verdict, formula, words,
 };
 use std::path::Path;
 
@@ -99,8 +99,11 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
     own_formula(&diagnosis.shows_over, &diagnosis.fit);
-    suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
-    next_run(diagnosis.experiment.as_ref());
+    // What columns suggest that contradict each other is no advice.
+    if diagnosis.undecided.is_none() || diagnosis.verdict == Verdict::Adequate {
+        suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
+        next_run(diagnosis.experiment.as_ref());
+    }
     not_visible(&diagnosis.not_visible);
 }
 

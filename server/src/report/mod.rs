@@ -183,10 +183,10 @@ fn change(version: &Model) -> String {
 fn diagnosed(diagnosis: &Diagnosis) -> Markup {
     let found = &diagnosis.finding;
     let verdict = match (found.verdict, &found.undecided) {
-        (Verdict::Adequate, Some(_)) => "Cannot be decided",
+        (_, Some(_)) => "Cannot be decided",
         (Verdict::Adequate, None) => "Adequate",
-        (Verdict::MissingEffect, _) => "An effect is missing",
-        (Verdict::UnexplainedStructure, _) => "Unexplained structure",
+        (Verdict::MissingEffect, None) => "An effect is missing",
+        (Verdict::UnexplainedStructure, None) => "Unexplained structure",
     };
     html! {
         h2 { "Diagnosis" }

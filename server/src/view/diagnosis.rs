@@ -50,7 +50,7 @@ pub struct Finding {
     pub verdict: Verdict,
     /// One plain sentence.
     pub summary: String,
-    /// Why an `adequate` verdict is no assurance: the data could not have shown what is missing.
+    /// Why the verdict is no assurance: the data could not have shown what is missing, or the columns contradict each other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
     /// Regions where the model is wrong, the worst first.

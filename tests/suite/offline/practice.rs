@@ -1,6 +1,7 @@
 //! The practice cases with a hidden effect, judged as `hidden-effects/README.md` says.
 
 use super::{effects, json};
+use crate::program::run;
 use crate::shared::shared;
 use serde_json::Value;
 use std::path::Path;
@@ -41,6 +42,36 @@ fn judge(folder: &Path) -> Result<(), String> {
         }
     };
     if is_right { Ok(()) } else { Err(told) }
+}
+
+/// Nothing is missing in either run; one of them has no repeats.
+#[test]
+fn a_verdict_that_decides_nothing_says_so_and_ends_with_3() {
+    let Some(case) = shared("hidden-effects/friction-none") else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let whole = read_table(&case);
+    let lines: Vec<&str> = whole.lines().collect();
+    let names: Vec<&str> = lines[0].split(',').collect();
+    let repeat = names.iter().position(|name| *name == "repeat").expect("the column");
+    let first = |line: &&&str| line.split(',').nth(repeat) == Some("0");
+    let once: Vec<&str> = lines[..1].iter().chain(lines[1..].iter().filter(first)).copied().collect();
+    for (name, lines) in [("whole", &lines), ("once", &once)] {
+        let table = folder.path().join(format!("{name}.csv"));
+        std::fs::write(&table, lines.join("\n") + "\n").expect("a table");
+        std::fs::copy(case.join("meta.json"), folder.path().join("meta.json")).expect("facts");
+        for verb in ["diagnose", "discover"] {
+            let output = run(&[verb, &table.display().to_string(), "--json"]);
+            let said: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+            assert_eq!(said["verdict"], "adequate", "{verb} {name}: {}", said["summary"]);
+            let code = if said["undecided"].is_string() { 3 } else { 0 };
+            assert_eq!((output.status.code(), name == "once"), (Some(code), code == 3), "{verb}: {}", said["summary"]);
+        }
+    }
+}
+
+fn read_table(case: &Path) -> String {
+    let packed = std::fs::File::open(case.join("run.csv.gz")).expect("a table");
+    std::io::read_to_string(flate2::read::GzDecoder::new(packed)).expect("text")
 }
 
 #[test]

@@ -75,10 +75,14 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
     attention(found) + &said + &taken_back(found, &fit.unit)
 }
 
+const MEND: &str = "Mend that first: what follows is what these columns make of the model. ";
+
 /// What a user has to mend before anything else counts: columns that contradict each other, and what the model takes as given
 /// and the run shows as a constant, which may not have been connected.
 fn attention(found: &Exploration) -> String {
-    let clashes = found.start.prepared.clashes.iter().map(|clash| format!("Attention: {clash}. "));
+    let clashes = &found.start.prepared.clashes;
+    let mend = (!clashes.is_empty()).then(|| MEND.to_owned());
+    let clashes = clashes.iter().map(|clash| format!("Attention: {clash}. ")).chain(mend);
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
     let is_dead = |id: &str| spec.find(id).is_ok_and(|e| e.is_given() && e.missing(view).is_none());
@@ -146,19 +150,18 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
     }
 }
 
-/// Why a model that fits may be wrong all the same: too short a run cannot decide it, or a size contradicts physics.
+/// Why the verdict decides nothing: columns that contradict each other carry none, too short a run cannot find fault with a
+/// model, or a size contradicts physics.
 pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Options) -> Option<String> {
     let blocks = found.start.main.problem.blocks;
     // The smallest p-value that flipping the signs of so many blocks can give.
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
     match verdict {
+        _ if !found.start.prepared.clashes.is_empty() => Some("its columns contradict each other".to_owned()),
         Verdict::Adequate if smallest > options.alpha => {
             Some(format!("{blocks} independent stretches of motion are too few to name anything"))
         }
         Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
-        Verdict::Adequate if !found.start.prepared.clashes.is_empty() => {
-            Some("its columns contradict each other".to_owned())
-        }
         Verdict::Adequate => {
             let said = fit.parameters.iter().filter_map(|p| Some((p, p.note.as_ref()?)));
             let mut impossible = said.filter(|(_, note)| note.starts_with(IMPOSSIBLE));

@@ -13,6 +13,8 @@ const CLASH: f64 = 1.2;
 const TORQUE_CLASH: f64 = 2.0;
 /// Share of the variance in common, below which the columns do not tell the same at all.
 const SAME: f64 = 0.9;
+/// Of torques: much of the motor's is friction of which the link knows nothing. An unloaded joint has less than 0.04 in common.
+const SAME_TORQUE: f64 = 0.7;
 
 /// Each in a sentence.
 pub fn clashes(run: &RunTable) -> Vec<String> {
@@ -69,8 +71,9 @@ fn torque_clash(run: &RunTable) -> Option<String> {
     ]);
     let (torque, link) = (beside.rest(&torque), beside.rest(&link));
     let (tt, tl, ll) = (dot(&torque, &torque), dot(&torque, &link), dot(&link, &link));
-    let times = tt / tl;
-    let tells = tl * tl > SAME * tt * ll && !(1.0 / TORQUE_CLASH..=TORQUE_CLASH).contains(&times);
+    // Neither side's noise makes it larger.
+    let times = (tt / ll).sqrt().copysign(tl);
+    let tells = tl * tl > SAME_TORQUE * tt * ll && !(1.0 / TORQUE_CLASH..=TORQUE_CLASH).contains(&times);
     tells.then(|| {
         format!(
             "motor_current_a with the torque constant and the gear ratio is {times:.3} times what link_torque_nm asks \
@@ -122,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_load_that_the_motor_does_not_carry_is_told() {
-        let loaded = |current_scale: f64, load_scale: f64| {
+        let rubbing = |current_scale: f64, load_scale: f64, rub_nm: f64| {
             let names = ["time_s", "motor_position_rad", "motor_current_a", "link_torque_nm"];
             let mut trace = Trace::new(names.map(Channel::new).to_vec());
             for i in 0..4000 {
@@ -130,6 +133,7 @@ mod tests {
                 let (q, v) = (30.0 * (0.5 * t).sin(), (0.5 * t).cos());
                 let link = 40.0 * (0.31 * t).sin();
                 let torque = 0.02 * v.signum() + 0.03 * v + link / 50.0 * (1.0 + 0.3 * (v * link).signum());
+                let torque = torque + rub_nm * v.signum() * (7.0 * q).sin();
                 trace.push_row(&[t, q, current_scale * torque / 0.05, load_scale * link]);
             }
             let meta = Meta {
@@ -140,10 +144,17 @@ mod tests {
             };
             clashes(&RunTable::new(meta, trace).unwrap())
         };
+        let loaded = |current_scale, load_scale| rubbing(current_scale, load_scale, 0.0);
         assert_eq!(loaded(1.0, 1.0), Vec::<String>::new(), "a gear that loses three tenths");
         assert_eq!(loaded(1.0, 0.0), Vec::<String>::new(), "a sensor that shows nothing");
         let told = |scale, load| matches!(&loaded(scale, load)[..], [one] if one.starts_with("motor_current_a with"));
         assert!(told(1000.0, 1.0) && told(-1.0, 1.0) && told(1.0, 1000.0) && told(1.0, -1.0));
+        assert_eq!(
+            rubbing(1.0, 1.0, 0.4),
+            Vec::<String>::new(),
+            "a fifth of the torque is friction that the link cannot know"
+        );
+        assert_eq!((rubbing(1000.0, 1.0, 0.4).len(), rubbing(-1.0, 1.0, 0.4).len()), (1, 1));
     }
 
     #[test]

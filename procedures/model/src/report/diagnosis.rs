@@ -31,7 +31,8 @@ pub struct Diagnosis {
     pub noise_floor_rms: Option<f64>,
     pub noise_floor: NoiseFloor,
     pub verdict: Verdict,
-    /// Why `adequate` could not be decided: too little was measured to find fault with the model.
+    /// Why the verdict decides nothing: too little was measured to find fault with the model, so that `adequate` says no more
+    /// than that nothing was found, or the columns contradict each other. With it `jointbench` ends with code 3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
     /// One plain sentence.
@@ -165,7 +166,8 @@ pub struct Discovery {
     pub noise_floor_rms: Option<f64>,
     pub noise_floor: NoiseFloor,
     pub verdict: Verdict,
-    /// Why `adequate` could not be decided: too little was measured to find fault with the model.
+    /// Why the verdict decides nothing: too little was measured to find fault with the model, so that `adequate` says no more
+    /// than that nothing was found, or the columns contradict each other. With it `jointbench` ends with code 3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
     pub summary: String,

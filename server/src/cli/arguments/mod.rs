@@ -58,8 +58,10 @@ pub enum Command {
     #[command(after_help = AUTOPILOT)]
     Autopilot(Autopilot),
     /// Say where a model fails on a measured run and which effect is missing
+    #[command(after_help = DECIDED)]
     Diagnose(Diagnose),
     /// Diagnose, add the best effect and fit again, until nothing is missing
+    #[command(after_help = DECIDED)]
     Discover(Discover),
     /// Fit a model to a measured run
     Fit(Fit),
@@ -186,6 +188,11 @@ pub struct Stop {
     #[command(flatten)]
     pub reach: Reach,
 }
+
+const DECIDED: &str = "\
+Exit codes: 0 a verdict, whatever it says, 2 bad arguments or bad input, 3 the data do not allow one: too little was measured \
+to find fault with the model, or the columns contradict each other. With --json `undecided` says why, and is there with 3 \
+only; `adequate` beside it says that nothing was found, not that nothing is there.";
 
 const STOP: &str = "\
 Exit codes: 0 the run has ended and the bench is safe, 1 the run failed before it could be ended or the bench is not known \
