@@ -28,6 +28,10 @@ pub enum JoinFault {
         "of the runs named, number {number} has {rate_hz:.0} samples a second and the first {first_hz:.0}: record or resample them at one rate"
     )]
     OtherRate { number: usize, rate_hz: f64, first_hz: f64 },
+    #[error(
+        "of the runs named, numbers {first} and {number} hold the same samples: a copy is no repeat, leave one of them out"
+    )]
+    Copy { number: usize, first: usize },
     #[error(transparent)]
     Table(#[from] TableFault),
 }
@@ -60,6 +64,11 @@ impl RunTable {
         }
         let meta = self.meta().clone();
         let runs: Vec<RunTable> = std::iter::once(self).chain(more).collect();
+        for (number, run) in runs.iter().enumerate() {
+            if let Some(first) = runs[..number].iter().position(|before| before.trace() == run.trace()) {
+                return Err(JoinFault::Copy { number: number + 1, first: first + 1 });
+            }
+        }
         let shared = |channel: &&Channel| {
             !["run", "repeat"].contains(&channel.name.as_str())
                 && runs.iter().all(|run| run.column(&channel.name).is_some())
@@ -187,7 +196,8 @@ mod tests {
     fn a_column_that_one_lacks_goes_but_a_run_is_a_repeat_in_itself() {
         let (first, _) = two(|_| {});
         let bare = run(&NAMES[..3], &[&[0.0, 1.0, 0.2], &[0.1, 1.0, 0.2]], |_| {});
-        let both = first.join(vec![bare.clone(), bare]).unwrap();
+        let again = run(&NAMES[..3], &[&[0.0, 1.0, 0.3], &[0.1, 1.0, 0.2]], |_| {});
+        let both = first.join(vec![bare, again]).unwrap();
         assert_eq!(both.column("segment"), None);
         assert_eq!(both.column("repeat").unwrap(), [0.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
         assert_eq!(both.column("run").unwrap(), [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]);
@@ -203,7 +213,9 @@ mod tests {
             let fault = first.join(vec![second]).unwrap_err().to_string();
             assert!(fault.contains(said), "{fault}");
         }
-        let (first, _) = two(|_| {});
+        let (first, second) = two(|_| {});
+        let copied = first.clone().join(vec![second.clone(), second]).unwrap_err();
+        assert_eq!(copied, JoinFault::Copy { number: 3, first: 2 }, "no repeat is made out of a copy");
         let fast = run(&NAMES[..3], &[&[0.0, 0.0, 0.1], &[0.01, 0.0, 0.1]], |_| {});
         assert!(matches!(first.clone().join(vec![fast]), Err(JoinFault::OtherRate { number: 2, .. })));
         let mut trace = Trace::new(["time_s", "brake_current_a", "brake_torque_nm"].map(Channel::new).into());

@@ -6,7 +6,7 @@ use super::exit::{Done, Exit};
 use super::files::{table, write};
 use super::serve::runtime;
 use crate::api::Health;
-use crate::lab::{FileFormat, ImportRequest, Lab, LabError};
+use crate::lab::{COPY_OF, FileFormat, ImportRequest, Lab, LabError};
 use crate::view::Run;
 use jointbench_files::meta_path_of;
 use std::fs;
@@ -24,6 +24,9 @@ pub fn import(arguments: &Import) -> Done {
         };
         let summary = &run.summary;
         println!("run {}: {} ({}, {} rows)", summary.id, file.display(), summary.kind, summary.rows);
+        if let Some(original) = run.provenance["imported"][COPY_OF].as_i64() {
+            println!("  its samples are those of run {original}: a copy, and no repeat of it");
+        }
     }
     Ok(())
 }

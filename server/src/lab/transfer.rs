@@ -1,7 +1,7 @@
 //! Run tables in and out.
 
 use super::{Answer, Lab, LabError};
-use crate::store::NewRun;
+use crate::store::{NewRun, RunFilter};
 use crate::view::Run;
 use jointbench_files::{
     ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_mat, write_parquet,
@@ -38,6 +38,9 @@ impl FileFormat {
     }
 }
 
+/// In the provenance of an import: the run that holds the same samples.
+pub const COPY_OF: &str = "copy_of";
+
 /// A measured file with what is needed to read it.
 #[derive(Debug, Clone, Default)]
 pub struct ImportRequest {
@@ -64,9 +67,12 @@ impl Lab {
         self.keep_table(&name, source, table).await
     }
 
-    async fn keep_table(&self, name: &str, source: serde_json::Value, table: RunTable) -> Answer<Run> {
+    async fn keep_table(&self, name: &str, mut source: serde_json::Value, table: RunTable) -> Answer<Run> {
         let kind = table.kind().to_string();
         let (meta, trace) = table.into_parts();
+        if let Some(original) = self.original_of(&kind, &trace).await? {
+            source[COPY_OF] = original.into();
+        }
         let provenance = json!({
             "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
             "imported": source,
@@ -84,6 +90,19 @@ impl Lab {
         let run = self.inner.store.import(&new, &[], trace).await?;
         tracing::info!(run.id = run, name, rows, "run imported");
         self.run(run).await
+    }
+
+    /// The first run of the store that holds the same samples.
+    async fn original_of(&self, kind: &str, trace: &Trace) -> Answer<Option<i64>> {
+        let rows = trace.len() as u64;
+        let search = Some(format!("kind:{kind} rows={rows}"));
+        let (_, alike) = self.inner.store.runs(&RunFilter { limit: u32::MAX, offset: 0, search }).await?;
+        for run in alike.iter().rev() {
+            if self.inner.store.trace(run.id, None, 0..rows).await?.columns() == trace.columns() {
+                return Ok(Some(run.id));
+            }
+        }
+        Ok(None)
     }
 
     /// The run, or a stretch of it, as a file, which [`Lab::import`] takes back unchanged.

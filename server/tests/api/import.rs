@@ -59,7 +59,7 @@ fn what_goes_out_comes_in_again_unchanged() {
     let exported = out(&run["id"]);
     assert!(exported.contains("0.4"), "{exported}");
     let (status, again) = upload(&daemon, &exported, &[("meta", META)]);
-    assert_eq!(status, 201, "{again}");
+    assert_eq!((status, &again["provenance"]["imported"]["copy_of"]), (201, &run["id"]), "{again}");
     assert_eq!(out(&again["id"]), exported);
     let (_, samples) = daemon.get(&format!("/api/v1/runs/{}/samples?channels=motor_current_a", again["id"]));
     assert_eq!(samples["channels"][0]["min"], serde_json::json!([0.2, 0.4, 0.2]));

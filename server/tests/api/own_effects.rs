@@ -8,10 +8,10 @@ const META: &str = r#"{"kind": "friction", "torque_constant_nm_per_a": 0.1, "gea
     "baseline": ["load_transmission", "coulomb", "viscous"]}"#;
 
 /// Two repeats of speeds and loads with rubbing that grows with both; noise from a linear congruence.
-pub fn rubbing_run(daemon: &TestDaemon) -> i64 {
+pub fn rubbing_run(daemon: &TestDaemon, seed: u64) -> i64 {
     let mut table =
         String::from("time_s,motor_position_rad,motor_velocity_rad_s,motor_current_a,link_torque_nm,segment,repeat\n");
-    let (mut time, mut position, mut segment, mut noise) = (0.0f64, 0.0f64, 0, 12_345u64);
+    let (mut time, mut position, mut segment, mut noise) = (0.0f64, 0.0f64, 0, seed);
     for repeat in 0..2 {
         for load in [2.0, 8.0, 20.0] {
             for speed in [2.0, 4.0, 8.0, 16.0, 32.0, 64.0] {
@@ -75,7 +75,7 @@ fn a_wrong_formula_is_refused_at_its_character() {
 #[test]
 fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
     let daemon = TestDaemon::start();
-    let run = rubbing_run(&daemon);
+    let run = rubbing_run(&daemon, 12_345);
     let bare = json!({"run": run, "effects": ["load_transmission", "coulomb", "viscous"]});
     let (_, model) = daemon.post("/api/v1/models", &bare.to_string());
     let diagnosed = |model: &Value| daemon.post("/api/v1/diagnoses", &json!({"model": model["id"]}).to_string()).1;
@@ -90,7 +90,7 @@ fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
 
     let twice = json!({"effect": rub(RUB), "run": run, "more_runs": [run]});
     assert_eq!(daemon.post("/api/v1/effects/check", &twice.to_string()).0, 422, "a run is named once");
-    let more = json!({"effect": rub(RUB), "run": run, "more_runs": [rubbing_run(&daemon)]});
+    let more = json!({"effect": rub(RUB), "run": run, "more_runs": [rubbing_run(&daemon, 54_321)]});
     let (status, both) = daemon.post("/api/v1/effects/check", &more.to_string());
     assert_eq!(status, 200, "{both}");
     let width = |check: &Value| {
@@ -141,7 +141,7 @@ fn an_effect_that_nobody_uses_can_go() {
 #[test]
 fn a_formula_that_is_not_finite_on_the_run_is_refused_with_words() {
     let daemon = TestDaemon::start();
-    let run = rubbing_run(&daemon);
+    let run = rubbing_run(&daemon, 12_345);
     let effect = json!({"id": "root", "kind": "friction", "formula": "tau = a * sqrt(velocity)",
         "parameters": [{"name": "a", "unit": "Nm"}]});
     let (status, problem) = daemon.post("/api/v1/effects/check", &json!({"effect": effect, "run": run}).to_string());

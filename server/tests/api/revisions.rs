@@ -13,7 +13,7 @@ struct Two {
 
 fn two_versions() -> Two {
     let daemon = TestDaemon::start();
-    let run = rubbing_run(&daemon);
+    let run = rubbing_run(&daemon, 12_345);
     assert_eq!(daemon.post("/api/v1/effects", &rub(RUB).to_string()).0, 201);
     let fit = |effects: Value| {
         let (status, model) = daemon.post("/api/v1/models", &json!({"run": run, "effects": effects}).to_string());
