@@ -4,7 +4,7 @@ use super::arguments::Check;
 use super::exit::{Done, Exit};
 use super::serve::describe;
 use crate::bench::{Look, look, reach};
-use crate::config::{BenchDescription, READY_MADE};
+use crate::config::{BenchDescription, READY_MADE, unread};
 use jiff::Zoned;
 use jointbench_instrument::roles::Identity;
 
@@ -15,8 +15,10 @@ pub fn check(arguments: &Check) -> Done {
     if arguments.print {
         let text = match READY_MADE.iter().find(|(name, _)| *name == arguments.config) {
             Some((_, text)) => (*text).to_owned(),
-            None => std::fs::read_to_string(&arguments.config)
-                .map_err(|fault| Exit::bad_input(format!("{}: {fault}", arguments.config)))?,
+            None => std::fs::read_to_string(&arguments.config).map_err(|fault| {
+                let name = &arguments.config;
+                Exit::bad_input(format!("{name}: {}", unread(name, &fault)))
+            })?,
         };
         print!("{text}");
         return Ok(());

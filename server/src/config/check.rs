@@ -8,6 +8,8 @@ use super::values::{choice, positive};
 use super::{BenchDescription, Source};
 use jointbench_devices::sim::{HIDDEN_EFFECTS, Load, MockInstrument, PlannedTrouble, Supply, Transport, Trouble};
 use jointbench_devices::{Joint, MockSettings};
+use jointbench_instrument::spelling::plainly;
+use serde::Serialize;
 use toml::Spanned;
 
 pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
@@ -15,7 +17,7 @@ pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mis
     let raw: RawFile = match toml::from_str(text) {
         Ok(raw) => raw,
         Err(fault) => {
-            wrong.add(fault.span().unwrap_or(0..0), fault.message().trim());
+            wrong.add(fault.span().unwrap_or(0..0), plainly(fault.message().trim()));
             return wrong.finish(file, None);
         }
     };
@@ -91,18 +93,35 @@ fn own_part(text: &str, name_at: usize) -> &str {
     }
 }
 
-/// A disk can only be full, and nothing else can be.
-fn troubles(given: &[Spanned<PlannedTrouble>], wrong: &mut Collector) -> Vec<PlannedTrouble> {
+/// Bad days that can come, each to an instrument that the bench has.
+fn troubles(given: &[Spanned<PlannedTrouble>], bench: &MockSettings, wrong: &mut Collector) -> Vec<PlannedTrouble> {
     for planned in given {
-        let PlannedTrouble { instrument, trouble, .. } = planned.get_ref();
-        if (*instrument == MockInstrument::Disk) != (*trouble == Trouble::DiskFull) {
+        let PlannedTrouble { instrument, trouble, from_s, until_s } = *planned.get_ref();
+        if (instrument == MockInstrument::Disk) != (trouble == Trouble::DiskFull) {
             wrong.add(
                 planned.span(),
                 "instrument \"disk\" and trouble \"disk_full\" belong together: give both or neither",
             );
+        } else if !trouble.can_strike(instrument) {
+            let what =
+                format!("{} never has the trouble {}: name an instrument that can", word(instrument), word(trouble));
+            wrong.add(planned.span(), what);
+        } else if instrument != MockInstrument::Disk && !bench.has(instrument) {
+            wrong.add(planned.span(), format!("this bench has no {}: leave its trouble out", word(instrument)));
+        }
+        if let Some(until_s) = until_s.filter(|until_s| *until_s <= from_s) {
+            wrong.add(
+                planned.span(),
+                format!("until_s = {until_s} is not after from_s = {from_s}: this trouble never comes"),
+            );
         }
     }
     given.iter().map(|planned| *planned.get_ref()).collect()
+}
+
+/// As it is written in a description.
+fn word(named: impl Serialize) -> String {
+    serde_json::to_value(named).map(|word| word.to_string()).unwrap_or_default()
 }
 
 fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
@@ -128,7 +147,7 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
         settings.others.push(MockInstrument::Thermometer);
     }
     let load = load.unwrap_or(Some(settings.load))?;
-    let (filter, supply, troubles) = (raw.filter, supply?, troubles(&raw.troubles, wrong));
+    let (filter, supply, troubles) = (raw.filter, supply?, troubles(&raw.troubles, &settings, wrong));
     // A bench that keeps time is one that other programs may listen to; in a time-lapse they could not follow.
     let transport = if pace.is_some() { Transport::Terminal } else { settings.transport };
     Some(MockSettings { load, effects, pace, filter, supply, troubles, transport, ..settings })

@@ -16,6 +16,7 @@ use jointbench_devices::sim::{ENCODER_COUNTS, Load, MockInstrument};
 use jointbench_devices::{InstrumentSettings, Joint, MockSettings, TorqueSensorSettings};
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
+use jointbench_instrument::spelling::nearest;
 use std::path::{Path, PathBuf};
 
 /// Ready-made descriptions, also to start a new one from.
@@ -128,13 +129,19 @@ pub fn read(path: &Path) -> Result<Vec<BenchDescription>, Mistakes> {
     let file = path.display().to_string();
     match std::fs::read_to_string(path) {
         Ok(text) => parse(&file, &text),
-        Err(fault) => {
-            let ready_made = READY_MADE.map(|(name, _)| name).join(", ");
-            let what =
-                format!("cannot be read ({fault}): give the path of a bench description, or one of {ready_made}");
-            Err(Mistakes { file, mistakes: vec![Mistake { line: 1, what }] })
-        }
+        Err(fault) => Err(Mistakes { mistakes: vec![Mistake { line: 1, what: unread(&file, &fault) }], file }),
     }
+}
+
+/// Why there is no description of this name, and which there are.
+pub fn unread(name: &str, fault: &std::io::Error) -> String {
+    let ready_made = READY_MADE.map(|(name, _)| name);
+    let meant = nearest(name, ready_made).map(|near| format!("did you mean {near}? ")).unwrap_or_default();
+    let why = match fault.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        _ => format!("cannot be read ({fault})"),
+    };
+    format!("{why}: {meant}give the path of a bench description, or one of {}", ready_made.join(", "))
 }
 
 /// `file` stands in messages.

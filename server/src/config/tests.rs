@@ -128,7 +128,7 @@ fn a_limit_beyond_the_instrument_protects_nothing() {
 fn what_toml_itself_refuses_has_a_line_too() {
     for (text, line, said) in [
         ("[[bench]]\nname = \n", 2, ""),
-        ("[[bench]]\nname = \"a\"\nmok.joint = \"a\"\n", 3, "unknown field `mok`"),
+        ("[[bench]]\nname = \"a\"\nmok.joint = \"a\"\n", 3, "mok is not known here: did you mean mock?"),
         ("[[bench]]\nname = \"a\"\n\n[bench.mock]\njoint = 3\n", 5, "expected a string"),
         ("", 1, "no bench is described"),
     ] {
@@ -166,11 +166,22 @@ ninter = 0
 }
 
 #[test]
-fn only_a_disk_is_full() {
-    let bench = |instrument: &str, trouble: &str| {
-        let planned = format!("{{ instrument = \"{instrument}\", trouble = \"{trouble}\", from_s = 3.0 }}");
+fn a_bad_day_comes_to_an_instrument_that_can_have_it() {
+    let planned = |instrument: &str, trouble: &str, more: &str| {
+        let planned = format!("{{ instrument = \"{instrument}\", trouble = \"{trouble}\", from_s = 3.0{more} }}");
         parse("b.toml", &format!("[[bench]]\nname = \"a\"\n[bench.mock]\njoint = \"a\"\ntroubles = [{planned}]\n"))
     };
+    let bench = |instrument: &str, trouble: &str| planned(instrument, trouble, "");
+    for (instrument, trouble, more, expected) in [
+        ("joint", "current_lost", "", "line 5: \"joint\" never has the trouble \"current_lost\""),
+        ("stage", "silent", "", "line 5: this bench has no \"stage\""),
+        ("brake", "silent", ", until_s = 2.5", "line 5: until_s = 2.5 is not after from_s = 3"),
+        ("brake", "silnet", "", "line 5: silnet is not known here: did you mean silent?"),
+    ] {
+        let said = planned(instrument, trouble, more).unwrap_err().to_string();
+        assert!(said.contains(expected), "{expected} in\n{said}");
+    }
+    assert!(planned("brake", "current_lost", ", until_s = 3.5").is_ok());
     assert!(bench("disk", "disk_full").is_ok());
     for (instrument, trouble) in [("brake", "disk_full"), ("disk", "silent")] {
         let said = bench(instrument, trouble).unwrap_err().to_string();

@@ -73,6 +73,22 @@ fn a_file_that_will_not_do_is_named() {
     std::fs::copy(folder.join("meta.json"), folder.join("short/meta.json")).expect("facts");
     refused(folder, &["diagnose", "short"], &["short: too few samples: 8 usable samples"]);
     refused(folder, &["fit", "short", "short/run.csv"], &["named twice"]);
+    std::fs::write(folder.join("short/run.csv"), &table).expect("a table");
+    refused(folder, &["diagnose", "run.csv", "short"], &["numbers 1 and 2 hold the same samples: a copy is no repeat"]);
+    let facts = std::fs::read_to_string(folder.join("meta.json")).expect("facts");
+    std::fs::write(folder.join("short/meta.json"), facts.replace("gear_ratio", "gear_ratoi")).expect("facts");
+    refused(
+        folder,
+        &["diagnose", "short"],
+        &["short/meta.json, line", "gear_ratoi is not known: did you mean gear_ratio?"],
+    );
+    let data = folder.join("data").display().to_string();
+    refused(folder, &["import", "short/run.csv", "--data", &data], &["did you mean gear_ratio?"]);
+    done(folder, &["import", "run.csv", "--data", &data]);
+    let told = done(folder, &["import", "run.csv", "--data", &data]);
+    assert!(told.contains("its samples are those of run 1: a copy, and no repeat of it"), "{told}");
+    refused(folder, &["check", "joint-a-mok", "--print"], &["did you mean joint-a-mock?", "puma-mock"]);
+    refused(folder, &["check", "nosuch"], &["there is no such file", "joint-a-mock"]);
 }
 
 #[test]

@@ -41,6 +41,21 @@ pub enum Trouble {
     DiskFull,
 }
 
+impl Trouble {
+    /// Whether an instrument can have it: some are of one kind of instrument only.
+    pub fn can_strike(self, instrument: MockInstrument) -> bool {
+        use MockInstrument as I;
+        match self {
+            Trouble::StreamGap => instrument == I::TorqueSensor,
+            Trouble::Saturated => matches!(instrument, I::TorqueSensor | I::Thermometer),
+            Trouble::CurrentLost => instrument == I::Brake,
+            Trouble::OverTemperature => instrument == I::Joint,
+            Trouble::DiskFull => instrument == I::Disk,
+            _ => true,
+        }
+    }
+}
+
 /// A bad day that begins by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
