@@ -36,6 +36,7 @@ impl Lab {
                 block.reason
             )));
         }
+        self.let_go(bench).await?;
         let claim = bench.claim()?;
         if bench.status().faults().is_some() {
             bench.reopen().await?;
@@ -48,6 +49,17 @@ impl Lab {
         tracing::info!(run.id = run, bench = bench.name(), procedure, planned_s = plan.duration_s(), "run queued");
         claim.start(run, plan)?;
         self.run(run).await
+    }
+
+    /// Returns when a run of this bench whose end is kept, so that anybody may know of it, has given the bench back.
+    async fn let_go(&self, bench: &BenchHandle) -> Answer<()> {
+        if let Some(run) = bench.status().run
+            && self.inner.store.run(run).await?.state.is_final()
+        {
+            // An error says that the thread has ended; its status tells why.
+            let _ = bench.watch().wait_for(|status| status.run != Some(run)).await;
+        }
+        Ok(())
     }
 
     pub async fn run(&self, id: i64) -> Answer<Run> {
