@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { bounds, chance, estimate, figure, percent, quantity, scaleFor, written } from './number';
+import { bounds, chance, counted, estimate, figure, percent, quantity, scaleFor, written } from './number';
 
 describe('numbers as an instrument shows them', () => {
 	it.each([
@@ -34,6 +34,10 @@ describe('numbers as an instrument shows them', () => {
 		expect(estimate(0.10123, [0.05, 0.15])).toBe('0.101');
 		expect(estimate(1, [null, null])).toBe('1.000');
 		expect(bounds([0.5, null])).toBe('[0.5000, ?]');
+	});
+
+	it('counts one as one', () => {
+		expect([0, 1, 1204].map((n) => counted(n, 'step'))).toEqual(['0 steps', '1 step', '1,204 steps']);
 	});
 
 	it('says chances and shares', () => {

@@ -62,6 +62,11 @@ export function percent(share: number, digits = 0): string {
 	return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS)} %`;
 }
 
+/** `1 step`, `1,204 steps` */
+export function counted(n: number, one: string): string {
+	return `${n.toLocaleString('en')} ${one}${n === 1 ? '' : 's'}`;
+}
+
 /** `p < 10⁻⁹` rather than a row of zeros. */
 export function chance(p: number, atMost = false): string {
 	if (p <= 0) return 'p < 10⁻¹⁶';
