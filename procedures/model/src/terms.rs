@@ -50,7 +50,7 @@ pub fn allows(effect: &dyn Effect, form: &Form, factors: &[f64]) -> bool {
 
 /// Columns of an effect at the rows of a problem.
 pub fn columns(effect: &dyn Effect, form: &str, shape: &[f64], problem: &Problem) -> Columns {
-    effect.columns(form, shape, &problem.view).into_iter().map(|c| problem.reduce.apply(c)).collect()
+    problem.reduce.apply_all(effect.columns(form, shape, &problem.view))
 }
 
 /// A model on one problem.
@@ -171,27 +171,27 @@ impl<'p> Terms<'p> {
     }
 }
 
-/// ∂(Σ factor·column) by a step of each free shape parameter (see [`Shape::moved`]), by a central difference.
+/// ∂(Σ factor·column) by a step of each free shape parameter (see [`Shape::moved`]), by a central difference: what a column
+/// becomes as a row is linear, so that their sum becomes rows once.
 ///
 /// [`Shape::moved`]: crate::effect::Shape::moved
 fn slopes(term: &Term, factors: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
     const STEP: f64 = 1e-4;
-    term.free()
-        .map(|k| {
-            let at = |sign: f64| {
-                let mut shape = term.shape.clone();
-                shape[k] = term.form.shape[k].moved(shape[k], sign * STEP);
-                columns(term.effect, term.form.name, &shape, problem)
-            };
-            let (up, down) = (at(1.0), at(-1.0));
-            let mut slope = vec![0.0; problem.rows()];
-            for ((u, d), f) in up.iter().zip(&down).zip(factors) {
-                let scale = f / (2.0 * STEP);
-                slope.iter_mut().zip(u.iter().zip(d)).for_each(|(s, (u, d))| *s += scale * (u - d));
-            }
-            slope
-        })
-        .collect()
+    let slope = |k: usize| {
+        let at = |sign: f64| {
+            let mut shape = term.shape.clone();
+            shape[k] = term.form.shape[k].moved(shape[k], sign * STEP);
+            term.effect.columns(term.form.name, &shape, &problem.view)
+        };
+        let (up, down) = (at(1.0), at(-1.0));
+        let mut slope = vec![0.0; up.first().map_or(0, Vec::len)];
+        for ((u, d), f) in up.iter().zip(&down).zip(factors) {
+            let scale = f / (2.0 * STEP);
+            slope.iter_mut().zip(u.iter().zip(d)).for_each(|(s, (u, d))| *s += scale * (u - d));
+        }
+        slope
+    };
+    problem.reduce.apply_all(term.free().map(slope).collect())
 }
 
 struct Reduced {

@@ -56,36 +56,63 @@ impl LowPass {
 
     /// Filters forwards and backwards. The ends are continued point-symmetrically by `pad` samples.
     pub fn both_ways(&self, values: &[f64], pad: usize) -> Vec<f64> {
-        let n = values.len();
+        let [filtered] = self.abreast([values], pad);
+        filtered
+    }
+
+    /// The same for many columns of one length.
+    pub fn each_both_ways(&self, columns: &[&[f64]], pad: usize) -> Vec<Vec<f64>> {
+        let some = |some: &[&[f64]]| match *some {
+            [a, b, c, d] => self.abreast([a, b, c, d], pad).into(),
+            [a, b, c] => self.abreast([a, b, c], pad).into(),
+            [a, b] => self.abreast([a, b], pad).into(),
+            _ => some.iter().map(|c| self.both_ways(c, pad)).collect::<Vec<_>>(),
+        };
+        columns.chunks(4).flat_map(some).collect()
+    }
+
+    /// A sample has to wait for the one before it: columns that go side by side do not wait for each other.
+    fn abreast<const N: usize>(&self, columns: [&[f64]; N], pad: usize) -> [Vec<f64>; N] {
+        let n = columns.iter().map(|c| c.len()).min().unwrap_or(0);
         if n < 2 {
-            return values.to_vec();
+            return columns.map(<[f64]>::to_vec);
         }
         let pad = pad.min(n - 1);
-        let (first, last) = (values[0], values[n - 1]);
-        let mut x = Vec::with_capacity(n + 2 * pad);
-        x.extend((1..=pad).rev().map(|i| 2.0 * first - values[i]));
-        x.extend_from_slice(values);
-        x.extend((1..=pad).map(|i| 2.0 * last - values[n - 1 - i]));
+        let mirrored = |end: usize, i: usize| columns.map(|c| 2.0 * c[end] - c[i]);
+        let mut x: Vec<[f64; N]> = Vec::with_capacity(n + 2 * pad);
+        x.extend((1..=pad).rev().map(|i| mirrored(0, i)));
+        x.extend((0..n).map(|i| columns.map(|c| c[i])));
+        x.extend((1..=pad).map(|i| mirrored(n - 1, n - 1 - i)));
         for _ in 0..2 {
             self.one_way(&mut x);
             x.reverse();
         }
-        x[pad..pad + n].to_vec()
+        std::array::from_fn(|column| x[pad..pad + n].iter().map(|v| v[column]).collect())
     }
 
     /// One pass from rest at the first value.
-    fn one_way(&self, x: &mut [f64]) {
-        for section in &self.sections {
-            let Section { b, a } = section;
-            // Steady state for a constant at the first value (all sections have unit gain at zero frequency).
-            let rest = x[0];
-            let mut s1 = rest * (1.0 - b[0]);
-            let mut s2 = rest * (b[2] - a[1]);
-            for v in x.iter_mut() {
+    fn one_way<const N: usize>(&self, x: &mut [[f64; N]]) {
+        // Pairs of sections at once: the second works on one sample while the first is at the next.
+        for pair in self.sections.chunks(2) {
+            match pair {
+                [first, second] => pass([*first, *second], x),
+                rest => rest.iter().for_each(|section| pass([*section], x)),
+            }
+        }
+    }
+}
+
+fn pass<const N: usize, const S: usize>(sections: [Section; S], x: &mut [[f64; N]]) {
+    // Steady state for a constant at the first value (all sections have unit gain at zero frequency).
+    let rest = x[0];
+    let mut state = sections.map(|Section { b, a }| [rest.map(|v| v * (1.0 - b[0])), rest.map(|v| v * (b[2] - a[1]))]);
+    for values in x.iter_mut() {
+        for (Section { b, a }, [s1, s2]) in sections.iter().zip(&mut state) {
+            for ((v, s1), s2) in values.iter_mut().zip(s1).zip(s2) {
                 let input = *v;
-                let output = b[0] * input + s1;
-                s1 = b[1] * input - a[0] * output + s2;
-                s2 = b[2] * input - a[1] * output;
+                let output = b[0] * input + *s1;
+                *s1 = b[1] * input - a[0] * output + *s2;
+                *s2 = b[2] * input - a[1] * output;
                 *v = output;
             }
         }
@@ -155,5 +182,16 @@ mod tests {
         let line: Vec<f64> = (0..200).map(f64::from).collect();
         let y = filter.both_ways(&line, 90);
         assert!((y[100] - 100.0).abs() < 1e-6, "{}", y[100]);
+    }
+
+    #[test]
+    fn columns_side_by_side_are_filtered_as_each_alone() {
+        let filter = LowPass::chebyshev(8, 0.05, 0.2);
+        let waves: Vec<Vec<f64>> = (1..=7).map(|k| wave(300, 0.05 * f64::from(k))).collect();
+        for count in 1..=7 {
+            let some: Vec<&[f64]> = waves[..count].iter().map(Vec::as_slice).collect();
+            let alone: Vec<Vec<f64>> = some.iter().map(|w| filter.both_ways(w, 24)).collect();
+            assert_eq!(filter.each_both_ways(&some, 24), alone);
+        }
     }
 }

@@ -63,24 +63,28 @@ pub enum Reduce {
 
 impl Reduce {
     pub fn apply(&self, column: Vec<f64>) -> Vec<f64> {
-        match self {
-            Reduce::Same => column,
-            Reduce::Decimate { filter, every, skip, starts, left_out } => {
-                let mut rows = filter::by_recording(&column, starts, |_, values| {
-                    let filtered = match filter {
-                        Some(filter) => filter.both_ways(values, 12 * every),
-                        None => values.to_vec(),
-                    };
-                    let end = values.len().saturating_sub(*skip);
-                    (*skip..end).step_by(*every).map(|i| filtered[i]).collect()
-                });
-                if !left_out.is_empty() {
-                    let mut out = left_out.iter();
-                    rows.retain(|_| out.next() == Some(&false));
-                }
-                rows
+        self.apply_all(vec![column]).into_iter().flatten().collect()
+    }
+
+    pub fn apply_all(&self, columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let Reduce::Decimate { filter, every, skip, starts, left_out } = self else { return columns };
+        let points = columns.first().map_or(0, Vec::len);
+        let mut rows = vec![Vec::new(); columns.len()];
+        for (start, end) in starts.iter().zip(starts.iter().skip(1).chain([&points])) {
+            let recording: Vec<&[f64]> = columns.iter().map(|c| &c[*start..*end]).collect();
+            let filtered = filter.as_ref().map(|filter| filter.each_both_ways(&recording, 12 * every));
+            for (column, rows) in rows.iter_mut().enumerate() {
+                let values = filtered.as_ref().map_or(recording[column], |f| &f[column]);
+                rows.extend((*skip..values.len().saturating_sub(*skip)).step_by(*every).map(|i| values[i]));
             }
         }
+        if !left_out.is_empty() {
+            for rows in &mut rows {
+                let mut out = left_out.iter();
+                rows.retain(|_| out.next() == Some(&false));
+            }
+        }
+        rows
     }
 }
 

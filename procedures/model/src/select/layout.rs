@@ -7,6 +7,7 @@ use crate::Options;
 use crate::effect::Effect;
 use crate::prepare::Problem;
 use crate::terms::{Term, Terms, polish};
+use rayon::prelude::*;
 
 /// How often the forms are chosen again, each beside all others.
 const PASSES: usize = 3;
@@ -86,12 +87,15 @@ pub fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
 /// nothing else is possible.
 fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &Ground, problem: &Problem) -> Option<Term<'p>> {
     forms.sort_by_key(Term::size);
-    let mut chosen: Option<(bool, f64, Term<'p>)> = None;
-    for term in forms {
+    let polished = |term: Term<'p>| {
         let mut term = [term];
         let sse = polish(&mut term, &ground.basis, &ground.residual, problem);
         let [term] = term;
-        let possible = term.allows(&ground.own(&term.columns).factors());
+        (term.allows(&ground.own(&term.columns).factors()), sse, term)
+    };
+    let forms: Vec<(bool, f64, Term<'p>)> = forms.into_par_iter().map(polished).collect();
+    let mut chosen: Option<(bool, f64, Term<'p>)> = None;
+    for (possible, sse, term) in forms {
         let is_better = chosen.as_ref().is_none_or(|(as_possible, least, simple)| {
             let more = term.size().saturating_sub(simple.size()) as f64;
             possible == *as_possible && sse < least * (1.0 - BETTER_FORM * more) || possible && !as_possible

@@ -1,10 +1,15 @@
 //! Every effect that the model does not have, in every form, at every starting point of its shape.
 
 use crate::ModelSpec;
-use crate::effect::{Effect, Form, Stage};
+use crate::effect::{Columns, Effect, Form, Stage};
 use crate::prepare::Problem;
 use crate::report::Invisible;
-use crate::terms::{Term, columns};
+use crate::terms::Term;
+use jointbench_instrument::Kind;
+use rayon::prelude::*;
+
+/// Candidates that become rows at once.
+const ABREAST: usize = 4;
 
 /// An effect in one form at one shape.
 pub struct Candidate<'e> {
@@ -26,6 +31,7 @@ impl<'e> Candidate<'e> {
 }
 
 pub struct Library<'e> {
+    pub kind: Kind,
     /// Every effect of the kind, in the order of the contract.
     pub effects: Vec<&'e dyn Effect>,
     pub candidates: Vec<Candidate<'e>>,
@@ -48,7 +54,8 @@ impl<'e> Library<'e> {
     }
 
     fn of(spec: &'e ModelSpec, problem: &Problem, stages: &[Stage], wanted: impl Fn(&dyn Effect) -> bool) -> Self {
-        let mut library = Self { effects: spec.known().collect(), candidates: Vec::new(), invisible: Vec::new() };
+        let mut library =
+            Self { kind: spec.kind, effects: spec.known().collect(), candidates: Vec::new(), invisible: Vec::new() };
         for effect in spec.known() {
             if effect.is_given() || !stages.contains(&effect.stage()) || !wanted(effect) {
                 continue;
@@ -58,11 +65,19 @@ impl<'e> Library<'e> {
                 continue;
             }
             for form in effect.forms(&problem.view) {
-                for shape in &form.grid {
-                    let columns = columns(effect, form.name, shape, problem);
-                    let columns = columns.into_iter().map(|c| c.into_iter().map(|v| v as f32).collect()).collect();
-                    library.candidates.push(Candidate { effect, form: form.clone(), shape: shape.clone(), columns });
-                }
+                library.candidates.par_extend(form.grid.par_chunks(ABREAST).flat_map_iter(|shapes| {
+                    let at_points = shapes.iter().map(|shape| effect.columns(form.name, shape, &problem.view));
+                    let at_points: Vec<Columns> = at_points.collect();
+                    let each = at_points.first().map_or(1, Vec::len).max(1);
+                    let rows = problem.reduce.apply_all(at_points.into_iter().flatten().collect());
+                    let candidate = |(shape, columns): (&Vec<f64>, &[Vec<f64>])| Candidate {
+                        effect,
+                        form: form.clone(),
+                        shape: shape.clone(),
+                        columns: columns.iter().map(|c| c.iter().map(|v| *v as f32).collect()).collect(),
+                    };
+                    shapes.iter().zip(rows.chunks(each)).map(candidate).collect::<Vec<_>>()
+                }));
             }
         }
         library

@@ -8,6 +8,7 @@ use crate::Options;
 use crate::effect::Stage;
 use crate::terms::{Term, Terms, polish};
 use jointbench_instrument::Kind;
+use rayon::prelude::*;
 
 /// Candidates that are refined and held against each other at each step.
 const SHORT_LIST: usize = 8;
@@ -37,13 +38,13 @@ impl<'p> Rival<'p> {
 pub struct Bar<'l> {
     /// Squared error of the baseline, with what formulas explain that are exact.
     pub plain: f64,
-    pub form_error: f64,
+    pub kind: Kind,
     pub options: &'l Options,
 }
 
 /// No formula fits nature better than to this share of what it explains, squared (4.5 % in RMS). But an encoder's errors
 /// are waves over its own angle, steps and slopes: their formulas are no approximations.
-pub(super) fn form_error(kind: Kind) -> f64 {
+fn form_error(kind: Kind) -> f64 {
     if kind == Kind::Encoder { 0.0 } else { 0.002 }
 }
 
@@ -69,8 +70,20 @@ impl Bar<'_> {
     /// The least share of the squared error `energy` that an effect must take beside a model: what the formulas of its
     /// effects may leave is none.
     pub fn least_share(&self, now: &Terms, energy: f64) -> f64 {
-        let remainder = self.form_error * (self.plain - energy).max(0.0) + left_by_memory(now);
+        let remainder = form_error(self.kind) * (self.plain - energy).max(0.0) + left_by_memory(now);
         self.options.practical_share.max((remainder / energy).min(UNMISTAKABLE))
+    }
+
+    /// No friction becomes negative beside another: a wave over short strokes can look like a constant.
+    fn leaves_possible(&self, now: &Terms, term: &Term) -> bool {
+        if self.kind != Kind::Friction {
+            return true;
+        }
+        let mut with = now.clone();
+        with.terms.push(term.clone());
+        let (was, is) = (now.linear().factors, with.linear().factors);
+        let mut changes = now.terms.iter().zip(was.iter().zip(&is));
+        changes.all(|(t, (was, is))| !t.allows(was) || t.allows(is))
     }
 }
 
@@ -88,7 +101,7 @@ pub fn step<'p>(
     let energy = *energy;
     let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
     let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
-    let gains: Vec<Own> = open.iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
+    let gains: Vec<Own> = open.par_iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
 
     // The best shape of each form of each effect, the most telling first.
     let mut best: Vec<usize> = Vec::new();
@@ -110,12 +123,12 @@ pub fn step<'p>(
     let present: f64 = losses(&now.columns(), residual, problem).iter().sum();
     let least_share = bar.least_share(now, energy);
     let mut rivals: Vec<Rival> = best
-        .iter()
+        .par_iter()
         .map(|b| {
             let mut term = [library.candidates[open[*b]].term(problem)];
             let sse = polish(&mut term, basis, residual, problem);
             let [term] = term;
-            let possible = term.allows(&ground.own(&term.columns).factors());
+            let possible = term.allows(&ground.own(&term.columns).factors()) && bar.leaves_possible(now, &term);
             let sse = if possible { sse } else { energy };
             let mut columns = now.columns();
             columns.extend(term.columns.iter().map(Vec::as_slice));
@@ -152,7 +165,8 @@ pub fn step<'p>(
 
     let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
     let mut rival = rivals.swap_remove(winner);
-    let scores = open.iter().zip(&gains).map(|(i, own)| ground.score(&library.candidates[*i].columns, own)).collect();
+    let scores =
+        open.par_iter().zip(&gains).map(|(i, own)| ground.score(&library.candidates[*i].columns, own)).collect();
     rival.p_value = family_wise(&rival.term, scores, &ground, options);
     (rival.p_value <= options.alpha).then_some((rival, ties))
 }

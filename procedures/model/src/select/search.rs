@@ -3,11 +3,12 @@
 use super::ground::Ground;
 use super::layout::lay;
 use super::library::{Candidate, Library};
-use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, form_error, is_tie, left_by_memory, step};
+use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, is_tie, left_by_memory, step};
 use crate::Options;
 use crate::linear::{BlockGrams, dot};
 use crate::prepare::Problem;
 use crate::terms::{Term, Terms};
+use rayon::prelude::*;
 
 pub enum Move<'p> {
     Added { rival: Box<Rival<'p>>, ties: Vec<&'p str> },
@@ -94,8 +95,7 @@ impl<'l, 'p> Search<'l, 'p> {
     }
 
     fn bar(&self) -> Bar<'_> {
-        let kind = self.library.effects.first().map(|effect| effect.info().kind);
-        Bar { plain: self.plain, form_error: kind.map_or(0.0, form_error), options: self.options }
+        Bar { plain: self.plain, kind: self.library.kind, options: self.options }
     }
 
     /// Takes an effect back that turned out not to be the answer.
@@ -121,7 +121,8 @@ impl<'l, 'p> Search<'l, 'p> {
         let losses = held_out(&self.now);
         let present: f64 = losses.iter().sum();
         let ids: Vec<&'p str> = self.added().map(Term::id).collect();
-        ids.into_iter().filter(|_| self.now.terms.len() > self.kept.len() + 1).find(|id| {
+        let alone = self.now.terms.len() <= self.kept.len() + 1;
+        ids.into_par_iter().filter(|_| !alone).find_first(|id| {
             let better = self.step(&self.now.without(id));
             better.is_some_and(|(rival, _)| {
                 let clearly = rival.held_out < (1.0 - self.options.practical_share) * present;
@@ -133,17 +134,29 @@ impl<'l, 'p> Search<'l, 'p> {
     /// The added effect without which the model is as good. What came last has just shown its reason.
     fn needless(&self) -> Option<&'p str> {
         let full = self.now.linear().sse;
-        let ids = self.added().map(Term::id).filter(|id| self.last != Some(id));
-        let shares = ids.map(|id| (id, 1.0 - full / self.now.without(id).linear().sse));
-        let open = shares.filter(|(_, share)| *share < self.options.practical_share);
-        open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+        let ids: Vec<&'p str> = self.added().map(Term::id).filter(|id| self.last != Some(id)).collect();
+        let share = |id: &'p str| {
+            let without = self.now.without(id);
+            let share = 1.0 - full / without.linear().sse;
+            // What would need another effect of an impossible size in its place is not needless.
+            (share < self.options.practical_share && self.impossible(&without).is_none()).then_some((id, share))
+        };
+        ids.into_par_iter().filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+    }
+
+    /// The added effect whose factors are physically impossible in a model.
+    fn impossible(&self, terms: &Terms<'p>) -> Option<&'p str> {
+        let factors = terms.linear().factors;
+        let mut sized = terms.terms.iter().zip(&factors).filter(|(term, _)| !self.kept.contains(&term.id()));
+        sized.find(|(term, factors)| !term.allows(factors)).map(|(term, _)| term.id())
     }
 
     /// The added effect that brings least on what was held out, where that is not worth a name: whatever came in since
     /// explains the rest of it. Asked when nothing more can be added, because on the way two effects may mask each other.
     fn idle(&self) -> Option<&'p str> {
         let (present, sse) = (held_out(&self.now).iter().sum::<f64>(), self.now.linear().sse);
-        let idle = self.added().filter_map(|term| {
+        let added: Vec<&Term<'p>> = self.added().collect();
+        let idle = added.into_par_iter().filter_map(|term| {
             let without = self.laid_without(term.id());
             let share = 1.0 - present / held_out(&without).iter().sum::<f64>();
             let is_remainder = without.linear().sse - sse < left_by_memory(&without);
@@ -229,7 +242,7 @@ impl<'p> Iterator for Search<'_, 'p> {
         let found = if self.left > 0 { self.step(&self.now) } else { None };
         let found = found.filter(|(rival, _)| !stands_in(rival));
         let Some((rival, ties)) = found else {
-            if let Some(id) = self.idle() {
+            if let Some(id) = self.impossible(&self.now).or_else(|| self.idle()) {
                 self.withdrawn.push(id);
                 return Some(self.remove(id));
             }

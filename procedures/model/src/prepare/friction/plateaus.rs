@@ -20,6 +20,10 @@ const MOST_ROWS: usize = 12_000;
 const MOST_MOVING_ROWS: usize = 8_000;
 /// How far speed and load may be from the plateau's own middle, as a share of their size.
 const SETTLED_SHARE: f64 = 0.04;
+/// Speed is at least so many times its own scatter, or half of that where it only wavers about its middle: a slow step over teeth.
+const STEADY: f64 = 5.0;
+/// A wave goes through its middle at least so often, the arc of a swing does not.
+const WAVERS: usize = 4;
 
 /// The settled stretch of every segment that has one.
 pub fn find(samples: &Source, options: &Options) -> Vec<Range<usize>> {
@@ -41,7 +45,9 @@ fn settled(leg: Range<usize>, velocity: &[f64], load: Option<&[f64]>, heaviest: 
     let late = speed.len() / 2..speed.len() - 1;
     let target = median(speed[late.clone()].iter().copied());
     let scatter = 1.5 * median(speed[late.clone()].iter().map(|v| (v - target).abs()));
-    if target.abs() < 5.0 * scatter || target == 0.0 {
+    let crossings = speed[late.clone()].windows(2).filter(|w| (w[0] > target) != (w[1] > target)).count();
+    let steady = if crossings >= WAVERS { STEADY / 2.0 } else { STEADY };
+    if target.abs() < steady * scatter || target == 0.0 {
         return None;
     }
     let within = (SETTLED_SHARE * target.abs()).max(5.0 * scatter);
