@@ -151,6 +151,36 @@ export async function tryAndDrop(page) {
 	return said;
 }
 
+/** The page of a daemon without any run: what it says, how far things jump while it loads, and what it may load at all. */
+export async function firstUse(page, base) {
+	const answer = await page.goto(base);
+	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
+	await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 30_000 });
+	const jumps = await page.evaluate(() => new Promise((ok) => {
+		new PerformanceObserver((list) => ok(list.getEntries().reduce((sum, one) => sum + one.value, 0))).observe({ type: 'layout-shift', buffered: true });
+		setTimeout(() => ok(0), 1000);
+	}));
+	return { jumps, policy: answer.headers()['content-security-policy'] ?? '' };
+}
+
+/** Whatever still moves by itself for a person who has asked for little motion. */
+export async function moving(page) {
+	await page.emulateMedia({ reducedMotion: 'reduce' });
+	await page.waitForTimeout(500);
+	return page.evaluate(() => document.getAnimations().filter((one) => one.playState === 'running').map((one) => one.animationName ?? one.transitionProperty));
+}
+
+/** Holds the version at hand beside another one, and lets it go again; what the page says of the two. */
+export async function compareVersions(page) {
+	await page.getByRole('button', { name: /^Compare with v/ }).and(page.locator(':enabled')).last().click();
+	const beside = page.locator('[data-beside=compare]');
+	await beside.waitFor({ timeout: 30_000 }).catch(() => expect(false, 'no other version is shown beside the one at hand'));
+	const said = await beside.innerText();
+	await page.keyboard.press('x');
+	await beside.waitFor({ state: 'detached' });
+	return said;
+}
+
 /** A second person, in a browser of their own, who only looks. */
 export async function observe(page, base) {
 	await page.goto(base);
@@ -194,10 +224,15 @@ export async function stopByKey(page, who) {
 /** A table with foreign names and units. */
 export const FOREIGN = ['Time [ms],pos_deg,Iq [A]', ...Array.from({ length: 200 }, (_, i) => `${i * 4},${i % 90},0.${i % 9}`)].join('\n');
 
-/** Gives the page a table to import; the form that asks what its columns are. */
+/** Drops a table on the page to import it; the form that asks what its columns are. */
 export async function chooseForeign(page, base, table) {
 	await page.goto(`${base}/runs`);
-	await page.setInputFiles('input[type=file]', { name: 'foreign.csv', mimeType: 'text/csv', buffer: Buffer.from(table) });
+	await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
+	await page.evaluate((table) => {
+		const dataTransfer = new DataTransfer();
+		dataTransfer.items.add(new File([table], 'foreign.csv', { type: 'text/csv' }));
+		for (const name of ['dragover', 'drop']) document.body.dispatchEvent(new DragEvent(name, { dataTransfer, bubbles: true, cancelable: true }));
+	}, table);
 	const form = page.getByRole('form', { name: /foreign.csv/ });
 	await form.waitFor({ timeout: 30_000 });
 	return form;

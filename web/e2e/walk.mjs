@@ -1,12 +1,12 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Lose the daemon and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
-// both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table; the software stop by key;
+// Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
+// both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table dropped on the page; three runs compared; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { BARE, brush, excludeAndUndo, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, observe, readResult, readVersion, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
+import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, readResult, readVersion, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** Without typeset formulas, whose script comes with the first of them. */
@@ -19,6 +19,10 @@ const rest = async (path) => {
 
 await tell('walk', async () => {
 	const { browser, page, faults, another } = await open(where);
+	const { jumps, policy } = await firstUse(page, where.base);
+	expect(jumps < 0.1, `the page jumps while it loads, by ${jumps}`);
+	expect(/default-src 'self'|default-src 'none'/.test(policy) && !/unsafe-eval/.test(policy), `the page may load what it likes: ${policy}`);
+	console.log(`layout shift of the first page: ${jumps.toFixed(4)}`);
 	const watcher = await another();
 	await observe(watcher, where.base);
 	const without = await loseAndFind(another, where.base);
@@ -73,6 +77,9 @@ await tell('walk', async () => {
 	const undone = await toAnotherVersion(page, () => page.keyboard.press('z'));
 	expect(undone.held === first.held, `undo should lead back to ${first.held}, but shows ${undone.held}`);
 
+	const differs = await compareVersions(page);
+	expect(differs.includes(first.effects[0].replaceAll('_', ' ')), `the comparison does not tell what differs: ${differs}`);
+
 	const back = await showForeign(page, where.base, run, undone, 'viscous_quadratic');
 	expect(back.model === undone.model, `back from the version made elsewhere the page shows ${back.model}`);
 
@@ -99,12 +106,15 @@ await tell('walk', async () => {
 		await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
 		await audit(page, path);
 	}
+	const moves = await moving(watcher);
+	expect(moves.length === 0, `with little motion asked for these still move: ${moves.join(', ')}`);
 	await stopByKey(watcher, 'observer');
 	await stopByKey(page, 'operator');
 	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
+	await page.getByLabel(`Compare run ${run + 1}`).check();
 	await page.getByLabel(`Compare run ${run + 3}`).check();
-	await page.getByRole('heading', { name: 'Compare 2 runs' }).waitFor({ timeout: 30_000 });
+	await page.getByRole('heading', { name: 'Compare 3 runs' }).waitFor({ timeout: 30_000 });
 	await page.locator('.uplot').first().waitFor({ timeout: 30_000 });
 	await audit(page, 'the comparison');
 
