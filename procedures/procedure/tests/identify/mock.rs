@@ -128,6 +128,24 @@ fn a_joint_that_breaks_away_in_the_swings_decides_nothing() {
 }
 
 #[test]
+fn a_warm_up_and_a_cool_down_tell_what_oil_does_and_what_does_not_change() {
+    let mut settings = MockSettings::new(Joint::JointA, 21);
+    let (_, cold) = found(settings.clone(), "friction_temperature", json!({}));
+    assert!(cold.quantity("c_t").is_none() && cold.summary.contains("neither"), "{}", cold.summary);
+
+    settings.effects = vec!["temperature_viscous".into()];
+    let (mock, warm) = found(settings, "friction_temperature", json!({}));
+    let truth = mock.truth();
+    let holds = |name: &str, given: f64| {
+        let [low, high] = warm.quantity(name).unwrap().ci95.unwrap();
+        assert!((low..=high).contains(&given), "{name} is given as {given}: {}", warm.summary);
+    };
+    holds("tau_c", truth.coulomb_nm);
+    holds("c_v", truth.viscous_nm_s);
+    holds("c_t", -truth.hidden[0].parameters["per_k"] * truth.viscous_nm_s);
+}
+
+#[test]
 fn stiffness_takes_the_bearing_off() {
     let given = json!({"load_levels": 4, "repeats": 2, "dwell_s": 0.8, "bearing_stiffness_nm_rad": 155e3,
         "sample_rate_hz": 100.0});
