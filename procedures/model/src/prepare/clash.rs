@@ -13,7 +13,7 @@ const CLASH: f64 = 1.2;
 const TORQUE_CLASH: f64 = 2.0;
 /// Share of the variance in common, below which the columns do not tell the same at all.
 const SAME: f64 = 0.9;
-/// Of torques: much of the motor's is friction of which the link knows nothing.
+/// Where a slip of the unit or the sign shows less is enough: much of a motor's torque is friction of which the link knows nothing.
 const SAME_TORQUE: f64 = 0.7;
 
 /// Each in a sentence.
@@ -74,9 +74,11 @@ fn torque_clash(run: &RunTable) -> Option<String> {
     // Neither side's noise makes it larger.
     let times = (tt / ll).sqrt().copysign(tl);
     let near = |unit: f64| (1.0 / TORQUE_CLASH..=TORQUE_CLASH).contains(&(times.abs() / unit));
-    // At rest a motor pushes against its own friction, and a sensor that bears no load follows by some hundredth of it.
+    let agree = times > 0.0 && near(1.0);
+    // At rest a motor pushes against its own friction, and a sensor that bears no load follows loosely by some hundredth of it.
     let slips = [1e3, 1e-3].into_iter().any(near) || times < 0.0 && near(1.0);
-    let tells = tl * tl > SAME_TORQUE * tt * ll && slips;
+    let common = tl * tl / (tt * ll);
+    let tells = !agree && common > if slips { SAME_TORQUE } else { SAME };
     tells.then(|| {
         format!(
             "motor_current_a with the torque constant and the gear ratio is {times:.3} times what link_torque_nm asks \
@@ -150,15 +152,20 @@ mod tests {
         let loaded = |current_scale, load_scale| rubbing(current_scale, load_scale, 0.0);
         assert_eq!(loaded(1.0, 1.0), Vec::<String>::new(), "a gear that loses three tenths");
         assert_eq!(loaded(1.0, 0.0), Vec::<String>::new(), "a sensor that shows nothing");
-        assert_eq!(loaded(1.0, 0.01), Vec::<String>::new(), "a sensor without a load, which shows what shakes it");
         let told = |scale, load| matches!(&loaded(scale, load)[..], [one] if one.starts_with("motor_current_a with"));
         assert!(told(1000.0, 1.0) && told(-1.0, 1.0) && told(1.0, 1000.0) && told(1.0, -1.0));
+        assert!(told(20.0, 1.0), "another gear ratio");
         assert_eq!(
-            rubbing(1.0, 1.0, 0.4),
+            rubbing(1.0, 0.01, 1.2),
+            Vec::<String>::new(),
+            "a sensor without a load, which shows what shakes it"
+        );
+        assert_eq!(
+            rubbing(1.0, 1.0, 1.2),
             Vec::<String>::new(),
             "a fifth of the torque is friction that the link cannot know"
         );
-        assert_eq!((rubbing(1000.0, 1.0, 0.4).len(), rubbing(-1.0, 1.0, 0.4).len()), (1, 1));
+        assert_eq!((rubbing(1000.0, 1.0, 1.2).len(), rubbing(-1.0, 1.0, 1.2).len()), (1, 1));
     }
 
     #[test]

@@ -12,6 +12,9 @@ struct Section {
     a: [f64; 2],
 }
 
+/// Columns that are filtered side by side.
+pub const ABREAST: usize = 4;
+
 /// A low-pass filter, to be applied in both directions.
 #[derive(Debug, Clone)]
 pub struct LowPass {
@@ -68,7 +71,7 @@ impl LowPass {
             [a, b] => self.abreast([a, b], pad).into(),
             _ => some.iter().map(|c| self.both_ways(c, pad)).collect::<Vec<_>>(),
         };
-        columns.chunks(4).flat_map(some).collect()
+        columns.chunks(ABREAST).flat_map(some).collect()
     }
 
     /// A sample has to wait for the one before it: columns that go side by side do not wait for each other.

@@ -3,13 +3,11 @@
 use crate::ModelSpec;
 use crate::effect::{Columns, Effect, Form, Stage};
 use crate::prepare::Problem;
+use crate::prepare::filter::ABREAST;
 use crate::report::Invisible;
 use crate::terms::Term;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
-
-/// Candidates that become rows at once.
-const ABREAST: usize = 4;
 
 /// An effect in one form at one shape.
 pub struct Candidate<'e> {

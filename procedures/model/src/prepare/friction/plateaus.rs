@@ -20,7 +20,8 @@ const MOST_ROWS: usize = 12_000;
 const MOST_MOVING_ROWS: usize = 8_000;
 /// How far speed and load may be from the plateau's own middle, as a share of their size.
 const SETTLED_SHARE: f64 = 0.04;
-/// Speed is at least so many times its own scatter, or half of that where it only wavers about its middle: a slow step over teeth.
+/// Speed is at least so many times its own scatter, or half of that where it only wavers about its middle: a slow step
+/// over teeth.
 const STEADY: f64 = 5.0;
 /// A wave goes through its middle at least so often, the arc of a swing does not.
 const WAVERS: usize = 4;
