@@ -1,13 +1,16 @@
 //! What a procedure decides: a list of steps with their set-points over time. Pure data; the engine acts on it.
 
 use crate::catalogue::BrakeModel;
+use crate::continuing::Done;
 use crate::place::Place;
 use crate::profile::Profile;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::PositionCounter;
-use jointbench_instrument::{Bench, Kind, Limits, Meta};
+use jointbench_instrument::{Bench, Kind, Limits, Meta, RunTable};
 use serde_json::{Map, Value};
 use std::f64::consts::TAU;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// What a procedure may know about a bench before anything moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -156,6 +159,18 @@ pub struct Steady {
     pub current_share_per_min: f64,
 }
 
+/// Steps that wait for what the run itself finds ([`crate::Procedure::learn`]). Until then they stand as on a joint as
+/// expected: how long they take and how far they move is known before anything does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lesson {
+    /// Segments that are learnt from.
+    pub from: Range<u32>,
+    /// Segments of the steps that wait.
+    pub to: Range<u32>,
+    /// What an earlier run has measured of the same plan, and what it had finished.
+    pub earlier: Option<Arc<(RunTable, Done)>>,
+}
+
 /// A validated procedure, ready to run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -177,6 +192,8 @@ pub struct Plan {
     pub both_ranges: bool,
     /// How often a torque sensor that can send by itself is to do so. `None`, and one that cannot: read once for each row.
     pub torque_period_s: Option<f64>,
+    /// `None`: every step is known before the first one.
+    pub lesson: Option<Lesson>,
 }
 
 impl Plan {
@@ -257,6 +274,7 @@ pub(crate) mod testing {
             steady: None,
             both_ranges: false,
             torque_period_s: None,
+            lesson: None,
         }
     }
 

@@ -39,6 +39,14 @@ impl Lab {
         let rest = plan.rest(id, done.steps, done.next_segment, &bench.facts()).ok_or_else(|| {
             LabError::Invalid(format!("run {id} has finished no step that could be gone on from: {again}"))
         })?;
+        // Read only where something is to be learnt from it: it may be long.
+        let rest = match rest.lesson {
+            Some(_) => {
+                let (measured, done) = self.measured(id).await?;
+                rest.recalling(measured, done)
+            }
+            None => rest,
+        };
         self.launch(bench, rest).await
     }
 
@@ -58,6 +66,11 @@ impl Lab {
 
     /// All that was measured: of a run that goes on with others, theirs too.
     pub(super) async fn measurement(&self, id: i64) -> Answer<RunTable> {
+        Ok(self.measured(id).await?.0)
+    }
+
+    /// The same, with what was finished of it.
+    async fn measured(&self, id: i64) -> Answer<(RunTable, Done)> {
         let mut parts = self.parts(id).await?;
         let (Some(first), later) = (parts.pop(), parts.into_iter().rev()) else { unreachable!("one part at least") };
         let mut whole = self.table(first.id).await?;
@@ -69,7 +82,7 @@ impl Lab {
             let more = self.done(&part, None).await?;
             done.segments.extend(more.segments);
         }
-        Ok(whole)
+        Ok((whole, done))
     }
 
     /// What a run, with those before it, has finished of the plan of its procedure. With the plan at hand its steps are

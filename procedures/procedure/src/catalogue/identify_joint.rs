@@ -1,25 +1,26 @@
 //! A joint and its brake in one run, in the order in which physical history asks for it: friction over temperature from the
-//! cold joint on, then, warm, friction, breakaway, presliding, friction under load, the brake, stiffness.
+//! cold joint on, then, warm, friction, breakaway, presliding, friction under load, the brake, stiffness, compensation.
 //!
 //! Each part is planned by its own procedure and identified by it, on its own rows. Every part begins and ends without
-//! brake current and where the run began, so that the parts need nothing of each other but the warm-up. Compensation feeds
-//! forward what friction has found: it is a run of its own afterwards, for which this one gives the parameters.
+//! brake current and where the run began, so that the parts need nothing of each other but the warm-up, and compensation
+//! the friction that it feeds forward: it is planned anew when that is known.
 
+mod learn;
 mod part;
 
 use super::brake_hysteresis::BrakeHysteresis;
 use super::brake_speed_independence::BrakeSpeedIndependence;
 use super::breakaway::Breakaway;
-use super::compensation;
+use super::compensation::Compensation;
 use super::friction::Friction;
 use super::friction_load::FrictionLoad;
 use super::friction_temperature::FrictionTemperature;
 use super::legs::sample_rate;
 use super::presliding::Presliding;
 use super::stiffness::Stiffness;
-use super::{Findable, Procedure, procedure};
+use super::{Findable, Learnt, Procedure, procedure};
 use crate::findings::{Unusable, verdict};
-use crate::identification::{FollowUp, Identification, Verdict};
+use crate::identification::{Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Step};
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -38,6 +39,7 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
     Parameter::number("bearing_stiffness_nm_rad", "Stiffness of the bearing, 0: none known", "Nm/rad", 0.0, [0.0, 1e9]),
     Parameter::count("repeats", "Repeats of the profiles", 2, [2, 50]),
+    Parameter::count("periods", "Periods with each way of compensating, where the drive can; 0: none", 3, [0, 100]),
     sample_rate(250.0),
 ];
 
@@ -45,7 +47,7 @@ const SCHEMA: &[Parameter] = &[
 const PARTS: &str = "parts";
 
 /// What the campaign consists of.
-const PARTS_IN_ORDER: [&str; 8] = [
+const PARTS_IN_ORDER: [&str; 9] = [
     "friction_temperature",
     "friction",
     "breakaway",
@@ -54,6 +56,7 @@ const PARTS_IN_ORDER: [&str; 8] = [
     "brake_speed_independence",
     "brake_hysteresis",
     "stiffness",
+    "compensation",
 ];
 
 /// One procedure of the campaign with the choices that it gets.
@@ -96,6 +99,9 @@ fn parts(values: &Values, bench: &BenchFacts) -> Vec<(&'static dyn Procedure, Va
         let given = json!({"top_speed_rad_s": top, "heat_s": each, "cool_s": each, "sample_rate_hz": rate});
         parts.insert(0, (&FrictionTemperature, given));
     }
+    if values.count("periods") > 0 && bench.feeds_forward {
+        parts.push((&Compensation, json!({"periods": number("periods"), "sample_rate_hz": rate})));
+    }
     parts
 }
 
@@ -109,7 +115,7 @@ impl Procedure for IdentifyJoint {
     }
 
     fn summary(&self) -> &'static str {
-        "The whole campaign of a joint and its brake in one run and one report: friction over temperature, friction, breakaway, presliding, friction under load, brake over speed and with its hysteresis, stiffness."
+        "The whole campaign of a joint and its brake in one run and one report: friction over temperature, friction, breakaway, presliding, friction under load, brake over speed and with its hysteresis, stiffness, and what compensating the friction found gains."
     }
 
     fn kind(&self) -> Kind {
@@ -138,22 +144,21 @@ impl Procedure for IdentifyJoint {
             whole.steady = whole.steady.or(part.steady);
             let first = whole.steps.len();
             let steps = steps.into_iter().filter(|step| !is_warm || step.phase != Phase::WarmUp);
-            whole.steps.extend(steps.zip(first as u32..).map(|(step, segment)| Step {
-                label: format!("{}: {}", procedure.title().to_lowercase(), step.label),
-                segment,
-                ..step
-            }));
+            whole.steps.extend(numbered(steps, procedure, first));
             let steps = &whole.steps[first..];
             if let Some(warm_up) = part.meta.other.get_mut("warm_up_segments") {
                 *warm_up = json!(first + steps.iter().filter(|step| step.phase == Phase::WarmUp).count());
             }
+            // What is fed forward is not chosen but learnt.
+            let parameters = if waits(procedure) { given } else { Value::Object(part.parameters) };
             facts.push(json!({
-                "procedure": procedure.id(), "parameters": Value::Object(part.parameters), "meta": part.meta,
+                "procedure": procedure.id(), "parameters": parameters, "meta": part.meta,
                 "first_segment": first, "segments": steps.len(),
             }));
         }
         let cure = "report it";
         let mut plan = whole.ok_or(PlanFault::Contradiction { what: "a campaign without parts".into(), cure })?;
+        plan.lesson = learn::lesson(&facts);
         plan.meta.other.insert(PARTS.into(), Value::Array(facts));
         Ok(plan)
     }
@@ -170,15 +175,51 @@ impl Procedure for IdentifyJoint {
         verdict(identify(run))
     }
 
-    fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
-        compensation::of_friction(found, "friction.")
+    fn learn(&self, run: &RunTable, bench: &BenchFacts) -> Result<Learnt, String> {
+        learn::compensation(run, bench)
     }
 }
 
+/// The steps of a part with their names and numbers in the whole.
+fn numbered(
+    steps: impl IntoIterator<Item = Step>,
+    procedure: &dyn Procedure,
+    first: usize,
+) -> impl Iterator<Item = Step> {
+    let title = procedure.title().to_lowercase();
+    steps.into_iter().zip(first as u32..).map(move |(step, segment)| Step {
+        label: format!("{title}: {}", step.label),
+        segment,
+        ..step
+    })
+}
+
+/// Whether the steps of a part wait for what another one finds.
+fn waits(procedure: &dyn Procedure) -> bool {
+    procedure.id() == Compensation.id()
+}
+
+const FOREIGN: Unusable =
+    Unusable::TooLittle("the run does not say which of its rows are whose: it is of another procedure");
+
+fn parts_of(run: &RunTable) -> Result<&[Value], Unusable> {
+    Ok(run.meta().other.get(PARTS).and_then(Value::as_array).ok_or(FOREIGN)?)
+}
+
+/// A part's procedure, and what it makes of its rows. `None`: it has none.
+fn found(
+    run: &RunTable,
+    facts: &[Value],
+    number: usize,
+) -> Result<(&'static dyn Procedure, Option<Identification>), Unusable> {
+    let procedure = facts[number]["procedure"].as_str().and_then(procedure).ok_or(FOREIGN)?;
+    let given = facts[number]["parameters"].as_object().ok_or(FOREIGN)?;
+    let values = Values::parse(procedure.schema(), given).map_err(|_| FOREIGN)?;
+    Ok((procedure, table_of(run, facts, number).ok().and_then(|table| procedure.identify(&values, &table))))
+}
+
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
-    const FOREIGN: Unusable =
-        Unusable::TooLittle("the run does not say which of its rows are whose: it is of another procedure");
-    let facts = run.meta().other.get(PARTS).and_then(Value::as_array).ok_or(FOREIGN)?;
+    let facts = parts_of(run)?;
     let mut whole = Identification {
         verdict: Verdict::Identified,
         summary: String::new(),
@@ -186,15 +227,9 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         quantities: Vec::new(),
         figures: Vec::new(),
     };
-    for (number, fact) in facts.iter().enumerate() {
-        let procedure = fact["procedure"].as_str().and_then(procedure).ok_or(FOREIGN)?;
-        let given = fact["parameters"].as_object().ok_or(FOREIGN)?;
-        let values = Values::parse(procedure.schema(), given).map_err(|_| FOREIGN)?;
-        let found = match table_of(run, facts, number) {
-            Ok(table) => procedure.identify(&values, &table),
-            Err(_) => Some(Identification::failed("The run ended before this part.", "Make the run again.")),
-        };
-        let Some(found) = found else { continue };
+    for number in 0..facts.len() {
+        let (procedure, found) = found(run, facts, number)?;
+        let found = found.unwrap_or_else(|| none_of(procedure, &whole));
         let id = procedure.id();
         let words = |text: &str| format!("{}: {text}", procedure.title());
         if found.verdict != Verdict::Identified && whole.verdict != Verdict::Failed {
@@ -215,6 +250,18 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         }));
     }
     Ok(whole)
+}
+
+/// A part without rows, behind those before it.
+fn none_of(part: &dyn Procedure, before: &Identification) -> Identification {
+    match before.verdict {
+        Verdict::Inconclusive if waits(part) => Identification {
+            verdict: Verdict::Inconclusive,
+            advice: Some("Do what friction advises, and make the run again.".into()),
+            ..Identification::failed("Left out: friction is not known well enough to feed it forward.", "")
+        },
+        _ => Identification::failed("The run ended before this part.", "Make the run again."),
+    }
 }
 
 #[cfg(test)]
@@ -241,6 +288,20 @@ mod tests {
                 assert_eq!(plan.steps[last as usize].brake.end(), 0.0, "{}", part["procedure"]);
             }
         }
+    }
+
+    #[test]
+    fn compensation_waits_for_friction_and_is_left_out_where_the_drive_cannot() {
+        let plan = IdentifyJoint.plan(&Map::new(), &joint_a()).unwrap();
+        let lesson = plan.lesson.unwrap();
+        assert_eq!(lesson.to.end as usize, plan.steps.len());
+        assert!(
+            lesson.from.end < lesson.to.start && plan.steps[lesson.from.start as usize].label.starts_with("friction:")
+        );
+        let cannot = BenchFacts { feeds_forward: false, ..joint_a() };
+        let shorter = IdentifyJoint.plan(&Map::new(), &cannot).unwrap();
+        assert!(shorter.lesson.is_none() && shorter.steps.len() == lesson.to.start as usize);
+        assert!(shorter.preview(&cannot).is_allowed());
     }
 
     #[test]

@@ -124,6 +124,7 @@ impl Legs {
             steady: None,
             both_ranges: false,
             torque_period_s: (measures_torque && rate_hz * TORQUE_PERIOD_S <= 0.5).then_some(TORQUE_PERIOD_S),
+            lesson: None,
         }
     }
 

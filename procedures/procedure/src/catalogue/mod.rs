@@ -28,9 +28,17 @@ use findable::findable;
 
 use crate::identification::{FollowUp, Identification};
 use crate::parameter::{Parameter, Values};
-use crate::plan::{BenchFacts, Plan, PlanFault};
+use crate::plan::{BenchFacts, Plan, PlanFault, Step};
 use jointbench_instrument::{Kind, RunTable};
 use serde_json::{Map, Value};
+
+/// Steps planned while their run is on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Learnt {
+    pub steps: Vec<Step>,
+    /// With what, in a sentence for the journal.
+    pub said: String,
+}
 
 /// Decides what a bench shall do; the engine does it. Pure and deterministic: the same choices on the same bench give
 /// the same plan.
@@ -50,6 +58,12 @@ pub trait Procedure: Sync {
     /// table that says nothing gets its verdict too. `None`: nothing but samples is asked of it.
     fn identify(&self, _values: &Values, _run: &RunTable) -> Option<Identification> {
         None
+    }
+
+    /// The steps that wait for what the run finds ([`Plan::lesson`]), planned from what it has measured so far. `Err` says
+    /// why they are left out.
+    fn learn(&self, _run: &RunTable, _bench: &BenchFacts) -> Result<Learnt, String> {
+        Err(format!("{} plans nothing while it runs", self.title()))
     }
 
     /// The run that uses what was found.

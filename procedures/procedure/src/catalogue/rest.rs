@@ -1,10 +1,12 @@
 //! The steps of a plan that are left after a run that did not come to its end, behind what restores their history.
 
 use super::legs::Legs;
-use crate::continuing::Continues;
+use crate::continuing::{Continues, Done};
 use crate::place::Place;
 use crate::plan::{BenchFacts, Phase, Plan};
 use crate::recorder::RunId;
+use jointbench_instrument::RunTable;
+use std::sync::Arc;
 
 /// The brake is ramped down over so many turns of the link before anything is measured again.
 const DEMAGNETISING_TURNS: f64 = 2.0;
@@ -50,6 +52,14 @@ impl Plan {
         let continues = Continues { run, from_step, restored, restored_from: first_segment };
         continues.note_in(&mut self.meta);
         Some(self)
+    }
+
+    /// With what the runs before have measured, and which of it they finished, where the steps left learn from it.
+    pub fn recalling(mut self, measured: RunTable, done: Done) -> Plan {
+        if let Some(lesson) = &mut self.lesson {
+            lesson.earlier = Some(Arc::new((measured, done)));
+        }
+        self
     }
 }
 

@@ -42,6 +42,7 @@ impl Session<'_> {
         self.start_torque_stream()?;
         let (placed, streams, felt) = (self.pose.is_some(), self.streaming.is_some(), self.felt_c.len());
         let columns = Columns::of(self.plan, placed, streams, self.bench, &reading, &health, felt);
+        self.learning.set_columns(columns.empty_trace());
         self.journal.set_columns(columns.empty_trace());
         self.columns = Some(columns);
         if health.temperature.is_none() && self.felt_c.is_empty() {

@@ -6,6 +6,7 @@ mod drive;
 mod encoders;
 mod ending;
 mod journal;
+mod learning;
 mod pace;
 mod pause;
 mod power;

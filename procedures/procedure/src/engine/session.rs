@@ -4,6 +4,7 @@ use super::ask::{Trouble, ask};
 use super::encoders::Stood;
 use super::ending::Ending;
 use super::journal::Journal;
+use super::learning::Learning;
 use super::pace::Pace;
 use super::shaft::Shaft;
 use super::skew::Skews;
@@ -63,6 +64,7 @@ pub(super) struct Session<'a> {
     /// Where the stage was told to hold the sensor, in a plan that moves it.
     pub pose: Option<Pose>,
     pub stood: Option<Stood>,
+    pub learning: Learning,
     /// The encoder under test has not been seen inconsistent since this was last set.
     pub consistent: bool,
     /// Replies that were missed and asked for again in this step.
@@ -166,6 +168,7 @@ impl<'a> Session<'a> {
             lost: Lost::default(),
             pose: None,
             stood: None,
+            learning: Learning::default(),
             consistent: true,
             recoveries: 0,
             bench,

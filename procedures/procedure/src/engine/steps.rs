@@ -21,7 +21,11 @@ impl Session<'_> {
                 self.pace.step_skipped();
                 continue;
             }
-            self.run_step(index, step)?;
+            let Some(step) = self.learnt(index, step)? else {
+                self.pace.step_skipped();
+                continue;
+            };
+            self.run_step(index, &step)?;
             if step.phase == Phase::WarmUp {
                 self.tell_warmth(index);
             }

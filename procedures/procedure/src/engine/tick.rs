@@ -266,6 +266,7 @@ impl Session<'_> {
         let row = columns.row(moment, &self.felt_c, segment, repeat);
         if keep.is_some() {
             self.journal.keep(row);
+            self.learning.keep(self.plan.lesson.as_ref(), segment, row);
             if let Some(encoders) = &moment.encoders {
                 self.shaft.add(segment, &moment.joint, encoders);
             }

@@ -123,6 +123,7 @@ pub fn loaded_plan() -> Plan {
         steady: None,
         both_ranges: false,
         torque_period_s: None,
+        lesson: None,
     }
 }
 

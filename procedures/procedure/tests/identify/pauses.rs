@@ -7,7 +7,7 @@ use jointbench_procedure::conduct::{conduct, conduct_knowing};
 use jointbench_procedure::continuing::{Continues, Done, joined};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::place::Place;
-use jointbench_procedure::plan::{Drive, Phase};
+use jointbench_procedure::plan::{Drive, Phase, Step};
 use jointbench_procedure::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -185,7 +185,7 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     let mut bench = mock.open_bench("mock").unwrap();
     let secured = secure(&mut bench);
     assert_eq!(secured.safe, Safe::SafeVerified, "{id}: {:?}", secured.notes);
-    let rest = plan.rest(1, done.steps, done.next_segment, &facts).unwrap();
+    let rest = plan.rest(1, done.steps, done.next_segment, &facts).unwrap().recalling(first.clone(), done.clone());
     let (end, second, _) = steered(&mut bench, &rest, Due::new());
     assert_eq!(end.state, RunState::Completed, "{id}: {:?}", end.reason);
     let whole = joined(&first, &done, &second, 0.0).unwrap();
@@ -254,4 +254,72 @@ fn an_encoder_is_the_same_encoder() {
     ] {
         check(&shaft, id, given);
     }
+}
+
+const SHORT: &str = r#"{"heat_s": 0.0, "warm_up_s": 4.0, "load_levels": 3, "periods": 2, "sample_rate_hz": 100.0}"#;
+
+/// The steps of compensation in a campaign, and what it is planned from.
+fn campaign(settings: &MockSettings) -> (MockBench, Bench, Plan, BenchFacts) {
+    let mock = MockBench::start(settings.clone()).unwrap();
+    let bench = mock.open_bench("mock").unwrap();
+    let facts = BenchFacts::of(&bench);
+    let plan = procedure("identify_joint").unwrap().plan(&serde_json::from_str(SHORT).unwrap(), &facts).unwrap();
+    (mock, bench, plan, facts)
+}
+
+#[test]
+fn a_campaign_feeds_forward_the_friction_that_it_has_found() {
+    let given: Map<String, Value> = serde_json::from_str(SHORT).unwrap();
+    let values = Values::parse(procedure("identify_joint").unwrap().schema(), &given).unwrap();
+    let identified = |table: &RunTable| procedure("identify_joint").unwrap().identify(&values, table).unwrap();
+    // Not the friction that the plan expects of a joint.
+    let (_mock, mut bench, plan, facts) = campaign(&MockSettings::new(Joint::JointB, 4).hiding(&["stribeck"]));
+    let (end, table, _) = steered(&mut bench, &plan, Due::new());
+    assert_eq!(end.state, RunState::Completed, "{:?}", end.reason);
+    let unbroken = identified(&table);
+    let value = |name: &str| unbroken.quantity(name).unwrap_or_else(|| panic!("no {name}")).value;
+    assert!(value("compensation.ratio_full") < 0.5 && value("compensation.over_full") <= 0.0, "{}", unbroken.summary);
+    let learnt = procedure("identify_joint").unwrap().learn(&table, &facts).unwrap();
+    let waits = plan.lesson.clone().unwrap().to;
+    assert_eq!(learnt.steps.iter().map(|step| step.segment).collect::<Vec<_>>(), waits.clone().collect::<Vec<_>>());
+    let fed = |table: &RunTable| -> Vec<f64> {
+        let (segment, fed_a) = (table.column("segment").unwrap(), table.column("motor_current_setpoint_a").unwrap());
+        let largest =
+            |of: u32| segment.iter().zip(fed_a).filter(|(s, _)| **s as u32 == of).map(|(_, a)| *a).fold(0.0, f64::max);
+        learnt.steps[1..5].iter().map(|step| largest(step.segment)).collect()
+    };
+    let tops = |steps: &[Step]| steps.iter().map(Step::top_motor_current_a).collect::<Vec<_>>();
+    let (learnt_a, planned_a) = (tops(&learnt.steps[1..5]), tops(&plan.steps[waits.start as usize + 1..][..4]));
+    assert!(
+        fed(&table).iter().zip(&learnt_a).all(|(fed_a, a)| (fed_a - a).abs() < 1e-3 * a),
+        "{:?} {learnt_a:?}",
+        fed(&table)
+    );
+    assert!(learnt_a.iter().zip(&planned_a).any(|(a, planned_a)| (a - planned_a).abs() > 1e-2 * a), "{planned_a:?}");
+
+    // Killed when friction is long behind it: the run that goes on has learnt from the first.
+    let (mock, bench, plan, facts) = campaign(&MockSettings::new(Joint::JointB, 4).hiding(&["stribeck"]));
+    let (first, done) = killed(bench, &plan, [(waits.start as usize + 2, (1.0, None))].into());
+    mock.orphan();
+    let mut bench = mock.open_bench("mock").unwrap();
+    assert_eq!(secure(&mut bench).safe, Safe::SafeVerified);
+    let rest = plan.rest(1, done.steps, done.next_segment, &facts).unwrap().recalling(first.clone(), done.clone());
+    let (end, second, _) = steered(&mut bench, &rest, Due::new());
+    assert_eq!(end.state, RunState::Completed, "{:?}", end.reason);
+    let whole = joined(&first, &done, &second, 0.0).unwrap();
+    assert_eq!(fed(&whole), fed(&table));
+    same("gone on with in compensation", &identified(&whole), &unbroken);
+}
+
+#[test]
+fn a_campaign_that_cannot_tell_the_friction_feeds_none_forward() {
+    let settings = MockSettings::new(Joint::JointA, 1);
+    let (_mock, mut bench, mut plan, _) = campaign(&settings);
+    // Friction that was never measured.
+    let lesson = plan.lesson.clone().unwrap();
+    plan.steps.retain(|step| !lesson.from.contains(&step.segment));
+    let (end, table, _) = steered(&mut bench, &plan, Due::new());
+    assert_eq!(end.state, RunState::Completed, "{:?}", end.reason);
+    let last = *table.column("segment").unwrap().last().unwrap() as u32;
+    assert!(last < lesson.to.start, "compensation was made");
 }

@@ -1,0 +1,52 @@
+//! Compensation of the friction that the campaign itself has found.
+
+use super::super::compensation::{self, Compensation};
+use super::super::{Learnt, Procedure};
+use super::{Friction, found, numbered, parts_of};
+use crate::identification::Verdict;
+use crate::plan::{BenchFacts, Lesson};
+use jointbench_instrument::RunTable;
+use serde_json::Value;
+use std::ops::Range;
+
+/// Which of the parts waits for which.
+pub(super) fn lesson(facts: &[Value]) -> Option<Lesson> {
+    let [from, to] =
+        [&Friction as &dyn Procedure, &Compensation].map(|part| Some(segments(&facts[place(facts, part)?])));
+    Some(Lesson { from: from?, to: to?, earlier: None })
+}
+
+/// The steps of compensation with the friction that the rows before them show.
+pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<Learnt, String> {
+    let facts = parts_of(run).map_err(|why| why.to_string())?;
+    let [from, to] = [&Friction as &dyn Procedure, &Compensation].map(|part| place(facts, part));
+    let (from, to) = from.zip(to).ok_or("the campaign has no such parts")?;
+    let (_, friction) = found(run, facts, from).map_err(|why| why.to_string())?;
+    let friction = friction.ok_or("there are no rows of friction")?;
+    if friction.verdict != Verdict::Identified {
+        return Err(format!("friction is not known well enough to feed it forward. {}", friction.summary));
+    }
+    let next = compensation::of_friction(&friction, "").ok_or("the friction found cannot be fed forward")?;
+    let mut parameters = facts[to]["parameters"].as_object().cloned().unwrap_or_default();
+    parameters.extend(next.parameters.clone());
+    let plan = Compensation.plan(&parameters, bench).map_err(|fault| fault.to_string())?;
+    if let Some(broken) = plan.preview(bench).checks.into_iter().find(|check| !check.ok) {
+        return Err(broken.detail);
+    }
+    let fed: Vec<String> = next.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let first = segments(&facts[to]).start as usize;
+    Ok(Learnt {
+        steps: numbered(plan.steps, &Compensation, first).collect(),
+        said: format!("compensation feeds forward what friction has found: {}", fed.join(", ")),
+    })
+}
+
+fn place(facts: &[Value], part: &dyn Procedure) -> Option<usize> {
+    facts.iter().position(|fact| fact["procedure"] == part.id())
+}
+
+fn segments(fact: &Value) -> Range<u32> {
+    let number = |name: &str| fact[name].as_u64().unwrap_or(0) as u32;
+    let first = number("first_segment");
+    first..first + number("segments")
+}
