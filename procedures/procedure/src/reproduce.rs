@@ -8,11 +8,11 @@ use crate::identification::{Identification, Quantity};
 use crate::plan::BenchFacts;
 use jointbench_instrument::Bench;
 use serde_json::{Map, Value, json};
-use statrs::distribution::{Binomial, DiscreteCDF};
+use statrs::distribution::{ContinuousCDF, Normal};
 use std::f64::consts::TAU;
 
 /// Which of the documents' subjects is on the bench.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Subject {
     JointA,
     JointB,
@@ -20,6 +20,10 @@ pub enum Subject {
     GearAndBrakeB,
     /// The encoder bench.
     Encoder,
+    /// The same with the filter of the encoder under test switched on, when its delay without it is known.
+    FilteredEncoder {
+        delay_without_s: f64,
+    },
     /// Joint 2 of the arm of document 000.
     Puma,
 }
@@ -54,6 +58,16 @@ impl Comparison {
         Some((low..=high).contains(&given))
     }
 
+    /// The same where `of` intervals are to hold together in 95 of 100 campaigns (Šidák 1967), each side of theirs widened as
+    /// that of a normal deviate.
+    pub fn is_inside_with(&self, of: u64) -> Option<bool> {
+        let ([low, high], given, value) = (self.found.ci95?, self.given?, self.found.value);
+        let normal = Normal::standard();
+        let reach = |confidence: f64| normal.inverse_cdf(0.5 + 0.5 * confidence);
+        let wider = reach(0.95_f64.powf(1.0 / of.max(1) as f64)) / reach(0.95);
+        Some((value + wider * (low - value)..=value + wider * (high - value)).contains(&given))
+    }
+
     /// Whether the figure is as it is asked for. `None` where nothing is asked.
     pub fn is_as_asked(&self) -> Option<bool> {
         let value = self.found.value;
@@ -65,13 +79,6 @@ impl Comparison {
             Demand::AtMost(most) => Some(value <= most),
         }
     }
-}
-
-/// How likely it is that so many 95 % intervals or more, of so many, miss what the bench was given, where each of them is
-/// right: one in twenty does.
-pub fn chance_of_missing(missed: u64, of: u64) -> f64 {
-    let Some(fewer) = missed.checked_sub(1) else { return 1.0 };
-    Binomial::new(0.05, of).map_or(0.0, |misses| misses.sf(fewer))
 }
 
 /// One procedure of the campaign.
@@ -238,6 +245,11 @@ impl Subject {
             ),
             Subject::GearAndBrakeB => gear_and_brake_b(),
             Subject::Encoder => encoder(),
+            Subject::FilteredEncoder { delay_without_s } => vec![(
+                "encoder_delay",
+                json!({"delay_without_filter_s": delay_without_s}),
+                vec![("4.3", "filter_delay", Some(10.99e-6), Some(Demand::Within(1e-6)))],
+            )],
             Subject::Puma => puma(),
         }
     }
@@ -331,11 +343,20 @@ mod tests {
     }
 
     #[test]
-    fn one_interval_in_twenty_may_miss() {
-        assert_eq!(chance_of_missing(0, 30), 1.0);
-        // 1 − 0.95³⁰, and nobody misses ten of thirty by chance.
-        assert!((chance_of_missing(1, 30) - 0.785_361).abs() < 1e-6);
-        assert!(chance_of_missing(10, 30) < 1e-5);
+    fn intervals_that_hold_together_are_wider() {
+        let found = found(&[("tau_c", 0.0300)]);
+        let off = |given: f64| {
+            let of_table = [("4.5", "tau_c", None, None)];
+            compare(&found, &of_table, &|_| Some(given)).remove(0)
+        };
+        // ±1 % alone; 1 − 0.95^(1/31) is two-sided 3.146 standard deviations, and 3.146 / 1.960 = 1.605.
+        let (near, far) = (off(0.0300 * 1.016), off(0.0300 * 1.0161));
+        assert_eq!(
+            (near.is_inside(), near.is_inside_with(1), near.is_inside_with(31)),
+            (Some(false), Some(false), Some(true))
+        );
+        assert_eq!(far.is_inside_with(31), Some(false));
+        assert_eq!(off(0.0300 * 0.991).is_inside_with(1), Some(true));
     }
 
     #[test]

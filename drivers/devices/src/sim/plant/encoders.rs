@@ -46,6 +46,8 @@ pub struct Pose {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EncoderTruth {
     pub delay_s: f64,
+    /// What the filter has of it, 0 where it is off.
+    pub filter_delay_s: f64,
     /// Off by this since power-up.
     pub startup_rad: f64,
     /// Standard deviation of that from power-up to power-up.
@@ -124,6 +126,7 @@ impl Encoders {
         let rad = |points: f64| points / S2_COUNTS * TAU;
         EncoderTruth {
             delay_s: self.delay_s(),
+            filter_delay_s: self.delay_s() - DELAY_S,
             startup_rad: rad(self.startup_points),
             startup_spread_rad: rad(STARTUP_SPREAD * STARTUP_POINTS),
             hysteresis_rad: rad(HYSTERESIS_POINTS),

@@ -89,10 +89,11 @@ impl Procedure for EncoderDelay {
         let without_s = values.number("delay_without_filter_s");
         let mut summary = format!("The encoder under test tells its position {:.2} µs late.", 1e6 * delay_s);
         if without_s > 0.0 {
-            let [low, high] = solved.ci95(2).map(|end| end - without_s);
             let filter_s = delay_s - without_s;
+            // The delay without it comes from such a run, which was as unsure as this one.
+            let ends_s = solved.ci95(2).map(|end_s| filter_s + std::f64::consts::SQRT_2 * (end_s - delay_s));
             let name = ["filter_delay", "t_f", "Delay of the filter", "s"];
-            quantities.push(quantity(name, filter_s, Some([low, high])));
+            quantities.push(quantity(name, filter_s, Some(ends_s)));
             summary.push_str(&format!(" Its filter adds {:.2} µs.", 1e6 * filter_s));
         }
         let speeds: Vec<f64> = points.iter().map(|(v, _)| *v).collect();
