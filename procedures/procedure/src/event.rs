@@ -18,7 +18,7 @@ pub enum Safe {
     UnsafeUnknown,
 }
 
-/// What a person can ask of a run.
+/// What a run can be asked for, by a person all but the last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
@@ -34,6 +34,8 @@ pub enum Control {
     /// Drive torque off before anything else.
     #[serde(rename = "estop")]
     EStop,
+    /// The program that holds the run is told to end: as `Abort`.
+    Quit,
 }
 
 /// One entry of the journal. The store adds the sequence number.

@@ -148,7 +148,7 @@ fn joint(bearing_nm_rad: f64, figures: [Vec<Figure>; 3]) -> Vec<Part> {
             json!({}),
             vec![("data sheet", "disagreement", None, Some(Demand::AtMost(RANGES_AGREE_NM)))],
         ),
-        ("friction", json!({"load_levels": 1, "repeats": 3}), friction),
+        ("friction", json!({"load_levels": 1, "repeats": 5}), friction),
         ("breakaway", json!({}), Vec::new()),
         ("presliding", json!({}), Vec::new()),
         ("friction_load", json!({}), Vec::new()),

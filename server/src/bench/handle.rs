@@ -136,7 +136,7 @@ impl BenchHandle {
 
     /// Ends a run that is on, secures the bench and ends the thread. Blocks until then.
     pub fn shut_down(&self) {
-        self.control(Control::Abort);
+        self.control(Control::Quit);
         // An error says that the thread has ended already.
         let _ = self.shared.commands.send(Command::Quit);
         let thread = self.shared.thread.lock().unwrap_or_else(PoisonError::into_inner).take();

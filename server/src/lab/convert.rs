@@ -6,7 +6,7 @@ use crate::config::BenchDescription;
 use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord};
 use crate::view;
 use jointbench_instrument::limits::Limited;
-use jointbench_procedure::{EventKind, RunState, Safe};
+use jointbench_procedure::{Control, EventKind, RunState, Safe};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -128,6 +128,7 @@ fn sentence(kind: &EventKind) -> String {
         }
         EventKind::StepStarted { label, repeat, .. } => format!("{label} (repeat {})", repeat + 1),
         EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows", step + 1),
+        EventKind::Control { control: Control::Quit } => "the daemon was told to end".to_owned(),
         EventKind::Control { control } => {
             let asked = serde_json::to_value(control).ok();
             format!("a person asked: {}", asked.as_ref().and_then(Value::as_str).unwrap_or("control"))

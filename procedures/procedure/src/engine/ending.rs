@@ -15,6 +15,8 @@ pub(super) enum Ending {
     Abandoned,
     Aborted,
     EStopped,
+    /// The program that holds the run was told to end.
+    Quit,
     /// Arming found a reason not to move.
     NotReady(String),
     /// The guard stopped a command before it was sent.
@@ -55,7 +57,7 @@ impl Ending {
         match self {
             Ending::Completed => Outcome::Completed,
             Ending::Stopped | Ending::Abandoned => Outcome::Stopped,
-            Ending::Aborted | Ending::EStopped => Outcome::Aborted,
+            Ending::Aborted | Ending::EStopped | Ending::Quit => Outcome::Aborted,
             _ => Outcome::Failed,
         }
     }
@@ -63,7 +65,7 @@ impl Ending {
     pub fn urgency(&self) -> Urgency {
         match self {
             Ending::Completed | Ending::Stopped | Ending::Abandoned | Ending::Unrecorded(_) => Urgency::Orderly,
-            Ending::Aborted | Ending::CommandRefused(_) | Ending::OtherFault(_) => Urgency::Quick,
+            Ending::Aborted | Ending::Quit | Ending::CommandRefused(_) | Ending::OtherFault(_) => Urgency::Quick,
             Ending::EStopped
             | Ending::NotReady(_)
             | Ending::SampleRefused(_)
@@ -97,6 +99,7 @@ impl fmt::Display for Ending {
             Ending::Abandoned => f.write_str("stopped because nobody was left to control the run"),
             Ending::Aborted => f.write_str("aborted by a person"),
             Ending::EStopped => f.write_str("software stop by a person"),
+            Ending::Quit => f.write_str("aborted because the daemon was told to end"),
             Ending::NotReady(why) => write!(f, "not started: {why}"),
             Ending::CommandRefused(refusal) => write!(f, "command refused: {refusal}"),
             Ending::SampleRefused(refusal) => write!(f, "limit broken: {refusal}"),

@@ -80,6 +80,7 @@ impl Session<'_> {
             match control {
                 Control::EStop => return Err(Ending::EStopped),
                 Control::Abort => return Err(Ending::Aborted),
+                Control::Quit => return Err(Ending::Quit),
                 Control::Stop if self.journal.state() == RunState::Securing => {}
                 Control::Stop => return Err(Ending::Stopped),
                 Control::Pause => self.wish_for(Wish::Pause, Transition::Pause),

@@ -48,6 +48,15 @@ fn abort_comes_to_rest_within_its_ramp() {
     }
 }
 
+#[test]
+fn a_daemon_that_is_told_to_end_aborts_and_says_so() {
+    let at_s = middles_s(&loaded_plan())[2];
+    let [told, asked] = [Control::Quit, Control::Abort].map(|control| play_controlled(&[(at_s, control)]));
+    told.check_safe(RunState::Aborted).check_no_cogging();
+    assert_eq!(moved_on_s(&told, at_s), moved_on_s(&asked, at_s));
+    assert_eq!(told.end.reason.as_deref(), Some("aborted because the daemon was told to end"));
+}
+
 fn speed_of(call: &Call) -> f64 {
     match call {
         Call::SetVelocity(velocity_rad_s) => *velocity_rad_s,
@@ -107,10 +116,10 @@ proptest! {
     /// Any sequence of controls at any times and any rate: the run ends, secured, its states legal and its table valid.
     #[test]
     fn any_history_ends_safely(
-        history in prop::collection::vec((0.0..20.0, 0usize..5), 0..8),
+        history in prop::collection::vec((0.0..20.0, 0usize..6), 0..8),
         rate_hz in prop::sample::select(vec![50.0, 250.0, 1000.0]),
     ) {
-        let all = [Control::Pause, Control::Resume, Control::Stop, Control::Abort, Control::EStop];
+        let all = [Control::Pause, Control::Resume, Control::Stop, Control::Abort, Control::Quit, Control::EStop];
         let mut controls: Vec<_> = history.iter().map(|(at_s, pick)| (*at_s, all[*pick])).collect();
         // Nobody may be left waiting in a pause.
         controls.push((21.0, Control::Resume));
