@@ -4,7 +4,6 @@ import { type Refusal, asRefusal } from '../api/problem';
 import { asked } from '../autopilot/flight';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
-import { router } from '../state/router.svelte';
 import type { Bench } from './workbench.svelte';
 
 /** The run that a diagnosis asks for: started here, followed, and its answer shown. Call while a component is being set up. */
@@ -28,7 +27,7 @@ export function measuring(bench: Bench) {
 		if (!ended || !mine) return;
 		const stayed = mine.from === untrack(() => bench.model?.id);
 		mine = null;
-		if (ended.model != null && stayed) router.set({ model: ended.model, with: null, region: null, side: null, zoom: null }, 'push');
+		if (ended.model != null && stayed) bench.arrive(ended.model);
 	});
 
 	async function start(): Promise<void> {

@@ -7,6 +7,7 @@ import { words } from '../format/label';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
 import { router } from '../state/router.svelte';
+import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
 import { type Side } from '../residual/points';
 import { selected } from '../residual/selected';
@@ -116,20 +117,27 @@ export function openWorkbench(id: number) {
 		const next = await version([...from.effects, effect], from, `Trying ${words(effect)}`);
 		if (!next) return;
 		if (versions.length > known) tries.put(next.id);
-		notice = null;
 		beside(next.id);
+		void reveal('beside');
+	}
+
+	/** The same model with the run that was made for it: shown from its verdict on. */
+	function arrive(version: number): void {
+		router.set({ model: version, with: null, region: null, side: null, zoom: null }, 'push');
+		notice = { text: 'The new run is measured: what the page says is of all runs together.', good: true };
+		void reveal('verdict');
 	}
 
 	const beside = (version: number | null) => router.set({ with: version }, 'push');
 
-	function told(before: Model, after: Model): { text: string; good: boolean } | null {
+	function told(before: Model, after: Model, kept = true): { text: string; good: boolean } | null {
 		if (!sameData(before, after)) return null;
 		const share = gain(before, after);
 		const unit = after.fit.unit;
 		const figures = `${quantity(before.validation_rms, unit)} → ${quantity(after.validation_rms, unit)}`;
-		if (share > WORTH) return { text: `Held-out error fell by ${percent(share)}: ${figures}.`, good: true };
-		const verdict = share < -WORTH ? `The held-out error rose by ${percent(-share, 1)}` : `No gain in the held-out error (${percent(-share, 1)})`;
-		return { text: `${verdict}: ${figures}. Undo with z.`, good: false };
+		if (share > WORTH) return { text: `Held-out error ${kept ? 'fell' : 'would fall'} by ${percent(share)}: ${figures}.`, good: true };
+		const verdict = share < -WORTH ? `The held-out error ${kept ? 'rose' : 'would rise'} by ${percent(-share, 1)}` : `No gain in the held-out error (${percent(-share, 1)})`;
+		return { text: `${verdict}: ${figures}.${kept ? ' Undo with z.' : ''}`, good: false };
 	}
 
 	const standing = $derived.by(() => {
@@ -137,6 +145,9 @@ export function openWorkbench(id: number) {
 		const said = before && model ? told(before, model) : null;
 		return said?.good ? null : said;
 	});
+	const trying = $derived(other !== null && other.parent === model?.id && tries.has(other.id));
+	/** What columns suggest that contradict each other is no advice. */
+	const contradicts = $derived(diagnosis.data?.undecided?.includes('columns contradict') ?? false);
 
 	/** The same model on one run more. */
 	async function join(more: number): Promise<void> {
@@ -215,6 +226,7 @@ export function openWorkbench(id: number) {
 		diagnosis,
 		add,
 		addOwn,
+		arrive,
 		attempt,
 		beside,
 		exclude,
@@ -243,7 +255,7 @@ export function openWorkbench(id: number) {
 		},
 		/** The version beside only tries an effect on the version at hand. */
 		get trying() {
-			return other !== null && other.parent === model?.id && tries.has(other.id);
+			return trying;
 		},
 		get side() {
 			return side;
@@ -264,12 +276,22 @@ export function openWorkbench(id: number) {
 		get busy() {
 			return busy;
 		},
-		/** What was just done; or, for whoever comes later, that the last step gained nothing. */
+		/** What was just done or is being tried; or, for whoever comes later, that the last step gained nothing. */
 		get notice() {
-			return notice ?? standing;
+			return trying && model && other ? told(model, other, false) : (notice ?? standing);
 		},
 		get refused() {
 			return refused;
+		},
+		/** The number of a version in the address that this run does not have. */
+		get unknown() {
+			return asked !== null && !named && !awaited ? asked : null;
+		},
+		get contradicts() {
+			return contradicts;
+		},
+		get suggestions() {
+			return contradicts ? [] : (diagnosis.data?.suggestions ?? []);
 		},
 		get canRedo() {
 			return undone.length > 0;
