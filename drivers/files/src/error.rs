@@ -67,6 +67,8 @@ pub enum FileFault {
     Columnar(String),
     #[error("{what}: expected one object of facts, such as {{\"kind\": \"friction\", \"gear_ratio\": 50}}")]
     Meta { what: String },
+    #[error("{fact} is {found}: expected {expected}")]
+    Fact { fact: String, found: String, expected: String },
     #[error("{found} is not known: did you mean {meant}? A fact of your own needs a name that is less like it")]
     Misspelt { found: String, meant: &'static str },
     #[error("the mapping names column {wanted}, which is not in the file: it has {}", .there.join(", "))]

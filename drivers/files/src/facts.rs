@@ -14,7 +14,15 @@ const RESOLUTION: &str = "resolution";
 
 /// Reads the facts from JSON. `name` stands in messages.
 pub fn parse_meta(name: &str, json: &[u8]) -> Result<Meta, FileError> {
+    let line_of = |fact: &str| {
+        let text = String::from_utf8_lossy(json);
+        let before = text.split(&format!("\"{fact}\"")).next().unwrap_or_default();
+        before.matches('\n').count() as u64 + 1
+    };
     let meta: Meta = serde_json::from_slice(json).map_err(|fault| {
+        if let Some((fact, fault)) = mistyped(json) {
+            return fault.at_line(name, line_of(&fact));
+        }
         let text = fault.to_string();
         // serde_json appends the place, which the message already leads with.
         let what = plainly(text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what));
@@ -25,13 +33,28 @@ pub fn parse_meta(name: &str, json: &[u8]) -> Result<Meta, FileError> {
     })?;
     match meta.misspelt() {
         Some((found, meant)) => {
-            let text = String::from_utf8_lossy(json);
-            let before = text.split(&format!("\"{found}\"")).next().unwrap_or_default();
-            let line = before.matches('\n').count() as u64 + 1;
-            Err(FileFault::Misspelt { found: found.to_owned(), meant }.at_line(name, line))
+            Err(FileFault::Misspelt { found: found.to_owned(), meant }.at_line(name, line_of(found)))
         }
         None => Ok(meta),
     }
+}
+
+/// The fact that is not of its type: serde names what it found, and not where.
+fn mistyped(json: &[u8]) -> Option<(String, FileFault)> {
+    let facts: Map<String, Value> = serde_json::from_slice(json).ok()?;
+    facts.into_iter().find_map(|(fact, value)| {
+        let found = value.to_string();
+        let alone = Map::from_iter([(fact.clone(), value)]);
+        let said = serde_json::from_value::<Meta>(Value::Object(alone)).err()?.to_string();
+        // A word that is not known is told with the one that was meant.
+        let expected = match said.strip_prefix("invalid ")?.rsplit_once("expected ")?.1 {
+            "f64" => "a number without quotes, such as 50".to_owned(),
+            "u32" => "a whole number without quotes, such as 12".to_owned(),
+            "a sequence" => "a list, such as [\"coulomb\", \"viscous\"]".to_owned(),
+            other => other.replace('`', "\""),
+        };
+        Some((fact.clone(), FileFault::Fact { fact, found, expected }))
+    })
 }
 
 pub(crate) fn read_meta(path: &Path) -> Result<Meta, FileError> {

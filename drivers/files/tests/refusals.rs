@@ -155,7 +155,12 @@ fn other_files_and_facts_are_refused() {
 
     let facts = parse_meta("meta.json", b"{\"kind\": \"friction\",\n \"gear_ratio\": \"fifty\"}").unwrap_err();
     assert_eq!(facts.place.line, Some(2));
-    assert!(facts.to_string().starts_with("meta.json, line 2: invalid type: string \"fifty\""), "{facts}");
+    let said = "meta.json, line 2: gear_ratio is \"fifty\": expected a number without quotes, such as 50";
+    assert_eq!(facts.to_string(), said);
+    let facts = |text: &str| parse_meta("meta.json", text.as_bytes()).unwrap_err().to_string();
+    assert!(facts("{\"poles\": 1.5}").contains("poles is 1.5: expected a whole number without quotes"));
+    assert!(facts("{\"baseline\": \"coulomb\"}").contains("baseline is \"coulomb\": expected a list, such as"));
+    assert!(facts("{\"kind\": \"frction\"}").contains("did you mean friction?"));
 
     let unknown = read_bytes("run.csv", format!("{NAMES}\n0,1,2\n").as_bytes(), &ReadOptions::default()).unwrap_err();
     assert!(unknown.to_string().contains("expected \"kind\": friction, encoder, stiffness or brake"), "{unknown}");

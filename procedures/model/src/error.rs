@@ -11,7 +11,9 @@ pub enum ModelError {
     TwiceNamed(String),
     #[error("the model has no effects: choose some, or give a baseline in the meta file")]
     EmptyModel,
-    #[error("a {run} run cannot be explained by a {model} model; choose effects of the kind {run}")]
+    #[error(
+        "effects of the kind {model} cannot explain this run, which is of the kind {run}: choose effects of that kind"
+    )]
     WrongKind { run: Kind, model: Kind },
     #[error("{needed} is missing in the meta file; add it")]
     MissingConstant { needed: &'static str },

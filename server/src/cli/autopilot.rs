@@ -22,6 +22,7 @@ pub fn autopilot(arguments: &Arguments) -> Done {
                 parameters: parameters(&arguments.set)?,
                 effects: arguments.model.as_ref().map(|list| list.split(',').map(|id| id.trim().to_owned()).collect()),
                 max_effects: arguments.max_effects,
+                from_run: None,
             };
             client.post("/autopilots", &new)?
         }

@@ -8,6 +8,7 @@ mod demo;
 mod exit;
 mod files;
 mod identify;
+mod library;
 mod log;
 mod model;
 mod offline;
@@ -43,6 +44,8 @@ pub fn main() -> ExitCode {
         Command::Serve(arguments) => serve::serve(arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Ports(arguments) => ports::ports(&arguments),
+        Command::Procedures(arguments) => library::procedures(arguments.id.as_deref()),
+        Command::Effects(arguments) => library::effects(arguments.id.as_deref()),
         Command::Run(arguments) => run::run(&arguments),
         Command::Stop(arguments) => runs::stop(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),

@@ -5,6 +5,7 @@ use super::exit::{Done, Exit};
 use super::files::write;
 use super::offline::{json_out, read};
 use super::print;
+use jointbench_files::FileFault;
 use jointbench_model::Fit;
 use jointbench_model::transfer::{Format, ModelFile, export};
 use std::path::Path;
@@ -50,7 +51,7 @@ pub fn save(fit: &Fit, path: &Path) -> Done {
 
 fn open(path: &Path) -> Result<Fit, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", path.display()));
-    let bytes = std::fs::read(path).map_err(|fault| refuse(&fault))?;
+    let bytes = std::fs::read(path).map_err(|fault| refuse(&FileFault::Io(fault)))?;
     // A table that was named in its place may not even be text.
     let text = String::from_utf8_lossy(&bytes);
     // Headers, tables and attributes of joints go out only.

@@ -6,9 +6,9 @@ use super::exit::{Done, Exit};
 use super::files::{table, write};
 use super::serve::runtime;
 use crate::api::Health;
-use crate::lab::{COPY_OF, FileFormat, ImportRequest, Lab, LabError};
+use crate::lab::{ATTENTION, COPY_OF, FileFormat, ImportRequest, Lab, LabError};
 use crate::view::Run;
-use jointbench_files::meta_path_of;
+use jointbench_files::{FileFault, meta_path_of};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -26,6 +26,9 @@ pub fn import(arguments: &Import) -> Done {
         println!("run {}: {} ({}, {} rows)", summary.id, file.display(), summary.kind, summary.rows);
         if let Some(original) = run.provenance["imported"][COPY_OF].as_i64() {
             println!("  its samples are those of run {original}: a copy, and no repeat of it");
+        }
+        for sentence in run.provenance["imported"][ATTENTION].as_array().into_iter().flatten() {
+            println!("  attention: {}", sentence.as_str().unwrap_or_default());
         }
     }
     Ok(())
@@ -66,6 +69,10 @@ fn format(arguments: &Export) -> Result<FileFormat, Exit> {
             "--format {} and a file that ends in .{}: leave one of them out",
             asked.extension(),
             said.extension()
+        ))),
+        (None, None) if ending.is_some() => Err(Exit::bad_input(format!(
+            "no run is written as .{}: end the file in .csv, .parquet or .mat, or choose one of them with --format",
+            ending.unwrap_or_default()
         ))),
         (asked, said) => Ok(asked.or(said).unwrap_or(FileFormat::Csv)),
     }
@@ -108,9 +115,9 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
 }
 
 fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportRequest, Exit> {
-    let text =
-        |path: &Path| fs::read_to_string(path).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())));
-    let bytes = fs::read(file).map_err(|fault| Exit::bad_input(format!("{}: {fault}", file.display())))?;
+    let unread = |path: &Path, fault| Exit::bad_input(format!("{}: {}", path.display(), FileFault::Io(fault)));
+    let text = |path: &Path| fs::read_to_string(path).map_err(|fault| unread(path, fault));
+    let bytes = fs::read(file).map_err(|fault| unread(file, fault))?;
     let beside = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
     let carries_its_own = !matches!(file.extension().and_then(|end| end.to_str()), Some("csv" | "gz"));
     let meta = match (meta, beside) {

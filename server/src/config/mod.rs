@@ -88,6 +88,14 @@ impl BenchDescription {
         matches!(self.source, Source::Mock(_))
     }
 
+    /// Seconds of the bench in one of the person who waits; `None` where it runs as fast as it can.
+    pub fn pace(&self) -> Option<f64> {
+        match &self.source {
+            Source::Mock(settings) => settings.pace,
+            Source::Hardware(_) => Some(1.0),
+        }
+    }
+
     pub fn has(&self) -> Has {
         match &self.source {
             Source::Mock(settings) => Has {

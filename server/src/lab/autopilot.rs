@@ -43,6 +43,9 @@ impl Lab {
         if new.bench_time_s.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
             return Err(LabError::Invalid("bench_time_s: expected a time above 0 s".into()));
         }
+        if let Some(run) = new.from_run {
+            self.inner.store.run(run).await?;
+        }
         // A first run that cannot be made is refused now, not later.
         let (_, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
         let planned_s = plan.duration_s();

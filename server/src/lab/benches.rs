@@ -62,6 +62,7 @@ impl Lab {
     pub async fn preview(&self, bench: &str, id: &str, parameters: &Map<String, Value>) -> Answer<view::Preview> {
         let (bench, plan) = self.plan(bench, id, parameters).await?;
         let mut preview: view::Preview = super::reread(&plan.preview(&bench.facts()))?;
+        preview.wait_s = bench.description().pace().map(|pace| preview.duration_s / pace);
         preview.checks.extend(readiness(bench));
         Ok(preview)
     }

@@ -24,7 +24,7 @@ pub use convert::{bench_view, reread, run_event, safe_view, state_view};
 pub use error::LabError;
 pub use experiment::{Offer, next_run};
 pub use models::diagnose;
-pub use transfer::{COPY_OF, FileFormat, ImportRequest};
+pub use transfer::{ATTENTION, COPY_OF, FileFormat, ImportRequest};
 
 use crate::bench::BenchHandle;
 use crate::config::BenchDescription;

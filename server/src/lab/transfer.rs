@@ -1,12 +1,12 @@
 //! Run tables in and out.
 
 use super::{Answer, Lab, LabError};
-use crate::store::{NewRun, RunFilter};
+use crate::store::{NewRun, RunFilter, RunRecord};
 use crate::view::Run;
 use jointbench_files::{
     ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_mat, write_parquet,
 };
-use jointbench_instrument::{RunTable, Trace};
+use jointbench_instrument::{Meta, RunTable, Trace};
 use serde::Deserialize;
 use serde_json::json;
 use utoipa::ToSchema;
@@ -40,6 +40,10 @@ impl FileFormat {
 
 /// In the provenance of an import: the run that holds the same samples.
 pub const COPY_OF: &str = "copy_of";
+/// In the provenance of an import: what its columns and facts contradict or lack, in sentences.
+pub const ATTENTION: &str = "attention";
+/// Among the facts that leave with a run of a simulated bench, so that it does not come back as one of hardware.
+const SIMULATED: &str = "simulated";
 
 /// A measured file with what is needed to read it.
 #[derive(Debug, Clone, Default)]
@@ -69,7 +73,15 @@ impl Lab {
 
     async fn keep_table(&self, name: &str, mut source: serde_json::Value, table: RunTable) -> Answer<Run> {
         let kind = table.kind().to_string();
-        let (meta, trace) = table.into_parts();
+        let attention = jointbench_model::prepare::attention(&table);
+        if !attention.is_empty() {
+            source[ATTENTION] = attention.into();
+        }
+        let (mut meta, trace) = table.into_parts();
+        let simulated = meta.other.get(SIMULATED) == Some(&true.into());
+        if simulated {
+            meta.other.remove(SIMULATED);
+        }
         if let Some(original) = self.original_of(&kind, &trace).await? {
             source[COPY_OF] = original.into();
         }
@@ -81,7 +93,7 @@ impl Lab {
             bench: name.to_owned(),
             procedure: "import".to_owned(),
             kind,
-            simulated: false,
+            simulated,
             parameters: serde_json::Map::new(),
             provenance: super::reread(&provenance)?,
             meta: super::reread(&meta)?,
@@ -107,7 +119,7 @@ impl Lab {
 
     /// The run, or a stretch of it, as a file, which [`Lab::import`] takes back unchanged.
     pub async fn export(&self, id: i64, format: FileFormat, from_s: Option<f64>, to_s: Option<f64>) -> Answer<Vec<u8>> {
-        let (meta, _) = self.facts(id).await?;
+        let (meta, _) = self.leaving(id).await?;
         let rows = self.inner.store.rows_between(id, from_s, to_s).await?;
         let trace = self.inner.store.trace(id, None, rows).await?;
         tokio::task::spawn_blocking(move || write(&meta, &trace, format))
@@ -115,9 +127,18 @@ impl Lab {
             .map_err(|fault| LabError::Internal(format!("writing the file failed: {fault}")))?
     }
 
+    /// The facts of a run as they leave with it.
+    async fn leaving(&self, id: i64) -> Answer<(Meta, RunRecord)> {
+        let (mut meta, record) = self.facts(id).await?;
+        if record.simulated {
+            meta.other.insert(SIMULATED.to_owned(), true.into());
+        }
+        Ok((meta, record))
+    }
+
     /// The facts of a run as `meta.json`, for a table that cannot carry them itself.
     pub async fn export_meta(&self, id: i64) -> Answer<String> {
-        let (meta, record) = self.facts(id).await?;
+        let (meta, record) = self.leaving(id).await?;
         Ok(meta_json(&meta, &record.channels))
     }
 }

@@ -183,11 +183,14 @@ fn change(version: &Model) -> String {
 fn diagnosed(diagnosis: &Diagnosis) -> Markup {
     let found = &diagnosis.finding;
     let verdict = match (found.verdict, &found.undecided) {
-        (_, Some(_)) => "Cannot be decided",
+        (Verdict::Adequate, Some(_)) => "Cannot be decided",
+        (_, Some(_)) => "The columns contradict each other",
         (Verdict::Adequate, None) => "Adequate",
         (Verdict::MissingEffect, None) => "An effect is missing",
         (Verdict::UnexplainedStructure, None) => "Unexplained structure",
     };
+    // What columns suggest that contradict each other is no advice.
+    let is_advice = found.undecided.is_none() || found.verdict == Verdict::Adequate;
     html! {
         h2 { "Diagnosis" }
         p.verdict { strong { (verdict) ". " } (found.summary) }
@@ -195,11 +198,11 @@ fn diagnosed(diagnosis: &Diagnosis) -> Markup {
             p { "Where the model fails:" }
             ul { @for region in found.regions.iter().take(5) { li { (region.sentence) } } }
         }
-        @if !found.suggestions.is_empty() {
+        @if is_advice && !found.suggestions.is_empty() {
             p { "What is missing:" }
             ul { @for suggestion in found.suggestions.iter().take(5) { li { strong { (suggestion.effect) } ": " (suggestion.why) } } }
         }
-        @if let Some(experiment) = &found.experiment { p { "What to measure next: " (experiment.why) } }
+        @if let Some(experiment) = found.experiment.as_ref().filter(|_| is_advice) { p { "What to measure next: " (experiment.why) } }
     }
 }
 

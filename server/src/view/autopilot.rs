@@ -33,6 +33,9 @@ pub struct NewAutopilot {
     #[serde(default = "six")]
     #[schema(default = 6, maximum = 20)]
     pub max_effects: u32,
+    /// The run from which it was started: whoever looks at that one is told of it too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_run: Option<i64>,
 }
 
 fn three() -> u32 {

@@ -50,7 +50,11 @@ pub struct PreviewRequest {
 /// A dry run: nothing moves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Preview {
+    /// On the bench's clock.
     pub duration_s: f64,
+    /// On the clock of the person who waits; absent for a mock bench that runs as fast as it can.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wait_s: Option<f64>,
     pub steps: Vec<PlannedStep>,
     /// The most that the plan will ask of the bench, against its limits.
     pub extremes: Vec<Extreme>,

@@ -104,6 +104,7 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
     let table = raw("export?format=csv");
     let other = raw("meta").replace("177.8", "100");
     let (_, stranger) = upload(&daemon, &table, &[("meta", &other)]);
+    assert_eq!((&stranger["simulated"], &stranger["meta"]["simulated"]), (&true.into(), &Value::Null), "{stranger}");
     let body = json!({"run": stranger["id"], "effects": model["effects"]});
     let (_, its_model) = daemon.post("/api/v1/models", &body.to_string());
     let (_, found) = daemon.post("/api/v1/diagnoses", &json!({"model": its_model["id"]}).to_string());
@@ -147,6 +148,10 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
 fn an_autopilot_is_stopped_by_a_person_and_interrupted_with_its_daemon() {
     let mut daemon = hiding(&[], Some(4.0));
     let body = json!({"bench": BENCH, "parameters": no_load()});
+    let (_, preview) = daemon.post("/api/v1/procedures/friction/preview", &body.to_string());
+    assert_eq!(preview["wait_s"].as_f64().unwrap(), preview["duration_s"].as_f64().unwrap() / 4.0);
+    let (status, problem) = daemon.post("/api/v1/autopilots", &json!({"bench": BENCH, "from_run": 99}).to_string());
+    assert_eq!(status, 404, "{problem}");
     let id = start(&daemon, &body);
     let path = format!("/api/v1/autopilots/{id}");
     assert_eq!(daemon.post("/api/v1/autopilots", &body.to_string()).0, 409, "one for each bench");

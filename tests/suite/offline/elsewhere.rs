@@ -60,6 +60,11 @@ fn a_file_that_will_not_do_is_named() {
     assert!(!header.contains("acceleration") && header.contains("Fitted where velocity is -64"), "{header}");
     refused(folder, &["model", "evaluate", "joint.h", "run.csv"], &["joint.h", "only JSON is", "--format json"]);
     refused(folder, &["model", "evaluate", "run.csv", "model.json"], &["run.csv", "the model is named first"]);
+    refused(
+        folder,
+        &["model", "compare", "model.json", "nope.json", "run.csv"],
+        &["nope.json: there is no such file: check the name"],
+    );
     refused(folder, &["diagnose", "1"], &["there is no file 1", "jointbench export 1"]);
     refused(folder, &["model", "export", "model.json", "--format", "c", "-o", "."], &[". is a folder: name the file"]);
     refused(folder, &["fit", "run.csv", "--out", "."], &[". is a folder: name the file"]);
@@ -87,8 +92,27 @@ fn a_file_that_will_not_do_is_named() {
     done(folder, &["import", "run.csv", "--data", &data]);
     let told = done(folder, &["import", "run.csv", "--data", &data]);
     assert!(told.contains("its samples are those of run 1: a copy, and no repeat of it"), "{told}");
+    assert!(!told.contains("attention"), "{told}");
+    let told = done(folder, &["import", "run.csv", "--scale", "motor_current_a=1000", "--data", &data]);
+    assert!(told.contains("attention: motor_current_a with the torque constant and the gear ratio is "), "{told}");
+    refused(folder, &["export", "1", "-o", "x.foo", "--data", &data], &["no run is written as .foo", ".csv, .parquet"]);
+    assert!(!folder.join("x.foo").exists(), "nothing is written");
     refused(folder, &["check", "joint-a-mok", "--print"], &["did you mean joint-a-mock?", "puma-mock"]);
     refused(folder, &["check", "nosuch"], &["there is no such file", "joint-a-mock"]);
+}
+
+#[test]
+fn the_library_is_listed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let told = done(folder, &["procedures"]);
+    assert!(told.lines().any(|line| line.starts_with("friction ")), "{told}");
+    assert!(done(folder, &["procedures", "friction"]).contains("--set load_levels=3"), "what can be set");
+    refused(folder, &["procedures", "frction"], &["there is no procedure frction: did you mean friction?"]);
+    let told = done(folder, &["effects"]);
+    assert!(told.contains("  stribeck ") && told.contains("jointbench demo --effect"), "{told}");
+    assert!(done(folder, &["effects", "stribeck"]).contains("missing, it looks like this: "), "what it means");
+    refused(folder, &["effects", "stribek"], &["there is no effect stribek: did you mean stribeck?"]);
 }
 
 #[test]

@@ -88,6 +88,9 @@ impl Reduce {
     }
 }
 
+/// Fewer samples tell nothing.
+const SHORTEST: usize = 16;
+
 /// A run, ready for every fit and every test.
 #[derive(Debug, Clone)]
 pub struct Prepared {
@@ -164,11 +167,19 @@ impl Prepared {
     }
 }
 
+/// What a run's columns and facts contradict or lack, each in a sentence: to be told before anything is fitted.
+pub fn attention(run: &RunTable) -> Vec<String> {
+    match run.len() < SHORTEST {
+        true => Vec::new(),
+        false => clash::clashes(run).into_iter().chain(doubts::doubts(run)).collect(),
+    }
+}
+
 /// Prepares a run. Deterministic; cost linear in the rows.
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
     options.check()?;
-    if run.len() < 16 {
-        return Err(ModelError::TooFewSamples { usable: run.len(), needed: 16, what: "samples" });
+    if run.len() < SHORTEST {
+        return Err(ModelError::TooFewSamples { usable: run.len(), needed: SHORTEST, what: "samples" });
     }
     let (prepared, response) = match run.kind() {
         Kind::Friction => (friction::prepare(run, options)?, "motor_current_a"),

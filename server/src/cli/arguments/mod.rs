@@ -43,6 +43,10 @@ pub enum Command {
     Check(Check),
     /// List this computer's serial ports: what is behind them, and what may not be opened and why
     Ports(Ports),
+    /// List the procedures, or say what one does and what can be set (procedures friction)
+    Procedures(Listed),
+    /// List the effects that a model can hold and a diagnosis can name, and those a mock bench can hide
+    Effects(Listed),
     /// Start a procedure on a running daemon, or make what is left of a run (--continue)
     #[command(
         override_usage = "jointbench run <PROCEDURE> [OPTIONS]\n       jointbench run --continue <RUN> [OPTIONS]",
@@ -132,6 +136,13 @@ pub struct Check {
     /// Print the description itself, to start an own one from
     #[arg(long)]
     pub print: bool,
+}
+
+/// Something of the library to be told of.
+#[derive(Debug, Args)]
+pub struct Listed {
+    /// Only this one, with all there is to say of it
+    pub id: Option<String>,
 }
 
 /// How to reach a running daemon.

@@ -1,0 +1,60 @@
+//! `jointbench procedures` and `jointbench effects`: what can be measured, and what a model can hold.
+
+use super::exit::{Done, Exit};
+use jointbench_devices::sim::HIDDEN_EFFECTS;
+use jointbench_instrument::Kind;
+use jointbench_instrument::spelling::instead;
+use jointbench_model::{EffectInfo, effects as effects_of};
+use jointbench_procedure::catalogue;
+
+pub fn procedures(asked: Option<&str>) -> Done {
+    let Some(asked) = asked else {
+        catalogue().iter().for_each(|one| println!("{:<24} {}", one.id(), one.title()));
+        println!("\nWhat one does and what can be set: jointbench procedures ID; to make it: jointbench run ID");
+        return Ok(());
+    };
+    let known: Vec<&str> = catalogue().iter().map(|one| one.id()).collect();
+    let procedure =
+        catalogue().iter().find(|one| one.id() == asked).ok_or_else(|| unknown("procedure", asked, &known))?;
+    println!("{}: {}\n{}\n", procedure.id(), procedure.title(), procedure.summary());
+    for one in procedure.schema() {
+        let unit = if one.unit.is_empty() { String::new() } else { format!(" {}", one.unit) };
+        println!("  --set {}={}{unit}, {} to {}: {}", one.name, one.default, one.min, one.max, one.title);
+    }
+    Ok(())
+}
+
+pub fn effects(asked: Option<&str>) -> Done {
+    let all: Vec<EffectInfo> = Kind::ALL.into_iter().flat_map(effects_of).map(|effect| effect.info()).collect();
+    let Some(asked) = asked else {
+        for kind in Kind::ALL {
+            println!("{kind}");
+            all.iter().filter(|one| one.kind == kind).for_each(|one| println!("  {:<24} {}", one.id, one.title));
+        }
+        println!(
+            "\nWhat one means: jointbench effects ID. For practice a mock bench of joint a or b hides any of these:"
+        );
+        println!("  {}", HIDDEN_EFFECTS.join(", "));
+        println!(
+            "as `effects = [\"gravity\"]` below [bench.mock], or for one demo with jointbench demo --effect gravity"
+        );
+        return Ok(());
+    };
+    let named: Vec<&EffectInfo> = all.iter().filter(|one| one.id == asked).collect();
+    if named.is_empty() {
+        let known: Vec<&str> = all.iter().map(|one| one.id).collect();
+        return Err(unknown("effect", asked, &known));
+    }
+    for one in named {
+        println!("{} ({}): {}\n{}\n  {}", one.id, one.kind, one.title, one.sentence, one.formula);
+        for parameter in one.parameters {
+            println!("  {} [{}], {} to {}", parameter.name, parameter.unit, parameter.min, parameter.max);
+        }
+        println!("  missing, it looks like this: {}\n  source: {}", one.looks, one.source);
+    }
+    Ok(())
+}
+
+fn unknown(what: &str, asked: &str, known: &[&str]) -> Exit {
+    Exit::bad_input(format!("there is no {what} {asked}: {}", instead(asked, known)))
+}
