@@ -53,7 +53,12 @@ export function words(id: string): string {
 }
 
 /** A unit that can be nothing else; `tau_c` is no temperature. */
-const SPELT_UNIT = /_(nm_rad|rad_s2?|rad|nm|hz)$/;
+const SPELT_UNIT = /_(nm_rad|rad_s2?|rad|nm|hz)$|(?<=current)_a$|(?<=temperature)_c$|(?<=time)_s$/;
+/** A minus, where a number follows and none goes before. */
+const SIGN = /(?<![\w.,)\]])-(?=\d)/g;
+
+/** A text of the daemon with minus signs that are as long as a plus. */
+export const signed = (text: string): string => text.replace(SIGN, '−');
 
 /** A sentence of the daemon as people write it: effects by their titles, other ids as words, without the unit at their end; a capital at its start. */
 export function prose(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
@@ -61,7 +66,7 @@ export function prose(sentence: string, effects: readonly { id: string; title: s
 		const title = effects.find((one) => one.id === id)?.title;
 		return title ? title.charAt(0).toLowerCase() + title.slice(1) : words(id.replace(SPELT_UNIT, ''));
 	});
-	return spoken.charAt(0).toUpperCase() + spoken.slice(1);
+	return spoken.charAt(0).toUpperCase() + signed(spoken.slice(1));
 }
 
 /** Width of a letter of the small print, on average [px]. */

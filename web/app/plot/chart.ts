@@ -3,6 +3,7 @@ import { colour } from './colour';
 import { type Asked, type View, gestures } from './gestures';
 import { dashes, points } from './marks';
 import { type Cursors, type Moved, rulers } from './measure';
+import { tickText } from './ticks';
 import { trace } from './trace';
 
 /** `line` joins the points, `chord` only the first and the last; the others mark each point by itself. */
@@ -122,7 +123,7 @@ function axis(title: string, bare = false, size?: number): uPlot.Axis {
 		gap: 4,
 		size: bare ? 8 : (size ?? 28),
 		space: size ? 26 : 60,
-		values: bare ? (_u, splits) => splits.map(() => '') : undefined,
+		values: (_u, splits) => splits.map((tick) => (bare ? '' : tickText(tick))),
 	};
 }
 

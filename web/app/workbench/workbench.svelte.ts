@@ -78,6 +78,8 @@ export function openWorkbench(id: number) {
 		(_key, signal) => api.diagnose(model?.id ?? 0, signal),
 	);
 
+	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? words(effect);
+
 	/** A version with these effects. A set that was fitted before from the same parent needs no new fit. */
 	async function version(set: string[], parent: Model | null, what: string, anew = false): Promise<Model | null> {
 		if (busy !== null) return null;
@@ -114,7 +116,7 @@ export function openWorkbench(id: number) {
 		const from = model;
 		if (!from) return;
 		const known = versions.length;
-		const next = await version([...from.effects, effect], from, `Trying ${words(effect)}`);
+		const next = await version([...from.effects, effect], from, `Trying ${titleOf(effect)}`);
 		if (!next) return;
 		if (versions.length > known) tries.put(next.id);
 		beside(next.id);
@@ -188,12 +190,12 @@ export function openWorkbench(id: number) {
 	const include = (reason: string) =>
 		refitWithout((model?.excluded ?? []).filter((one) => one.reason !== reason), 'Refitting with the samples', `Fitted with the samples again that were excluded (${reason}).`);
 
-	const add = (effect: string) => model && refit([...model.effects, effect], model, `Refitting with ${words(effect)}`);
+	const add = (effect: string) => model && refit([...model.effects, effect], model, `Refitting with ${titleOf(effect)}`);
 	/** Adds a user's effect. Its formula may be new under a name that the model holds already: then all is fitted again. */
 	const addOwn = async (effect: string) =>
-		model && refit([...new Set([...model.effects, effect])], model, `Refitting with ${words(effect)}`, true);
+		model && refit([...new Set([...model.effects, effect])], model, `Refitting with ${titleOf(effect)}`, true);
 	const remove = (effect: string) =>
-		model && refit(model.effects.filter((one) => one !== effect), model, `Refitting without ${words(effect)}`);
+		model && refit(model.effects.filter((one) => one !== effect), model, `Refitting without ${titleOf(effect)}`);
 	const begin = (set: string[]) => refit(set, null, 'Fitting the first model');
 
 	/** Back to the version that this one grew from. Nothing is lost: every version keeps its address. */
@@ -222,6 +224,7 @@ export function openWorkbench(id: number) {
 		run,
 		models,
 		effects,
+		titleOf,
 		residuals,
 		diagnosis,
 		add,
