@@ -27,7 +27,10 @@ fn an_engineer_walks_from_start_to_undo() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     let config = folder.path().join("bench.toml");
-    let text = "[[bench]]\nname = \"mock\"\n[bench.mock]\njoint = \"a\"\nseed = 2\neffects = [\"load_linear\"]\n";
+    let mock = |name: &str, rest: &str| format!("[[bench]]\nname = \"{name}\"\n[bench.mock]\nseed = 2\n{rest}\n");
+    let text = mock("mock", "joint = \"a\"\neffects = [\"load_linear\"]")
+        + &mock("encoders", "joint = \"encoder_shaft\"")
+        + &mock("paced", "joint = \"a\"\npace = 5.0");
     std::fs::write(&config, text).expect("the bench description is written");
     let daemon = Daemon::serve(&folder.path().join("data"), &config);
     let output = Command::new("node")

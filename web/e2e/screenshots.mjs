@@ -78,7 +78,7 @@ await tell(`screens in ${folder}`, async () => {
 	await form.locator('mark').waitFor();
 	await form.scrollIntoViewIfNeeded();
 	await shoot(page, 'workbench-formula');
-	await flyAndStop(page, where.base);
+	await flyAndStop(page, `${where.base}/workbench`);
 	await shoot(page, 'autopilot');
 
 	await page.goto(`${where.base}/runs`);

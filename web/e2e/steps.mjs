@@ -1,9 +1,12 @@
 // What a person does on the pages, for the walk and for the pictures.
 import { expect } from './browser.mjs';
+import { inView } from './looks.mjs';
 import { lineTo } from './line.mjs';
 
 const RUN_MS = 180_000;
 const FIT_MS = 60_000;
+const PHONE = { width: 420, height: 900 };
+const WIDE = { width: 1440, height: 900 };
 
 /** Short, and without load: what grows with the load cannot show in it, so a further run is suggested. */
 export const BARE = '?p.load_levels=1&p.warm_up_s=2&p.dwell_s=0.6&p.fast_speeds=4';
@@ -143,8 +146,11 @@ export async function showForeign(page, base, run, at, effect) {
 
 /** Tries the first suggestion beside the version at hand and drops it again; says what error the preview shows. */
 export async function tryAndDrop(page) {
+	await page.setViewportSize(PHONE);
 	await page.locator('article[data-effect]').first().getByRole('button', { name: 'Try' }).click();
 	await page.locator('[data-beside=try] figure').first().waitFor({ timeout: FIT_MS });
+	await inView(page.locator('[data-beside=try]'), 'the preview');
+	await page.setViewportSize(WIDE);
 	const said = await page.locator('[data-beside] .said').innerText();
 	await page.keyboard.press('x');
 	await page.locator('[data-beside]').waitFor({ state: 'detached' });
@@ -224,15 +230,20 @@ export async function stopByKey(page, who) {
 /** A table with foreign names and units. */
 export const FOREIGN = ['Time [ms],pos_deg,Iq [A]', ...Array.from({ length: 200 }, (_, i) => `${i * 4},${i % 90},0.${i % 9}`)].join('\n');
 
-/** Drops a table on the page to import it; the form that asks what its columns are. */
-export async function chooseForeign(page, base, table) {
+/** Drops files, each a name and a text, on the page of the runs to import them. */
+export async function dropFiles(page, base, files) {
 	await page.goto(`${base}/runs`);
 	await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
-	await page.evaluate((table) => {
+	await page.evaluate((files) => {
 		const dataTransfer = new DataTransfer();
-		dataTransfer.items.add(new File([table], 'foreign.csv', { type: 'text/csv' }));
+		for (const [name, text] of files) dataTransfer.items.add(new File([text], name));
 		for (const name of ['dragover', 'drop']) document.body.dispatchEvent(new DragEvent(name, { dataTransfer, bubbles: true, cancelable: true }));
-	}, table);
+	}, files);
+}
+
+/** Drops a table on the page to import it; the form that asks what its columns are. */
+export async function chooseForeign(page, base, table) {
+	await dropFiles(page, base, [['foreign.csv', table]]);
 	const form = page.getByRole('form', { name: /foreign.csv/ });
 	await form.waitFor({ timeout: 30_000 });
 	return form;
@@ -278,13 +289,16 @@ export async function measureNext(page) {
 	await card.locator('.uplot').first().waitFor({ timeout: FIT_MS });
 	const said = await card.innerText();
 	const go = card.getByRole('button', { name: 'Run it and diagnose both runs together' });
+	await page.setViewportSize(PHONE);
 	const version = await toAnotherVersion(page, () => go.click(), RUN_MS);
+	await inView(page.locator('section[data-verdict]'), 'the answer of the further run');
+	await page.setViewportSize(WIDE);
 	return { said, ...version };
 }
 
-/** Starts an autopilot within a budget, sees it measure, and ends it; says where it ended. */
-export async function flyAndStop(page, base) {
-	await page.goto(`${base}/workbench`);
+/** Starts an autopilot within a budget on the page of the workbench that the address names, sees it measure, and ends it; says there where it ended. */
+export async function flyAndStop(page, address) {
+	await page.goto(address);
 	const form = page.getByRole('form', { name: 'Autopilot' });
 	await form.getByLabel('runs, at most').fill('2');
 	await form.getByLabel('bench time').fill('20');

@@ -6,11 +6,18 @@
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
+import { askForNone, bringBack, dashesOf, manyRuns, readResults, takeAway, zoomWhileFollowing } from './looks.mjs';
 import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, readResult, readVersion, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** Without typeset formulas, whose script comes with the first of them. */
 const BUNDLE_BYTES = 150_000;
+/** Short runs whose results look unlike each other; the last one where the daemon has an encoder bench. */
+const RESULTS = {
+	stiffness: { parameters: { load_levels: 4 }, title: /Torsion over torque/i },
+	compensation: { parameters: {}, title: /Sum of the errors/i },
+	encoder_alignment: { parameters: { halvings: 2, map_positions: 3 }, title: /Last consistent place/i },
+};
 const rest = async (path) => {
 	const answer = await fetch(`${where.base}/api/v1${path}`);
 	expect(answer.ok, `GET ${path} answers ${answer.status}`);
@@ -78,7 +85,7 @@ await tell('walk', async () => {
 	expect(undone.held === first.held, `undo should lead back to ${first.held}, but shows ${undone.held}`);
 
 	const differs = await compareVersions(page);
-	expect(differs.includes(first.effects[0].replaceAll('_', ' ')), `the comparison does not tell what differs: ${differs}`);
+	expect(first.effects[0] === 'load_linear' && differs.includes('Load-dependent friction'), `the comparison does not tell what differs: ${differs}`);
 
 	const back = await showForeign(page, where.base, run, undone, 'viscous_quadratic');
 	expect(back.model === undone.model, `back from the version made elsewhere the page shows ${back.model}`);
@@ -97,7 +104,9 @@ await tell('walk', async () => {
 	expect(own.held < first.held, `the own effect should make the error fall, but it went from ${first.held} to ${own.held}`);
 	await audit(page, 'the own effect');
 
-	const ended = await flyAndStop(page, where.base);
+	const none = await askForNone(page, where.base, run);
+	expect(/; v\d+ \(model \d+\) is shown/.test(none), `the page does not say which version it shows: ${none}`);
+	const ended = await flyAndStop(page, `${where.base}/workbench/${run}`);
 	expect(/Where it ended\. A person has ended it/.test(ended), `the autopilot does not say where it ended: ${ended}`);
 	await audit(page, 'the autopilot');
 
@@ -117,6 +126,27 @@ await tell('walk', async () => {
 	await page.getByRole('heading', { name: 'Compare 3 runs' }).waitFor({ timeout: 30_000 });
 	await page.locator('.uplot').first().waitFor({ timeout: 30_000 });
 	await audit(page, 'the comparison');
+
+	const beside = await another();
+	await zoomWhileFollowing(beside, where.base);
+	const { legend, missing } = await dashesOf(beside, page.url());
+	expect(legend.length === 3 && new Set(legend).size === 3 && missing.length === 0, `colour alone keeps lines apart: ${JSON.stringify({ legend, missing })}`);
+	const { rows, jump_ms } = await manyRuns(beside, where.base);
+	expect(rows < 100, `${rows} rows exist of ten thousand runs: only those on the screen should`);
+	expect(jump_ms < 2000, `the jump to the last of ten thousand runs takes ${jump_ms} ms`);
+	console.log(`ten thousand runs: ${rows} rows, jump to the last ${jump_ms} ms`);
+
+	const { name, table, report } = await takeAway(page, where.base, run + 1);
+	expect(name === `run-${run + 1}.csv` && /^time_s,/.test(table), `the run leaves as ${name}: ${table.slice(0, 60)}`);
+	expect(report.includes(`Run ${run + 1}`) && report.includes('SIMULATED'), `the report does not name its run: ${report.slice(0, 200)}`);
+	const brought = await bringBack(page, where.base, run + 1, table);
+	expect(new RegExp(`samples are those of run #${run + 1}: a copy`).test(brought.said), `a copy is not told: ${brought.said}`);
+	expect(/of a simulated bench/.test(brought.said), `the copy of a simulated run is not called simulated: ${brought.said}`);
+	expect(/another unit or sign/.test(brought.said), `a current in milliampere is not told: ${brought.said}`);
+	expect(brought.verdict === 'contradiction' && brought.effects.length === 0, `columns contradict each other, but the page says ${brought.verdict} and offers ${brought.effects.join(', ')}`);
+
+	const shown = await readResults(page, where.base, RESULTS);
+	console.log(`results read: ${shown.join(', ')}`);
 
 	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
 	await browser.close();

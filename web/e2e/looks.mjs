@@ -1,0 +1,140 @@
+// What the pages say and show apart from the walk's own path.
+import { readFileSync } from 'node:fs';
+import { audit } from './audit.mjs';
+import { expect } from './browser.mjs';
+import { dropFiles, makeRun, readVersion } from './steps.mjs';
+
+const PATIENCE_MS = 60_000;
+
+/** Whether what a press has made is on the screen, and has the focus. */
+export async function inView(locator, what) {
+	await locator.waitFor({ timeout: PATIENCE_MS });
+	const seen = () => locator.evaluate((node) => {
+		const { top } = node.getBoundingClientRect();
+		return { onScreen: top >= 0 && top < innerHeight * 0.7, focused: document.activeElement === node };
+	});
+	const until = Date.now() + 5000;
+	let found = await seen();
+	while (!(found.onScreen && found.focused) && Date.now() < until) {
+		await new Promise((ok) => setTimeout(ok, 100));
+		found = await seen();
+	}
+	expect(found.onScreen && found.focused, `${what} is not brought into view: ${JSON.stringify(found)}`);
+}
+
+/** Turns the wheel over a plot of a run that is on: it goes on following, over a shorter stretch. On a bench that keeps a pace, so that the run lasts. */
+export async function zoomWhileFollowing(page, base) {
+	const post = async (path, body) => (await fetch(`${base}/api/v1${path}`, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) })).json();
+	const benches = await (await fetch(`${base}/api/v1/bench`)).json();
+	const waits = await Promise.all(benches.map(async ({ name }) => ({ name, ...(await post('/procedures/friction/preview', { bench: name })) })));
+	const bench = waits.find(({ wait_s }) => wait_s > 20)?.name;
+	if (!bench) return console.log('no bench keeps a pace: zooming a run that is on is left out');
+	const { id } = await post('/runs', { bench, procedure: 'friction' });
+	await page.goto(`${base}/runs/${id}`);
+	const plot = page.locator('main figure .u-over').first();
+	await plot.waitFor({ timeout: PATIENCE_MS });
+	await plot.hover();
+	await page.mouse.wheel(0, -300);
+	await page.waitForURL(/view=follow:[\d.]+/, { timeout: 10_000 }).catch(() => expect(false, `a zoom ends the following: ${page.url()}`));
+	expect(Number(/view=follow:([\d.]+)/.exec(page.url())[1]) < 10, `the wheel does not shorten the stretch: ${page.url()}`);
+	const picture = () => page.locator('main figure canvas').first().evaluate((canvas) => canvas.toDataURL());
+	const before = await picture();
+	const until = Date.now() + 5000;
+	while ((await picture()) === before && Date.now() < until) await page.waitForTimeout(100);
+	expect((await picture()) !== before, 'the plot stands still after a zoom, although the run goes on');
+	await fetch(`${base}/api/v1/runs/${id}/abort`, { method: 'POST' });
+}
+
+/** An address of a version that is not there: the page says so, and which one it shows. */
+export async function askForNone(page, base, run) {
+	await page.goto(`${base}/workbench/${run}?model=987654`);
+	const said = page.getByText(`Run #${run} has no model 987654`);
+	await said.waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'nobody says that a version of the address is not there'));
+	return said.innerText();
+}
+
+/** Saves the run as a table and opens its report, from its page. */
+export async function takeAway(page, base, run) {
+	await page.goto(`${base}/runs/${run}`);
+	const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', { name: 'CSV', exact: true }).click()]);
+	const table = readFileSync(await file.path(), 'utf8');
+	const [report] = await Promise.all([page.waitForEvent('popup'), page.getByRole('link', { name: 'Report' }).click()]);
+	await report.locator('svg').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the report has no figure'));
+	const said = await report.locator('body').innerText();
+	await report.close();
+	return { name: file.suggestedFilename(), table, report: said };
+}
+
+/** Brings a run's own export in again, beside it the same with its current in milliampere and a file without a line; what the page says. */
+export async function bringBack(page, base, run, table) {
+	const meta = await (await fetch(`${base}/api/v1/runs/${run}/meta`)).text();
+	const [names, ...rows] = table.trim().split('\n').map((line) => line.split(','));
+	const current = names.indexOf('motor_current_a');
+	const milli = [names, ...rows.map((row) => row.with?.(current, 1000 * row[current]) ?? row)].map((row) => row.join(',')).join('\n');
+	await dropFiles(page, base, [['copy.csv', table], ['milli.csv', milli], ['none.csv', ''], ['meta.json', meta]]);
+	const card = page.getByRole('region', { name: 'Import' });
+	await card.getByText('the file is empty').waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'an empty file is not refused'));
+	const said = await card.innerText();
+	await card.getByRole('link', { name: 'open in the workbench' }).nth(1).click();
+	return { said, ...(await readVersion(page)) };
+}
+
+/** The distinct dashes of a comparison's lines, in its legend and as they were painted. */
+export async function dashesOf(page, address) {
+	await page.addInitScript(() => {
+		window.painted = new Set();
+		const { setLineDash } = CanvasRenderingContext2D.prototype;
+		CanvasRenderingContext2D.prototype.setLineDash = function (dash) {
+			window.painted.add(dash.join(' '));
+			setLineDash.call(this, dash);
+		};
+	});
+	await page.goto(address);
+	const plot = page.locator('figure:has(.uplot)').first();
+	await plot.waitFor({ timeout: PATIENCE_MS });
+	const legend = await plot.locator('figcaption line').evaluateAll((lines) => lines.map((line) => line.getAttribute('stroke-dasharray') ?? ''));
+	const ratio = await page.evaluate(() => devicePixelRatio);
+	const painted = await page.evaluate(() => [...window.painted]);
+	return { legend, missing: legend.filter((dash) => !painted.includes(dash.split(' ').map((n) => (n ? n * ratio : '')).join(' '))) };
+}
+
+/** The list of ten thousand runs (told to the page in the daemon's place): how many rows exist, and how long the jump to the last takes. */
+export async function manyRuns(page, base) {
+	const MANY = 10_000;
+	const [one] = (await (await fetch(`${base}/api/v1/runs?limit=1`)).json()).runs;
+	await page.route('**/api/v1/runs?*', (route) => {
+		const query = new URL(route.request().url()).searchParams;
+		const [limit, offset] = [Number(query.get('limit')), Number(query.get('offset') ?? 0)];
+		const runs = query.get('search') ? [] : Array.from({ length: Math.min(limit, MANY - offset) }, (_, i) => ({ ...one, id: MANY - offset - i, tags: [] }));
+		return route.fulfill({ json: { total: query.get('search') ? 0 : MANY, runs } });
+	});
+	await page.goto(`${base}/runs`);
+	await page.getByRole('link', { name: `#${MANY}`, exact: true }).waitFor({ timeout: PATIENCE_MS });
+	const rows = await page.locator('main tbody tr').count();
+	const begun = Date.now();
+	await page.locator('main tbody tr').first().evaluate((row) => {
+		let box = row.parentElement;
+		while (!/auto|scroll/.test(getComputedStyle(box).overflowY)) box = box.parentElement;
+		box.scrollTop = box.scrollHeight;
+	});
+	await page.getByRole('link', { name: '#1', exact: true }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the last of ten thousand runs is not shown'));
+	await page.unroute('**/api/v1/runs?*');
+	return { rows, jump_ms: Date.now() - begun };
+}
+
+/** Results in the form that their people expect, each from a run that is short: what is shown of each. */
+export async function readResults(page, base, asked) {
+	const shown = [];
+	for (const [procedure, { parameters, title }] of Object.entries(asked)) {
+		const run = await makeRun(base, procedure, parameters);
+		if (run === null) continue;
+		await page.goto(`${base}/runs/${run}`);
+		const card = page.locator('[data-result]');
+		await card.locator('[data-figure]').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, `${procedure} has no result`));
+		const figures = await card.locator('[data-figure] figcaption, [data-figure] h3').allInnerTexts();
+		expect(figures.some((figure) => title.test(figure)), `${procedure} shows ${figures.join(', ')}, and not ${title}`);
+		await audit(page, `the result of ${procedure}`);
+		shown.push(procedure);
+	}
+	return shown;
+}
