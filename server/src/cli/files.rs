@@ -1,8 +1,9 @@
 //! Files that commands read and write.
 
 use super::exit::{Done, Exit};
-use std::fs;
+use jointbench_files::FileFault;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// How the table of a run is called in a folder of its own.
 const TABLES: [&str; 4] = ["run.csv", "run.csv.gz", "run.parquet", "run.arrow"];
@@ -39,6 +40,18 @@ pub fn writable(path: &Path) -> Done {
         return Err(Exit::bad_input(format!("{path} cannot be written: there is no folder {folder}")));
     }
     Ok(())
+}
+
+pub fn read(path: &Path) -> Result<Vec<u8>, Exit> {
+    fs::read(path).map_err(|fault| unread(path, fault))
+}
+
+pub fn read_text(path: &Path) -> Result<String, Exit> {
+    fs::read_to_string(path).map_err(|fault| unread(path, fault))
+}
+
+fn unread(path: &Path, fault: io::Error) -> Exit {
+    Exit::bad_input(format!("{}: {}", path.display(), FileFault::Io(fault)))
 }
 
 pub fn write(path: &Path, bytes: &[u8]) -> Done {

@@ -2,10 +2,9 @@
 
 use super::arguments::{Model, ModelCommand};
 use super::exit::{Done, Exit};
-use super::files::write;
+use super::files::{self, write};
 use super::offline::{json_out, read};
 use super::print;
-use jointbench_files::FileFault;
 use jointbench_model::Fit;
 use jointbench_model::transfer::{Format, ModelFile, export};
 use std::path::Path;
@@ -51,7 +50,7 @@ pub fn save(fit: &Fit, path: &Path) -> Done {
 
 fn open(path: &Path) -> Result<Fit, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", path.display()));
-    let bytes = std::fs::read(path).map_err(|fault| refuse(&FileFault::Io(fault)))?;
+    let bytes = files::read(path)?;
     // A table that was named in its place may not even be text.
     let text = String::from_utf8_lossy(&bytes);
     // Headers, tables and attributes of joints go out only.

@@ -1,6 +1,7 @@
 //! `--own` and `--effect-file`: effects that users write.
 
 use super::exit::Exit;
+use super::files;
 use clap::Args;
 use jointbench_instrument::Kind;
 use jointbench_model::{Definition, OwnEffect};
@@ -42,7 +43,7 @@ impl OwnEffects {
 
 fn read_file(file: &Path, kind: Kind) -> Result<Vec<OwnEffect>, Exit> {
     let refuse = |fault: &dyn std::fmt::Display| Exit::bad_input(format!("{}: {fault}", file.display()));
-    let text = std::fs::read_to_string(file).map_err(|fault| refuse(&fault))?;
+    let text = files::read_text(file)?;
     let mut table: toml::Table = toml::from_str(&text).map_err(|fault| refuse(&fault))?;
     let effects = match table.remove("effect") {
         Some(toml::Value::Array(effects)) if table.is_empty() => effects,

@@ -3,13 +3,12 @@
 use super::arguments::{Columns, Export, Import, StorePlace};
 use super::client::Client;
 use super::exit::{Done, Exit};
-use super::files::{table, write};
+use super::files::{self, table, write};
 use super::serve::runtime;
 use crate::api::Health;
 use crate::lab::{ATTENTION, COPY_OF, FileFormat, ImportRequest, Lab, LabError};
 use crate::view::Run;
-use jointbench_files::{FileFault, meta_path_of};
-use std::fs;
+use jointbench_files::meta_path_of;
 use std::path::{Path, PathBuf};
 
 pub fn import(arguments: &Import) -> Done {
@@ -115,14 +114,12 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
 }
 
 fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportRequest, Exit> {
-    let unread = |path: &Path, fault| Exit::bad_input(format!("{}: {}", path.display(), FileFault::Io(fault)));
-    let text = |path: &Path| fs::read_to_string(path).map_err(|fault| unread(path, fault));
-    let bytes = fs::read(file).map_err(|fault| unread(file, fault))?;
+    let bytes = files::read(file)?;
     let beside = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
     let carries_its_own = !matches!(file.extension().and_then(|end| end.to_str()), Some("csv" | "gz"));
     let meta = match (meta, beside) {
-        (Some(path), _) => Some(text(path)?),
-        (None, Some(path)) if !carries_its_own => Some(text(&path)?),
+        (Some(path), _) => Some(files::read_text(path)?),
+        (None, Some(path)) if !carries_its_own => Some(files::read_text(&path)?),
         _ => None,
     };
     Ok(ImportRequest {

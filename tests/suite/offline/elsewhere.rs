@@ -65,6 +65,7 @@ fn a_file_that_will_not_do_is_named() {
         &["model", "compare", "model.json", "nope.json", "run.csv"],
         &["nope.json: there is no such file: check the name"],
     );
+    refused(folder, &["fit", "run.csv", "--effect-file", "nope.toml"], &["nope.toml: there is no such file"]);
     refused(folder, &["diagnose", "1"], &["there is no file 1", "jointbench export 1"]);
     refused(folder, &["model", "export", "model.json", "--format", "c", "-o", "."], &[". is a folder: name the file"]);
     refused(folder, &["fit", "run.csv", "--out", "."], &[". is a folder: name the file"]);
