@@ -221,6 +221,11 @@ fn plain(value: &Value) -> String {
         Value::String(text) => text.clone(),
         Value::Null => "–".to_owned(),
         Value::Array(items) => items.iter().map(plain).collect::<Vec<_>>().join(", "),
+        // A part of a campaign.
+        Value::Object(items) if items.contains_key("procedure") => {
+            let of = |name: &str| items.get(name).map(plain).unwrap_or_default();
+            format!("{} (from segment {})", of("procedure").replace('_', " "), of("first_segment"))
+        }
         Value::Object(items) => {
             items.iter().map(|(name, value)| format!("{name} {}", plain(value))).collect::<Vec<_>>().join(" · ")
         }
