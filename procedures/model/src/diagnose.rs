@@ -56,6 +56,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         structure_remains: found.end_verdict() == Verdict::UnexplainedStructure,
         regions,
         structure,
+        imitated: found.open.clone(),
         experiment: experiment(&found, &prepared),
         silent: found
             .silent
@@ -110,6 +111,7 @@ pub fn discover(
         model: found.end().effects.clone(),
         regions,
         structure,
+        imitated: found.open.clone(),
         experiment: experiment(&found, &prepared),
         not_visible: found.not_visible(),
         fit,
@@ -158,6 +160,8 @@ fn suggestions(
         };
         let evidence = if apart {
             format!("Around reversals it takes {} off the squared error.", percent(rival.share))
+        } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
+            format!("The error hardly misses it, but without it {}.", summary::elsewhere(upheld, false))
         } else {
             let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
             let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };

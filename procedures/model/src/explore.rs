@@ -7,8 +7,8 @@ use crate::linear::dot;
 use crate::maps::Maps;
 use crate::memory::memory;
 use crate::prepare::Prepared;
-use crate::report::{Invisible, NoiseFloor, Parameter, ParameterState, Verdict};
-use crate::select::{Library, Move, Rival, Search, Silence, held_out};
+use crate::report::{Imitated, Invisible, NoiseFloor, Parameter, ParameterState, Verdict};
+use crate::select::{Library, Move, Rival, Search, Silence, held_out, moved};
 use crate::terms::{Term, Terms};
 use crate::{ModelError, ModelSpec, Options, floor};
 
@@ -46,6 +46,10 @@ pub struct Exploration<'p> {
     pub floor: NoiseFloor,
     /// Effects of the last model, and what this run cannot tell them from.
     ties: Vec<(&'p str, &'p str)>,
+    /// Effects of the last model that the error would hardly miss.
+    pub upheld: Vec<Imitated>,
+    /// One that may be there as well.
+    pub open: Option<Imitated>,
 }
 
 /// A map must take this share off held-out squared error to be called structure. Over null runs the best map reaches
@@ -82,23 +86,29 @@ impl<'p> Exploration<'p> {
         let mut advances: Vec<Advance> = Vec::new();
         let mut effects = start.effects.clone();
         let mut taken_back = Vec::new();
-        let (maps, residual) = loop {
-            let made = match search.next() {
+        let (maps, residual, open) = loop {
+            let made = search.next().or_else(|| {
+                let id = undecided(&search, prepared)?;
+                taken_back.push((id, Withdrawal::Undecided));
+                Some(search.withdraw(id))
+            });
+            let made = match made {
                 Some(made) => made,
                 None => {
-                    let open = undecided(&search, prepared);
-                    let (effect, why) = if let Some(id) = open {
-                        (id, Withdrawal::Undecided)
+                    let residual = search.now.tangent().rest(&search.now.response());
+                    let maps = Maps::new(prepared, residual.clone(), options);
+                    let axis = structured(&maps);
+                    if let Some(id) = axis.and_then(|axis| half_explained(&search, axis, prepared, options)) {
+                        taken_back.push((id, Withdrawal::HalfExplains));
+                        search.closed = true;
+                        search.withdraw(id)
                     } else {
-                        let residual = search.now.tangent().rest(&search.now.response());
-                        let maps = Maps::new(prepared, residual.clone(), options);
-                        let half = structured(&maps).and_then(|axis| half_explained(&search, axis, prepared, options));
-                        let Some(id) = half else { break (maps, residual) };
-                        (id, Withdrawal::HalfExplains)
-                    };
-                    taken_back.push((effect, why));
-                    search.closed |= why == Withdrawal::HalfExplains;
-                    search.withdraw(effect)
+                        let is_decided = |with: &Terms<'p>, term: &Term<'p>| is_decided(with, term, prepared);
+                        match axis.is_none().then(|| search.imitated(is_decided)).flatten() {
+                            Some(found) if found.is_clear => search.uphold(found.rival),
+                            open => break (maps, residual, open),
+                        }
+                    }
                 }
             };
             let (added, removed, ties) = match made {
@@ -115,6 +125,10 @@ impl<'p> Exploration<'p> {
             advances.push(Advance { added, removed, ties, after });
             advances.last().into_iter().for_each(&mut *on_advance);
         };
+        let moves = |id: &str, was: &Terms<'p>, is: &Terms<'p>| imitated(id, was, is, spec, prepared);
+        let open = open.and_then(|open| moves(open.rival.term.id(), &search.now, &open.with));
+        let upheld = search.upheld.iter().filter(|id| search.now.contains(id));
+        let upheld = upheld.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
         let taken_back = taken_back.into_iter().filter(|(effect, _)| !search.now.contains(effect));
         let with = |effect| held_out_rms(&search.laid_with(effect));
         let withdrawn = taken_back.map(|(effect, why)| Withdrawn { effect, why, held_out_rms: with(effect) }).collect();
@@ -135,7 +149,7 @@ impl<'p> Exploration<'p> {
         let mut invisible = library.invisible;
         invisible.retain(|i| !start.hidden.iter().any(|h| h.effect == i.effect));
         let floor = floor::noise_floor(prepared, &residual);
-        Ok(Self { start, advances, withdrawn, silent, invisible, maps, floor, ties })
+        Ok(Self { start, advances, withdrawn, silent, invisible, maps, floor, ties, upheld, open })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
@@ -242,6 +256,25 @@ impl Doubt {
     fn is_there(self) -> bool {
         self.of_size || self.of_shape
     }
+}
+
+/// What another effect imitates, with the figure of the given model that it costs.
+fn imitated(id: &str, without: &Terms, with: &Terms, spec: &ModelSpec, prepared: &Prepared) -> Option<Imitated> {
+    let found = moved(without, with, &spec.effects)?;
+    let info = found.term.effect.info();
+    Some(Imitated {
+        effect: id.into(),
+        parameter: format!("{}.{}", info.id, found.factor),
+        unit: prepared.motion.label(info.unit(found.factor)),
+        without: found.was,
+        with: found.is,
+    })
+}
+
+/// A model says how large an effect is, and of which shape.
+fn is_decided<'p>(with: &Terms<'p>, term: &Term<'p>, prepared: &Prepared) -> bool {
+    let doubt = Doubt::of(term, with, &intervals(with, prepared.motion).parameters, prepared);
+    !doubt.of_factors && !doubt.of_shape
 }
 
 /// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Where it

@@ -3,7 +3,7 @@
 use crate::explore::{Exploration, Withdrawal, Withdrawn};
 use crate::intervals::IMPOSSIBLE;
 use crate::maps::Maps;
-use crate::report::{PairMap, Region, Suggestion, Verdict};
+use crate::report::{Imitated, PairMap, Region, Suggestion, Verdict};
 use crate::words::{figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
@@ -50,7 +50,7 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         }
         _ => String::new(),
     };
-    format!("{}{gain}{beyond}{}", attention(found), taken_back(found, &fit.unit))
+    format!("{}{gain}{beyond}{}{}", attention(found), open(found), taken_back(found, &fit.unit))
 }
 
 /// What is left at the end of the search, where `fit` is its model. `is_cut`: it ended because no more effects were asked for.
@@ -72,7 +72,22 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
              cannot be decided: {why}."
         ),
     };
-    attention(found) + &said + &taken_back(found, &fit.unit)
+    attention(found) + &said + &open(found) + &taken_back(found, &fit.unit)
+}
+
+/// An effect that may be there as well, for all that the error tells.
+fn open(found: &Exploration) -> String {
+    let said = |open: &Imitated| {
+        format!(" This run does not tell whether {} is there as well: with it {}.", open.effect, elsewhere(open, true))
+    };
+    found.open.as_ref().map(said).unwrap_or_default()
+}
+
+/// The figure that an effect changes which another one imitates.
+pub fn elsewhere(imitated: &Imitated, is_there: bool) -> String {
+    let Imitated { parameter, unit, without, with, .. } = imitated;
+    let (would, instead) = if is_there { (with, without) } else { (without, with) };
+    format!("{parameter} would be {} instead of {}", figure(*would, unit), figure(*instead, unit))
 }
 
 const MEND: &str = "Mend that first: what follows is what these columns make of the model. ";

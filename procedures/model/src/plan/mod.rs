@@ -51,6 +51,8 @@ pub struct Open {
     pub model: Vec<String>,
     /// A named effect, and those that explain the data as well.
     pub ties: Vec<(String, Vec<String>)>,
+    /// An effect that may be there as well.
+    pub imitated: Option<String>,
     pub has_noise_floor: bool,
     /// What remains shows in this data: a run for effects that it cannot show says nothing about it.
     pub has_structure: bool,
@@ -65,6 +67,7 @@ impl From<&Diagnosis> for Open {
         Self {
             model: diagnosis.model.iter().cloned().chain(named).collect(),
             ties: tied.map(|s| (s.effect.clone(), s.confounded_with.clone())).collect(),
+            imitated: diagnosis.imitated.as_ref().map(|open| open.effect.clone()),
             has_noise_floor: diagnosis.noise_floor_rms.is_some(),
             has_structure: diagnosis.structure_remains,
             own: Vec::new(),
@@ -79,6 +82,7 @@ impl From<&Discovery> for Open {
         Self {
             model: discovery.model.clone(),
             ties: tied.filter(|(effect, _)| discovery.model.contains(effect)).collect(),
+            imitated: discovery.imitated.as_ref().map(|open| open.effect.clone()),
             has_noise_floor: discovery.noise_floor_rms.is_some(),
             has_structure: discovery.verdict == Verdict::UnexplainedStructure,
             own: Vec::new(),
@@ -88,7 +92,7 @@ impl From<&Discovery> for Open {
 
 /// The run to make next, `None` where nothing is open that the menu could decide.
 ///
-/// Rivals that tie come first, then a run without repeats, then effects that this run could not have shown.
+/// Rivals that tie come first, then an effect that may be there as well, then a run without repeats, then effects that this run could not have shown.
 pub fn next_run(
     run: &RunTable,
     open: &Open,
@@ -105,23 +109,31 @@ pub fn next_run(
     let noise = Noise::of(&model.main);
     let imagined: Vec<_> = menu.iter().map(|choice| imagine(choice, &prepared, &model)).collect();
 
+    let side = Side::new(&model.main, &noise);
+    let decided = |others: &[ModelSpec]| -> Result<Option<Bid>, ModelError> {
+        let others = others.iter().map(|s| Assembly::new(&prepared, s, options));
+        let others: Vec<Assembly> = others.collect::<Result<_, _>>()?;
+        let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
+        Ok(decide(menu.iter().zip(&imagined).map(|(choice, problem)| {
+            let apart: Vec<f64> = others.iter().map(|other| side.separation(other, problem, &noise)).collect();
+            Bid { choice, z: apart.iter().copied().fold(f64::INFINITY, f64::min) }
+        })))
+    };
     for (effect, rivals) in &open.ties {
-        let side = Side::new(&model.main, &noise);
         let mut specs = Vec::new();
         for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
             let effects: Vec<String> = open.model.iter().map(|e| if e == effect { rival } else { e }.clone()).collect();
             specs.push(spec(&effects)?);
         }
-        let others: Vec<Assembly> =
-            specs.iter().map(|s| Assembly::new(&prepared, s, options)).collect::<Result<_, _>>()?;
-        let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
-        let best = menu.iter().zip(&imagined).map(|(choice, problem)| {
-            let apart: Vec<f64> = others.iter().map(|other| side.separation(other, problem, &noise)).collect();
-            Bid { choice, z: apart.iter().copied().fold(f64::INFINITY, f64::min) }
-        });
-        if let Some(bid) = decide(best) {
-            return Ok(Some(tie(bid, effect, rivals)));
+        if let Some(bid) = decided(&specs)? {
+            let tells = format!("{effect} from {}", list(rivals));
+            return Ok(Some(told(bid, &tells, std::iter::once(effect).chain(rivals))));
         }
+    }
+    if let Some(effect) = &open.imitated
+        && let Some(bid) = decided(&[with_all.with(effect)?])?
+    {
+        return Ok(Some(told(bid, &format!("whether {effect} is there as well"), [effect])));
     }
     if !open.has_noise_floor
         && let Some(choice) = menu.first()
@@ -149,7 +161,7 @@ fn decide<'m>(bids: impl Iterator<Item = Bid<'m>>) -> Option<Bid<'m>> {
     shortest.or_else(|| bids.iter().max_by(|a, b| a.z.total_cmp(&b.z))).copied()
 }
 
-fn tie(bid: Bid, effect: &str, rivals: &[String]) -> Experiment {
+fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String>) -> Experiment {
     let times = (SEPARATED_Z / bid.z).powi(2).ceil();
     let enough = if bid.z >= SEPARATED_Z {
         String::new()
@@ -160,13 +172,12 @@ fn tie(bid: Bid, effect: &str, rivals: &[String]) -> Experiment {
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run tells {effect} from {}: their predictions are expected to lie {:.1} standard deviations apart{enough}",
-            list(rivals),
+            "this run tells {what}: the predictions are expected to lie {:.1} standard deviations apart{enough}",
             bid.z,
         ),
         expected_z: Some(bid.z),
         expected_duration_s: Some(bid.choice.duration_s),
-        separates: std::iter::once(effect.to_owned()).chain(rivals.iter().cloned()).collect(),
+        separates: separates.into_iter().cloned().collect(),
     }
 }
 

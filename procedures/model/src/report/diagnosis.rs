@@ -51,6 +51,9 @@ pub struct Diagnosis {
     pub structure_remains: bool,
     /// Missing effects, the most important first. Empty unless the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
+    /// An effect that may be there beside the suggestions, and change the parameters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub imitated: Option<Imitated>,
     pub experiment: Option<Experiment>,
     /// Effects that were looked for and not found, with what would have been seen.
     pub silent: Vec<Silent>,
@@ -127,6 +130,18 @@ pub struct Experiment {
     pub separates: Vec<String>,
 }
 
+/// An effect that the shape of another one imitates: the error hardly tells whether it is there, a parameter does.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Imitated {
+    pub effect: String,
+    /// The parameter of the given model that it changes, as `effect.parameter`.
+    pub parameter: String,
+    pub unit: String,
+    /// Its value without the effect, and with it.
+    pub without: f64,
+    pub with: f64,
+}
+
 /// An effect that was looked for and not found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Silent {
@@ -181,6 +196,9 @@ pub struct Discovery {
     /// The columns that the summary names as those over which what remains shows most. Empty where none does.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shows_over: Vec<String>,
+    /// An effect that may be there beside those of the model, and change the parameters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub imitated: Option<Imitated>,
     pub experiment: Option<Experiment>,
     /// Effects that this data cannot show.
     #[serde(default)]

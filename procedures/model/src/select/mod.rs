@@ -3,12 +3,14 @@
 mod flips;
 mod forms;
 mod ground;
+mod imitated;
 mod layout;
 mod library;
 mod rivals;
 mod search;
 
 pub use ground::Ground;
+pub use imitated::moved;
 pub use layout::{enter, lay};
 pub use library::Library;
 pub use rivals::{Rival, significance};

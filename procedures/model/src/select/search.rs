@@ -41,19 +41,21 @@ const STANDS_IN: f64 = 0.9;
 /// Adds the best effect again and again until none passes, and drops what lost its reason: one move at a time.
 pub struct Search<'l, 'p> {
     pub now: Terms<'p>,
-    library: &'l Library<'p>,
-    options: &'l Options,
+    pub(super) library: &'l Library<'p>,
+    pub(super) options: &'l Options,
     /// Squared error of the model without any effect but those of the baseline and those whose formula is exact.
     plain: f64,
     /// Effects of the model that was given.
-    kept: Vec<&'p str>,
+    pub(super) kept: Vec<&'p str>,
     /// Effects that were withdrawn and are not tried again.
-    withdrawn: Vec<&'p str>,
+    pub(super) withdrawn: Vec<&'p str>,
+    /// Effects whose reason is not the error, but what the others would be without them.
+    pub upheld: Vec<&'p str>,
     /// Held-out squared errors, fold by fold, of the models that they were withdrawn from.
     given_up: Vec<Vec<f64>>,
     /// The effect that was added last.
     last: Option<&'p str>,
-    left: usize,
+    pub(super) left: usize,
     exchanges: usize,
     /// Something from outside the library was seen: whatever entered now would stand for it.
     pub closed: bool,
@@ -82,6 +84,7 @@ impl<'l, 'p> Search<'l, 'p> {
             plain,
             kept,
             withdrawn: Vec::new(),
+            upheld: Vec::new(),
             given_up: Vec::new(),
             last: None,
             left: most,
@@ -103,6 +106,20 @@ impl<'l, 'p> Search<'l, 'p> {
         self.withdrawn.push(id);
         self.given_up.push(held_out(&self.now));
         self.remove(id)
+    }
+
+    /// Adds an effect that hardly shows in the error, and keeps it.
+    pub fn uphold(&mut self, rival: Rival<'p>) -> Move<'p> {
+        self.upheld.push(rival.term.id());
+        self.add(rival, Vec::new())
+    }
+
+    fn add(&mut self, rival: Rival<'p>, ties: Vec<&'p str>) -> Move<'p> {
+        self.left -= 1;
+        let id = rival.term.id();
+        self.now = self.laid_with(id);
+        self.last = Some(id);
+        Move::Added { rival: rival.into(), ties }
     }
 
     fn remove(&mut self, id: &'p str) -> Move<'p> {
@@ -134,7 +151,8 @@ impl<'l, 'p> Search<'l, 'p> {
     /// The added effect without which the model is as good. What came last has just shown its reason.
     fn needless(&self) -> Option<&'p str> {
         let full = self.now.linear().sse;
-        let ids: Vec<&'p str> = self.added().map(Term::id).filter(|id| self.last != Some(id)).collect();
+        let ids = self.on_trial().map(Term::id).filter(|id| self.last != Some(id));
+        let ids: Vec<&'p str> = ids.collect();
         let share = |id: &'p str| {
             let without = self.now.without(id);
             let share = 1.0 - full / without.linear().sse;
@@ -155,8 +173,8 @@ impl<'l, 'p> Search<'l, 'p> {
     /// explains the rest of it. Asked when nothing more can be added, because on the way two effects may mask each other.
     fn idle(&self) -> Option<&'p str> {
         let (present, sse) = (held_out(&self.now).iter().sum::<f64>(), self.now.linear().sse);
-        let added: Vec<&Term<'p>> = self.added().collect();
-        let idle = added.into_par_iter().filter_map(|term| {
+        let on_trial: Vec<&Term<'p>> = self.on_trial().collect();
+        let idle = on_trial.into_par_iter().filter_map(|term| {
             let without = self.laid_without(term.id());
             let share = 1.0 - present / held_out(&without).iter().sum::<f64>();
             let is_remainder = without.linear().sse - sse < left_by_memory(&without);
@@ -183,7 +201,9 @@ impl<'l, 'p> Search<'l, 'p> {
         let other = lay(&self.now, &with, self.library, self.options);
         let mut sized = other.terms.iter().zip(other.linear().factors);
         let is_possible = sized.all(|(term, factors)| term.id() != rival || term.allows(&factors));
-        is_possible && is_tie(&held_out(&self.now), &held_out(&other))
+        // What stands in for an effect that hardly shows in the error leaves the others where it does.
+        let is_elsewhere = self.upheld.contains(&effect) && self.is_wrong_beside(&other);
+        is_possible && !is_elsewhere && is_tie(&held_out(&self.now), &held_out(&other))
     }
 
     /// Effects that explain nearly as much in the place of one, and with which the model is as good.
@@ -214,6 +234,11 @@ impl<'l, 'p> Search<'l, 'p> {
     /// Effects that were added and are still there.
     pub fn added(&self) -> impl Iterator<Item = &Term<'p>> {
         self.now.terms.iter().filter(|t| !self.kept.contains(&t.id()))
+    }
+
+    /// Added effects that have to be worth their error.
+    fn on_trial(&self) -> impl Iterator<Item = &Term<'p>> {
+        self.added().filter(|term| !self.upheld.contains(&term.id()))
     }
 
     pub fn silences(&self) -> Vec<Silence<'p>> {
@@ -250,11 +275,7 @@ impl<'p> Iterator for Search<'_, 'p> {
             let id = self.misplaced()?;
             return Some(self.remove(id));
         };
-        self.left -= 1;
-        let id = rival.term.id();
-        self.now = self.laid_with(id);
-        self.last = Some(id);
-        Some(Move::Added { rival: rival.into(), ties })
+        Some(self.add(rival, ties))
     }
 }
 

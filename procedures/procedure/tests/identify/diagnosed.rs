@@ -2,10 +2,10 @@
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::RunTable;
-use jointbench_model::{Diagnosis, ModelSpec, Options, diagnose, discover};
+use jointbench_model::{Diagnosis, ModelSpec, Open, Options, diagnose, discover, next_run};
 use jointbench_procedure::conduct::conduct;
-use jointbench_procedure::procedure;
-use serde_json::{Value, json};
+use jointbench_procedure::{BenchFacts, menu, procedure};
+use serde_json::{Map, Value, json};
 
 /// A run of a joint with hidden effects.
 fn run(joint: Joint, hidden: &[&str], id: &str, parameters: Value) -> RunTable {
@@ -81,6 +81,28 @@ fn teeth_on_the_way_from_rest_are_told_without_what_is_impossible() {
     let found: Vec<String> = diagnosis(&run).suggestions.into_iter().map(|s| s.effect).collect();
     assert_eq!(found[0], "cogging", "{found:?}");
     assert!(!found.contains(&"stribeck".to_owned()), "{found:?}");
+}
+
+#[test]
+fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
+    let quadratic = |seed| seeded(seed, Joint::JointA, &["stribeck", "viscous_quadratic"], "friction", json!({}));
+    // A Stribeck effect whose exponent is 0.5 errs by 1 % more in squares, with 12 mNm of Coulomb friction instead of 30.
+    let clear = diagnosis(&quadratic(14007));
+    let named: Vec<&str> = clear.suggestions.iter().map(|s| s.effect.as_str()).collect();
+    assert_eq!(named, ["stribeck", "viscous_quadratic"], "{}", clear.summary);
+    let why = &clear.suggestions[1].why;
+    assert!(why.contains("without it coulomb.tau_c would be 11."), "{why}");
+    // Where what was held out does not decide it, it is told, and the run that would decide it is offered.
+    let run = quadratic(14006);
+    let open = diagnosis(&run);
+    let imitated = open.imitated.as_ref().unwrap();
+    assert_eq!((imitated.effect.as_str(), imitated.parameter.as_str()), ("viscous_quadratic", "coulomb.tau_c"));
+    assert!(imitated.without < 0.022 && (0.027..0.030).contains(&imitated.with), "{imitated:?}");
+    assert!(open.summary.contains("does not tell whether viscous_quadratic is there"), "{}", open.summary);
+    let offered = menu(&BenchFacts::shown_by(&run), &run, &Map::new());
+    let next = next_run(&run, &Open::from(&open), &offered, &Options::default()).unwrap().unwrap();
+    assert_eq!(next.separates, ["viscous_quadratic"], "{}", next.why);
+    assert!(next.expected_z.unwrap() > 2.0, "{}", next.why);
 }
 
 #[test]
