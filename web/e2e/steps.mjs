@@ -181,6 +181,7 @@ export async function compareVersions(page) {
 	await page.getByRole('button', { name: /^Compare with v/ }).and(page.locator(':enabled')).last().click();
 	const beside = page.locator('[data-beside=compare]');
 	await beside.waitFor({ timeout: 30_000 }).catch(() => expect(false, 'no other version is shown beside the one at hand'));
+	await beside.locator('tbody tr').first().waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the parameters of the two versions are not told'));
 	const said = await beside.innerText();
 	await page.keyboard.press('x');
 	await beside.waitFor({ state: 'detached' });

@@ -1,7 +1,7 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
-// both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table dropped on the page; three runs compared; the software stop by key;
+// both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
@@ -108,6 +108,7 @@ await tell('walk', async () => {
 	expect(/; v\d+ \(model \d+\) is shown/.test(none), `the page does not say which version it shows: ${none}`);
 	const ended = await flyAndStop(page, `${where.base}/workbench/${run}`);
 	expect(/Where it ended\. A person has ended it/.test(ended), `the autopilot does not say where it ended: ${ended}`);
+	expect(ended.includes(`from run #${run}`), `the autopilot does not say where it was started: ${ended}`);
 	await audit(page, 'the autopilot');
 
 	for (const path of ['/', '/log', '/settings']) {

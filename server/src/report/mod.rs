@@ -7,6 +7,7 @@ mod number;
 
 use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict, word};
 pub use figure::svg;
+use jointbench_instrument::units::{quantity_of, unit_of};
 use jointbench_model::words;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use number::with_interval;
@@ -210,10 +211,16 @@ fn pairs(values: &Map<String, Value>) -> Markup {
     html! {
         table {
             @for (name, value) in values {
-                tr { td { (name.replace('_', " ")) } td { (plain(value)) } }
+                tr { td { (title(name)) } td { (plain(value)) } }
             }
         }
     }
+}
+
+/// `warm_up_s` as people read it: warm up [s].
+fn title(name: &str) -> String {
+    let quantity = quantity_of(name).unwrap_or(name).replace('_', " ");
+    unit_of(name).map_or(quantity.clone(), |unit| format!("{quantity} [{unit}]"))
 }
 
 fn plain(value: &Value) -> String {
