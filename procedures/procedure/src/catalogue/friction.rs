@@ -14,7 +14,7 @@ use super::legs::{ACCELERATION, Legs, friction_meta, sample_rate, turn_s};
 use super::warm_up;
 use super::{Findable, Procedure, findable};
 use crate::findings::verdict;
-use crate::identification::{FollowUp, Identification};
+use crate::identification::{FollowUp, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault, Steady};
 use jointbench_instrument::{Kind, RunTable};
@@ -126,7 +126,7 @@ impl Procedure for Friction {
     }
 
     fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
-        compensation::of_friction(found, "")
+        (found.verdict == Verdict::Identified).then(|| compensation::of_friction(found, "")).flatten()
     }
 }
 

@@ -93,6 +93,23 @@ fn strokes_on_the_mock_bench_bracket_its_friction() {
 }
 
 #[test]
+fn a_stribeck_part_that_may_be_a_square_of_speed_is_not_identified() {
+    let hidden = |effects: &[&str]| {
+        let mut settings = MockSettings::new(Joint::JointA, 14003);
+        settings.effects = effects.iter().map(|effect| (*effect).to_owned()).collect();
+        found(settings, "friction", json!({})).1
+    };
+    let open = hidden(&["stribeck", "viscous_quadratic"]);
+    assert_eq!(open.verdict, Verdict::Inconclusive, "{}", open.summary);
+    assert!(open.summary.contains("the square of speed explains this run as well"), "{}", open.summary);
+    let friction = procedure("friction").unwrap();
+    assert!(friction.follow_up(&open).is_none(), "half of Coulomb friction is not fed forward");
+    let alone = hidden(&["stribeck"]);
+    assert_eq!(alone.verdict, Verdict::Identified, "{}", alone.summary);
+    assert!(friction.follow_up(&alone).is_some() && !alone.summary.contains("square"), "{}", alone.summary);
+}
+
+#[test]
 fn a_joint_breaks_away_where_its_friction_at_rest_lies() {
     let given = json!({"positions": 3, "sample_rate_hz": 250.0, "ramp_nm_s": 0.04});
     let (mock, found) = found(MockSettings::new(Joint::JointA, 1), "breakaway", given);

@@ -9,7 +9,7 @@ use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series
 use jointbench_instrument::RunTable;
 use jointbench_model::prepare::Prepared;
 use jointbench_model::view::Signal;
-use jointbench_model::{Fit, ModelSpec, Options, fit_prepared, words};
+use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit_prepared, words};
 use std::panic::resume_unwind;
 use std::thread;
 
@@ -34,13 +34,7 @@ pub(crate) struct Stribeck {
 impl FreeFriction {
     /// Fits the free legs; the Stribeck part where the run decides it and predicts itself the better for it.
     fn of(run: &Prepared) -> Result<Self, Unusable> {
-        let has_load = run.main.view.find(Signal::Load).is_some();
-        let given = if has_load { vec!["load_transmission"] } else { Vec::new() };
-        let with = |more: &[&'static str]| {
-            let effects = given.iter().chain(["coulomb", "viscous"].iter()).chain(more).copied();
-            fit_prepared(run, &ModelSpec::new(run.kind, effects)?, &Options::default())
-        };
-        let (rich, plain) = (with(&["stribeck"]), with(&[])?);
+        let (rich, plain) = (fit_with(run, &["stribeck"]), fit_with(run, &[])?);
         if let Ok(rich) = rich
             && rich.validation_rms < plain.validation_rms
             && let Some(rise) = parameter(&rich, "stribeck", "tau_s")
@@ -76,6 +70,25 @@ impl FreeFriction {
     }
 }
 
+/// Coulomb and viscous friction, and more.
+fn fit_with(run: &Prepared, more: &[&str]) -> Result<Fit, ModelError> {
+    let load = run.main.view.find(Signal::Load).map(|_| "load_transmission");
+    let effects = load.into_iter().chain(["coulomb", "viscous"]).chain(more.iter().copied());
+    fit_prepared(run, &ModelSpec::new(run.kind, effects)?, &Options::default())
+}
+
+/// Coulomb friction beside a drag that grows with the square of speed, where it is elsewhere by this share: a Stribeck part
+/// that fades slowly looks like both.
+const ELSEWHERE: f64 = 0.15;
+
+fn beside_a_square(run: &Prepared, whole: &FreeFriction) -> Option<f64> {
+    whole.stribeck.as_ref()?;
+    let square = fit_with(run, &["stribeck", "viscous_quadratic"]).ok()?;
+    parameter(&square, "viscous_quadratic", "c_2")?;
+    let coulomb_nm = parameter(&square, "coulomb", "tau_c")?.value;
+    ((coulomb_nm - whole.coulomb.0).abs() > ELSEWHERE * coulomb_nm.abs()).then_some(coulomb_nm)
+}
+
 /// The legs without load and after the warm-up.
 pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
     let warm_up = run.meta().other.get("warm_up_segments").and_then(serde_json::Value::as_i64).unwrap_or(0);
@@ -92,12 +105,14 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         let sides = scope.spawn(|| [1.0, -1.0].map(|sign| FreeFriction::of(&settled(&part(sign)?)?)));
         let whole = || -> Result<_, Unusable> {
             let both = settled(&keep(run, &free)?)?;
-            Ok((FreeFriction::of(&both)?, plateaus(&both)))
+            let whole = FreeFriction::of(&both)?;
+            let square = beside_a_square(&both, &whole);
+            Ok((whole, square, plateaus(&both)))
         };
         (whole(), sides.join())
     });
     let [forward, backward] = sides.unwrap_or_else(|panic| resume_unwind(panic));
-    let ((whole, points), forward, backward) = (whole?, forward?, backward?);
+    let ((whole, square, points), forward, backward) = (whole?, forward?, backward?);
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
 
     let mut quantities = named("", "", "", &whole, gear);
@@ -146,20 +161,35 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         (None, None) => (false, "whether friction rises towards standstill is not decided".to_owned()),
     };
     let rest = rest(&sides, &whole);
+    let square_said = square.map(|coulomb_nm| {
+        let coulomb = words::figure(coulomb_nm, "Nm");
+        format!(
+            " Drag that grows with the square of speed explains this run as well; Coulomb friction is {coulomb} then."
+        )
+    });
+    let is_decided = is_decided && square.is_none();
     let advice = match (&rest, is_decided) {
+        _ if square.is_some() => Some(
+            "To see which of them the run speaks for, open it in the workbench, or export it and have the file diagnosed \
+             (jointbench export RUN, jointbench diagnose run-RUN.csv). Where that does not tell, twice as many fast_speeds do.",
+        ),
         (Some(_), _) => Some(
             "To see what the rest follows, open the run in the workbench, or export it and have the file diagnosed \
              (jointbench export RUN, jointbench diagnose run-RUN.csv).",
         ),
-        (None, false) => Some("To decide the Stribeck part, repeat with more repeats or a lower stribeck_speed_rad_s."),
+        (None, false) => Some(
+            "To decide the Stribeck part, have the run diagnosed first, as another effect may hide it (jointbench export RUN, \
+             jointbench diagnose run-RUN.csv); else repeat with more repeats or a lower stribeck_speed_rad_s.",
+        ),
         (None, true) => None,
     };
     Ok(Identification {
         verdict: if is_decided { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Coulomb friction is {}, viscous friction {}, and {rise}; the directions {directions}.{}",
+            "Coulomb friction is {}, viscous friction {}, and {rise}; the directions {directions}.{}{}",
             words::figure(whole.coulomb.0, "Nm"),
             words::figure(whole.viscous.0, "Nm·s/rad"),
+            square_said.unwrap_or_default(),
             rest.map(|rest| format!(" {rest}")).unwrap_or_default()
         ),
         advice: advice.map(str::to_owned),
