@@ -11,6 +11,7 @@ use jointbench_procedure::identification::Quantity;
 use jointbench_procedure::reproduce::{Chapter, Comparison, Demand, Subject, reproduce as campaign};
 use std::fmt::Write;
 use std::fs;
+use std::io;
 use std::path::Path;
 
 pub fn reproduce(arguments: &Reproduce) -> Done {
@@ -22,6 +23,17 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
         ("Encoder bench, filter on", Joint::EncoderShaft, Subject::FilteredEncoder { delay_without_s: 0.0 }),
         ("Puma", Joint::Puma, Subject::Puma),
     ];
+    // Minutes later would be too late.
+    if let Some(page) = &arguments.out {
+        let folder = page.with_extension("");
+        if folder == *page {
+            return Err(Exit::bad_input(format!(
+                "{}: a page ends in .md; its figures go into a folder of its name",
+                page.display()
+            )));
+        }
+        fs::create_dir_all(&folder).map_err(|fault| unwritable(&folder, &fault))?;
+    }
     let mut page = format!(
         "# The documents' tables, measured again\n\n\
          Written by `jointbench reproduce --seed {} --out …`, version {}. The bench is simulated: *given* is the constant that it was \
@@ -67,7 +79,7 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
     println!("{said}");
     page += &format!("\n## In all\n\n{said}\n");
     if let Some(path) = &arguments.out {
-        fs::write(path, page).map_err(|fault| Exit::bad_input(format!("{}: {fault}", path.display())))?;
+        fs::write(path, page).map_err(|fault| unwritable(path, &fault))?;
         println!("{}", path.display());
     }
     if !broken.is_empty() {
@@ -144,6 +156,10 @@ fn of_arm(truth: &Truth, name: &str) -> Option<f64> {
     }
 }
 
+fn unwritable(path: &Path, fault: &io::Error) -> Exit {
+    Exit::bad_input(format!("{}: {fault}; give another --out", path.display()))
+}
+
 fn mark(one: &Comparison) -> &'static str {
     match (one.is_inside(), one.is_as_asked()) {
         (Some(false), _) => "  MISSED",
@@ -194,8 +210,6 @@ fn told(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, E
     }
     let Some(page) = page else { return Ok(text) };
     let folder = page.with_extension("");
-    let unwritable = |path: &Path, fault: std::io::Error| Exit::bad_input(format!("{}: {fault}", path.display()));
-    fs::create_dir_all(&folder).map_err(|fault| unwritable(&folder, fault))?;
     let found: view::Shown = reread(&chapter.identification)?;
     for figure in &found.figures {
         let Some(drawn) = svg(figure) else { continue };
@@ -206,7 +220,7 @@ fn told(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, E
             figure.name
         );
         let path = folder.join(&name);
-        fs::write(&path, drawn).map_err(|fault| unwritable(&path, fault))?;
+        fs::write(&path, drawn).map_err(|fault| unwritable(&path, &fault))?;
         let folder = folder.file_name().unwrap_or_default().to_string_lossy();
         let _ = writeln!(text, "\n![{}]({folder}/{name})", figure.title);
     }
