@@ -12,7 +12,7 @@ use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::words;
-use jointbench_model::{Fit, ModelSpec, Options, fit};
+use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit};
 
 pub(super) struct FrictionLoad;
 
@@ -112,20 +112,9 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
 
 /// The law that predicts what it has not seen best, of those whose every part is decided.
 fn choose(table: &RunTable) -> Result<(&'static [&'static str], Fit), Unusable> {
-    let of = |law: &[&'static str], stribeck: &[&'static str]| {
-        let effects = ["load_transmission", "coulomb", "viscous"].iter().chain(stribeck).chain(law).copied();
-        ModelSpec::new(table.kind(), effects).and_then(|spec| fit(table, &spec, &Options::default()))
-    };
-    let plain = of(&[], &[])?;
-    // A rise that the run does not decide only takes the certainty from Coulomb friction.
-    let is_decided = |rich: &Fit| ["tau_s", "omega_s"].iter().all(|name| parameter(rich, "stribeck", name).is_some());
-    let stribeck: &[&str] = match of(&[], &["stribeck"]) {
-        Ok(rich) if rich.validation_rms < plain.validation_rms && is_decided(&rich) => &["stribeck"],
-        _ => &[],
-    };
-    let mut best = (LAWS[0], of(LAWS[0], stribeck)?);
+    let mut best = (LAWS[0], under(table, LAWS[0])?);
     for law in &LAWS[1..] {
-        let Ok(fit) = of(law, stribeck) else { continue };
+        let Ok(fit) = under(table, law) else { continue };
         let decided = fit.parameters.iter().filter(|p| law.contains(&p.effect.as_str())).all(|p| {
             let [low, high] = p.ci95;
             low > 0.0 || high < 0.0
@@ -135,6 +124,22 @@ fn choose(table: &RunTable) -> Result<(&'static [&'static str], Fit), Unusable> 
         }
     }
     Ok(best)
+}
+
+/// The fit of one law, with a Stribeck part where the run decides it. That is asked under each law anew: beside a load
+/// effect that the law leaves out the rise drowns, and Coulomb and viscous friction would take it up.
+fn under(table: &RunTable, law: &[&'static str]) -> Result<Fit, ModelError> {
+    let with = |more: &[&'static str]| {
+        let effects = ["load_transmission", "coulomb", "viscous"].iter().chain(more).chain(law).copied();
+        ModelSpec::new(table.kind(), effects).and_then(|spec| fit(table, &spec, &Options::default()))
+    };
+    let plain = with(&[])?;
+    // A rise that the run does not decide only takes the certainty from Coulomb friction.
+    let is_decided = |rich: &Fit| ["tau_s", "omega_s"].iter().all(|name| parameter(rich, "stribeck", name).is_some());
+    Ok(match with(&["stribeck"]) {
+        Ok(rich) if rich.validation_rms < plain.validation_rms && is_decided(&rich) => rich,
+        _ => plain,
+    })
 }
 
 /// Friction over load, one series for each speed, both directions as magnitudes.

@@ -110,6 +110,19 @@ fn a_stribeck_part_that_may_be_a_square_of_speed_is_not_identified() {
 }
 
 #[test]
+fn friction_under_load_is_told_apart_from_a_rise_towards_standstill() {
+    let settings = MockSettings::new(Joint::JointA, 1).hiding(&["stribeck", "load_linear"]);
+    let (mock, found) = found(settings, "friction_load", json!({"load_levels": 4, "sample_rate_hz": 100.0}));
+    assert!(found.summary.contains("in proportion to the load"), "{}", found.summary);
+    let truth = mock.truth();
+    for (name, truth) in [("tau_c", truth.coulomb_nm), ("c_v", truth.viscous_nm_s)] {
+        let [low, high] = found.quantity(name).unwrap().ci95.unwrap();
+        assert!((low..=high).contains(&truth), "{name} is given as {truth}: {low} … {high}");
+        assert!(high - low < 0.05 * truth, "{name}: {low} … {high}");
+    }
+}
+
+#[test]
 fn a_joint_breaks_away_where_its_friction_at_rest_lies() {
     let given = json!({"positions": 3, "sample_rate_hz": 250.0, "ramp_nm_s": 0.04});
     let (mock, found) = found(MockSettings::new(Joint::JointA, 1), "breakaway", given);
