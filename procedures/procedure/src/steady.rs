@@ -1,6 +1,11 @@
 //! When a joint is warm: temperature and current no longer drift from one cycle of the warm-up to the next.
 
+use crate::findings::legs;
 use crate::plan::Steady;
+use jointbench_instrument::RunTable;
+
+/// A shorter rest is forgiven: gears cool in minutes. After a longer one the cycles before it count no more.
+pub(crate) const COOLS_S: f64 = 60.0;
 
 /// Watches the warm-up of one run. Only the settled part of each step counts.
 #[derive(Debug, Clone)]
@@ -32,9 +37,43 @@ pub(crate) struct Drift {
     pub current_share_per_min: f64,
 }
 
+impl Drift {
+    pub fn is_temperature_steady(&self, rule: &Steady) -> bool {
+        self.temperature_c_per_min.abs() <= rule.temperature_c_per_min
+    }
+
+    pub fn is_current_steady(&self, rule: &Steady) -> bool {
+        self.current_share_per_min.abs() <= rule.current_share_per_min
+    }
+}
+
 impl SteadyWatch {
     pub fn new(rule: Steady) -> Self {
         Self { rule, current: Mean::default(), cycles: Vec::new(), steps: 0 }
+    }
+
+    /// The watch as it stood at the end of a run of nothing but a warm-up.
+    pub fn of(rule: Steady, run: &RunTable) -> Option<Self> {
+        let [time_s, setpoint_rad_s, current_a] =
+            ["time_s", "velocity_setpoint_rad_s", "motor_current_a"].map(|name| run.column(name));
+        let (time_s, setpoint_rad_s, current_a) = (time_s?, setpoint_rad_s?, current_a?);
+        let temperature_c = run.column("temperature_c");
+        let mut watch = Self::new(rule);
+        // A step that was begun anew after a pause turns the same way as what there is of it before.
+        for attempts in legs(run).chunk_by(|a, b| a.direction == b.direction) {
+            let rows = attempts[0].rows.start..attempts[attempts.len() - 1].rows.end;
+            let plateau_rad_s = setpoint_rad_s[rows.clone()].iter().fold(0.0, |top, v: &f64| v.abs().max(top));
+            for row in rows {
+                if row > 0 && time_s[row] - time_s[row - 1] >= COOLS_S {
+                    watch = Self::new(rule);
+                }
+                if setpoint_rad_s[row].abs() >= plateau_rad_s {
+                    watch.sample(time_s[row], current_a[row], temperature_c.map(|c| c[row]));
+                }
+            }
+            watch.step_done();
+        }
+        Some(watch)
     }
 
     pub fn sample(&mut self, time_s: f64, motor_current_a: f64, temperature_c: Option<f64>) {
@@ -63,10 +102,7 @@ impl SteadyWatch {
     }
 
     pub fn is_steady(&self) -> bool {
-        self.drift().is_some_and(|drift| {
-            drift.temperature_c_per_min.abs() <= self.rule.temperature_c_per_min
-                && drift.current_share_per_min.abs() <= self.rule.current_share_per_min
-        })
+        self.drift().is_some_and(|drift| drift.is_temperature_steady(&self.rule) && drift.is_current_steady(&self.rule))
     }
 }
 

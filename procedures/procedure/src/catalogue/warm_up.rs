@@ -2,10 +2,11 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
 use super::{Findable, Procedure, findable};
-use crate::findings::{Line, Plateau, Unusable, plateaus, quantity, scatter, settled, verdict};
+use crate::findings::{Plateau, Unusable, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
+use crate::steady::SteadyWatch;
 use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct WarmUp;
@@ -60,14 +61,7 @@ impl Procedure for WarmUp {
         let rate_hz = values.number("sample_rate_hz");
         let mut legs = Legs::new(values.number("acceleration_rad_s2"));
         work(&mut legs, values.number("top_speed_rad_s"), values.number("longest_s"), bench);
-        Ok(Plan {
-            steady: Some(Steady {
-                cycle_steps: CYCLE_STEPS,
-                temperature_c_per_min: values.number("steady_c_per_min"),
-                current_share_per_min: values.number("steady_share_per_min"),
-            }),
-            ..legs.friction_plan(self, values, bench, rate_hz)
-        })
+        Ok(Plan { steady: Some(rule(values)), ..legs.friction_plan(self, values, bench, rate_hz) })
     }
 
     fn finds(&self) -> Vec<Findable> {
@@ -79,47 +73,62 @@ impl Procedure for WarmUp {
     }
 }
 
-/// Fast legs at the end whose drift is judged: three cycles, as the engine does.
+fn rule(values: &Values) -> Steady {
+    Steady {
+        cycle_steps: CYCLE_STEPS,
+        temperature_c_per_min: values.number("steady_c_per_min"),
+        current_share_per_min: values.number("steady_share_per_min"),
+    }
+}
+
+/// Fast legs of the three cycles at the end that are judged.
 const JUDGED: usize = 6;
 
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let points = plateaus(&settled(run)?);
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let fast: Vec<Plateau> = points.into_iter().filter(|p| p.velocity_rad_s.abs() > 0.9 * top).collect();
-    let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());
-    let temperature = |p: &Plateau| (p.time_s / 60.0, p.temperature_c);
     let end = &fast[fast.len().saturating_sub(JUDGED)..];
-    let drift = |of: fn(&Plateau) -> (f64, f64)| Line::through(&end.iter().map(of).collect::<Vec<_>>());
-    let Some(current) = drift(torque) else {
-        return Err(Unusable::TooLittle("the warm-up ended before two cycles were done: give it a higher longest_s"));
+    let rule = rule(values);
+    // By the very rule that ends a warm-up: one that ended by itself has just come below the bound.
+    let Some(drift) = SteadyWatch::of(rule, run).and_then(|watch| watch.drift()) else {
+        return Err(Unusable::TooLittle("the warm-up ended before three cycles were done: give it a higher longest_s"));
     };
     let last_nm = end.iter().map(|p| p.target.abs()).sum::<f64>() / end.len() as f64;
-    let share = current.slope / last_nm;
-    let mut steady = share.abs() <= values.number("steady_share_per_min");
     let mut quantities = vec![
         quantity(["torque", "τ_m", "Motor torque at the end, fast legs", "Nm"], last_nm, None),
-        quantity(
-            ["current_drift", "i̇/i", "Drift of the motor current", "1/min"],
-            share,
-            Some(current.slope_ci95.map(|end| end / last_nm)),
-        ),
+        quantity(["current_drift", "i̇/i", "Drift of the motor current", "1/min"], drift.current_share_per_min, None),
     ];
+    let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());
     let mut figures = vec![over_time("torque", "Motor torque of the fast legs", "motor torque", "Nm", &fast, torque)];
-    if run.column("temperature_c").is_some()
-        && let Some(warmth) = drift(temperature)
-    {
-        steady &= warmth.slope.abs() <= values.number("steady_c_per_min");
+    let mut drifts = vec![(
+        drift.is_current_steady(&rule),
+        format!("its current drifts by {:.2} %/min", 100.0 * drift.current_share_per_min),
+        format!("{:.2} %/min (steady_share_per_min)", 100.0 * rule.current_share_per_min),
+    )];
+    if run.column("temperature_c").is_some() {
         let words = ["temperature_drift", "Ṫ", "Drift of the temperature", "°C/min"];
-        quantities.push(quantity(words, warmth.slope, Some(warmth.slope_ci95)));
+        quantities.push(quantity(words, drift.temperature_c_per_min, None));
+        let temperature = |p: &Plateau| (p.time_s / 60.0, p.temperature_c);
         figures.push(over_time("temperature", "Temperature", "temperature", "°C", &fast, temperature));
+        drifts.push((
+            drift.is_temperature_steady(&rule),
+            format!("its temperature drifts by {:.3} °C/min", drift.temperature_c_per_min),
+            format!("{} °C/min (steady_c_per_min)", rule.temperature_c_per_min),
+        ));
     }
-    let percent = 100.0 * share;
-    Ok(if steady {
-        let summary = format!("The joint is warm: its current drifts by {percent:.2} %/min.");
+    let over: Vec<String> = drifts
+        .iter()
+        .filter(|(is_steady, ..)| !is_steady)
+        .map(|(_, drift, bound)| format!("{drift}, more than {bound}"))
+        .collect();
+    Ok(if over.is_empty() {
+        let drifts: Vec<&str> = drifts.iter().map(|(_, drift, _)| drift.as_str()).collect();
+        let summary = format!("The joint is warm: {}.", drifts.join(", "));
         Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures }
     } else {
-        let summary = format!("The joint is not yet warm: its current drifts by {percent:.2} %/min.");
-        let advice = Some("Warm up again, or give it a higher longest_s.".to_owned());
+        let summary = format!("The joint is not yet warm: {}.", over.join("; "));
+        let advice = Some("Warm up again at once, while it is warm, or give it a higher longest_s.".to_owned());
         Identification { verdict: Verdict::Inconclusive, summary, advice, quantities, figures }
     })
 }

@@ -4,10 +4,8 @@ use super::ending::Ending;
 use super::session::{Session, Wish};
 use crate::plan::{Phase, Step};
 use crate::profile::Profile;
-use crate::steady::SteadyWatch;
+use crate::steady::{COOLS_S, SteadyWatch};
 
-/// A shorter rest is forgiven: gears cool in minutes.
-const COOLS_S: f64 = 60.0;
 /// A rising brake current, and what supply and coil lag behind it (bench-physics, section 2).
 const RAISE_S: f64 = 0.8;
 const LAG_S: f64 = 0.6;

@@ -21,6 +21,23 @@ fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Ide
     (mock, found)
 }
 
+/// The engine ends a warm-up just below its bounds.
+#[test]
+fn a_warm_up_that_ended_by_itself_is_warm_and_one_that_did_not_says_what_drifts() {
+    for joint in [Joint::JointA, Joint::JointB] {
+        let warm_up = |given| found(MockSettings::new(joint, 1), "warm_up", given).1;
+        let warm = warm_up(json!({"steady_c_per_min": 1.0, "sample_rate_hz": 100.0}));
+        assert_eq!(warm.verdict, Verdict::Identified, "{}", warm.summary);
+        let drift = warm.quantity("temperature_drift").unwrap().value;
+        assert!((0.8..=1.0).contains(&drift), "{}", warm.summary);
+
+        let cut_off = warm_up(json!({"longest_s": 100.0, "sample_rate_hz": 100.0, "steady_share_per_min": 1.0}));
+        assert_eq!(cut_off.verdict, Verdict::Inconclusive, "{}", cut_off.summary);
+        let says = |word: &str| cut_off.summary.contains(word);
+        assert!(says("more than 0.3 °C/min (steady_c_per_min)") && !says("current"), "{}", cut_off.summary);
+    }
+}
+
 #[test]
 fn a_demagnetised_brake_is_clean() {
     let given = json!({"turns": 1.0, "speed_rad_s": 3.0, "sample_rate_hz": 100.0});

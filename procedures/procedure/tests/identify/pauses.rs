@@ -214,7 +214,7 @@ fn a_joint_is_the_same_joint() {
         ("presliding", json!({"amplitudes": 2, "swings": 1, "repeats": 2})),
         ("stiffness", json!({"load_levels": 4, "repeats": 2, "dwell_s": 0.8, "sample_rate_hz": 100.0})),
         ("strokes", json!({"repeats": 2, "dwell_s": 1.0, "speeds": 3, "sample_rate_hz": 100.0})),
-        ("warm_up", json!({"longest_s": 40.0})),
+        ("warm_up", json!({"longest_s": 70.0})),
         ("compensation", json!({"periods": 2, "period_s": 2.0})),
     ] {
         check(&joint, id, given);
