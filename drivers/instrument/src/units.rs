@@ -56,8 +56,10 @@ pub fn quantity_of(name: &str) -> Option<&str> {
 }
 
 /// Longest first: `_rad_s` before `_s`, `_nm_per_a` before `_a`.
-const SUFFIXES: [(&str, &str); 14] = [
+const SUFFIXES: [(&str, &str); 16] = [
     ("_nm_per_rad", "Nm/rad"),
+    ("_nm_rad", "Nm/rad"),
+    ("_nm_s", "Nm·s/rad"),
     ("_nm_per_a", "Nm/A"),
     ("_kg_m2", "kg·m²"),
     ("_rad_s2", "rad/s²"),

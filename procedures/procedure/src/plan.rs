@@ -194,6 +194,8 @@ pub struct Plan {
     pub torque_period_s: Option<f64>,
     /// `None`: every step is known before the first one.
     pub lesson: Option<Lesson>,
+    /// Where it begins from where the whole plan began (motor) [rad]: a run that goes on begins where the one before it ended.
+    pub begins_rad: f64,
 }
 
 impl Plan {
@@ -275,6 +277,7 @@ pub(crate) mod testing {
             both_ranges: false,
             torque_period_s: None,
             lesson: None,
+            begins_rad: 0.0,
         }
     }
 

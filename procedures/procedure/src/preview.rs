@@ -84,7 +84,8 @@ impl Plan {
             ok: facts.limits.check(quantity, value).is_ok(),
         };
         let (lowest, highest) = self.travel_rad();
-        let travel_rad = lowest.abs().max(highest.abs()) / constants.gear_ratio;
+        let ends_rad = [lowest, highest].map(|way| (self.begins_rad + way).abs() / constants.gear_ratio);
+        let travel_rad = ends_rad[0].max(ends_rad[1]);
         let mut power_w = 0.0_f64;
         let mut torque_nm = 0.0_f64;
         for step in &self.steps {

@@ -41,6 +41,11 @@ impl Profile {
         Self::from(0.0).to(speed_rad_s, ramp_s).hold(dwell_s).to(0.0, ramp_s)
     }
 
+    /// The same to the other side.
+    pub fn turned(self) -> Self {
+        Self { knots: self.knots.into_iter().map(|(t_s, value)| (t_s, -value)).collect() }
+    }
+
     pub fn at(&self, t_s: f64) -> f64 {
         let after = self.knots.partition_point(|(knot_s, _)| *knot_s <= t_s);
         match (after.checked_sub(1).map(|i| self.knots[i]), self.knots.get(after)) {

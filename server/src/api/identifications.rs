@@ -5,7 +5,8 @@ use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
 use crate::view::{Beside, Identification};
 use axum::extract::State;
-use axum::response::Html;
+use axum::http::header;
+use axum::response::{Html, IntoResponse};
 
 /// Quantities with intervals, figures and a verdict, worked out from the samples by the procedure of the run
 #[utoipa::path(get, path = "/runs/{id}/identification", tag = "runs", params(("id" = i64, Path, description = "Run")),
@@ -24,6 +25,10 @@ pub async fn beside(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Optio
 /// The run as one page to send and to print: result, figures, model, diagnosis, provenance
 #[utoipa::path(get, path = "/runs/{id}/report", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "The page, complete in itself", body = String, content_type = "text/html"), Refusals))]
-pub async fn report(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Html<String>, Problem> {
-    Ok(Html(lab.report(id).await?))
+pub async fn report(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<impl IntoResponse, Problem> {
+    Ok(([(header::CONTENT_SECURITY_POLICY, REPORT_POLICY)], Html(lab.report(id).await?)))
 }
+
+/// A report carries its own styles, and nothing that runs.
+const REPORT_POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";

@@ -38,7 +38,11 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     let (_, samples) = daemon.get(&format!("/api/v1/runs/{id}/samples?px=100&channels=time_s,motor_velocity_rad_s"));
     assert_eq!((&samples["rows"], &samples["exact"]), (&rows.into(), &false.into()));
 
-    let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
+    let mut answer = daemon.get_raw(&format!("/api/v1/runs/{id}/report"));
+    // Its own styles, which the dashboard's policy would take from it, and nothing that runs.
+    let policy = answer.headers()["content-security-policy"].to_str().unwrap().to_owned();
+    assert!(policy.contains("style-src 'unsafe-inline'") && !policy.contains("script"), "{policy}");
+    let page = answer.body_mut().read_to_string().unwrap();
     assert!(page.contains("SIMULATED") && page.contains("friction on joint-a-mock"), "{page}");
     assert!(page.contains("dwell [s]") && page.contains("torque constant [Nm/A]"), "{page}");
 

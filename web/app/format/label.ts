@@ -3,6 +3,7 @@
 const SUFFIXES: [string, string][] = [
 	['_nm_per_rad', 'Nm/rad'],
 	['_nm_rad', 'Nm/rad'],
+	['_nm_s', 'Nm·s/rad'],
 	['_nm_per_a', 'Nm/A'],
 	['_kg_m2', 'kg·m²'],
 	['_rad_s2', 'rad/s²'],

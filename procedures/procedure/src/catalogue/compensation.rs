@@ -185,9 +185,23 @@ impl Procedure for Compensation {
 }
 
 /// Compensation of the friction that a run has found, under names that begin with `prefix`. Where no rise towards standstill
-/// was seen there is none to compensate.
+/// was seen there is none to compensate. Where the directions differ it is that of the easier one: one law stands for both, and
+/// may exceed neither.
 pub(super) fn of_friction(found: &Identification, prefix: &str) -> Option<FollowUp> {
-    let value = |name: &str| Some(four_digits(found.quantity(&format!("{prefix}{name}"))?.value));
+    let quantity = |name: String| found.quantity(&format!("{prefix}{name}"));
+    let differ = |name: &str| {
+        let ends = quantity(format!("{name}_difference")).and_then(|difference| difference.ci95);
+        ends.is_some_and(|[low, high]| low > 0.0 || high < 0.0)
+    };
+    let differ = differ("tau_c") || differ("c_v");
+    let value = |name: &str| {
+        let both = quantity(name.to_owned())?.value;
+        let ways = ["positive", "negative"].map(|way| quantity(format!("{name}_{way}")).map(|found| found.value.abs()));
+        let least = ways.into_iter().flatten().fold(both, f64::min);
+        // Velocity and exponent are of a shape, not of a size.
+        let is_size = ["tau_c", "c_v", "tau_h"].contains(&name);
+        Some(four_digits(if differ && is_size { least } else { both }))
+    };
     let coulomb_nm = value("tau_c")?;
     let given = [
         ("tau_c_nm", Some(coulomb_nm)),
@@ -268,6 +282,20 @@ mod tests {
         let flat = of_friction(&found(&all[..2]), "f.").unwrap();
         assert_eq!(flat.parameters["tau_h_nm"], flat.parameters["tau_c_nm"], "no rise was seen");
         assert_eq!(of_friction(&found(&all[1..]), "f."), None);
+    }
+
+    #[test]
+    fn where_the_directions_differ_the_easier_one_is_compensated() {
+        let sided = |low_nm: f64| {
+            let given = [("tau_c", 0.0301, None), ("c_v", 1.5e-4, None), ("tau_c_positive", 0.0343, None)];
+            let more = [("tau_c_negative", -0.0250, None), ("tau_c_difference", 0.0093, Some([low_nm, 0.012]))];
+            let quantities =
+                given.into_iter().chain(more).map(|(name, value, ci95)| quantity([name, "", "", ""], value, ci95));
+            let (summary, quantities) = (String::new(), quantities.collect());
+            Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures: Vec::new() }
+        };
+        let fed = |low_nm: f64| of_friction(&sided(low_nm), "").unwrap().parameters["tau_c_nm"].as_f64().unwrap();
+        assert_eq!((fed(0.006), fed(-0.001)), (0.0250, 0.0301));
     }
 
     #[test]

@@ -39,7 +39,12 @@ const SCHEMA: &[Parameter] = &[
     Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
     Parameter::number("bearing_stiffness_nm_rad", "Stiffness of the bearing, 0: none known", "Nm/rad", 0.0, [0.0, 1e9]),
     Parameter::count("repeats", "Repeats of the profiles", 2, [2, 50]),
-    Parameter::count("periods", "Periods with each way of compensating, where the drive can; 0: none", 3, [0, 100]),
+    Parameter::count(
+        "periods",
+        "Periods with each way of compensating, two at least, where the drive can; 0: none",
+        3,
+        [0, 100],
+    ),
     sample_rate(250.0),
 ];
 
@@ -100,7 +105,7 @@ fn parts(values: &Values, bench: &BenchFacts) -> Vec<(&'static dyn Procedure, Va
         parts.insert(0, (&FrictionTemperature, given));
     }
     if values.count("periods") > 0 && bench.feeds_forward {
-        parts.push((&Compensation, json!({"periods": number("periods"), "sample_rate_hz": rate})));
+        parts.push((&Compensation, json!({"periods": values.count("periods").max(2), "sample_rate_hz": rate})));
     }
     parts
 }

@@ -59,7 +59,7 @@ impl Legs {
         let turning_s = speed_rad_s / self.acceleration_rad_s2;
         let brake = Profile::from(from_a).hold(turning_s).to(to_a, RAISE_S);
         self.push(format!("brake to {to_a:.2} A"), out, brake);
-        self.push(format!("{:+.1} rad/s at {to_a:.2} A", -speed_rad_s), back, Profile::constant(to_a));
+        self.push(format!("back at {to_a:.2} A"), back, Profile::constant(to_a));
     }
 
     /// One step at constant speed in which the current goes from 0 through a history of its own and back to 0: an unbroken
@@ -125,6 +125,7 @@ impl Legs {
             both_ranges: false,
             torque_period_s: (measures_torque && rate_hz * TORQUE_PERIOD_S <= 0.5).then_some(TORQUE_PERIOD_S),
             lesson: None,
+            begins_rad: 0.0,
         }
     }
 

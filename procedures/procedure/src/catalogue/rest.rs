@@ -3,7 +3,8 @@
 use super::legs::Legs;
 use crate::continuing::{Continues, Done};
 use crate::place::Place;
-use crate::plan::{BenchFacts, Phase, Plan};
+use crate::plan::{BenchFacts, Phase, Plan, Step};
+use crate::profile::Profile;
 use crate::recorder::RunId;
 use jointbench_instrument::RunTable;
 use std::sync::Arc;
@@ -27,6 +28,8 @@ impl Plan {
         let begins_a = left[0].brake.at(0.0);
         let mut legs = Legs::new(self.acceleration_rad_s2);
         legs.steps.extend(done.iter().filter(|step| step.phase == Phase::WarmUp).cloned());
+        // Ways out with their ways back.
+        legs.steps.truncate(legs.steps.len() / 2 * 2);
         if top_a > 0.0 && speed_rad_s > 0.0 {
             legs.demagnetise(speed_rad_s, top_a, DEMAGNETISING_TURNS, bench);
             if begins_a > 0.0 {
@@ -36,6 +39,15 @@ impl Plan {
         let first_segment = first_segment.max(self.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0));
         for (segment, step) in (first_segment..).zip(&mut legs.steps) {
             step.segment = segment;
+        }
+        let begins_rad: f64 = done.iter().filter_map(|step| step.velocity.integral().last().copied()).sum();
+        // Out and back, towards the middle of the range: of a warm-up the way back comes first.
+        if begins_rad > 0.0 {
+            let warm = legs.steps.iter().filter(|step| step.phase == Phase::WarmUp).count();
+            legs.steps[..warm].chunks_exact_mut(2).for_each(<[Step]>::reverse);
+            for step in &mut legs.steps[warm..] {
+                step.velocity = std::mem::replace(&mut step.velocity, Profile::from(0.0)).turned();
+            }
         }
         let restored = legs.steps.len();
         let mut left = left.to_vec();
@@ -47,6 +59,7 @@ impl Plan {
         if let (Place::AsLeft, Some(pose)) = (&left[0].place, place) {
             left[0].place = Place::At(pose);
         }
+        self.begins_rad = begins_rad;
         self.steps = legs.steps;
         self.steps.append(&mut left);
         let continues = Continues { run, from_step, restored, restored_from: first_segment };
@@ -92,6 +105,20 @@ mod tests {
         assert_eq!(restoring[demagnetised].brake.at(1e9), 0.0, "ramped down while it turns");
         assert_eq!(tops[tops.len() - 1], left[0].brake.at(0.0), "from below");
         assert!(rest.preview(&joint_a()).checks.iter().all(|check| check.ok), "within the limits");
+    }
+
+    #[test]
+    fn what_is_left_of_a_campaign_fits_into_the_range_wherever_it_ended() {
+        let whole = procedure("identify_joint").unwrap().plan(&Map::new(), &joint_a()).unwrap();
+        let rests = (0..whole.steps.len()).filter_map(|from| whole.clone().rest(1, from, 0, &joint_a()));
+        let refused: Vec<_> = rests
+            .flat_map(|rest| {
+                let from = Continues::of(&rest.meta).unwrap().from_step;
+                let broken = rest.preview(&joint_a()).checks.into_iter().filter(|check| !check.ok);
+                broken.map(move |check| (from, check.detail)).collect::<Vec<_>>()
+            })
+            .collect();
+        assert_eq!(refused, []);
     }
 
     #[test]

@@ -124,6 +124,7 @@ pub fn loaded_plan() -> Plan {
         both_ranges: false,
         torque_period_s: None,
         lesson: None,
+        begins_rad: 0.0,
     }
 }
 

@@ -90,6 +90,12 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         return Err(Unusable::TooLittle("the loads do not decide the stiffness: raise top_load or load_levels"));
     };
     let bearing = run.meta().bearing_stiffness_nm_per_rad.map_or(0.0, f64::recip);
+    if inverse_ci95[0] <= bearing {
+        return Err(Unusable::TooLittle(
+            "the bearing that was given is softer than bearing and joint together: give bearing_stiffness_nm_rad in Nm/rad, \
+             or 0 where it is not known",
+        ));
+    }
     let stiffness = |inverse: f64| 1.0 / (inverse - bearing);
     let area = loop_area(run, &held, gear);
     let of_joint = match bearing > 0.0 {
