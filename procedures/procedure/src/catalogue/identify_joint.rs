@@ -247,6 +247,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         }
         whole.quantities.extend(found.quantities.into_iter().map(|mut quantity| {
             quantity.name = format!("{id}.{}", quantity.name);
+            quantity.title = words(&quantity.title);
             quantity
         }));
         whole.figures.extend(found.figures.into_iter().map(|mut figure| {
