@@ -58,13 +58,10 @@ impl Comparison {
         Some((low..=high).contains(&given))
     }
 
-    /// The same where `of` intervals are to hold together in 95 of 100 campaigns (Šidák 1967), each side of theirs widened as
-    /// that of a normal deviate.
+    /// The same where `of` intervals are to hold together in 95 of 100 campaigns ([`wider_for`]).
     pub fn is_inside_with(&self, of: u64) -> Option<bool> {
         let ([low, high], given, value) = (self.found.ci95?, self.given?, self.found.value);
-        let normal = Normal::standard();
-        let reach = |confidence: f64| normal.inverse_cdf(0.5 + 0.5 * confidence);
-        let wider = reach(0.95_f64.powf(1.0 / of.max(1) as f64)) / reach(0.95);
+        let wider = wider_for(of);
         Some((value + wider * (low - value)..=value + wider * (high - value)).contains(&given))
     }
 
@@ -79,6 +76,14 @@ impl Comparison {
             Demand::AtMost(most) => Some(value <= most),
         }
     }
+}
+
+/// How many times as wide `of` 95 % intervals have to be to hold all together in 95 of 100 campaigns (Šidák 1967), each as
+/// that of a normal deviate.
+pub fn wider_for(of: u64) -> f64 {
+    let normal = Normal::standard();
+    let reach = |confidence: f64| normal.inverse_cdf(0.5 + 0.5 * confidence);
+    reach(0.95_f64.powf(1.0 / of.max(1) as f64)) / reach(0.95)
 }
 
 /// One procedure of the campaign.
