@@ -115,13 +115,16 @@ fn friction([tau_c, c_v, tau_h, omega_s, delta_s]: [f64; 5]) -> Vec<Figure> {
     ]
 }
 
-fn compensation(figures: [f64; 6]) -> Vec<Figure> {
+fn compensation(figures: [f64; 9]) -> Vec<Figure> {
     let names = [
         "ratio_zero_area",
         "ratio_interpolated",
         "ratio_coulomb_viscous",
         "ratio_observer",
         "rho_max_none",
+        "rho_max_zero_area",
+        "rho_max_interpolated",
+        "rho_max_coulomb_viscous",
         "rho_max_observer",
     ];
     let beyond = [("ratio_full", 0.5), ("over_full", 0.0)]
@@ -237,7 +240,7 @@ impl Subject {
                 [
                     friction([0.030, 1.512e-4, 0.039, 0.06, 0.8]),
                     stiffness([0.1812e-3, 5722.5, 0.5871e-3]),
-                    compensation([0.87, 0.86, 0.87, 0.87, 7.640e-3, 6.480e-3]),
+                    compensation([0.87, 0.86, 0.87, 0.87, 7.640e-3, 7.519e-3, 6.557e-3, 6.606e-3, 6.480e-3]),
                 ],
             ),
             Subject::JointB => joint(
@@ -245,7 +248,7 @@ impl Subject {
                 [
                     friction([0.031, 7.835e-5, 0.057, 0.08, 1.9]),
                     stiffness([1.4746e-3, 684.3, 0.9588e-3]),
-                    compensation([0.79, 0.82, 0.79, 0.85, 7.245e-3, 6.400e-3]),
+                    compensation([0.79, 0.82, 0.79, 0.85, 7.245e-3, 7.844e-3, 7.653e-3, 7.688e-3, 6.400e-3]),
                 ],
             ),
             Subject::GearAndBrakeB => gear_and_brake_b(),
