@@ -184,19 +184,18 @@ impl Procedure for Compensation {
     }
 }
 
-/// Compensation of the friction that a run has found, under names that begin with `prefix`. Where no rise towards standstill
-/// was seen there is none to compensate. Where the directions differ it is that of the easier one: one law stands for both, and
+/// Compensation of the friction that a run has found. Where no rise towards standstill was seen there is none to compensate. Where the directions differ it is that of the easier one: one law stands for both, and
 /// may exceed neither.
-pub(super) fn of_friction(found: &Identification, prefix: &str) -> Option<FollowUp> {
-    let quantity = |name: String| found.quantity(&format!("{prefix}{name}"));
+pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
     let differ = |name: &str| {
-        let ends = quantity(format!("{name}_difference")).and_then(|difference| difference.ci95);
+        let ends = found.quantity(&format!("{name}_difference")).and_then(|difference| difference.ci95);
         ends.is_some_and(|[low, high]| low > 0.0 || high < 0.0)
     };
     let differ = differ("tau_c") || differ("c_v");
     let value = |name: &str| {
-        let both = quantity(name.to_owned())?.value;
-        let ways = ["positive", "negative"].map(|way| quantity(format!("{name}_{way}")).map(|found| found.value.abs()));
+        let both = found.quantity(name)?.value;
+        let way = |way: &str| Some(found.quantity(&format!("{name}_{way}"))?.value.abs());
+        let ways = ["positive", "negative"].map(way);
         let least = ways.into_iter().flatten().fold(both, f64::min);
         // Velocity and exponent are of a shape, not of a size.
         let is_size = ["tau_c", "c_v", "tau_h"].contains(&name);
@@ -206,7 +205,7 @@ pub(super) fn of_friction(found: &Identification, prefix: &str) -> Option<Follow
     let given = [
         ("tau_c_nm", Some(coulomb_nm)),
         ("c_v_nm_s", Some(value("c_v")?)),
-        ("tau_h_nm", Some(value("tau_h").unwrap_or(coulomb_nm))),
+        ("tau_h_nm", Some(value("tau_h").map_or(coulomb_nm, |rest_nm| rest_nm.max(coulomb_nm)))),
         ("stribeck_speed_rad_s", value("omega_s")),
         ("stribeck_exponent", value("delta_s")),
     ];
@@ -274,14 +273,13 @@ mod tests {
             quantities: values.iter().map(|(name, value)| quantity([name, "", "", ""], *value, None)).collect(),
             figures: Vec::new(),
         };
-        let all =
-            [("f.tau_c", 0.030_612_3), ("f.c_v", 1.5e-4), ("f.tau_h", 0.0391), ("f.omega_s", 0.06), ("f.delta_s", 0.8)];
-        let next = of_friction(&found(&all), "f.").unwrap();
+        let all = [("tau_c", 0.030_612_3), ("c_v", 1.5e-4), ("tau_h", 0.0391), ("omega_s", 0.06), ("delta_s", 0.8)];
+        let next = of_friction(&found(&all)).unwrap();
         assert_eq!(next.parameters["tau_c_nm"], 0.030_61);
         assert!(Compensation.plan(&next.parameters, &joint_a()).is_ok());
-        let flat = of_friction(&found(&all[..2]), "f.").unwrap();
+        let flat = of_friction(&found(&all[..2])).unwrap();
         assert_eq!(flat.parameters["tau_h_nm"], flat.parameters["tau_c_nm"], "no rise was seen");
-        assert_eq!(of_friction(&found(&all[1..]), "f."), None);
+        assert_eq!(of_friction(&found(&all[1..])), None);
     }
 
     #[test]
@@ -294,7 +292,7 @@ mod tests {
             let (summary, quantities) = (String::new(), quantities.collect());
             Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures: Vec::new() }
         };
-        let fed = |low_nm: f64| of_friction(&sided(low_nm), "").unwrap().parameters["tau_c_nm"].as_f64().unwrap();
+        let fed = |low_nm: f64| of_friction(&sided(low_nm)).unwrap().parameters["tau_c_nm"].as_f64().unwrap();
         assert_eq!((fed(0.006), fed(-0.001)), (0.0250, 0.0301));
     }
 

@@ -126,7 +126,7 @@ impl Procedure for Friction {
     }
 
     fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
-        (found.verdict == Verdict::Identified).then(|| compensation::of_friction(found, "")).flatten()
+        (found.verdict == Verdict::Identified).then(|| compensation::of_friction(found)).flatten()
     }
 }
 

@@ -36,10 +36,6 @@ impl Plan {
                 legs.change(speed_rad_s, 0.0, begins_a);
             }
         }
-        let first_segment = first_segment.max(self.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0));
-        for (segment, step) in (first_segment..).zip(&mut legs.steps) {
-            step.segment = segment;
-        }
         let begins_rad: f64 = done.iter().filter_map(|step| step.velocity.integral().last().copied()).sum();
         // Out and back, towards the middle of the range: of a warm-up the way back comes first.
         if begins_rad > 0.0 {
@@ -48,6 +44,10 @@ impl Plan {
             for step in &mut legs.steps[warm..] {
                 step.velocity = std::mem::replace(&mut step.velocity, Profile::from(0.0)).turned();
             }
+        }
+        let first_segment = first_segment.max(self.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0));
+        for (segment, step) in (first_segment..).zip(&mut legs.steps) {
+            step.segment = segment;
         }
         let restored = legs.steps.len();
         let mut left = left.to_vec();

@@ -26,7 +26,7 @@ pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<Learnt,
     if friction.verdict != Verdict::Identified {
         return Err(format!("friction is not known well enough to feed it forward. {}", friction.summary));
     }
-    let next = compensation::of_friction(&friction, "").ok_or("the friction found cannot be fed forward")?;
+    let next = compensation::of_friction(&friction).ok_or("the friction found cannot be fed forward")?;
     let mut parameters = facts[to]["parameters"].as_object().cloned().unwrap_or_default();
     parameters.extend(next.parameters.clone());
     let plan = Compensation.plan(&parameters, bench).map_err(|fault| fault.to_string())?;
