@@ -277,7 +277,9 @@ pub fn reproduce(
         let Some(procedure) = procedure(id) else { continue };
         let mut parameters = parameters.as_object().cloned().unwrap_or_default();
         if id == "compensation" {
-            parameters.extend(chapters.iter().find(|c| c.procedure == "friction").into_iter().flat_map(stated));
+            let friction = chapters.iter().find(|chapter| chapter.procedure == "friction");
+            let next = friction.and_then(|chapter| crate::procedure("friction")?.follow_up(&chapter.identification));
+            parameters.extend(next.map(|next| next.parameters).unwrap_or_default());
         }
         let Conducted { table, identification, duration_s } = conduct_knowing(bench, &facts, procedure, &parameters)?;
         if id == "brake_hysteresis" {
@@ -299,26 +301,6 @@ fn compare(found: &Identification, figures: &[Figure], given: &dyn Fn(&str) -> O
         Some(Comparison { table, found, document: *document, given: given(name), demand: *demand })
     };
     figures.iter().filter_map(one).collect()
-}
-
-/// The friction that a compensation is to feed forward.
-fn stated(friction: &Chapter) -> Vec<(String, Value)> {
-    let names = [
-        ("tau_c", "tau_c_nm"),
-        ("c_v", "c_v_nm_s"),
-        ("tau_h", "tau_h_nm"),
-        ("omega_s", "stribeck_speed_rad_s"),
-        ("delta_s", "stribeck_exponent"),
-    ];
-    let pair = |(from, to): (&str, &str)| Some((to.to_owned(), json!(friction.identification.quantity(from)?.value)));
-    let mut stated: Vec<(String, Value)> = names.into_iter().filter_map(pair).collect();
-    // Without a rise towards standstill friction there is Coulomb friction.
-    if friction.identification.quantity("tau_h").is_none()
-        && let Some(coulomb) = friction.identification.quantity("tau_c")
-    {
-        stated.push(("tau_h_nm".into(), json!(coulomb.value)));
-    }
-    stated
 }
 
 #[cfg(test)]
@@ -365,19 +347,5 @@ mod tests {
         );
         assert_eq!(far.is_inside_with(31), Some(false));
         assert_eq!(off(0.0300 * 0.991).is_inside_with(1), Some(true));
-    }
-
-    #[test]
-    fn compensation_takes_what_friction_found() {
-        let chapter = Chapter {
-            procedure: "friction",
-            title: "Friction",
-            parameters: Map::new(),
-            identification: found(&[("tau_c", 0.03), ("c_v", 1.5e-4)]),
-            comparisons: Vec::new(),
-            duration_s: 1.0,
-        };
-        let stated: Map<String, Value> = stated(&chapter).into_iter().collect();
-        assert_eq!(Value::Object(stated), json!({"tau_c_nm": 0.03, "c_v_nm_s": 1.5e-4, "tau_h_nm": 0.03}));
     }
 }
