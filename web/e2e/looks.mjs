@@ -124,7 +124,7 @@ export async function manyRuns(page, base) {
 
 /** Results in the form that their people expect, each from a run that is short: what is shown of each. */
 export async function readResults(page, base, asked) {
-	const shown = [];
+	const [shown, runs] = [[], []];
 	for (const [procedure, { parameters, title }] of Object.entries(asked)) {
 		const run = await makeRun(base, procedure, parameters);
 		if (run === null) continue;
@@ -134,7 +134,41 @@ export async function readResults(page, base, asked) {
 		const figures = await card.locator('[data-figure] figcaption, [data-figure] h3').allInnerTexts();
 		expect(figures.some((figure) => title.test(figure)), `${procedure} shows ${figures.join(', ')}, and not ${title}`);
 		await audit(page, `the result of ${procedure}`);
+		await page.setViewportSize({ width: 420, height: 900 });
+		await page.waitForFunction(() => document.documentElement.scrollWidth <= innerWidth, null, { timeout: 5000 }).catch(() => expect(false, `the result of ${procedure} is too wide for a page of 420 px`));
+		await page.setViewportSize({ width: 1440, height: 900 });
 		shown.push(procedure);
+		runs.push({ procedure, run });
 	}
+	await readCampaign(page, base, runs.slice(0, 2));
 	return shown;
+}
+
+/** The result of a campaign (told to the page in the daemon's place, of what two runs have found): a line for each part, which opens by key, and stays open behind its address. */
+async function readCampaign(page, base, runs) {
+	const of = async ({ procedure, run }, title) => {
+		const found = await (await fetch(`${base}/api/v1/runs/${run}/identification`)).json();
+		const named = (one) => ({ ...one, name: `${procedure}.${one.name}` });
+		return {
+			summary: `${title}: ${found.summary}`,
+			quantities: found.quantities.map((one) => ({ ...named(one), title: `${title}: ${one.title}` })),
+			figures: found.figures.map(named),
+		};
+	};
+	const parts = await Promise.all(runs.map((one, i) => of(one, `Part ${i + 1}`)));
+	const whole = (what) => parts.flatMap((part) => part[what]);
+	await page.route('**/identification', (route) =>
+		route.fulfill({ json: { run: runs[0].run, procedure: 'identify_joint', software: 'jointbench', verdict: 'identified', advice: null, summary: whole('summary').join('\n'), quantities: whole('quantities'), figures: whole('figures') } }),
+	);
+	await page.goto(`${base}/runs/${runs[0].run}`);
+	const lines = page.locator('[data-part]');
+	await lines.first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the result of a campaign is not taken apart'));
+	expect((await lines.count()) === runs.length && (await lines.locator('[data-figure]').count()) === 0, 'a campaign does not begin with a line for each part');
+	await lines.nth(1).locator('summary').first().focus();
+	await page.keyboard.press('Enter');
+	await lines.nth(1).locator('[data-figure]').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'a part of a campaign does not open by key'));
+	await audit(page, 'the result of a campaign');
+	await page.reload();
+	await lines.nth(1).locator('[data-quantity]').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, `the address forgets which part is open: ${page.url()}`));
+	await page.unroute('**/identification');
 }

@@ -12,11 +12,13 @@ import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, FOR
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** Without typeset formulas, whose script comes with the first of them. */
 const BUNDLE_BYTES = 150_000;
-/** Short runs whose results look unlike each other; the last one where the daemon has an encoder bench. */
+/** Short runs whose results look unlike each other; the last two where the daemon has an encoder bench. */
 const RESULTS = {
 	stiffness: { parameters: { load_levels: 4 }, title: /Torsion over torque/i },
-	compensation: { parameters: {}, title: /Sum of the errors/i },
+	compensation: { parameters: {}, title: /as a share of those without/i },
+	brake_hysteresis: { parameters: { levels: 5, loops: 1, random_turns: 4, dwell_s: 0.8 }, title: /Minor loops/i },
 	encoder_alignment: { parameters: { halvings: 2, map_positions: 3 }, title: /Last consistent place/i },
+	encoder_linearity: { parameters: { turns: 2 }, title: /Error around the turn/i },
 };
 const rest = async (path) => {
 	const answer = await fetch(`${where.base}/api/v1${path}`);

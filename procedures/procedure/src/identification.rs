@@ -22,7 +22,7 @@ pub enum Verdict {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Identification {
     pub verdict: Verdict,
-    /// One plain sentence. A `RUN` in its commands stands for the number of the run, which [`Self::of_run`] writes.
+    /// One plain sentence, or a line for each part of a campaign. A `RUN` in its commands stands for the number of the run, which [`Self::of_run`] writes.
     pub summary: String,
     /// What to measure or mend next, with commands alike.
     pub advice: Option<String>,
@@ -53,7 +53,8 @@ impl Identification {
                     (NOT_AT_ITS_END, "make the rest of it (jointbench run --continue RUN), or make it again")
                 }
             };
-            self.summary = format!("{part} ({state}), this is what its part says: {}", self.summary);
+            let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
+            self.summary = format!("{part} ({state}), this is what its part says:{gap}{}", self.summary);
             // What a part lacks is no fault of how the run was planned.
             self.advice = Some(next.to_owned());
             if self.verdict == Verdict::Identified {

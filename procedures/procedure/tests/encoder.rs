@@ -5,7 +5,7 @@ use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, fit};
 use jointbench_procedure::conduct::{ConductFault, conduct};
-use jointbench_procedure::identification::{Identification, Verdict};
+use jointbench_procedure::identification::{Form, Identification, Verdict};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::{
     BenchFacts, Commit, Control, EventKind, Live, Recorder, RecorderFault, RunState, Safe, procedure,
@@ -294,6 +294,25 @@ fn fifteen_bits_are_usable_behind_the_table() {
     check(&found, "harmonic_1", truth.eccentricity_rad, 2.0 * POINT_RAD);
     check(&found, "harmonic_2", truth.tilt_rad, 2.0 * POINT_RAD);
     assert_eq!(found.quantity("pole_period_order").unwrap().value, truth.pole_pairs);
+    assert!(found.summary.contains("pole pairs (sure)"), "{}", found.summary);
+
+    let figure = |name: &str| found.figures.iter().find(|figure| figure.name == name).unwrap();
+    let around = figure("polar");
+    assert_eq!(around.form, Form::Polar);
+    let reach = |label: &str| {
+        let one = around.series.iter().find(|series| series.label == label).unwrap();
+        assert_eq!(one.x.last(), Some(&(one.x[0] + std::f64::consts::TAU)), "{label} goes round");
+        one.y.iter().fold(0.0, |most: f64, y| most.max(y.abs()))
+    };
+    for way in ["CCW", "CW"] {
+        assert!(reach(&format!("{way}, after")) < 0.1 * reach(&format!("{way}, before")), "{way}");
+    }
+    let [before, after, noise] = &figure("harmonics").series[..] else { panic!("{:?}", figure("harmonics")) };
+    assert!((before.band[0][0]..=before.band[0][1]).contains(&truth.eccentricity_rad), "{before:?}");
+    // Once and twice a turn, the pole pairs and inside them: what the table takes away.
+    for n in [0, 1, 4] {
+        assert!(after.y[n] < 0.1 * before.y[n] && before.y[n] > noise.y[0], "{before:?} {after:?} {noise:?}");
+    }
 }
 
 #[test]
@@ -309,6 +328,10 @@ fn every_edge_is_within_a_step_of_the_stage_and_the_best_place_is_found() {
     check(&found, "tilt_positive", truth.lost_tilt_rad, 2e-4);
     assert!(found.quantity("vertical_negative").is_none() && found.quantity("vertical_positive").is_none());
     check(&found, "best_radial_shift", truth.best_radial_m, 2e-6);
+    assert!(found.summary.starts_with("PASS"), "{}", found.summary);
+    let [bars, line] = &found.figures[0].series[..] else { panic!("{:?}", found.figures[0]) };
+    assert!(bars.y.iter().all(|share| *share >= line.y[0]), "{bars:?}");
+    assert!((bars.band[0][0]..=bars.band[0][1]).contains(&(truth.radial_m[0].abs() / 0.15e-3)), "{bars:?}");
 
     // Behind the run the sensor is back in its place, and the best one is better.
     let at_m = bench.stage.as_mut().unwrap().pose().unwrap().shift_m[0];

@@ -137,7 +137,7 @@ fn result(found: &Identification) -> Markup {
     html! {
         h2 { "Result" }
         p.verdict { strong { (verdict) ". " } (result.summary) }
-        @if let Some(advice) = &result.advice { p { "Next: " (advice) } }
+        @if let Some(advice) = &result.advice { p.verdict { "Next: " (advice) } }
         @if !result.quantities.is_empty() {
             table {
                 tr { th { "Quantity" } th { "Symbol" } th.figure { "Value" } th.figure { "95 % interval" } th { "Name" } }

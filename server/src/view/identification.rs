@@ -41,7 +41,7 @@ pub struct FollowUp {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Shown {
     pub verdict: Identified,
-    /// One plain sentence.
+    /// One plain sentence, or a line for each part of a campaign.
     pub summary: String,
     /// What to measure or mend next.
     pub advice: Option<String>,

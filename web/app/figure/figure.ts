@@ -37,9 +37,9 @@ export interface Style {
 
 export type Glyph = 'dot' | 'ring' | 'square' | 'cross' | 'triangle';
 
-/** Okabe & Ito's seven; five dashes and five glyphs, so that a colour that comes again comes with another. */
+/** Okabe & Ito's seven; six dashes and five glyphs, so that a colour that comes again comes with another. */
 const STROKES = ['--oi-blue', '--oi-vermillion', '--oi-green', '--oi-purple', '--oi-orange', '--oi-sky', '--oi-black'];
-const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
+const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2', '14 3'];
 const GLYPHS: Glyph[] = ['dot', 'ring', 'square', 'cross', 'triangle'];
 
 /** `model, positive` and `line at 0.2 A` are drawn in the colours of `positive` and `0.2 A`: a model and its points belong together. */

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { quantitiesCsv, sayQuantity, tableOf } from './said';
+import { partsOf, quantitiesCsv, sayQuantity, tableOf } from './said';
 
 it('says a quantity with one prefix for value and interval', () => {
 	expect(sayQuantity({ value: 3.2e-5, unit: 'Nm·s/rad', ci95: [3.16e-5, 3.24e-5] })).toEqual({ value: '32.00', interval: '± 0.40', unit: 'µNm·s/rad' });
@@ -28,4 +28,18 @@ it('sets what was found for several ways side by side, and nothing else', () => 
 	]);
 	expect(tableOf(found.slice(1))).toBeNull();
 	expect(tableOf(found.map((one) => ({ ...one, ci95: [0, 1] })))).toBeNull();
+});
+
+it('takes a campaign apart into its parts, and nothing else', () => {
+	const k = { name: 'stiffness.k', symbol: 'k', title: 'Stiffness: Stiffness of the joint', unit: 'Nm/rad', value: 678 };
+	const axis = { label: 'torque', unit: 'Nm' };
+	const loop = { name: 'stiffness.torsion_over_torque', title: 'Torsion over torque', form: 'cartesian' as const, x: axis, y: axis, series: [] };
+	const summary = 'The run did not come to its end (stopped), this is what its part says:\nStiffness: It is 678 Nm/rad; it is: linear.\nFriction compensation (failed): The run ended before this part.';
+	const { lead, parts } = partsOf({ summary, quantities: [k], figures: [loop] });
+	expect(lead).toBe('The run did not come to its end (stopped), this is what its part says:');
+	expect(parts).toEqual([
+		{ id: 'stiffness', title: 'Stiffness', verdict: 'identified', said: 'It is 678 Nm/rad; it is: linear.', quantities: [{ ...k, title: 'Stiffness of the joint' }], figures: [loop] },
+		{ id: 'Friction compensation', title: 'Friction compensation', verdict: 'failed', said: 'The run ended before this part.', quantities: [], figures: [] },
+	]);
+	expect(partsOf({ summary: 'PASS: every way is consistent.', quantities: [], figures: [] }).parts).toEqual([]);
 });

@@ -57,3 +57,35 @@ export function tableOf(quantities: readonly IdentifiedQuantity[]): Table | null
 	const whole = ways.length > 2 && others.length > 0 && others.every((more) => more.join('\n') === ways.join('\n'));
 	return whole && quantities.every((one) => !one.ci95) ? { ways, rows } : null;
 }
+
+/** A part of a campaign: its line of the summary and what its figures are. */
+export interface Part {
+	id: string;
+	title: string;
+	verdict: Identification['verdict'];
+	said: string;
+	quantities: IdentifiedQuantity[];
+	figures: Identification['figures'];
+}
+
+/** `Stiffness: …` or `Stiffness (failed): …` is a part's line, where there are several; the rest leads. Its figures carry its id and title. */
+export function partsOf({ summary, quantities, figures }: Pick<Identification, 'summary' | 'quantities' | 'figures'>): { lead: string; parts: Part[] } {
+	const lines = summary.split('\n');
+	const found = lines.map((line) => /^([A-Z][^:.]*?)(?: \((inconclusive|failed)\))?: (.+)$/.exec(line));
+	if (lines.length < 2) return { lead: summary, parts: [] };
+	const parts = found.flatMap((match) => {
+		if (!match) return [];
+		const [, title, verdict, said] = match as unknown as [string, string, Part['verdict'] | undefined, string];
+		const own = quantities.filter((one) => one.title.startsWith(`${title}: `));
+		const id = own[0]?.name.split('.')[0] ?? title;
+		return {
+			id,
+			title,
+			verdict: verdict ?? 'identified',
+			said,
+			quantities: own.map((one) => ({ ...one, title: one.title.slice(title.length + 2) })),
+			figures: figures.filter(({ name }) => name.startsWith(`${id}.`)),
+		};
+	});
+	return { lead: lines.filter((_, i) => !found[i]).join(' '), parts };
+}

@@ -237,13 +237,18 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         let found = found.unwrap_or_else(|| none_of(procedure, &whole));
         let id = procedure.id();
         let words = |text: &str| format!("{}: {text}", procedure.title());
+        let below = |above: &str, line: String| [above, &line].join("\n").trim_start().to_owned();
         if found.verdict != Verdict::Identified && whole.verdict != Verdict::Failed {
             whole.verdict = found.verdict;
         }
-        whole.summary = [whole.summary.as_str(), &words(&found.summary)].join(" ").trim().to_owned();
+        let said = match found.verdict {
+            Verdict::Identified => words(&found.summary),
+            Verdict::Inconclusive => format!("{} (inconclusive): {}", procedure.title(), found.summary),
+            Verdict::Failed => format!("{} (failed): {}", procedure.title(), found.summary),
+        };
+        whole.summary = below(&whole.summary, said);
         if let Some(advice) = found.advice {
-            let before = whole.advice.take().unwrap_or_default();
-            whole.advice = Some([before.as_str(), &words(&advice)].join(" ").trim().to_owned());
+            whole.advice = Some(below(&whole.advice.take().unwrap_or_default(), words(&advice)));
         }
         whole.quantities.extend(found.quantities.into_iter().map(|mut quantity| {
             quantity.name = format!("{id}.{}", quantity.name);

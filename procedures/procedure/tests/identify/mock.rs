@@ -3,7 +3,7 @@
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::catalogue::brake_model;
 use jointbench_procedure::conduct::{conduct, conduct_knowing};
-use jointbench_procedure::identification::{Identification, Verdict};
+use jointbench_procedure::identification::{Identification, Series, Verdict};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::{BenchFacts, procedure};
 use serde_json::{Value, json};
@@ -73,6 +73,17 @@ fn the_inverse_of_the_hysteresis_holds_on_a_history_that_it_has_not_seen() {
     let [error, line] = ["error_max", "error_line"].map(|name| found.quantity(name).unwrap().value);
     assert!(error < 0.04 && 3.0 * error < line, "{error} {line}");
     assert!(found.quantity("width").unwrap().value > 0.2, "{}", found.summary);
+    // Beside every history that was not seen stands what the model says of it.
+    let rated_nm = found.quantity("torque_top").unwrap().value;
+    for name in ["minor_loops", "random_history"] {
+        let figure = found.figures.iter().find(|figure| figure.name == name).unwrap();
+        let [measured, model] = &figure.series[..] else { panic!("{figure:?}") };
+        for (current_a, torque_nm) in measured.x.iter().zip(&measured.y) {
+            let beside = model.x.iter().zip(&model.y).filter(|(x, _)| (*x - current_a).abs() < 1e-9);
+            let off = beside.map(|(_, y)| (y - torque_nm).abs()).fold(f64::INFINITY, f64::min);
+            assert!(off < 0.04 * rated_nm, "{name} at {current_a} A: {off} Nm");
+        }
+    }
 }
 
 #[test]
@@ -258,4 +269,37 @@ fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
     }
     let [low, high] = found.quantity("f_difference").unwrap().ci95.unwrap();
     assert!(low > 0.0 && high > low, "the directions differ: {low} … {high}");
+}
+
+#[test]
+fn a_soft_start_is_seen_beside_its_curve_its_table_and_its_loop() {
+    let given = json!({"load_levels": 8, "repeats": 2});
+    let (_, found) = found(MockSettings::new(Joint::JointB, 3), "stiffness", given);
+    assert!(found.summary.contains("softer at low torque"), "{}", found.summary);
+    let [whole, beyond] = &found.figures[..] else { panic!("{:?}", found.figures) };
+    let labels: Vec<&str> = whole.series.iter().map(|series| &series.label[..]).collect();
+    let expected =
+        ["loop at the highest load", "positive", "negative", "model, positive", "model, negative", "look-up table"];
+    assert_eq!(labels, expected);
+    // Without the slope the model ends at β₀ and the loop stays a loop.
+    let beta_rad = found.quantity("beta_0").unwrap().value;
+    let end = beyond.series[3].y.last().unwrap();
+    assert!((end - beta_rad).abs() < 0.2 * beta_rad, "{end} for {beta_rad}");
+    let reach = |y: &[f64]| y.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+    assert!(reach(&beyond.series[0].y) < 0.2 * reach(&whole.series[0].y), "the slope is taken off the loop too");
+}
+
+#[test]
+fn table_4_7_is_drawn_as_bars_beside_a_trajectory() {
+    let (_, found) = found(MockSettings::new(Joint::JointA, 2).hiding(&["stribeck"]), "compensation", json!({}));
+    let figure = |name: &str| found.figures.iter().find(|figure| figure.name == name).unwrap();
+    let bars = &figure("ratio").series;
+    for (series, name) in bars.iter().zip(["rho_1", "rho_2", "rho_max"]) {
+        let of = |way: &str| found.quantity(&format!("{name}_{way}")).unwrap().value;
+        assert_eq!((series.y[0], series.y.last()), (1.0, Some(&(of("observer") / of("none")))), "{name}");
+    }
+    let [reference, none, best] = &figure("trajectory").series[..] else { panic!("{:?}", figure("trajectory")) };
+    let off = |one: &Series| reference.y.iter().zip(&one.y).map(|(a, b)| (a - b).abs()).sum::<f64>();
+    assert!(off(best) < 0.5 * off(none) && off(none) > 0.0, "{} {}", best.label, none.label);
+    assert!((reference.x.last().unwrap() - 6.0).abs() < 0.1, "one period");
 }

@@ -2,7 +2,7 @@
 
 use super::super::demagnetise::rated_nm;
 use super::{Everett, History, Part};
-use crate::findings::{Hold, Mean, Unusable, curve, holds, quantity, scatter};
+use crate::findings::{Hold, Mean, Unusable, holds, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
 
@@ -94,7 +94,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         ),
         advice: (!good).then(|| "Raise levels or dwell_s: the model must come within 1 % of the rated torque.".into()),
         quantities,
-        figures: vec![loops(&sweeps, &everett, top), judgement(&judged)],
+        figures: [loops(&sweeps, &everett), vec![judgement(&judged)]].concat(),
     })
 }
 
@@ -154,25 +154,67 @@ fn by_line(sweeps: &[Sweep], rated: f64) -> f64 {
     points().map(|(i, t)| (t - it / ii * i).abs() / rated).fold(0.0, f64::max)
 }
 
-fn loops(sweeps: &[Sweep], everett: &Everett, top: f64) -> Figure {
-    let mut series: Vec<Series> = sweeps
-        .iter()
-        .map(|sweep| {
-            let label = ["", "major loop", "reversal curve", "minor loops", "random history"];
-            let label = label.get(sweep.part as usize).copied().unwrap_or("");
+/// Places between two currents at which the model is drawn.
+const PLACES: u32 = 12;
+
+/// Major loop and reversal curves, which the model is made of, and beside the minor loops and the random history what the
+/// model says of them.
+fn loops(sweeps: &[Sweep], everett: &Everett) -> Vec<Figure> {
+    let measured = |label: &str, wanted: Part, mark: Mark| -> Vec<Series> {
+        let series = |sweep: &Sweep| {
             let (x, y) = sweep.points.iter().copied().unzip();
-            Series::new(label, Mark::Line, x, y)
-        })
-        .collect();
-    series.push(curve("model, first rise", [0.0, top], 60, |i| everett.torque_nm(&History::default().after(i))));
-    Figure {
-        name: "torque_over_current".into(),
-        title: "Braking torque over current".into(),
+            Series::new(label, mark, x, y)
+        };
+        part(sweeps, wanted).map(series).collect()
+    };
+    let modelled = |label: &str, wanted: Part| -> Vec<Series> {
+        part(sweeps, wanted).map(|sweep| course(label, sweep, everett)).collect()
+    };
+    let figure = |name: &str, title: &str, series: Vec<Vec<Series>>| Figure {
+        name: name.into(),
+        title: title.into(),
         form: Form::Cartesian,
         x: Axis::of("coil current", "A"),
         y: Axis::of("braking torque", "Nm"),
-        series,
+        series: series.concat(),
+    };
+    let mut figures = vec![figure(
+        "torque_over_current",
+        "Major loop and reversal curves",
+        vec![
+            measured("major loop", Part::Major, Mark::Points),
+            measured("reversal curve", Part::Reversal, Mark::Line),
+            modelled("model, major loop", Part::Major),
+        ],
+    )];
+    for (name, title, label, wanted) in [
+        ("minor_loops", "Minor loops, which the model has not seen", "minor loops", Part::Minor),
+        ("random_history", "Random history, which the model has not seen", "random history", Part::Random),
+    ] {
+        figures.push(figure(
+            name,
+            title,
+            vec![measured(label, wanted, Mark::Points), modelled(&format!("model, {label}"), wanted)],
+        ));
     }
+    figures
+}
+
+/// What the model says on the way of a sweep, between its currents too.
+fn course(label: &str, sweep: &Sweep, everett: &Everett) -> Series {
+    let mut history = History::default();
+    let (mut x, mut y) = (vec![0.0], vec![everett.torque_nm(&history)]);
+    let mut from_a = 0.0;
+    for (to_a, _) in &sweep.points {
+        for place in 1..=PLACES {
+            let at_a = from_a + (to_a - from_a) * (f64::from(place) / f64::from(PLACES));
+            x.push(at_a);
+            y.push(everett.torque_nm(&history.after(at_a)));
+        }
+        history.go(*to_a);
+        from_a = *to_a;
+    }
+    Series::new(label, Mark::Line, x, y)
 }
 
 fn judgement(judged: &[(f64, f64)]) -> Figure {

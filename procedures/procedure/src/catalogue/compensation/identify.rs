@@ -26,6 +26,8 @@ pub(super) const FIGURES: [[&str; 4]; 5] = [
 struct Followed {
     way: Way,
     time_s: Vec<f64>,
+    /// θ_d, from where the first row lies [rad].
+    reference_rad: Vec<f64>,
     /// θ_d − θ at the link [rad].
     error_rad: Vec<f64>,
     /// The largest that was fed forward beyond what the drive gave in all and its noise; 0 or less: never active (motor)
@@ -70,7 +72,7 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
         advice: (!active.is_empty())
             .then(|| "Lower share, or identify friction again: the joint may be warmer.".into()),
         quantities,
-        figures: vec![errors(&followed), bars(&followed, none)],
+        figures: vec![bars(&followed), trajectories(&followed, period_s), errors(&followed)],
     })
 }
 
@@ -88,11 +90,12 @@ fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
     let first = (first..last).find(|i| time[*i] - time[first] >= period_s)?;
     let rows = first..last + 1;
     let mut reference = motor[first];
-    let mut error_rad = Vec::with_capacity(rows.len());
+    let (mut reference_rad, mut error_rad) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
     for i in rows.clone() {
         if i > first {
             reference += setpoint[i - 1] * (time[i] - time[i - 1]);
         }
+        reference_rad.push((reference - motor[first]) / gear);
         error_rad.push((reference - motor[i]) / gear);
     }
     let mean = error_rad.iter().sum::<f64>() / error_rad.len() as f64;
@@ -113,6 +116,7 @@ fn follow(period_s: f64, run: &RunTable, way: Way) -> Option<Followed> {
     Some(Followed {
         way,
         time_s: rows.map(|i| time[i] - time[first]).collect(),
+        reference_rad,
         error_rad,
         over_nm: if way == Way::None || over_a.is_infinite() { 0.0 } else { km * (over_a - doubt_a) },
     })
@@ -134,14 +138,48 @@ fn errors(followed: &[Followed]) -> Figure {
     }
 }
 
-fn bars(followed: &[Followed], none: f64) -> Figure {
-    let ratios: Vec<f64> = followed.iter().map(|one| one.rho()[0] / none).collect();
+/// Table 4.7 as bars: each figure as a share of what it is without compensation.
+fn bars(followed: &[Followed]) -> Figure {
+    let none = followed[0].rho();
+    let places: Vec<f64> = (0..followed.len()).map(|i| i as f64).collect();
+    let series = |i: usize| {
+        let [_, _, title, _] = FIGURES[i];
+        let shares = followed.iter().map(|one| one.rho()[i] / none[i]).collect();
+        Series::new(&title.to_lowercase(), Mark::Bars, places.clone(), shares)
+    };
     Figure {
         name: "ratio".into(),
-        title: "Sum of the errors as a share of none".into(),
+        title: "Errors as a share of those without compensation (table 4.7)".into(),
         form: Form::Cartesian,
         x: Axis::names("compensation", followed.iter().map(|one| one.way.words()[1])),
-        y: Axis::of("ρ₁ / ρ₁ of none", ""),
-        series: vec![Series::new("ρ₁", Mark::Bars, (0..ratios.len()).map(|i| i as f64).collect(), ratios)],
+        y: Axis::of("share of none", ""),
+        series: vec![series(0), series(1), series(2)],
+    }
+}
+
+/// The reference and how it is followed without compensation and with the best, over one period. Their errors are too small
+/// to be seen beside it, so they are drawn larger by a power of ten.
+fn trajectories(followed: &[Followed], period_s: f64) -> Figure {
+    let by_error = |a: &&Followed, b: &&Followed| a.rho()[0].total_cmp(&b.rho()[0]);
+    let none = &followed[0];
+    let most_rad = none.reference_rad.iter().fold(0.0, |most: f64, at| most.max(at.abs()));
+    let larger = 10f64.powf((0.3 * most_rad / none.rho()[2]).log10().floor()).clamp(1.0, 1e4);
+    let shown = |label: &str, one: &Followed, at: &dyn Fn(usize) -> f64| {
+        let end = one.time_s.partition_point(|t_s| *t_s <= period_s);
+        let rows = || (0..end).step_by(end.div_ceil(SHOWN).max(1));
+        Series::new(label, Mark::Line, rows().map(|i| one.time_s[i]).collect(), rows().map(at).collect())
+    };
+    let mut series = vec![shown("reference", none, &|i| none.reference_rad[i])];
+    for one in [Some(none), followed.iter().min_by(by_error)].into_iter().flatten() {
+        let label = format!("{}, error × {larger}", one.way.words()[1]);
+        series.push(shown(&label, one, &|i| one.reference_rad[i] - larger * one.error_rad[i]));
+    }
+    Figure {
+        name: "trajectory".into(),
+        title: "Trajectory of one period".into(),
+        form: Form::Cartesian,
+        x: Axis::of("time", "s"),
+        y: Axis::of("angle (link)", "rad"),
+        series,
     }
 }

@@ -3,11 +3,12 @@
 use super::edges::{Found, WAYS, Way, found};
 use super::say::{quantity, too_little};
 use super::sweeps::sweeps;
+use super::tolerance::{self, Judgement};
 use super::{ACCELERATION, EncoderLinearity, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
-use crate::identification::{Axis, Figure, FollowUp, Form, Identification, Mark, Quantity, Series, Verdict};
+use crate::identification::{Axis, Figure, FollowUp, Form, Identification, Mark, Quantity, Series};
 use crate::parameter::{Parameter, Values};
 use crate::place::{Edge, Place};
 use crate::plan::{BenchFacts, Plan, PlanFault};
@@ -121,7 +122,8 @@ impl Procedure for EncoderAlignment {
         }
         let mut quantities: Vec<Quantity> = found.iter().filter_map(|(way, found)| way.quantity(found)).collect();
         let map = Map::of(run);
-        let mut summary = told(&found);
+        let judged = Judgement::of(&found);
+        let mut summary = format!("{} {}", judged.said, told(&found));
         if let Some(best) = map.as_ref().and_then(Map::best) {
             summary.push_str(&format!(
                 " The error once a turn is smallest, {:.0} µrad, at a radial shift of {:.3} mm.",
@@ -133,9 +135,9 @@ impl Procedure for EncoderAlignment {
             let name = ["best_harmonic_1", "", "Error once a turn there", "rad"];
             quantities.push(quantity(name, best.once_rad, None));
         }
-        let mut figures = vec![tolerances(&found)];
+        let mut figures = vec![tolerance::figure(&found)];
         figures.extend(map.map(|map| map.figure()));
-        Some(Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures })
+        Some(Identification { verdict: judged.verdict, summary, advice: judged.advice, quantities, figures })
     }
 
     fn follow_up(&self, found: &Identification) -> Option<FollowUp> {
@@ -158,20 +160,6 @@ fn told(found: &[(&Way, Found)]) -> String {
         (edges, _) => {
             format!("The encoder loses its periods on {edges} ways, and within reach not on: {}.", names(&kept))
         }
-    }
-}
-
-/// Each way's last consistent place as a share of the manufacturing tolerance.
-fn tolerances(found: &[(&Way, Found)]) -> Figure {
-    let share = |(way, found): &(&Way, Found)| found.good.abs() / way.manufacturing;
-    let places = (0..found.len()).map(|i| i as f64).collect();
-    Figure {
-        name: "tolerance".into(),
-        title: "Last consistent place over the manufacturing tolerance".into(),
-        form: Form::Cartesian,
-        x: Axis::names("Way", found.iter().map(|(way, _)| way.title)),
-        y: Axis::of("Share of the manufacturing tolerance", ""),
-        series: vec![Series::new("measured", Mark::Bars, places, found.iter().map(share).collect())],
     }
 }
 

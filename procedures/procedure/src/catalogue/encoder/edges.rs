@@ -5,6 +5,7 @@ use crate::encoder_columns::POSE;
 use crate::identification::Quantity;
 use jointbench_instrument::RunTable;
 use jointbench_instrument::roles::Pose;
+use jointbench_model::words;
 
 /// One axis of the stage in one direction.
 #[derive(Debug)]
@@ -16,7 +17,7 @@ pub struct Way {
     pub reach: &'static str,
     name: &'static str,
     pub title: &'static str,
-    /// From table 4.4, in the axis' unit.
+    /// Manufacturing tolerance of the data sheet (table 4.4), in the axis' unit.
     pub manufacturing: f64,
 }
 
@@ -63,10 +64,32 @@ impl Way {
         pose
     }
 
+    fn unit(&self) -> &'static str {
+        if self.axis < 3 { "m" } else { "rad" }
+    }
+
+    /// A place on the way, in words and without its sign: the way has one.
+    pub fn length(&self, at: f64) -> String {
+        words::figure(at.abs(), self.unit())
+    }
+
+    pub fn is_opposite(&self, other: &Self) -> bool {
+        self.axis == other.axis && self.sign != other.sign
+    }
+
+    /// Whether the periods are consistent as far as the data sheet says; `None` where nobody went so far.
+    pub fn holds(&self, found: &Found) -> Option<bool> {
+        match found.bad {
+            _ if found.good.abs() >= self.manufacturing => Some(true),
+            Some(bad) if bad.abs() <= self.manufacturing => Some(false),
+            _ => None,
+        }
+    }
+
     /// Half-way between consistent and not; the interval are both places. `None` where the periods were never lost.
     pub fn quantity(&self, found: &Found) -> Option<Quantity> {
         let (good, bad) = (found.good, found.bad?);
-        let unit = if self.axis < 3 { "m" } else { "rad" };
+        let unit = self.unit();
         let title = format!("{}: the periods are lost", self.title);
         let ends = [good.min(bad), good.max(bad)];
         Some(quantity([self.name, "", &title, unit], 0.5 * (good + bad), Some(ends)))

@@ -1,13 +1,15 @@
 //! The shape of the error over the turn, the look-up table against it, and what precision is left (figs 4.4 to 4.11).
 
-use super::say::{histogram, quantity, scatter, too_little};
+use super::before_after::{Left, figures};
+use super::say::{quantity, too_little};
+use super::spectrum::PolePairs;
 use super::sweeps::{Sweep, sweeps};
 use super::table::{Class, Table, Terms};
 use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
 use crate::findings::solve;
-use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
+use crate::identification::{Identification, Quantity, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::place::Place;
 use crate::plan::{BenchFacts, Plan, PlanFault};
@@ -15,10 +17,6 @@ use jointbench_instrument::{Kind, RunTable};
 use std::f64::consts::TAU;
 
 pub struct EncoderLinearity;
-
-/// Harmonics that the spectrum shows, and the first that can be a pole pair's.
-const HARMONICS: u32 = 160;
-const FIRST_POLE_PAIR: u32 = 8;
 
 /// The thesis reaches 14 usable bits; this is what is asked of a compensation that goes beyond it.
 const BEYOND_BITS: f64 = 15.0;
@@ -48,7 +46,7 @@ impl Procedure for EncoderLinearity {
                 Parameter::number("fast_rad_s", "Fast speed, for the velocity term", "rad/s", 50.0, [1.0, 1256.0]),
                 Parameter::number("turns", "Turns each way", "", 8.0, [1.0, 200.0]),
                 Parameter::count("repeats", "Repeats; every other one judges", 2, [2, 20]),
-                Parameter::count("table_size", "Entries of the look-up table", 1024, [16, 16_384]),
+                Parameter::count("table_size", "Entries of the look-up table", 1024, [32, 16_384]),
                 Parameter::number("radial_shift_m", "Radial shift of the stage", "m", 0.0, [-5e-4, 5e-4]),
                 ACCELERATION,
                 sample_rate(1000.0),
@@ -124,64 +122,29 @@ impl Procedure for EncoderLinearity {
             quantities.push(quantity([&peak_name, "", &format!("Largest error {title}"), "rad"], peak_rad, None));
         }
         quantities.extend(harmonics(&known, &terms));
-        let spectrum: Vec<f64> = (1..=HARMONICS).map(|order| table.harmonic(order)).collect();
-        let poles = (FIRST_POLE_PAIR..=HARMONICS).max_by(|a, b| table.harmonic(*a).total_cmp(&table.harmonic(*b)))?;
+        let poles = PolePairs::of(&table)?;
         let name = ["pole_period", "", "Largest error inside a pole pair", "rad"];
-        quantities.push(quantity(name, table.harmonic(poles), None));
-        quantities.push(quantity(["pole_period_order", "", "Its periods on a turn", ""], f64::from(poles), None));
-        let errors = |left: &dyn Fn(&Sweep, usize) -> f64| -> Vec<f64> {
-            unseen.iter().flat_map(|sweep| (0..sweep.error_rad.len()).map(|i| left(sweep, i))).collect()
-        };
-        let (errors_before, errors_after) = (errors(&before), errors(&full));
-        let angle: Vec<f64> =
-            unseen.iter().flat_map(|sweep| &sweep.angle_rad).map(|angle| angle.rem_euclid(TAU)).collect();
-        let figure = |name: &str, title: &str, x: Axis, y: Axis, series: Vec<Series>| Figure {
-            name: name.into(),
-            title: title.into(),
-            form: Form::Cartesian,
-            x,
-            y,
-            series,
-        };
-        let error = || Axis::of("Test − reference", "rad");
-        let figures = vec![
-            figure(
-                "shape",
-                "Error over the turn, on turns that the table has not seen",
-                Axis::of("Angle", "rad"),
-                error(),
-                vec![
-                    scatter("before", &angle, &errors_before),
-                    scatter("after", &angle, &errors_after),
-                    table.series("look-up table"),
-                ],
-            ),
-            figure(
-                "histogram",
-                "Histogram of the error",
-                error(),
-                Axis::of("Share", ""),
-                vec![histogram("before", &errors_before, 60), histogram("after", &errors_after, 60)],
-            ),
-            figure(
-                "spectrum",
-                "Harmonics of the error",
-                Axis::of("Periods on a turn", ""),
-                Axis::of("Amplitude", "rad"),
-                vec![Series::new("look-up table", Mark::Bars, (1..=HARMONICS).map(f64::from).collect(), spectrum)],
-            ),
-        ];
+        quantities.push(quantity(name, poles.amplitude_rad, None));
+        quantities.push(quantity(["pole_period_order", "", "Its periods on a turn", ""], f64::from(poles.order), None));
+        let compared: [(&str, Left); 2] = [("before", &before), ("after", &full)];
+        let figures = figures(&unseen, &table, &poles, compared);
         let summary = format!(
             "Of its bits {:.1} are usable as it is, {:.1} with a look-up table of {} entries, {:.1} with the velocity term \
-             too, and {:.1} with the direction of motion. {}",
+             too, and {:.1} with the direction of motion. {} {}",
             bits(stages[0].2),
             bits(stages[1].2),
             table.len(),
             bits(stages[2].2),
             bits(stages[3].2),
-            what_it_takes(bits(stages[2].2), bits(stages[3].2))
+            what_it_takes(bits(stages[2].2), bits(stages[3].2)),
+            poles.said()
         );
-        Some(Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures })
+        let advice = poles.or.map(|_| {
+            "More turns and a table of more entries (jointbench run encoder_linearity --set turns=32 --set table_size=4096) \
+             settle how many pole pairs there are."
+                .into()
+        });
+        Some(Identification { verdict: Verdict::Identified, summary, advice, quantities, figures })
     }
 }
 

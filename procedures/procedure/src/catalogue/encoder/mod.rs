@@ -1,14 +1,17 @@
 //! Procedures of the encoder bench: a motor turns a reference encoder and the encoder under test.
 
 mod alignment;
+mod before_after;
 mod delay;
 mod edges;
 mod linearity;
 mod offset;
 mod say;
+mod spectrum;
 mod startup;
 mod sweeps;
 mod table;
+mod tolerance;
 
 pub(super) use alignment::EncoderAlignment;
 pub(super) use delay::EncoderDelay;

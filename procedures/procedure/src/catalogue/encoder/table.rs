@@ -116,17 +116,26 @@ impl<'a> Class<'a> {
 
     /// The largest mean of any bin.
     pub fn peak(&self, left: &dyn Fn(&Sweep, usize) -> f64) -> f64 {
-        let mut sums = vec![(0.0, 0u32); self.bins];
-        for (i, angle) in self.sweep.angle_rad.iter().enumerate() {
-            let (sum, count) = &mut sums[bin(*angle, self.bins)];
-            *sum += left(self.sweep, i);
+        let means = means(std::iter::once(self.sweep), self.bins, left);
+        means.into_iter().flatten().map(f64::abs).fold(0.0, f64::max)
+    }
+}
+
+/// Of what is left of an error in equal bins of the turn; `None` in one that was not met.
+pub fn means<'s>(
+    sweeps: impl Iterator<Item = &'s Sweep>,
+    bins: usize,
+    left: &dyn Fn(&Sweep, usize) -> f64,
+) -> Vec<Option<f64>> {
+    let mut sums = vec![(0.0, 0u32); bins];
+    for sweep in sweeps {
+        for (i, angle) in sweep.angle_rad.iter().enumerate() {
+            let (sum, count) = &mut sums[bin(*angle, bins)];
+            *sum += left(sweep, i);
             *count += 1;
         }
-        sums.iter()
-            .filter(|(_, count)| *count > 0)
-            .map(|(sum, count)| (sum / f64::from(*count)).abs())
-            .fold(0.0, f64::max)
     }
+    sums.into_iter().map(|(sum, count)| (count > 0).then(|| sum / f64::from(count))).collect()
 }
 
 #[cfg(test)]

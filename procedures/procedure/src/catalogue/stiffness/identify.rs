@@ -1,9 +1,9 @@
 //! A line of torsion over torque with an offset by direction, and whether the joint asks for more than a line.
 
-use crate::findings::{Unusable, curve, holds, interval_of, keep_rows, parameter, quantity, scatter};
+use crate::findings::{Unusable, holds, interval_of, keep_rows, parameter, quantity, scatter};
 use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
 use jointbench_instrument::RunTable;
-use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit};
+use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
 
 /// The settled end of a hold: joint and brake wind up first.
 const SETTLED: f64 = 0.5;
@@ -48,6 +48,10 @@ fn softening(run: &RunTable, shape: &str) -> Option<OwnEffect> {
     };
     OwnEffect::try_from(definition).ok()
 }
+
+/// A figure does not need every sample.
+const LOOP_POINTS: usize = 800;
+const CURVE_POINTS: usize = 100;
 
 /// Means of one hold: torque and torsion.
 type Point = (f64, f64);
@@ -97,7 +101,8 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         ));
     }
     let stiffness = |inverse: f64| 1.0 / (inverse - bearing);
-    let area = loop_area(run, &held, gear);
+    let reversal = Reversal::of(run, &held, gear);
+    let area = reversal.as_ref().map_or(0.0, Reversal::area_j);
     let of_joint = match bearing > 0.0 {
         true => "Stiffness of the joint, bearing taken off",
         false => "Stiffness of joint and bearing",
@@ -127,6 +132,8 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         quantity(["rms", "e", "What the chosen curve leaves on loads not seen", "rad"], best.validation_rms, None),
         quantity(["loop_area", "A", "Area of the loop at the highest load", "J"], area, None),
     ]);
+    let whole = torsion_over_torque(&points, model(&settled, best)?, reversal.as_ref());
+    let beyond = beyond_the_slope(&whole, inverse);
     let shape = if is_curved {
         "softer at low torque: use the curve or a look-up table"
     } else {
@@ -138,7 +145,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         advice: (bearing == 0.0)
             .then(|| "Give bearing_stiffness_nm_rad where it is known: the figure contains the bearing.".into()),
         quantities,
-        figures: vec![torsion_over_torque(&points, best), table(&points)],
+        figures: vec![whole, beyond],
     })
 }
 
@@ -165,37 +172,67 @@ fn with_steps((value, ci95): (f64, [f64; 2]), run: &RunTable, gear: f64) -> (f64
     (value, [value - reach, value + reach])
 }
 
-/// Work that one reversal and back takes at the highest load: the area between torsion and torque.
-fn loop_area(run: &RunTable, held: &[crate::findings::Hold], gear: f64) -> f64 {
-    let column = |name: &str| run.column(name).unwrap_or_default();
-    let (motor, link, torque) = (column("motor_position_rad"), column("link_position_rad"), column("link_torque_nm"));
-    let top = held.iter().map(|hold| hold.brake).fold(0.0, f64::max);
-    let mut at_top = held.windows(2).filter(|pair| pair[0].brake == top && pair[1].brake == top);
-    let Some(pair) = at_top.next() else { return 0.0 };
-    // From the middle of one hold through the reversal to the middle of the next is half of the loop.
-    let middle = |hold: &crate::findings::Hold| hold.rows.start + hold.rows.len() / 2;
-    let rows = middle(&pair[0])..middle(&pair[1]);
-    let twist = |i: usize| motor[i] / gear - link[i];
-    let way: f64 = rows.clone().skip(1).map(|i| 0.5 * (torque[i] + torque[i - 1]) * (twist(i) - twist(i - 1))).sum();
-    // What a straight spring between the same ends would take is given back; the rest is lost, in both halves.
-    let (first, last) = (rows.start, rows.end - 1);
-    let spring = 0.5 * (torque[first] + torque[last]) * (twist(last) - twist(first));
-    2.0 * (way - spring).abs()
+/// The course from the middle of a hold at the highest load through the reversal to the middle of the next, and on to the
+/// one after it: there and back.
+struct Reversal {
+    course: Vec<Point>,
+    /// Rows of the way there.
+    there: usize,
 }
 
-fn torsion_over_torque(points: &[Point], best: &Fit) -> Figure {
-    let top = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
-    let value = |effect: &str, name: &str| parameter(best, effect, name).map_or(0.0, |p| p.value);
-    let (xi, inverse, beta) =
-        (value("offset", "xi"), value("compliance", "inverse_k"), value("directional_offset", "beta_0"));
-    let mut series = vec![
-        scatter("positive", points.iter().copied().filter(|p| p.0 > 0.0)),
-        scatter("negative", points.iter().copied().filter(|p| p.0 <= 0.0)),
-    ];
-    if beta != 0.0 {
-        series.push(curve("line, positive", [0.0, top], 1, |t| xi + inverse * t + beta));
-        series.push(curve("line, negative", [-top, 0.0], 1, |t| xi + inverse * t - beta));
+impl Reversal {
+    fn of(run: &RunTable, held: &[crate::findings::Hold], gear: f64) -> Option<Self> {
+        let column = |name: &str| run.column(name).unwrap_or_default();
+        let (motor, link, torque) =
+            (column("motor_position_rad"), column("link_position_rad"), column("link_torque_nm"));
+        let top = held.iter().map(|hold| hold.brake).fold(0.0, f64::max);
+        let first = held.windows(2).position(|pair| pair[0].brake == top && pair[1].brake == top)?;
+        let middle = |hold: &crate::findings::Hold| hold.rows.start + hold.rows.len() / 2;
+        let (begin, turn) = (middle(&held[first]), middle(&held[first + 1]));
+        let back = held.get(first + 2).filter(|hold| hold.brake == top);
+        let end = back.map_or(turn, middle);
+        let course = (begin..end).map(|i| (torque[i], motor[i] / gear - link[i])).collect();
+        Some(Self { course, there: turn - begin })
     }
+
+    /// Work that it takes: the area between torsion and torque. What a straight spring between the ends of the way there
+    /// would take is given back; the rest is lost, in both halves.
+    fn area_j(&self) -> f64 {
+        let there = &self.course[..self.there];
+        let way: f64 = there.windows(2).map(|w| 0.5 * (w[1].0 + w[0].0) * (w[1].1 - w[0].1)).sum();
+        let (first, last) = (there[0], there[there.len() - 1]);
+        2.0 * (way - 0.5 * (first.0 + last.0) * (last.1 - first.1)).abs()
+    }
+
+    fn series(&self) -> Series {
+        let every = self.course.len().div_ceil(LOOP_POINTS);
+        let (x, y) = self.course.iter().copied().step_by(every).unzip();
+        Series::new("loop at the highest load", Mark::Line, x, y)
+    }
+}
+
+/// The chosen model over the loads that were held, each direction on its own.
+fn model(settled: &RunTable, best: &Fit) -> Result<[Series; 2], Unusable> {
+    let set = residuals(settled, best, &Options::default())?;
+    let load = set.axes.iter().find(|axis| axis.name == "link_torque_nm");
+    let load = load.map(|axis| &axis.values[..]).unwrap_or_default();
+    let mut points: Vec<Point> = load.iter().copied().zip(set.predicted).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (positive, negative) = points.into_iter().partition(|p| p.0 > 0.0);
+    let series = |label: &str, side: Vec<Point>| {
+        let every = side.len().div_ceil(CURVE_POINTS).max(1);
+        let (x, y) = side.into_iter().step_by(every).unzip();
+        Series::new(label, Mark::Line, x, y)
+    };
+    Ok([series("model, positive", positive), series("model, negative", negative)])
+}
+
+fn torsion_over_torque(points: &[Point], model: [Series; 2], reversal: Option<&Reversal>) -> Figure {
+    let mut series: Vec<Series> = reversal.map(Reversal::series).into_iter().collect();
+    let side = |is_positive: bool| points.iter().copied().filter(move |p| (p.0 > 0.0) == is_positive);
+    series.extend([scatter("positive", side(true)), scatter("negative", side(false))]);
+    series.extend(model);
+    series.push(table(points));
     Figure {
         name: "torsion_over_torque".into(),
         title: "Torsion over torque".into(),
@@ -207,7 +244,7 @@ fn torsion_over_torque(points: &[Point], best: &Fit) -> Figure {
 }
 
 /// The look-up table: mean torsion at each torque, both sides.
-fn table(points: &[Point]) -> Figure {
+fn table(points: &[Point]) -> Series {
     let top = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -217,12 +254,20 @@ fn table(points: &[Point]) -> Figure {
         (group.iter().map(|p| p.0).sum::<f64>() / n, group.iter().map(|p| p.1).sum::<f64>() / n)
     };
     let (x, y) = groups.map(mean).unzip();
+    Series::new("look-up table", Mark::Line, x, y)
+}
+
+/// Without the slope of the line through high loads, beside which a loop and a soft start are too thin to be seen.
+fn beyond_the_slope(whole: &Figure, inverse: f64) -> Figure {
+    let level = |one: &Series| Series {
+        y: one.x.iter().zip(&one.y).map(|(torque, torsion)| torsion - inverse * torque).collect(),
+        ..one.clone()
+    };
     Figure {
-        name: "look_up_table".into(),
-        title: "Look-up table of the torsion".into(),
-        form: Form::Cartesian,
-        x: Axis::of("link torque", "Nm"),
-        y: Axis::of("torsion", "rad"),
-        series: vec![Series::new("table", Mark::Line, x, y)],
+        name: "beyond_the_slope".into(),
+        title: "Torsion without k'⁻¹ times torque".into(),
+        y: Axis::of("torsion − k'⁻¹·torque", "rad"),
+        series: whole.series.iter().map(level).collect(),
+        ..whole.clone()
     }
 }

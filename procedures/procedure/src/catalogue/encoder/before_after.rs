@@ -1,0 +1,108 @@
+//! An error over the turn before the look-up table and after it, as figures.
+
+use super::say::histogram;
+use super::spectrum::{ORDERS, PolePairs, Waves};
+use super::sweeps::Sweep;
+use super::table::{Table, means};
+use crate::identification::{Axis, Figure, Form, Mark, Series};
+use std::f64::consts::TAU;
+
+/// Means over the turn: each averages over many of the reference's own steps.
+const PLACES: usize = 180;
+
+/// What is left of the error of a sweep at one of its readings.
+pub type Left<'a> = &'a dyn Fn(&Sweep, usize) -> f64;
+
+/// `sweeps` have not been seen by the table.
+pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&str, Left); 2]) -> Vec<Figure> {
+    let slow_rad_s = sweeps.iter().map(|sweep| sweep.speed_rad_s.abs()).fold(f64::INFINITY, f64::min);
+    let slow: Vec<&Sweep> = sweeps.iter().filter(|sweep| sweep.speed_rad_s.abs() < 1.1 * slow_rad_s).collect();
+    let ways = |closed: bool| {
+        let way = |(stage, left): (&str, Left), way: &str, sign: f64| {
+            let way_only = slow.iter().copied().filter(|sweep| sweep.speed_rad_s * sign > 0.0);
+            around(&format!("{way}, {stage}"), way_only, left, closed)
+        };
+        stages.map(|stage| [way(stage, "CCW", 1.0), way(stage, "CW", -1.0)]).concat()
+    };
+    let figure = |name: &str, title: String, x: Axis, y: Axis, series: Vec<Series>| Figure {
+        name: name.into(),
+        title,
+        form: Form::Cartesian,
+        x,
+        y,
+        series,
+    };
+    let error = || Axis::of("Test − reference", "rad");
+    let title = |what: &str| format!("{what} at {slow_rad_s:.0} rad/s, forwards (CCW) and back (CW)");
+    let mut over_angle = ways(false);
+    over_angle.push(table.series("look-up table"));
+    let all = |left: Left| -> Vec<f64> {
+        sweeps.iter().flat_map(|sweep| (0..sweep.error_rad.len()).map(move |i| left(sweep, i))).collect()
+    };
+    let mut figures = vec![
+        Figure {
+            form: Form::Polar,
+            ..figure("polar", title("Error around the turn"), Axis::of("Angle", "rad"), error(), ways(true))
+        },
+        figure("shape", title("Error over the angle"), Axis::of("Angle", "rad"), error(), over_angle),
+    ];
+    figures.extend(harmonics(sweeps, poles, stages));
+    figures.push(figure(
+        "histogram",
+        "Histogram of the error".into(),
+        error(),
+        Axis::of("Share", ""),
+        stages.map(|(stage, left)| histogram(stage, &all(left), 60)).to_vec(),
+    ));
+    figures.push(figure(
+        "spectrum",
+        "Spectrum of the look-up table".into(),
+        Axis::of("Periods on a turn", ""),
+        Axis::of("Amplitude", "rad"),
+        vec![Series::new(
+            "look-up table",
+            Mark::Bars,
+            (1..=ORDERS).map(f64::from).collect(),
+            (1..=ORDERS).map(|order| table.harmonic(order)).collect(),
+        )],
+    ));
+    figures
+}
+
+/// Means over the turn; closed where the line goes round.
+fn around<'s>(label: &str, sweeps: impl Iterator<Item = &'s Sweep>, left: Left, closed: bool) -> Series {
+    let (mut x, mut y): (Vec<f64>, Vec<f64>) = means(sweeps, PLACES, left)
+        .into_iter()
+        .enumerate()
+        .filter_map(|(i, mean)| Some(((i as f64 + 0.5) * TAU / PLACES as f64, mean?)))
+        .unzip();
+    if let (true, Some(first_x), Some(first_y)) = (closed, x.first().copied(), y.first().copied()) {
+        x.push(first_x + TAU);
+        y.push(first_y);
+    }
+    Series::new(label, Mark::Line, x, y)
+}
+
+/// Those that have a meaning, before and after, over what noise alone would show.
+fn harmonics(sweeps: &[Sweep], poles: &PolePairs, stages: [(&str, Left); 2]) -> Option<Figure> {
+    let named = poles.orders();
+    let mut series = Vec::new();
+    let mut noise_rad = 0.0_f64;
+    for (stage, left) in stages {
+        let waves = Waves::of(sweeps, named.map(|(order, _)| order), left)?;
+        let places = (0..named.len()).map(|i| i as f64).collect();
+        let band = waves.ci95.to_vec();
+        series.push(Series { band, ..Series::new(stage, Mark::Bars, places, waves.amplitude_rad.to_vec()) });
+        noise_rad = waves.noise_rad;
+    }
+    let ends = vec![-0.5, named.len() as f64 - 0.5];
+    series.push(Series::new("noise stays below, 95 %", Mark::Line, ends, vec![noise_rad; 2]));
+    Some(Figure {
+        name: "harmonics".into(),
+        title: "Harmonics of the error, 95 % intervals".into(),
+        form: Form::Cartesian,
+        x: Axis::names("Periods on a turn", named.map(|(order, meaning)| format!("{order}× {meaning}"))),
+        y: Axis::of("Amplitude", "rad"),
+        series,
+    })
+}

@@ -1,0 +1,130 @@
+//! Whether the sensor bears what the data sheet allows, and what to do where it does not.
+
+use super::edges::{Found, Way};
+use crate::identification::{Axis, Figure, Form, Mark, Series, Verdict};
+
+/// PASS, OUT OF TOLERANCE or NOT SURE, and the ways that are to blame.
+pub struct Judgement {
+    pub verdict: Verdict,
+    pub said: String,
+    pub advice: Option<String>,
+}
+
+impl Judgement {
+    pub fn of(found: &[(&Way, Found)]) -> Self {
+        let those = |holds: Option<bool>| -> Vec<&(&Way, Found)> {
+            found.iter().filter(|(way, found)| way.holds(found) == holds).collect()
+        };
+        let (out, unsure) = (those(Some(false)), those(None));
+        let each = |ways: &[&(&Way, Found)], say: &dyn Fn(&(&Way, Found)) -> String| {
+            ways.iter().map(|one| say(one)).collect::<Vec<_>>().join("; ")
+        };
+        let allowed = |way: &Way| format!("the data sheet allows {}", way.length(way.manufacturing));
+        if !out.is_empty() {
+            let lost = |(way, found): &(&Way, Found)| {
+                let bad = way.length(found.bad.unwrap_or(found.good));
+                format!("{}, where the periods are lost by {bad} and {}", way.title, allowed(way))
+            };
+            let cure = each(&out, &|(way, Found { good, .. })| {
+                let other = found.iter().find(|(other, _)| other.is_opposite(way)).map(|(_, other)| other.good);
+                match other {
+                    Some(other) if (other - good).abs() >= 2.0 * way.manufacturing => {
+                        format!(
+                            "{}: move the sensor by {} the other way, to the middle of both edges",
+                            way.title,
+                            way.length(0.5 * (other + good))
+                        )
+                    }
+                    Some(other) => format!(
+                        "{}: between both edges lie {} only, so look at gap, ring and mounting",
+                        way.title,
+                        way.length(other - good)
+                    ),
+                    None => format!("{}: mount the sensor closer", way.title),
+                }
+            });
+            let said = format!("OUT OF TOLERANCE on {}.", each(&out, &lost));
+            return Self {
+                verdict: Verdict::Identified,
+                said,
+                advice: Some(format!("{cure}. Then align and measure again.")),
+            };
+        }
+        if !unsure.is_empty() {
+            let far = |(way, found): &(&Way, Found)| {
+                format!("{} was consistent up to {}, {}", way.title, way.length(found.good), allowed(way))
+            };
+            let further = each(&unsure, &|(way, _)| format!("--set {}={:.2e}", way.reach, 1.2 * way.manufacturing));
+            return Self {
+                verdict: Verdict::Inconclusive,
+                said: format!("NOT SURE: {}.", each(&unsure, &far)),
+                advice: Some(format!("Go further, and halve more: {further} --set halvings=6.")),
+            };
+        }
+        let said = "PASS: every way is consistent as far as the data sheet allows.".into();
+        Self { verdict: Verdict::Identified, said, advice: None }
+    }
+}
+
+/// Each way's last consistent place as a share of the data sheet's tolerance, and where the periods are lost.
+pub fn figure(found: &[(&Way, Found)]) -> Figure {
+    let share = |way: &Way, at: f64| at.abs() / way.manufacturing;
+    let last: Vec<f64> = found.iter().map(|(way, found)| share(way, found.good)).collect();
+    // Where they were never lost nobody knows the upper end.
+    let end = |(way, found): &(&Way, Found)| [share(way, found.good), share(way, found.bad.unwrap_or(found.good))];
+    let ends = vec![-0.5, found.len() as f64 - 0.5];
+    let places = (0..found.len()).map(|i| i as f64).collect();
+    Figure {
+        name: "tolerance".into(),
+        title: "Last consistent place over the tolerance; whiskers end where the periods are lost".into(),
+        form: Form::Cartesian,
+        x: Axis::names("Way", found.iter().map(|(way, _)| way.title)),
+        y: Axis::of("Share of the manufacturing tolerance", ""),
+        series: vec![
+            Series { band: found.iter().map(end).collect(), ..Series::new("measured", Mark::Bars, places, last) },
+            Series::new("data sheet", Mark::Line, ends, vec![1.0; 2]),
+        ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::edges::WAYS;
+    use super::*;
+
+    /// The ways along the radial shift, consistent up to and lost at, in millimetres.
+    fn judged(places_mm: [(f64, Option<f64>); 2]) -> Judgement {
+        let found = |i: usize| {
+            let (good, bad) = places_mm[i];
+            (&WAYS[i], Found { good: 1e-3 * good, bad: bad.map(|bad| 1e-3 * bad) })
+        };
+        Judgement::of(&[found(0), found(1)])
+    }
+
+    #[test]
+    fn a_sensor_is_held_against_its_data_sheet() {
+        let pass = judged([(-0.24, Some(-0.26)), (0.3, None)]);
+        assert!(pass.said.starts_with("PASS") && pass.advice.is_none(), "{}", pass.said);
+
+        let aside = judged([(-0.40, Some(-0.42)), (0.10, Some(0.12))]);
+        assert!(
+            aside.said.starts_with("OUT OF TOLERANCE on Radial shift +") && aside.said.contains("120 µm"),
+            "{}",
+            aside.said
+        );
+        assert!(aside.advice.unwrap().contains("move the sensor by 150 µm the other way"));
+
+        let narrow = judged([(-0.10, Some(-0.12)), (0.10, Some(0.12))]);
+        assert!(narrow.advice.unwrap().contains("between both edges lie 200 µm only"));
+    }
+
+    #[test]
+    fn what_was_not_tried_is_not_sure() {
+        for radial in [(0.10, None), (0.14, Some(0.16))] {
+            let short = judged([(-0.24, Some(-0.26)), radial]);
+            assert_eq!(short.verdict, Verdict::Inconclusive);
+            assert!(short.said.starts_with("NOT SURE: Radial shift +"), "{}", short.said);
+            assert!(short.advice.unwrap().contains("--set radial_reach_m=1.80e-4"));
+        }
+    }
+}
