@@ -115,6 +115,8 @@ impl Plan {
             limit: constants.link_range_rad,
             ok: constants.link_range_rad.is_none_or(|range_rad| travel_rad <= range_rad),
         });
+        // A bench without a brake is asked for nothing of it.
+        extremes.retain(|extreme| extreme.value != 0.0 || extreme.limit != Some(0.0));
         extremes
     }
 
@@ -128,7 +130,7 @@ impl Plan {
         let needs_brake = self.top_brake_current_a() > 0.0;
         let feeds = self.steps.iter().any(|step| matches!(step.drive, Drive::Fed(_)));
         let cannot_feed = feeds && !facts.feeds_forward;
-        vec![
+        let mut checks = vec![
             Check {
                 name: "limits",
                 ok: broken.is_empty(),
@@ -163,7 +165,9 @@ impl Plan {
                 detail: format!("{} steps, each from rest to rest", self.steps.len()),
                 cure: None,
             },
-        ]
+        ];
+        checks.retain(|check| check.name != "brake" || facts.has_brake || needs_brake);
+        checks
     }
 
     fn setpoints(&self) -> Setpoints {

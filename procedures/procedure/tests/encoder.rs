@@ -255,6 +255,17 @@ fn a_bench_without_a_switch_waits_for_a_hand_and_notices_when_it_did_nothing() {
 const POINT_RAD: f64 = std::f64::consts::TAU / 262_144.0;
 
 #[test]
+fn the_dry_run_says_nothing_of_a_brake_where_there_is_none() {
+    let (_, _mock, bench) = open(1, false);
+    let facts = BenchFacts::of(&bench);
+    let preview = procedure("encoder_offset").unwrap().plan(&Default::default(), &facts).unwrap().preview(&facts);
+    let told: Vec<_> =
+        preview.extremes.iter().map(|one| one.quantity).chain(preview.checks.iter().map(|one| one.name)).collect();
+    assert!(told.contains(&"motor velocity") && told.contains(&"limits"), "{told:?}");
+    assert!(!told.iter().any(|name| name.contains("brake") || name.contains("torque")), "{told:?}");
+}
+
+#[test]
 fn offset_and_delay_are_those_that_the_mock_was_given() {
     let (truth, _mock, mut bench) = open(3, false);
     let conducted = conduct(&mut bench, procedure("encoder_offset").unwrap(), &Default::default()).unwrap();

@@ -171,7 +171,7 @@ fn trajectories(followed: &[Followed], period_s: f64) -> Figure {
     };
     let mut series = vec![shown("reference", none, &|i| none.reference_rad[i])];
     for one in [Some(none), followed.iter().min_by(by_error)].into_iter().flatten() {
-        let label = format!("{}, error × {larger}", one.way.words()[1]);
+        let label = format!("{} (error × {larger})", one.way.words()[1]);
         series.push(shown(&label, one, &|i| one.reference_rad[i] - larger * one.error_rad[i]));
     }
     Figure {
