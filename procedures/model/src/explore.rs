@@ -1,5 +1,7 @@
 //! From a model to the model that is left when nothing more can be named, with everything learnt on the way.
 
+mod given;
+
 use crate::assembly::Assembly;
 use crate::effect::Stage;
 use crate::intervals::intervals;
@@ -82,9 +84,12 @@ impl<'p> Exploration<'p> {
     ) -> Result<Self, ModelError> {
         let start = Assembly::new(prepared, spec, options)?;
         let library = Library::new(spec, &prepared.main, prepared.stages());
-        let mut search = Search::new(start.main.clone(), &library, &prepared.baseline, most, options);
-        let mut advances: Vec<Advance> = Vec::new();
-        let mut effects = start.effects.clone();
+        let mut advances: Vec<Advance> = given::advance(&start, &library, options).into_iter().collect();
+        advances.iter().for_each(&mut *on_advance);
+        let begin = advances.first().map_or(&start, |a| &a.after);
+        let left = most.saturating_sub(advances.len());
+        let mut search = Search::new(begin.main.clone(), &library, &prepared.baseline, left, options);
+        let mut effects = begin.effects.clone();
         let mut taken_back = Vec::new();
         let (maps, residual, open) = loop {
             let made = search.next().or_else(|| {
@@ -214,9 +219,8 @@ impl<'p> Exploration<'p> {
 impl Exploration<'_> {
     /// Share of the held-out error that the last model has less than the same model without an effect.
     pub fn lost_without(&self, id: &str) -> f64 {
-        let end = self.end();
-        let part = std::iter::once(&end.main).chain(&end.moving).find(|part| part.contains(id));
-        part.map_or(0.0, |part| 1.0 - held_out_rms(part) / held_out_rms(&part.without(id)))
+        let parts = parts_without(self.end(), id);
+        parts.first().map_or(0.0, |(part, without)| 1.0 - held_out_rms(part) / held_out_rms(without))
     }
 }
 
@@ -346,7 +350,17 @@ fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, 
 
 /// Share of the squared error without an effect that the effect takes away.
 fn importance(end: &Assembly, id: &str) -> f64 {
-    let loss = |terms: &Terms| 1.0 - terms.linear().sse / terms.without(id).linear().sse;
-    let parts = std::iter::once(&end.main).chain(&end.moving);
-    parts.filter(|t| t.contains(id)).map(loss).fold(0.0, f64::max)
+    let loss = |(part, without): &(&Terms, Terms)| 1.0 - part.linear().sse / without.linear().sse;
+    parts_without(end, id).iter().map(loss).fold(0.0, f64::max)
+}
+
+/// The parts of a model that hold an effect, beside what they are without it.
+fn parts_without<'a, 'p>(end: &'a Assembly<'p>, id: &str) -> Vec<(&'a Terms<'p>, Terms<'p>)> {
+    if let Ok(effect) = end.spec.find(id)
+        && effect.is_given()
+    {
+        return vec![(&end.main, end.main.without_given(effect))];
+    }
+    let parts = std::iter::once(&end.main).chain(&end.moving).filter(|part| part.contains(id));
+    parts.map(|part| (part, part.without(id))).collect()
 }

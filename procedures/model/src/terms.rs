@@ -86,6 +86,16 @@ impl<'p> Terms<'p> {
         less
     }
 
+    /// The same without an effect that enters with a factor of one.
+    pub fn without_given(&self, effect: &dyn Effect) -> Self {
+        let mut less = self.clone();
+        for column in columns(effect, "linear", &[], self.problem) {
+            less.given.iter_mut().zip(column).for_each(|(g, c)| *g -= c);
+        }
+        less.refine();
+        less
+    }
+
     /// The same with the shape of one effect held where it is.
     pub fn held(&self, id: &str) -> Self {
         let mut held = self.clone();

@@ -74,6 +74,21 @@ fn a_hidden_effect_is_named() {
     check_found("drift", 6, |m| dry(m) + 1e-4 * m.time);
 }
 
+/// A Stribeck peak bends into the place of Coulomb or viscous friction where it stands in the model without one of them.
+#[test]
+fn what_is_taken_out_of_a_complete_model_is_what_is_named() {
+    let peak = |m: Moment| 0.012 * m.velocity.signum() / (1.0 + (m.velocity / 6.0).powi(2)).powi(2);
+    let run = bench(9).run(|m| dry(m) + peak(m));
+    let complete = ["load_transmission", "coulomb", "viscous", "stribeck"];
+    for removed in complete {
+        let rest = complete.into_iter().filter(|e| *e != removed);
+        let found = diagnose(&run, &ModelSpec::new(run.kind(), rest).unwrap(), &Options::default()).unwrap();
+        let named: Vec<&str> = found.suggestions.iter().map(|s| s.effect.as_str()).collect();
+        assert_eq!(named, [removed], "without {removed}: {}", found.summary);
+        assert!(found.suggestions[0].error_reduction > 0.1, "{:?}", found.suggestions);
+    }
+}
+
 /// Chunks of one sample make so many rows that neighbours are averaged.
 #[test]
 fn a_run_of_many_chunks_says_the_same_in_fewer_rows() {

@@ -1,9 +1,9 @@
 //! Measures the diagnosis, as docs/diagnosis.md reports it:
 //!
-//! `cargo run --release -p jointbench-model --example evaluate -- [--part hidden,practice,null,power,speed]
+//! `cargo run --release -p jointbench-model --example evaluate -- [--part hidden,removed,practice,null,power,speed]
 //! [--rounds 3] [--count 400] [--first 0] [--family friction] [--only NAME] [--quiet]`, or a FOLDER that holds a run.
 //!
-//! hidden: machines with hidden effects, simulated here (`made`). practice: measurements with a known answer from beside
+//! hidden: machines with hidden effects, simulated here (`made`). removed: one effect taken out of their complete models. practice: measurements with a known answer from beside
 //! the repository. null: runs with nothing hidden. power: weak effects. speed: seconds and memory.
 
 #[path = "../../tests/common/mod.rs"]
@@ -12,6 +12,7 @@ mod made;
 mod null;
 mod options;
 mod power;
+mod removed;
 mod score;
 mod show;
 mod speed;
@@ -33,6 +34,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             table.judge(&case)?;
         }
         table.print();
+    }
+    if asked.wants("removed") {
+        removed::measure(&asked)?;
     }
     if asked.wants("practice")
         && let Some(folder) = common::shared("hidden-effects")

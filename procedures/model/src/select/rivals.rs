@@ -186,7 +186,7 @@ fn family_wise(term: &Term, mut scores: Vec<Score>, ground: &Ground, options: &O
 }
 
 /// Two models tie where the difference of their held-out errors is not larger than its own scatter over the folds.
-pub(super) fn is_tie(a: &[f64], b: &[f64]) -> bool {
+pub fn is_tie(a: &[f64], b: &[f64]) -> bool {
     let differences: Vec<f64> = b.iter().zip(a).map(|(b, a)| b - a).collect();
     let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;

@@ -15,6 +15,9 @@ pub enum Move<'p> {
     Removed(&'p str),
 }
 
+/// An effect with what the run cannot tell it from.
+type Found<'p> = (Rival<'p>, Vec<&'p str>);
+
 /// A candidate that was looked for and not found.
 pub struct Silence<'p> {
     pub effect: &'p str,
@@ -57,6 +60,8 @@ pub struct Search<'l, 'p> {
     last: Option<&'p str>,
     pub(super) left: usize,
     exchanges: usize,
+    /// What takes the place of an effect that was just removed.
+    instead: Option<Found<'p>>,
     /// Something from outside the library was seen: whatever entered now would stand for it.
     pub closed: bool,
 }
@@ -89,11 +94,12 @@ impl<'l, 'p> Search<'l, 'p> {
             last: None,
             left: most,
             exchanges: EXCHANGES,
+            instead: None,
             closed: false,
         }
     }
 
-    fn step(&self, now: &Terms<'p>) -> Option<(Rival<'p>, Vec<&'p str>)> {
+    fn step(&self, now: &Terms<'p>) -> Option<Found<'p>> {
         step(now, self.library, &self.withdrawn, self.bar())
     }
 
@@ -132,20 +138,23 @@ impl<'l, 'p> Search<'l, 'p> {
         Move::Removed(id)
     }
 
-    /// An added effect in whose place another one makes the model clearly better: one effect that came first because it
-    /// looks a little like two that are missing. No effect gives way to one that this run cannot tell it from.
-    fn misplaced(&self) -> Option<&'p str> {
+    /// An added effect in whose place another one makes the model clearly better, with that one: an effect that came first
+    /// because it looks a little like two that are missing. No effect gives way to one that this run cannot tell it from.
+    fn misplaced(&self) -> Option<(&'p str, Found<'p>)> {
         let losses = held_out(&self.now);
         let present: f64 = losses.iter().sum();
         let ids: Vec<&'p str> = self.added().map(Term::id).collect();
         let alone = self.now.terms.len() <= self.kept.len() + 1;
-        ids.into_par_iter().filter(|_| !alone).find_first(|id| {
-            let better = self.step(&self.now.without(id));
-            better.is_some_and(|(rival, _)| {
+        let better = |id: &'p str| {
+            let rest = self.now.without(id);
+            let plain = if alone { None } else { self.step(&rest) };
+            let plain = plain.filter(|(rival, _)| {
                 let clearly = rival.held_out < (1.0 - self.options.practical_share) * present;
-                rival.term.id() != *id && clearly && !is_tie(&rival.losses, &losses)
-            })
-        })
+                rival.term.id() != id && clearly && !is_tie(&rival.losses, &losses)
+            });
+            plain.or_else(|| self.behind_bent(&rest, Some(id), &losses)).map(|found| (id, found))
+        };
+        ids.into_par_iter().find_map_first(better)
     }
 
     /// The added effect without which the model is as good. What came last has just shown its reason.
@@ -181,6 +190,35 @@ impl<'l, 'p> Search<'l, 'p> {
             (share < self.options.practical_share || is_remainder).then_some((term.id(), share))
         });
         idle.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+    }
+
+    /// What to add next.
+    fn best(&self) -> Option<Found<'p>> {
+        let plain = self.step(&self.now);
+        if !self.now.terms.iter().any(|term| self.bends(term)) {
+            return plain;
+        }
+        let than = plain.as_ref().map_or_else(|| held_out(&self.now), |p| held_out(&self.laid_with(p.0.term.id())));
+        self.behind_bent(&self.now, None, &than).or(plain)
+    }
+
+    /// A given effect may have bent into the place of another one until nothing of that shows beside it: without a viscous
+    /// torque a Stribeck peak becomes negative and wide. What is missing without the given one, and makes the model with
+    /// both clearly better than one that has these held-out errors, is what it stands for.
+    fn behind_bent(&self, now: &Terms<'p>, but: Option<&'p str>, than: &[f64]) -> Option<Found<'p>> {
+        now.terms.iter().filter(|term| self.bends(term)).find_map(|given| {
+            let out: Vec<&str> = self.withdrawn.iter().copied().chain([given.id()]).chain(but).collect();
+            let found = step(&now.without(given.id()), self.library, &out, self.bar())?;
+            let with: Vec<&str> = now.terms.iter().map(Term::id).chain([found.0.term.id()]).collect();
+            let losses = held_out(&lay(now, &with, self.library, self.options));
+            let less = 1.0 - losses.iter().sum::<f64>() / than.iter().sum::<f64>();
+            (less > self.options.practical_share && !is_tie(&losses, than)).then_some(found)
+        })
+    }
+
+    /// A given effect of which the data decides more than one factor.
+    fn bends(&self, term: &Term) -> bool {
+        self.kept.contains(&term.id()) && term.size() > 1
     }
 
     /// The model with one effect more.
@@ -264,7 +302,7 @@ impl<'p> Iterator for Search<'_, 'p> {
             };
             self.given_up.iter().any(clearly)
         };
-        let found = if self.left > 0 { self.step(&self.now) } else { None };
+        let found = self.instead.take().or_else(|| if self.left > 0 { self.best() } else { None });
         let found = found.filter(|(rival, _)| !stands_in(rival));
         let Some((rival, ties)) = found else {
             if let Some(id) = self.impossible(&self.now).or_else(|| self.idle()) {
@@ -272,7 +310,8 @@ impl<'p> Iterator for Search<'_, 'p> {
                 return Some(self.remove(id));
             }
             self.exchanges = self.exchanges.checked_sub(1)?;
-            let id = self.misplaced()?;
+            let (id, better) = self.misplaced()?;
+            self.instead = Some(better);
             return Some(self.remove(id));
         };
         Some(self.add(rival, ties))
