@@ -69,7 +69,11 @@ impl Done {
 pub fn joined(first: &RunTable, done: &Done, second: &RunTable, later_s: f64) -> Result<RunTable, TableFault> {
     let continues = Continues::of(second.meta());
     let finished = part(first, |segment| done.segments.contains(&segment))?;
-    let rest = part(second, |segment| continues.is_none_or(|continues| !continues.restores(segment)))?;
+    let rest = match part(second, |segment| continues.is_none_or(|continues| !continues.restores(segment))) {
+        // It is still restoring.
+        Err(TableFault::Empty) => return Ok(finished),
+        rest => rest?,
+    };
     let (meta, rest) = rest.into_parts();
     let (_, mut whole) = finished.into_parts();
     let ended_s = whole.column("time_s").and_then(|time_s| time_s.last()).copied().unwrap_or(0.0);
@@ -136,6 +140,10 @@ mod tests {
         let whole = joined(&first, &done, &second, 100.0).unwrap();
         assert_eq!(whole.column("motor_current_a").unwrap(), [0.1, 0.2, 0.5, 0.6]);
         assert_eq!(whole.column("time_s").unwrap(), [0.0, 1.0, 101.0, 102.0]);
+        // As long as the second only restores, the measurement is what the first has finished.
+        let restoring = table(Some(continues), &[[0.0, 1.0, 0.4, 9.0]]);
+        let whole = joined(&first, &done, &restoring, 100.0).unwrap();
+        assert_eq!(whole.column("motor_current_a").unwrap(), [0.1, 0.2]);
         done.take(Some(continues), 0, 9, true);
         done.take(Some(continues), 1, 2, true);
         assert_eq!((done.steps, done.segments.contains(&9)), (3, false));

@@ -112,6 +112,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(models::get))
         .routes(routes!(revisions::compare))
         .routes(routes!(revisions::worth))
+        .routes(routes!(revisions::with_effect))
         .routes(routes!(revisions::evaluate))
         .routes(routes!(revisions::export))
         .routes(routes!(revisions::import))

@@ -39,6 +39,14 @@ pub async fn worth(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Wo
     Ok(Json(lab.worth(id).await?))
 }
 
+/// What an effect more would add to the prediction of a model version, at each point of its residuals
+#[utoipa::path(get, path = "/models/{id}/with/{effect}", operation_id = "predict_with", tag = "models",
+    params(("id" = i64, Path, description = "Model version"), ("effect" = String, Path, description = "An effect that it lacks")),
+    responses((status = 200, description = "In the unit of the residuals; nothing is kept", body = Vec<f64>), Refusals))]
+pub async fn with_effect(State(lab): State<Lab>, Path((id, effect)): Path<(i64, String)>) -> Answer<Vec<f64>> {
+    Ok(Json(lab.with_effect(id, effect).await?))
+}
+
 /// The error of a model version on any run of its kind
 #[utoipa::path(post, path = "/models/{id}/evaluate", operation_id = "evaluate_model", tag = "models",
     params(("id" = i64, Path, description = "Model version")), request_body = NewEvaluation,

@@ -4,6 +4,7 @@ use super::pilot::{Goal, Pilot};
 use super::{Answer, Lab, LabError, reread};
 use crate::store::AutopilotRecord;
 use crate::view::{Autopilot, AutopilotState, AutopilotStep, NewAutopilot, NewExperiment};
+use jointbench_instrument::Kind;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -36,17 +37,26 @@ pub(super) const INTERRUPTED: &str = "the daemon ended before the autopilot did;
 
 impl Lab {
     pub async fn start_autopilot(&self, new: &NewAutopilot) -> Answer<Autopilot> {
-        let handle = self.handle(&new.bench)?;
+        self.handle(&new.bench)?;
         if new.runs == 0 {
             return Err(LabError::Invalid("runs = 0: give 1 or more".into()));
         }
         if new.bench_time_s.is_some_and(|s| !(s.is_finite() && s > 0.0)) {
             return Err(LabError::Invalid("bench_time_s: expected a time above 0 s".into()));
         }
-        if let Some(run) = new.from_run {
-            self.inner.store.run(run).await?;
+        let kind = match new.from_run {
+            Some(run) => self.measurement(run).await?.kind(),
+            None => self.first_run(new).await?,
+        };
+        if let Some(effects) = &new.effects {
+            self.spec(kind, effects).await?;
         }
-        // A first run that cannot be made is refused now, not later.
+        self.take_off(&new.bench, reread(new)?, Goal::Explain(new.clone())).await
+    }
+
+    /// A first run that cannot be made is refused now, not later.
+    async fn first_run(&self, new: &NewAutopilot) -> Answer<Kind> {
+        let handle = self.handle(&new.bench)?;
         let (_, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
         let planned_s = plan.duration_s();
         if let Some(failed) = plan.preview(&handle.facts()).checks.into_iter().find(|check| !check.ok) {
@@ -57,10 +67,7 @@ impl Lab {
                 "the first run alone may take {planned_s:.0} s: raise bench_time_s, or choose a shorter one"
             )));
         }
-        if let Some(effects) = &new.effects {
-            self.spec(plan.kind, effects).await?;
-        }
-        self.take_off(&new.bench, reread(new)?, Goal::Explain(new.clone())).await
+        Ok(plan.kind)
     }
 
     /// Makes the run that a diagnosis asks for and diagnoses the same model again with it.

@@ -101,8 +101,12 @@ impl Pilot {
             separates: Vec::new(),
         };
         let mut root = None;
+        let mut given = request.from_run;
         loop {
-            let run = through!(self.measure(&next).await?);
+            let run = match given.take() {
+                Some(run) => self.begin_with(run).await?,
+                None => through!(self.measure(&next).await?),
+            };
             let effects = match &request.effects {
                 Some(effects) => effects.clone(),
                 None => baseline(&run)?,
@@ -151,6 +155,12 @@ impl Pilot {
     fn can_afford(&self, request: &NewAutopilot, experiment: &Experiment) -> bool {
         let left_s = request.bench_time_s.map_or(f64::INFINITY, |budget_s| budget_s - self.bench_time_s);
         self.made < request.runs && experiment.expected_duration_s.unwrap_or(0.0) <= left_s
+    }
+
+    /// A run that is there.
+    async fn begin_with(&mut self, id: i64) -> Answer<Run> {
+        self.runs.push(id);
+        self.lab.run(id).await
     }
 
     /// Makes a run and waits for its end.
@@ -212,7 +222,18 @@ impl Pilot {
             Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
             None => None,
         };
-        let model = self.lab.create_model(&self.runs, effects, parent, None).await?;
+        // The run that it begins with may have this version already.
+        let mut versions = match (parent, self.runs.as_slice()) {
+            (None, [run]) => self.lab.models(*run).await?,
+            _ => Vec::new(),
+        };
+        versions.retain(|one| {
+            one.parent.is_none() && one.effects == effects && one.more_runs.is_empty() && one.excluded.is_empty()
+        });
+        let model = match versions.pop() {
+            Some(known) => known,
+            None => self.lab.create_model(&self.runs, effects, parent, None).await?,
+        };
         let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
         let found = self.diagnosed(&model, step).await?;
         Ok((model, found))

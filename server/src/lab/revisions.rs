@@ -51,6 +51,25 @@ impl Lab {
         Ok(worth)
     }
 
+    /// What an effect more would add to the prediction at each point of the version's residuals, all fitted again with it.
+    pub async fn with_effect(&self, model: i64, effect: String) -> Answer<Vec<f64>> {
+        let record = self.inner.store.model(model).await?;
+        let before: Fit = reread(&record.fit)?;
+        let whole = self.tables(&record.runs()).await?;
+        let fitted = self.fitted_table(&record).await?;
+        let mut own = before.own.clone();
+        let theirs = self.own_effects(before.kind).await?;
+        own.extend(theirs.into_iter().filter(|one| one.id() == effect && !before.own.iter().any(|o| o.id() == effect)));
+        let spec = ModelSpec::with_own(before.kind, record.effects.iter().chain([&effect]), own)?;
+        blocking(move || {
+            let options = Options::default();
+            let after = jointbench_model::fit(&fitted, &spec, &options)?;
+            let [before, after] = [before, after].map(|fit| jointbench_model::residuals(&whole, &fit, &options));
+            Ok(after?.predicted.iter().zip(before?.predicted).map(|(after, before)| after - before).collect())
+        })
+        .await
+    }
+
     pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {
         let fit = self.fit(model).await?;
         let table = self.measurement(run).await?;

@@ -11,14 +11,14 @@ use utoipa::ToSchema;
 #[serde(deny_unknown_fields)]
 pub struct NewAutopilot {
     pub bench: String,
-    /// At most so many runs, the first included.
+    /// At most so many runs, one that it makes first included.
     #[serde(default = "three")]
     #[schema(default = 3, minimum = 1, maximum = 50)]
     pub runs: u32,
     /// At most so much time of the bench; no bound where left out.
     #[serde(default)]
     pub bench_time_s: Option<f64>,
-    /// The first run.
+    /// The first run, where it makes that.
     #[serde(default = "friction")]
     #[schema(default = "friction")]
     pub procedure: String,
@@ -33,7 +33,7 @@ pub struct NewAutopilot {
     #[serde(default = "six")]
     #[schema(default = 6, maximum = 20)]
     pub max_effects: u32,
-    /// The run from which it was started: whoever looks at that one is told of it too.
+    /// A run that is there: it begins with this one, and makes none before it has looked at it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_run: Option<i64>,
 }

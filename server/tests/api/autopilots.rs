@@ -127,6 +127,17 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
     let (_, after) = daemon.post("/api/v1/diagnoses", &json!({"model": again["id"]}).to_string());
     assert_eq!(after["suggestions"][0]["effect"], "load_linear", "{}", after["summary"]);
 
+    let (_, set) = daemon.get(&format!("/api/v1/models/{}/residuals", again["id"]));
+    let (status, shape) = daemon.get(&format!("/api/v1/models/{}/with/load_linear", again["id"]));
+    assert_eq!(status, 200, "{shape}");
+    let numbers = |list: &Value| list.as_array().unwrap().iter().filter_map(Value::as_f64).collect::<Vec<_>>();
+    let (error, shape) = (numbers(&set["error"]), numbers(&shape));
+    assert_eq!(error.len(), shape.len());
+    let fitted: Vec<usize> = (0..error.len()).filter(|i| set["held_out"][i] == false).collect();
+    let left: f64 = fitted.iter().map(|&i| (error[i] - shape[i]).powi(2)).sum();
+    let whole: f64 = fitted.iter().map(|&i| error[i].powi(2)).sum();
+    assert!(left < 0.5 * whole, "the shape lies on the residual: {left} of {whole}");
+
     let share_outside = |parameters: Value| {
         let body = json!({"bench": BENCH, "procedure": "friction", "parameters": parameters});
         let (_, run) = daemon.post("/api/v1/runs", &body.to_string());
@@ -142,6 +153,23 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
     loaded["load_levels"] = 3.into();
     let loaded = share_outside(loaded);
     assert!(loaded > 0.3, "what the model lacks leaves the band: {loaded}");
+}
+
+#[test]
+fn an_autopilot_begins_with_the_run_that_is_there() {
+    let daemon = hiding(&["load_linear"], None);
+    let (_, run) = daemon
+        .post("/api/v1/runs", &json!({"bench": BENCH, "procedure": "friction", "parameters": no_load()}).to_string());
+    daemon.wait_for_end(run["id"].as_i64().unwrap());
+    let body = json!({"run": run["id"], "effects": ["inertia", "load_transmission", "coulomb", "viscous"]});
+    let (_, model) = daemon.post("/api/v1/models", &body.to_string());
+    let id = start(&daemon, &json!({"bench": BENCH, "runs": 1, "from_run": run["id"], "effects": body["effects"]}));
+    let ended = wait(&daemon, id);
+    assert_eq!((&ended["steps"][0]["action"], &ended["steps"][0]["model"]), (&"fit".into(), &model["id"]), "{ended}");
+    assert_eq!(ended["runs"].as_array().unwrap().len(), 1, "one further run: {ended}");
+    assert_eq!(added(&daemon, &ended), ["load_linear"], "{ended}");
+    let (_, last) = daemon.get(&format!("/api/v1/models/{}", ended["model"]));
+    assert_eq!((&last["run"], &last["more_runs"]), (&run["id"], &ended["runs"]), "{last}");
 }
 
 #[test]
