@@ -11,7 +11,8 @@ const smaller: Plugin = {
 	apply: 'build',
 	async generateBundle(_, bundle) {
 		for (const chunk of Object.values(bundle)) {
-			if (chunk.type === 'chunk') chunk.code = (await minify(chunk.code, { module: true, ecma: 2020, compress: { passes: 3, unsafe_arrows: true } })).code ?? chunk.code;
+			// A second time finds half a kilobyte more.
+			for (let time = 0; time < 2 && chunk.type === 'chunk'; time++) chunk.code = (await minify(chunk.code, { module: true, ecma: 2020, compress: { passes: 2, unsafe_arrows: true } })).code ?? chunk.code;
 		}
 	},
 };

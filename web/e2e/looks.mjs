@@ -33,6 +33,7 @@ export async function zoomWhileFollowing(page, base) {
 	await page.goto(`${base}/runs/${id}`);
 	const plot = page.locator('main figure .u-over').first();
 	await plot.waitFor({ timeout: PATIENCE_MS });
+	await audit(page, 'the run that is on');
 	await plot.hover();
 	await page.mouse.wheel(0, -300);
 	await page.waitForURL(/view=follow:[\d.]+/, { timeout: 10_000 }).catch(() => expect(false, `a zoom ends the following: ${page.url()}`));
@@ -43,6 +44,25 @@ export async function zoomWhileFollowing(page, base) {
 	while ((await picture()) === before && Date.now() < until) await page.waitForTimeout(100);
 	expect((await picture()) !== before, 'the plot stands still after a zoom, although the run goes on');
 	await fetch(`${base}/api/v1/runs/${id}/abort`, { method: 'POST' });
+}
+
+/** Looks closer at a plot and chooses a cell of the residual map, by keyboard alone; what the map says of the cell. */
+export async function byKeyboard(page) {
+	const plot = page.locator('section', { has: page.getByRole('heading', { name: 'Measured against model' }) }).locator('.uplot').first();
+	await plot.focus();
+	await page.keyboard.press('+');
+	await page.waitForURL(/zoom=/, { timeout: 5000 }).catch(() => expect(false, 'a plot cannot be zoomed by keyboard'));
+	await page.keyboard.press('ArrowRight');
+	await page.keyboard.press('Home');
+	await page.waitForURL((url) => !url.searchParams.has('zoom'), { timeout: 5000 }).catch(() => expect(false, 'Home does not show all'));
+	const map = page.getByRole('application');
+	await map.focus();
+	for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'Shift+ArrowUp']) await page.keyboard.press(key);
+	const said = await page.locator('output', { hasText: 'n = ' }).or(page.locator('output', { hasText: 'never visited' })).first().innerText();
+	await page.keyboard.press('Enter');
+	await page.waitForURL((url) => url.searchParams.get('region')?.split(',').length === 2, { timeout: 5000 }).catch(() => expect(false, 'no cell can be chosen by keyboard'));
+	await page.keyboard.press('c');
+	return said;
 }
 
 /** An address of a version that is not there: the page says so, and which one it shows. */

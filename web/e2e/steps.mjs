@@ -157,15 +157,33 @@ export async function tryAndDrop(page) {
 	return said;
 }
 
+/** How far things have jumped on this page since it was opened, by what nobody did. */
+const jumpsOf = (page) => page.evaluate(() => new Promise((ok) => {
+	new PerformanceObserver((list) => ok(list.getEntries().reduce((sum, one) => sum + (one.hadRecentInput ? 0 : one.value), 0))).observe({ type: 'layout-shift', buffered: true });
+	setTimeout(() => ok(0), 1000);
+}));
+
+/** How far things jump while the workbench of a run opens, on a desk and on a phone. */
+export async function openWorkbench(another, address) {
+	const jumps = [];
+	for (const size of [WIDE, PHONE]) {
+		const page = await another();
+		await page.setViewportSize(size);
+		await page.goto(address);
+		await readVersion(page);
+		await page.locator('[data-worth]').first().waitFor({ timeout: FIT_MS });
+		jumps.push(await jumpsOf(page));
+		await page.close();
+	}
+	return jumps;
+}
+
 /** The page of a daemon without any run: what it says, how far things jump while it loads, and what it may load at all. */
 export async function firstUse(page, base) {
 	const answer = await page.goto(base);
 	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
 	await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 30_000 });
-	const jumps = await page.evaluate(() => new Promise((ok) => {
-		new PerformanceObserver((list) => ok(list.getEntries().reduce((sum, one) => sum + one.value, 0))).observe({ type: 'layout-shift', buffered: true });
-		setTimeout(() => ok(0), 1000);
-	}));
+	const jumps = await jumpsOf(page);
 	return { jumps, policy: answer.headers()['content-security-policy'] ?? '' };
 }
 

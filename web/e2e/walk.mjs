@@ -1,13 +1,13 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
-// both, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; the software stop by key;
+// both, by keyboard too, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; the software stop by key;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { askForNone, bringBack, dashesOf, manyRuns, readResults, takeAway, zoomWhileFollowing } from './looks.mjs';
-import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, readResult, readVersion, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
+import { askForNone, bringBack, byKeyboard, dashesOf, manyRuns, readResults, takeAway, zoomWhileFollowing } from './looks.mjs';
+import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, openWorkbench, readResult, readVersion, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** Without typeset formulas, whose script comes with the first of them. */
@@ -68,9 +68,13 @@ await tell('walk', async () => {
 	const chosen = await brush(page);
 	expect(chosen > 0, 'the brush chose no sample');
 	expect((await page.locator('svg line[stroke="var(--oi-purple)"]').count()) > 0, 'the chosen samples are not marked along the axes');
+	const cell = await byKeyboard(page);
+	expect(/standard errors|too few|never visited/.test(cell), `the map does not say what its cell is: ${cell}`);
+	await brush(page);
 	const excluded = await excludeAndUndo(page, 'walked over the cable');
 	expect(/without .* s: walked over the cable/.test(excluded), `the page does not say what is excluded: ${excluded}`);
 
+	await page.locator('[data-shape=link_torque_nm]').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the card does not show what is left over the load, with the shape of the effect on it'));
 	const held = await page.evaluate(() => document.querySelector('rect.held.here').dataset.held);
 	const said = await tryAndDrop(page);
 	await audit(page, 'the workbench');
@@ -105,6 +109,10 @@ await tell('walk', async () => {
 	const own = await writeEffect(page, run);
 	expect(own.held < first.held, `the own effect should make the error fall, but it went from ${first.held} to ${own.held}`);
 	await audit(page, 'the own effect');
+
+	const opened = await openWorkbench(another, page.url());
+	expect(opened.every((jumps) => jumps < 0.1), `the workbench jumps while it opens, by ${opened.join(' and ')}`);
+	console.log(`layout shift of the workbench, desk and phone: ${opened.map((jumps) => jumps.toFixed(4)).join(', ')}`);
 
 	const none = await askForNone(page, where.base, run);
 	expect(/; v\d+ \(model \d+\) is shown/.test(none), `the page does not say which version it shows: ${none}`);

@@ -56,6 +56,8 @@ export const api = {
 	/** Without `exclude` the version looks away where its parent does. */
 	fit: (run: number, effects: string[], parent?: { id: number; more_runs: number[] }, exclude?: Exclusion[]) =>
 		ask('post', '/api/v1/models', { body: { run, effects, parent: parent?.id, more_runs: parent?.more_runs, exclude } }),
+	/** What the effect would add to the prediction, at each point of the residuals. */
+	withEffect: (id: number, effect: string, signal?: Signal) => ask('get', '/api/v1/models/{id}/with/{effect}', { path: { id, effect } }, signal),
 	worth: (id: number, signal?: Signal) => ask('get', '/api/v1/models/{id}/worth', { path: { id } }, signal),
 	compare: (first: number, second: number, run: number, signal?: Signal) =>
 		ask('get', '/api/v1/models/{id}/compare/{other}', { path: { id: first, other: second }, query: { run } }, signal),

@@ -20,7 +20,7 @@ export function asked(flight: Autopilot): number | null {
 
 /** The run under which its models are found: a further run is looked at together with the first. */
 export function home(flight: Autopilot): number | null {
-	return asked(flight) === null ? (flight.runs[0] ?? null) : null;
+	return asked(flight) === null ? ((flight.request['from_run'] as number | undefined) ?? flight.runs[0] ?? null) : null;
 }
 
 /** The run that is on, or `null` between runs. */

@@ -89,6 +89,7 @@ export function makeChart(
 		[[], ...frame.curves.map(() => [])] as unknown as uPlot.AlignedData,
 		host,
 	);
+	plot.root.ariaLabel = `${frame.yTitle} over ${frame.xTitle}`;
 	lines = rulers(plot, frame.xTitle, moved, !frame.cursorsAbove);
 	return {
 		draw: (data, next, behind) => {

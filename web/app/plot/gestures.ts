@@ -34,9 +34,31 @@ export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> 
 					u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
 				},
 			],
-			ready: [(u) => u.over.addEventListener('wheel', (event) => zoom(u, event, asked), { passive: false }), (u) => touch(u, asked)],
+			ready: [(u) => u.over.addEventListener('wheel', (event) => zoom(u, event, asked), { passive: false }), (u) => touch(u, asked), (u) => keyed(u, asked)],
 		},
 	};
+}
+
+/** How each key moves the two ends of the view, in parts of it. */
+const MOVES: Partial<Record<string, [from: number, to: number, Hand]>> = {
+	ArrowLeft: [-0.1, -0.1, 'pan'],
+	ArrowRight: [0.1, 0.1, 'pan'],
+	'+': [0.15, -0.15, 'zoom'],
+	'-': [-0.2, 0.2, 'zoom'],
+};
+
+/** The same by keyboard; Home shows all. */
+function keyed(u: uPlot, asked: Asked): void {
+	u.root.tabIndex = 0;
+	u.root.role = 'group';
+	u.root.addEventListener('keydown', (event) => {
+		const { min, max } = u.scales.x!;
+		const move = MOVES[event.key];
+		if (event.target !== u.root || event.ctrlKey || event.metaKey || event.altKey || !(move || event.key === 'Home') || min == null || max == null) return;
+		event.preventDefault();
+		if (move) asked([min + move[0] * (max - min), max + move[1] * (max - min)], move[2]);
+		else asked(null, 'all');
+	});
 }
 
 function zoom(u: uPlot, event: WheelEvent, asked: Asked): void {
@@ -49,7 +71,6 @@ function zoom(u: uPlot, event: WheelEvent, asked: Asked): void {
 }
 
 function pan(u: uPlot, begin: MouseEvent, asked: Asked): void {
-	begin.preventDefault();
 	const { min, max } = u.scales.x!;
 	if (min == null || max == null) return;
 	const each = (max - min) / u.over.clientWidth;

@@ -17,6 +17,16 @@ export function keep(set: ResidualSet, side: Side, ramps = false): Uint8Array {
 	});
 }
 
+/** Positions that go on for more than a turn, folded into one, as the diagnosis does: what a position shows comes again with the next turn. */
+export function inOneTurn(set: ResidualSet): ResidualSet {
+	const turn = 2 * Math.PI;
+	const fold = (values: number[]) => {
+		const [low, high] = values.reduce(([low, high], at) => [Math.min(low, at), Math.max(high, at)], [Infinity, -Infinity]);
+		return high - low > turn ? values.map((at) => ((at % turn) + turn) % turn) : values;
+	};
+	return { ...set, axes: set.axes.map((axis) => (axis.name.endsWith('position_rad') ? { ...axis, values: fold(axis.values) } : axis)) };
+}
+
 /** The sign of the motion at each point, from the axis `direction` or from a velocity. */
 export function directionOf(set: ResidualSet): readonly number[] | null {
 	const named = set.axes.find((axis) => axis.name === 'direction');

@@ -3,6 +3,7 @@ import { binOf, binsFor } from './bins';
 import { curve, explainedShare } from './curve';
 import { residualMap } from './map';
 import { middle, place } from './place';
+import { inOneTurn } from './points';
 import { score, Sums } from './tally';
 import { wholeBins } from './bins';
 import { deepest, depth } from './tally';
@@ -13,6 +14,16 @@ function noise(seed = 1): () => number {
 	return () => ((state = (state * 16807) % 2147483647) / 2147483647) * 2 - 1;
 }
 const all = (n: number) => new Uint8Array(n).fill(1);
+
+describe('positions', () => {
+	it('are folded into one turn where they go on for more', () => {
+		const axis = (name: string, values: number[]) => ({ name, unit: 'rad', values });
+		const set = { axes: [axis('link_position_rad', [-1, 1, 7]), axis('motor_position_rad', [-1, 1, 2]), axis('motor_velocity_rad_s', [-9, 9, 9])] };
+		const [link, motor, velocity] = inOneTurn(set as never).axes.map((one) => one.values);
+		expect(link!.map((at) => at.toFixed(3))).toEqual(['5.283', '1.000', '0.717']);
+		expect([motor, velocity]).toEqual([[-1, 1, 2], [-9, 9, 9]]);
+	});
+});
 
 describe('bins', () => {
 	it('gives every set point a bin of its own, however dense they are', () => {

@@ -12,7 +12,7 @@ export interface Group {
 	curves: Curve[];
 }
 
-const COUNTERS = new Set(['time_s', 'segment', 'repeat']);
+export const COUNTERS = new Set(['time_s', 'segment', 'repeat']);
 /** What a unit measures, in the order in which people look at it. */
 const QUANTITIES = new Map([
 	['rad/s', 'velocity'],

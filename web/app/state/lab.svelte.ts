@@ -65,13 +65,15 @@ class LabState {
 
 	private tick(): void {
 		this.now_ms = performance.now();
-		if (this.now_ms - this.heard_ms > QUIET_MS && !this.asking) void this.ask();
+		if (this.now_ms - Math.max(this.heard_ms, this.asked_ms) > QUIET_MS && !this.asking) void this.ask();
 	}
 
 	private asking = false;
+	private asked_ms = 0;
 
 	private async ask(): Promise<void> {
 		this.asking = true;
+		this.asked_ms = performance.now();
 		try {
 			this.benches = await api.benches(AbortSignal.timeout(2500));
 			this.hear();

@@ -17,6 +17,14 @@ export interface Ranked {
 /** Nobody sets these: they run along, and the means of the segments are no set points. */
 const RUNS_ALONG = /^time_s$|^run_order$|^temperature|position/;
 
+/** What a friction run is made along. */
+const FRICTION = ['motor_velocity_rad_s', 'link_torque_nm', 'link_position_rad', 'motor_position_rad', 'time_s'];
+
+/** What is shown along until a person chooses: always the same, so that versions can be compared. In other runs that which most of what was measured depends on. */
+export function usualAxes(set: ResidualSet, kind: string | undefined): string[] {
+	return kind === 'friction' ? FRICTION : rankAxes(set, set.measured, 'both', false, 0).map((one) => one.axis.name);
+}
+
 /** Every axis with the curve of some figure of each point, the axis that explains most of it first. */
 export function rankAxes(set: ResidualSet, figure: readonly number[], side: Side, ramps: boolean, noise: number, shown: (unit: string) => { factor: number } = () => ({ factor: 1 })): Ranked[] {
 	const kept = keep(set, side, ramps);

@@ -9,8 +9,9 @@ import { resource } from '../state/resource.svelte';
 import { router } from '../state/router.svelte';
 import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
-import { type Side } from '../residual/points';
+import { type Side, inOneTurn } from '../residual/points';
 import { selected } from '../residual/selected';
+import { usualAxes } from './ranked';
 import { readRegion } from './region';
 import { childWith, gain, sameData } from './tree';
 import { tries } from './tries.svelte';
@@ -59,24 +60,26 @@ export function openWorkbench(id: number) {
 	const other: Model | null = $derived(
 		versions.find((one) => String(one.id) === router.query.get('with') && one.id !== model?.id) ?? null,
 	);
-	const residuals = resource(
-		() => model?.id ?? null,
-		async (version, signal) => ({ version, set: await api.residuals(version, signal) }),
-	);
-	const otherResiduals = resource(
-		() => other?.id ?? null,
-		async (version, signal) => ({ version, set: await api.residuals(version, signal) }),
-	);
+	const load = async (version: number, signal: AbortSignal) => ({ version, set: inOneTurn(await api.residuals(version, signal)) });
+	const residuals = resource(() => model?.id ?? null, load);
+	const otherResiduals = resource(() => other?.id ?? null, load);
 	const side = $derived((router.query.get('side') ?? 'both') as Side);
 	const ramps = $derived(router.query.has('ramps'));
 	/** As text first: a zoom changes the address too, and must not have everything counted again. */
 	const regionText = $derived(router.query.get('region'));
 	const region = $derived(readRegion(regionText));
 	const chosen = $derived(residuals.data ? selected(residuals.data.set, region, side, ramps) : null);
+	const usual = $derived(residuals.data ? usualAxes(residuals.data.set, run.data?.kind) : []);
 	const diagnosis = resource(
 		() => (model ? `${model.id} ${lab.effects}` : null),
 		(_key, signal) => api.diagnose(model?.id ?? 0, signal),
 	);
+
+	/** Everything that the page is laid out by has come, once: until then nothing is shown that it would push aside. */
+	let laid = $state(false);
+	$effect(() => {
+		laid ||= model !== null && [run, effects, residuals, diagnosis].every((one) => one.data ?? one.error);
+	});
 
 	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? words(effect);
 
@@ -278,6 +281,12 @@ export function openWorkbench(id: number) {
 		},
 		get busy() {
 			return busy;
+		},
+		get usual() {
+			return usual;
+		},
+		get laid() {
+			return laid;
 		},
 		/** What was just done or is being tried; or, for whoever comes later, that the last step gained nothing. */
 		get notice() {
