@@ -62,7 +62,7 @@ impl Identification {
             }
         }
         // Commands are there to be typed as they stand.
-        let numbered = |text: String| text.replace("RUN", &run.to_string());
+        let numbered = |text: String| signed(&text.replace("RUN", &run.to_string()));
         Self { summary: numbered(self.summary), advice: self.advice.map(numbered), ..self }
     }
 
@@ -70,6 +70,19 @@ impl Identification {
     pub fn quantity(&self, name: &str) -> Option<&Quantity> {
         self.quantities.iter().find(|quantity| quantity.name == name)
     }
+}
+
+/// With a minus as long as a plus before each number that stands alone; a command has none of those.
+fn signed(text: &str) -> String {
+    let mut said = String::with_capacity(text.len());
+    let mut before = ' ';
+    let mut letters = text.chars().peekable();
+    while let Some(letter) = letters.next() {
+        let is_sign = letter == '-' && " ([".contains(before) && letters.peek().is_some_and(char::is_ascii_digit);
+        said.push(if is_sign { '−' } else { letter });
+        before = letter;
+    }
+    said
 }
 
 /// A run for which this one has found the parameters.
@@ -179,5 +192,12 @@ mod tests {
         assert!(said(RunState::Stopped, true).contains("jointbench run --continue 12"));
         assert_eq!(said(RunState::Failed, false), "make it again");
         assert_eq!(said(RunState::Paused, true), "let it come to its end");
+    }
+
+    #[test]
+    fn a_number_below_zero_has_a_minus_and_a_command_stays_as_it_is() {
+        let text = "A shift of -0.150 mm (-3 to -1), in run-12.csv: jointbench run x --set shift=-2 from 5-7.";
+        let said = "A shift of −0.150 mm (−3 to −1), in run-12.csv: jointbench run x --set shift=-2 from 5-7.";
+        assert_eq!(Identification::failed(text, "").of_run(12, RunState::Completed, true).summary, said);
     }
 }

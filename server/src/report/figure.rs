@@ -80,9 +80,19 @@ fn y_range(series: &[FigureSeries]) -> Option<(f64, f64)> {
 fn widened((low, high): (f64, f64), figure: &Figure) -> (f64, f64) {
     match figure.x.names.len() {
         0 if low == high => (low - 0.5, high + 0.5),
-        0 => (low, high),
+        0 => {
+            let bars = figure.series.iter().filter(|s| s.mark == Mark::Bars).map(|s| 0.5 * slot(s));
+            let air = bars.fold(0.0, f64::max);
+            (low - air, high + air)
+        }
         count => (-0.5, count as f64 - 0.5),
     }
+}
+
+/// The smallest distance between two bars of a series.
+fn slot(series: &FigureSeries) -> f64 {
+    let steps = series.x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    Some(steps.fold(f64::INFINITY, f64::min)).filter(|step| step.is_finite()).unwrap_or(1.0)
 }
 
 fn draw(area: &Area, figure: &Figure, series: &[FigureSeries], (x, y): ((f64, f64), (f64, f64))) -> Drawn {
@@ -191,8 +201,9 @@ fn points(chart: &mut Plane, series: &FigureSeries, colour: RGBColor) -> Drawn {
 
 /// Side by side where there are several series.
 fn columns(chart: &mut Plane, series: &FigureSeries, colour: RGBColor, (place, count): (usize, usize)) -> Drawn {
-    let wide = 0.8 / count as f64;
-    let left = move |x: f64| x - 0.4 + wide * place as f64;
+    let slot = slot(series);
+    let wide = 0.8 * slot / count as f64;
+    let left = move |x: f64| x - 0.4 * slot + wide * place as f64;
     let bars = series.x.iter().zip(&series.y);
     chart
         .draw_series(
@@ -251,6 +262,16 @@ mod tests {
             assert!(text.contains("there &amp; back") && !text.contains("NaN"));
             assert!(names.iter().all(|name| text.contains(name)), "{text}");
         }
+    }
+
+    #[test]
+    fn bars_are_as_wide_as_they_lie_apart() {
+        let mut histogram = figure(FigureForm::Cartesian, Mark::Bars, &[]);
+        histogram.series.iter_mut().for_each(|one| one.x.iter_mut().for_each(|x| *x *= 1e-4));
+        let text = svg(&histogram).unwrap();
+        let width = |rect: &str| rect.split("width=\"").nth(1)?.split('"').next()?.parse::<f64>().ok();
+        let bars: Vec<f64> = text.split("<rect").skip(1).filter_map(width).filter(|wide| *wide < 700.0).collect();
+        assert!(bars.len() >= 6 && bars.iter().all(|wide| *wide < 130.0), "{bars:?}");
     }
 
     #[test]

@@ -41,11 +41,13 @@ impl Report {
                     style { (PreEscaped(include_str!("style.css"))) }
                 }
                 body {
-                    h1 { (title) " " (badge(summary.simulated)) }
-                    (self.course())
-                    @if let Some(found) = &self.identification { (result(found)) }
-                    @if let Some(model) = self.versions.last() { (self.model(model)) }
-                    (self.provenance())
+                    main {
+                        h1 { (title) " " (badge(summary.simulated)) }
+                        (self.course())
+                        @if let Some(found) = &self.identification { (result(found)) }
+                        @if let Some(model) = self.versions.last() { (self.model(model)) }
+                        (self.provenance())
+                    }
                 }
             }
         }
@@ -72,7 +74,7 @@ impl Report {
             h2 { "Model" }
             p { (model.effects.join(" + ")) }
             table {
-                tr { th { "Version" } th { "Change" } th.figure { "Held-out error" } th { } }
+                tr { th { "Version" } th { "Change" } th.figure { "Held-out error" } td { } }
                 @for version in &self.versions {
                     tr {
                         td { (version.id) }
@@ -89,7 +91,7 @@ impl Report {
                 }
             }
             table {
-                tr { th { "Effect" } th { "Parameter" } th.figure { "Value" } th.figure { "95 % interval" } th { } }
+                tr { th { "Effect" } th { "Parameter" } th.figure { "Value" } th.figure { "95 % interval" } td { } }
                 @for parameter in &model.fit.parameters {
                     @let ends = parameter.ci95[0].zip(parameter.ci95[1]).map(|(low, high)| [low, high]);
                     @let (value, interval) = with_interval(parameter.value, ends, &parameter.unit);

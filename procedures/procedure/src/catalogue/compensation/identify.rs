@@ -163,7 +163,7 @@ fn trajectories(followed: &[Followed], period_s: f64) -> Figure {
     let by_error = |a: &&Followed, b: &&Followed| a.rho()[0].total_cmp(&b.rho()[0]);
     let none = &followed[0];
     let most_rad = none.reference_rad.iter().fold(0.0, |most: f64, at| most.max(at.abs()));
-    let larger = 10f64.powf((0.3 * most_rad / none.rho()[2]).log10().floor()).clamp(1.0, 1e4);
+    let larger = 10f64.powf((0.5 * most_rad / none.rho()[2]).log10().floor()).clamp(1.0, 1e4);
     let shown = |label: &str, one: &Followed, at: &dyn Fn(usize) -> f64| {
         let end = one.time_s.partition_point(|t_s| *t_s <= period_s);
         let rows = || (0..end).step_by(end.div_ceil(SHOWN).max(1));

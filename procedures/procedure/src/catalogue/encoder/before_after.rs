@@ -86,17 +86,16 @@ fn around<'s>(label: &str, sweeps: impl Iterator<Item = &'s Sweep>, left: Left, 
 /// Those that have a meaning, before and after, over what noise alone would show.
 fn harmonics(sweeps: &[Sweep], poles: &PolePairs, stages: [(&str, Left); 2]) -> Option<Figure> {
     let named = poles.orders();
+    let places: Vec<f64> = (0..named.len()).map(|i| i as f64).collect();
     let mut series = Vec::new();
-    let mut noise_rad = 0.0_f64;
+    let mut noise_rad = 0.0;
     for (stage, left) in stages {
         let waves = Waves::of(sweeps, named.map(|(order, _)| order), left)?;
-        let places = (0..named.len()).map(|i| i as f64).collect();
         let band = waves.ci95.to_vec();
-        series.push(Series { band, ..Series::new(stage, Mark::Bars, places, waves.amplitude_rad.to_vec()) });
+        series.push(Series { band, ..Series::new(stage, Mark::Bars, places.clone(), waves.amplitude_rad.to_vec()) });
         noise_rad = waves.noise_rad;
     }
-    let ends = vec![-0.5, named.len() as f64 - 0.5];
-    series.push(Series::new("noise stays below, 95 %", Mark::Line, ends, vec![noise_rad; 2]));
+    series.push(Series::new("noise stays below, 95 %", Mark::Line, places, vec![noise_rad; named.len()]));
     Some(Figure {
         name: "harmonics".into(),
         title: "Harmonics of the error, 95 % intervals".into(),

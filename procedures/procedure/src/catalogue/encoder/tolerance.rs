@@ -72,8 +72,7 @@ pub fn figure(found: &[(&Way, Found)]) -> Figure {
     let last: Vec<f64> = found.iter().map(|(way, found)| share(way, found.good)).collect();
     // Where they were never lost nobody knows the upper end.
     let end = |(way, found): &(&Way, Found)| [share(way, found.good), share(way, found.bad.unwrap_or(found.good))];
-    let ends = vec![-0.5, found.len() as f64 - 0.5];
-    let places = (0..found.len()).map(|i| i as f64).collect();
+    let places: Vec<f64> = (0..found.len()).map(|i| i as f64).collect();
     Figure {
         name: "tolerance".into(),
         title: "Last consistent place over the tolerance; whiskers end where the periods are lost".into(),
@@ -81,8 +80,11 @@ pub fn figure(found: &[(&Way, Found)]) -> Figure {
         x: Axis::names("Way", found.iter().map(|(way, _)| way.title)),
         y: Axis::of("Share of the manufacturing tolerance", ""),
         series: vec![
-            Series { band: found.iter().map(end).collect(), ..Series::new("measured", Mark::Bars, places, last) },
-            Series::new("data sheet", Mark::Line, ends, vec![1.0; 2]),
+            Series {
+                band: found.iter().map(end).collect(),
+                ..Series::new("measured", Mark::Bars, places.clone(), last)
+            },
+            Series::new("data sheet", Mark::Line, places, vec![1.0; found.len()]),
         ],
     }
 }
