@@ -1,9 +1,15 @@
-//! CSV in: comma-separated, one line of names, points in the numbers; with or without a byte order mark, LF or CRLF.
+//! CSV in: one line of names; with or without a byte order mark, LF or CRLF.
+//!
+//! Between the columns stands what is most frequent in the line of names: a comma, a semicolon or a tab. Where it is no
+//! comma, a number may have a comma for its point.
 
-use crate::error::{FileError, FileFault};
+use crate::error::{FileError, FileFault, Wrong};
 use crate::raw::RawTable;
 use csv::ByteRecord;
 use std::io::Read;
+
+/// So many wrong rows are told of, beside how many there are.
+const TOLD_ROWS: usize = 5;
 
 /// A packed file that unpacks to more than this is refused before it fills the memory.
 const MOST_UNPACKED_BYTES: u64 = 4 << 30;
@@ -26,7 +32,8 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
         return Err(FileFault::NotText(bytes[at]).at_line(name, line_at(bytes, at)));
     }
     let text = without_mark(bytes);
-    let mut reader = reader(text);
+    let separator = separator(text);
+    let mut reader = reader(text, separator);
     let mut record = ByteRecord::new();
     let mut next = |record: &mut ByteRecord| {
         reader.read_byte_record(record).map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))
@@ -38,27 +45,52 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
     let names = column_names(&record).map_err(|fault| fault.at_line(name, line_of_record(text, &record)))?;
     let rows = text.len() / (names.len() * 8);
     let mut columns: Vec<Vec<f64>> = names.iter().map(|_| Vec::with_capacity(rows)).collect();
+    let (mut wrong, mut wrong_rows) = (Vec::new(), 0);
     while next(&mut record)? {
-        if record.len() != names.len() {
-            let fault = FileFault::Width { expected: names.len(), found: record.len() };
-            return Err(fault.at_line(name, line_of_record(text, &record)));
-        }
-        for ((column, field), column_name) in columns.iter_mut().zip(&record).zip(&names) {
-            match number(field) {
-                Some(value) => column.push(value),
-                None => {
-                    let found = String::from_utf8_lossy(field).into_owned();
-                    let fault = FileFault::NotNumber { found }.at_line(name, line_of_record(text, &record));
-                    return Err(fault.in_column(column_name));
-                }
-            }
+        let Err((column, fault)) = take(&record, &names, separator, &mut columns) else { continue };
+        wrong_rows += 1;
+        if wrong.len() < TOLD_ROWS {
+            wrong.push(Wrong { line: line_of_record(text, &record), column, fault });
         }
     }
-    Ok(RawTable { names, columns, meta: None })
+    if wrong_rows > 0 {
+        return Err(FileError::of_rows(name, wrong, wrong_rows));
+    }
+    match columns[0].is_empty() {
+        true => Err(FileFault::NoRows.at_line(name, 1)),
+        false => Ok(RawTable { names, columns, meta: None }),
+    }
 }
 
-fn reader(text: &[u8]) -> csv::Reader<&[u8]> {
-    csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text)
+/// Adds a row to the columns. `Err`: the column that is wrong, where it is one, and what is.
+fn take(
+    record: &ByteRecord,
+    names: &[String],
+    separator: u8,
+    columns: &mut [Vec<f64>],
+) -> Result<(), (Option<String>, FileFault)> {
+    if record.len() != names.len() {
+        return Err((None, FileFault::Width { expected: names.len(), found: record.len() }));
+    }
+    for ((column, field), name) in columns.iter_mut().zip(record).zip(names) {
+        let value = number(field, separator);
+        let found = || FileFault::NotNumber { found: String::from_utf8_lossy(field).into_owned() };
+        column.push(value.ok_or_else(|| (Some(name.clone()), found()))?);
+    }
+    Ok(())
+}
+
+fn reader(text: &[u8], separator: u8) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(text)
+}
+
+/// The most frequent of the separators in the line of names, outside quotation marks.
+fn separator(text: &[u8]) -> u8 {
+    let line = text.split(|byte| *byte == b'\n').find(|line| !line.trim_ascii().is_empty()).unwrap_or_default();
+    let plain: Vec<u8> = line.split(|byte| *byte == b'"').step_by(2).flatten().copied().collect();
+    let count = |separator: u8| plain.iter().filter(|byte| **byte == separator).count();
+    // The last of several that are as frequent is taken.
+    [b'\t', b';', b','].into_iter().max_by_key(|separator| count(*separator)).unwrap_or(b',')
 }
 
 fn without_mark(bytes: &[u8]) -> &[u8] {
@@ -67,12 +99,6 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
 
 fn column_names(record: &ByteRecord) -> Result<Vec<String>, FileFault> {
     let names: Vec<String> = record.iter().map(|field| String::from_utf8_lossy(field).trim().to_owned()).collect();
-    if let [only] = names.as_slice() {
-        let found = [(';', "semicolons"), ('\t', "tabs")].into_iter().find(|(separator, _)| only.contains(*separator));
-        if let Some((_, found)) = found {
-            return Err(FileFault::Separator { found });
-        }
-    }
     match names.iter().position(String::is_empty) {
         Some(place) => Err(FileFault::NoName { number: place + 1 }),
         None => Ok(names),
@@ -80,15 +106,21 @@ fn column_names(record: &ByteRecord) -> Result<Vec<String>, FileFault> {
 }
 
 /// The nearest double to a decimal number; blanks around it are let pass.
-fn number(field: &[u8]) -> Option<f64> {
+fn number(field: &[u8], separator: u8) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?;
-    text.parse().or_else(|_| text.trim().parse()).ok()
+    let plain = text.parse().or_else(|_| text.trim().parse()).ok();
+    match text.split_once(',').filter(|_| separator != b',') {
+        Some((whole, part)) if !whole.contains('.') => {
+            format!("{}.{}", whole.trim_start(), part.trim_end()).parse().ok()
+        }
+        _ => plain,
+    }
 }
 
 /// The line, from 1, on which the data row `row`, from 0, begins.
 pub(crate) fn line_of(bytes: &[u8], row: usize) -> Option<u64> {
     let text = without_mark(bytes);
-    let mut reader = reader(text);
+    let mut reader = reader(text, separator(text));
     let mut record = ByteRecord::new();
     for _ in 0..row + 2 {
         reader.read_byte_record(&mut record).ok().filter(|there| *there)?;

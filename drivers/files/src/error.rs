@@ -49,13 +49,16 @@ pub enum FileFault {
     Gzip(String),
     #[error("expected text in UTF-8, found the byte 0x{0:02x}: save the table as UTF-8")]
     NotText(u8),
-    #[error(
-        "expected commas between the columns, found {found}: save the table with commas, and points in its numbers"
-    )]
-    Separator { found: &'static str },
+    #[error("there are column names and no sample below them: was the table cut off, or is it still being written?")]
+    NoRows,
+    #[error("{first}; and {} more rows are wrong: {}", .rows - 1, shown_rows(.more, .rows - 1))]
+    Rows { first: Box<FileFault>, more: Vec<Wrong>, rows: usize },
     #[error("column {number} has no name: expected a name with its unit, such as time_s")]
     NoName { number: usize },
-    #[error("expected {expected} values as in the line of column names, found {found}")]
+    #[error(
+        "expected {expected} values as in the line of column names, found {found}{}",
+        if *found == 2 * expected { ": where numbers have commas, semicolons stand between the columns" } else { "" }
+    )]
     Width { expected: usize, found: usize },
     #[error("expected a number, found {}", shown(.found))]
     NotNumber { found: String },
@@ -77,6 +80,23 @@ pub enum FileFault {
     Unscaled { wanted: String, there: Vec<String> },
     #[error("{0}")]
     Table(TableFault),
+}
+
+/// One row that is wrong.
+#[derive(Debug)]
+pub struct Wrong {
+    pub line: u64,
+    pub column: Option<String>,
+    pub fault: FileFault,
+}
+
+fn shown_rows(more: &[Wrong], count: usize) -> String {
+    let row = |Wrong { line, column, fault }: &Wrong| match column {
+        Some(column) => format!("line {line}, column {column}: {fault}"),
+        None => format!("line {line}: {fault}"),
+    };
+    let rows: Vec<String> = more.iter().map(row).collect();
+    rows.join("; ") + if more.len() < count { "; …" } else { "" }
 }
 
 fn io_words(fault: &io::Error) -> String {
@@ -111,6 +131,17 @@ impl FileError {
     pub(crate) fn in_column(mut self, column: &str) -> Self {
         self.place.column = Some(column.to_owned());
         self
+    }
+
+    /// `wrong`: the first of `rows` rows that are wrong, one at least. Told at the place of the first.
+    pub(crate) fn of_rows(file: &str, mut wrong: Vec<Wrong>, rows: usize) -> Self {
+        let Wrong { line, column, fault } = wrong.remove(0);
+        let fault = match rows {
+            1 => fault,
+            _ => FileFault::Rows { first: Box::new(fault), more: wrong, rows },
+        };
+        let error = fault.at_line(file, line);
+        Self { place: Box::new(Place { column, ..*error.place }), ..error }
     }
 
     /// The machine's trouble (a disk, a permission), not a table that is wrong.

@@ -14,7 +14,7 @@ mod parquet_out;
 mod raw;
 
 pub use csv_out::write_csv;
-pub use error::{FileError, FileFault, Place};
+pub use error::{FileError, FileFault, Place, Wrong};
 pub use facts::{meta_json, meta_path_of, parse_meta};
 pub use mat_out::write_mat;
 pub use options::{OptionFault, ReadOptions, parse_map, parse_scale};

@@ -23,7 +23,10 @@ fn check_refused(text: &[u8], expected: &str) {
 fn text_is_refused_where_it_is_wrong() {
     let with = |rows: &str| format!("{NAMES}\n{rows}").into_bytes();
     check_refused(b"", "run.csv: the file is empty: expected a line of column names, then one line for each sample");
-    check_refused(&with(""), "run.csv: the table has no rows: expected at least one sample");
+    check_refused(
+        &with(""),
+        "run.csv, line 1: there are column names and no sample below them: was the table cut off, or is it still being written?",
+    );
     check_refused(
         &with("0,1,2\n\n1,1,fast\n"),
         "run.csv, line 4, column motor_current_a: expected a number, found “fast”",
@@ -52,8 +55,13 @@ fn text_is_refused_where_it_is_wrong() {
          convert it with --map motor_position_rad=motor_position_deg --scale motor_position_rad=FACTOR",
     );
     check_refused(
-        b"time_s;motor_position_rad;motor_current_a\n0;1,5;2\n",
-        "run.csv, line 1: expected commas between the columns, found semicolons: save the table with commas, and points in its numbers",
+        &with("0,5,1,5,2,5\n"),
+        "run.csv, line 2: expected 3 values as in the line of column names, found 6: where numbers have commas, semicolons \
+         stand between the columns",
+    );
+    check_refused(
+        b"time_s;motor_position_rad;motor_current_a\n0;1.000,5;2\n",
+        "run.csv, line 2, column motor_position_rad: expected a number, found “1.000,5”",
     );
     check_refused(
         b"time_s,,motor_current_a\n0,1,2\n",
@@ -63,6 +71,33 @@ fn text_is_refused_where_it_is_wrong() {
         b"time_s,note\n0,Dr\xe4hen\n",
         "run.csv, line 2: expected text in UTF-8, found the byte 0xe4: save the table as UTF-8",
     );
+}
+
+#[test]
+fn wrong_rows_are_counted_and_the_first_of_them_told() {
+    let rows: Vec<String> = (0..9).map(|i| format!("{i},x,2")).collect();
+    let refused = take("run.csv", format!("{NAMES}\n0,1\n{}\n9,1,2\n", rows.join("\n")).as_bytes()).unwrap_err();
+    assert_eq!((refused.place.line, refused.place.column.as_deref()), (Some(2), None));
+    let told = |line| format!("; line {line}, column motor_position_rad: expected a number, found “x”");
+    let more: Vec<String> = (3..7).map(told).collect();
+    assert_eq!(
+        refused.to_string(),
+        format!(
+            "run.csv, line 2: expected 3 values as in the line of column names, found 2; and 9 more rows are wrong: {}; …",
+            more.concat().trim_start_matches("; ")
+        )
+    );
+}
+
+#[test]
+fn semicolons_and_tabs_stand_between_columns_and_let_numbers_have_commas() {
+    for (separator, position) in
+        [(";", "1,5"), ("\t", "1,5"), (";", "1.5"), (",", "1.5"), (",", " 1.5 "), (";", " 1,5 ")]
+    {
+        let text = format!("{NAMES}\n0,{position},2\n1,{position},2\n", position = "P").replace(',', separator);
+        let run = take("run.csv", text.replace('P', position).as_bytes()).unwrap();
+        assert_eq!(run.column("motor_position_rad"), Some(&[1.5, 1.5][..]), "{separator:?} {position}");
+    }
 }
 
 #[test]

@@ -37,6 +37,8 @@ it.each(KINDS)('knows a $id table by its columns', (kind) => expect(guessKind(ki
 it('reads the beginning of a text table, packed or not, and of no other', async () => {
 	const text = 't, "v"\r\n0,1\n1,2\n';
 	expect(parseHead(text)).toEqual({ headers: ['t', 'v'], rows: [['0', '1'], ['1', '2']] });
+	expect(parseHead('\ufefft;"v, w"\r\n0,5;1\n')).toEqual({ headers: ['t', 'v, w'], rows: [['0,5', '1']] });
+	expect(parseHead('t\tv\n0,5\t1').rows).toEqual([['0,5', '1']]);
 	const packed = await new Response(new Blob([text]).stream().pipeThrough(new CompressionStream('gzip'))).arrayBuffer();
 	expect((await peek(new File([packed], 'a.CSV.gz')))?.headers).toEqual(['t', 'v']);
 	expect(await peek(new File(['PAR1'], 'a.parquet'))).toBeNull();

@@ -29,7 +29,10 @@ async function beginning(stream: ReadableStream<Uint8Array>, bytes: number): Pro
 }
 
 export function parseHead(text: string): Head {
-	const lines = text.split(/\r?\n/).filter((line) => line !== '');
-	const cells = (line: string) => line.split(',').map((cell) => cell.trim().replace(/^"(.*)"$/, '$1'));
+	const lines = text.replace(/^\ufeff/, '').split(/\r?\n/).filter((line) => line !== '');
+	const count = (sign: string) => (lines[0] ?? '').replace(/"[^"]*"/g, '').split(sign).length;
+	/** As the daemon decides: what is most frequent in the line of names. */
+	const separator = [',', ';', '\t'].reduce((best, one) => (count(one) > count(best) ? one : best));
+	const cells = (line: string) => line.split(separator).map((cell) => cell.trim().replace(/^"(.*)"$/, '$1'));
 	return { headers: cells(lines[0] ?? ''), rows: lines.slice(1, 1 + ROWS).map(cells) };
 }
