@@ -9,9 +9,9 @@ use crate::fit::report;
 use crate::linear::dot;
 use crate::maps::{Maps, yardstick};
 use crate::prepare::{Prepared, prepare};
-use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Region, Silent, Step, Suggestion, Verdict};
+use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Parameter, Region, Silent, Step, Suggestion, Verdict};
 use crate::select::held_out;
-use crate::words::{list, percent};
+use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
 
@@ -22,7 +22,10 @@ const MOST_EFFECTS: usize = 6;
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     let prepared = prepare(run, options)?;
     let found = Exploration::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
-    let fit = report(&found.start)?;
+    let mut fit = report(&found.start)?;
+    if found.advances.is_empty() {
+        leave_open(&mut fit, &found);
+    }
     let complete = report(found.end())?;
     let suggestions = suggestions(&found, &fit, &complete, spec, options)?;
     let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
@@ -92,7 +95,8 @@ pub fn discover(
         step.confounded_with = step.added.as_deref().map_or_else(Vec::new, |added| found.ties_of(added));
     }
     let is_cut = steps.iter().filter(|step| step.added.is_some()).count() >= max_effects;
-    let fit = report(found.end())?;
+    let mut fit = report(found.end())?;
+    leave_open(&mut fit, &found);
     let verdict = found.end_verdict();
     let structure = structure(&found, verdict);
     let undecided = summary::undecided(&found, &fit, verdict, options);
@@ -183,6 +187,18 @@ fn suggestions(
         });
     }
     Ok(out)
+}
+
+/// An interval of a parameter says nothing of an effect that is not in the model. Where that may be there as well, it reaches
+/// to what the parameter would be with it.
+fn leave_open(fit: &mut Fit, found: &Exploration) {
+    let Some(open) = &found.open else { return };
+    let is_meant = |p: &&mut Parameter| format!("{}.{}", p.effect, p.name) == open.parameter;
+    if let Some(parameter) = fit.parameters.iter_mut().find(is_meant) {
+        parameter.ci95 = [parameter.ci95[0].min(open.with), parameter.ci95[1].max(open.with)];
+        let with = figure(open.with, &open.unit);
+        parameter.note = Some(format!("would be {with} with {}, which this run does not exclude", open.effect));
+    }
 }
 
 /// Where a model fails. Nowhere that counts, where it is known to be adequate.

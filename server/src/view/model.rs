@@ -154,7 +154,7 @@ pub struct FittedParameter {
     #[schema(value_type = Vec<Option<f64>>, min_items = 2, max_items = 2)]
     pub ci95: [Option<f64>; 2],
     pub state: ParameterState,
-    /// The state in words, where it is not `ok`.
+    /// The state in words, where it is not `ok`; in a diagnosis also what it would be with an effect that the run leaves open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }

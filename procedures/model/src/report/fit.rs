@@ -57,7 +57,7 @@ pub struct Parameter {
     #[serde(deserialize_with = "open_interval")]
     pub ci95: [f64; 2],
     pub state: ParameterState,
-    /// The state in words, where it is not `ok`.
+    /// The state in words, where it is not `ok`; in a diagnosis also what it would be with an effect that the run leaves open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }

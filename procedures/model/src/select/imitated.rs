@@ -23,13 +23,13 @@ pub struct Imitated<'p> {
 }
 
 impl<'p> Search<'_, 'p> {
-    /// The effect that an added one of a free shape imitates best, at the cost of a factor of the given model: a Stribeck
+    /// The effect that one of a free shape imitates best, at the cost of a factor of the given model: a Stribeck
     /// effect that fades slowly is a curve over speed and a part of Coulomb friction as well.
     ///
     /// `decides` says whether a model decides an effect.
     pub fn imitated(&self, decides: impl Fn(&Terms<'p>, &Term<'p>) -> bool + Sync) -> Option<Imitated<'p>> {
         let bends = |term: &Term| term.form.shape.iter().any(|shape| shape.is_smooth());
-        if self.left == 0 || !self.added().any(bends) {
+        if self.left == 0 || !self.now.terms.iter().any(bends) {
             return None;
         }
         let ground = Ground::of(&self.now);

@@ -99,6 +99,11 @@ fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
     assert_eq!((imitated.effect.as_str(), imitated.parameter.as_str()), ("viscous_quadratic", "coulomb.tau_c"));
     assert!(imitated.without < 0.022 && (0.027..0.030).contains(&imitated.with), "{imitated:?}");
     assert!(open.summary.contains("does not tell whether viscous_quadratic is there"), "{}", open.summary);
+    let spec = ModelSpec::baseline(&run).unwrap().with("stribeck").unwrap();
+    let fit = diagnose(&run, &spec, &Options::default()).unwrap().fit;
+    let tau_c = fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
+    assert!(tau_c.ci95[0] < 0.022 && tau_c.ci95[1] >= imitated.with, "{tau_c:?}");
+    assert!(tau_c.note.as_ref().is_some_and(|note| note.contains("viscous_quadratic")), "{tau_c:?}");
     let offered = menu(&BenchFacts::shown_by(&run), &run, &Map::new());
     let next = next_run(&run, &Open::from(&open), &offered, &Options::default()).unwrap().unwrap();
     assert_eq!(next.separates, ["viscous_quadratic"], "{}", next.why);
