@@ -14,6 +14,8 @@ pub struct DaemonSettings {
     pub data: PathBuf,
     /// Needed where `listen` is not a loopback address.
     pub token: Option<String>,
+    /// Lets its holder look and stop, and nothing else.
+    pub read_token: Option<String>,
     pub benches: Vec<BenchDescription>,
 }
 
@@ -71,11 +73,20 @@ pub async fn asked_to_end() {
 }
 
 fn door(settings: &DaemonSettings) -> Result<Door, LabError> {
+    let read_token = settings.read_token.as_deref().map(str::trim);
+    let all = [settings.token.as_deref().map(str::trim), read_token];
+    if all.into_iter().flatten().any(|token| token.len() < 8) {
+        return Err(LabError::Setup("a token is too short: give at least 8 characters".into()));
+    }
     match &settings.token {
-        Some(token) if token.trim().len() < 8 => Err(LabError::Setup(
-            "the token is too short: give at least 8 characters with --token or JOINTBENCH_TOKEN".into(),
+        None if read_token.is_some() => Err(LabError::Setup(
+            "a token that only reads needs one that may do more beside it: give that with --token or JOINTBENCH_TOKEN"
+                .into(),
         )),
-        Some(token) => Ok(Door::with_token(token.trim())),
+        Some(token) if Some(token.trim()) == read_token => {
+            Err(LabError::Setup("the token that only reads is the other one too: give two different ones".into()))
+        }
+        Some(token) => Ok(Door::with_tokens(token.trim(), read_token)),
         None if settings.listen.ip().is_loopback() => Ok(Door::local()),
         None => Err(LabError::Setup(format!(
             "{} can be reached from other machines: give a token with --token or JOINTBENCH_TOKEN, or listen on 127.0.0.1",

@@ -1,9 +1,9 @@
 //! Benches and their instruments.
 
 use super::extract::{Answer, Json, Path};
-use super::problem::Refusals;
+use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
-use crate::view::{Acknowledgement, Bench, Instrument};
+use crate::view::{Acknowledgement, Bench, Instrument, SafetyEntry};
 use axum::extract::State;
 
 /// All benches of this daemon
@@ -20,9 +20,9 @@ pub async fn get(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Be
     Ok(Json(lab.bench(&bench)?))
 }
 
-/// Software stop: ends the run at once and secures the bench
+/// Software stop: ends the run at once and secures the bench, which is `stopped` until it is acknowledged
 ///
-/// Answers when the bench thread has taken the command. It is no replacement for a hardware stop.
+/// Answers when the bench thread has taken the command and the stop is kept. It is no replacement for a hardware stop.
 #[utoipa::path(post, path = "/bench/{bench}/stop", operation_id = "stop_bench", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
     responses((status = 200, description = "Taken; the bench as it is now", body = Bench), Refusals))]
@@ -30,7 +30,7 @@ pub async fn stop(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<B
     Ok(Json(lab.emergency_stop(&bench).await?))
 }
 
-/// Lifts the block after an end that could not be verified as safe
+/// Resets the bench after a software stop, or after an end that could not be verified as safe
 #[utoipa::path(post, path = "/bench/{bench}/acknowledge", tag = "bench",
     params(("bench" = String, Path, description = "Name")), request_body = Acknowledgement,
     responses((status = 200, description = "The bench, ready again", body = Bench), Refusals))]
@@ -40,6 +40,30 @@ pub async fn acknowledge(
     Json(word): Json<Acknowledgement>,
 ) -> Answer<Bench> {
     Ok(Json(lab.acknowledge(&bench, &word.reason).await?))
+}
+
+/// Tries the instruments again that are not ready
+#[utoipa::path(post, path = "/bench/{bench}/retry", operation_id = "retry_instruments", tag = "bench",
+    params(("bench" = String, Path, description = "Name")),
+    responses((status = 200, description = "The bench as it is now", body = Bench), Refusals))]
+pub async fn retry(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Bench> {
+    Ok(Json(lab.retry(&bench).await?))
+}
+
+/// The text of the bench description (TOML) that the daemon was started with
+#[utoipa::path(get, path = "/bench/{bench}/description", operation_id = "bench_description", tag = "bench",
+    params(("bench" = String, Path, description = "Name")),
+    responses((status = 200, description = "The description", body = String), Refusals))]
+pub async fn description(State(lab): State<Lab>, Path(bench): Path<String>) -> Result<String, Problem> {
+    Ok(lab.handle(&bench)?.description().text.clone())
+}
+
+/// What stopped or blocked the bench and who released it with which reason, newest first
+#[utoipa::path(get, path = "/bench/{bench}/safety", operation_id = "bench_safety", tag = "bench",
+    params(("bench" = String, Path, description = "Name")),
+    responses((status = 200, description = "The newest entries", body = Vec<SafetyEntry>), Refusals))]
+pub async fn safety(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Vec<SafetyEntry>> {
+    Ok(Json(lab.safety(&bench).await?))
 }
 
 /// The instruments of all benches

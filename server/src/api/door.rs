@@ -9,13 +9,29 @@ use axum::extract::{Request, State};
 use axum::http::{HeaderMap, Method, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use utoipa::ToSchema;
+
+/// What a caller may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Access {
+    /// Everything: the daemon answers this computer only, and asks for no token.
+    Open,
+    /// Everything.
+    Full,
+    /// Look, and stop.
+    Read,
+}
 
 /// How the daemon's door is kept.
 #[derive(Clone, Default)]
 pub struct Door {
     /// Needed for every call of the API where the daemon listens beyond loopback.
     token: Option<Arc<str>>,
+    /// Whoever has this one looks, and can stop.
+    read_token: Option<Arc<str>>,
 }
 
 impl Door {
@@ -24,8 +40,8 @@ impl Door {
         Self::default()
     }
 
-    pub fn with_token(token: &str) -> Self {
-        Self { token: Some(token.into()) }
+    pub fn with_tokens(token: &str, read_token: Option<&str>) -> Self {
+        Self { token: Some(token.into()), read_token: read_token.map(Into::into) }
     }
 
     fn check(&self, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<(), Problem> {
@@ -43,19 +59,41 @@ impl Door {
                 "the page at {origin} may not steer this bench; open the dashboard of the daemon itself"
             )));
         }
+        let Some(token) = self.token.as_deref().filter(|_| uri.path().starts_with("/api")) else { return Ok(()) };
+        if is_known(token, headers, uri) {
+            return Ok(());
+        }
+        match self.read_token.as_deref().is_some_and(|token| is_known(token, headers, uri)) {
+            true if method.is_safe() || changes_nothing(uri.path()) => Ok(()),
+            true => Err(Problem::forbidden("this token only reads: it looks and stops, and starts or changes nothing")),
+            false => Err(Problem::unauthorized()),
+        }
+    }
+
+    /// What the token of a request may do.
+    pub fn access(&self, headers: &HeaderMap, uri: &Uri) -> Access {
+        let reads = self.read_token.as_deref().is_some_and(|token| is_known(token, headers, uri));
         match &self.token {
-            Some(token) if uri.path().starts_with("/api") && !is_known(token, headers, uri) => {
-                Err(Problem::unauthorized())
-            }
-            _ => Ok(()),
+            None => Access::Open,
+            Some(_) if reads => Access::Read,
+            Some(_) => Access::Full,
         }
     }
 }
 
-/// Middleware: refuses before anything is read.
-pub async fn guard(State(door): State<Door>, request: Request, next: Next) -> Response {
+/// Stopping, which everybody may do, and questions that need a body.
+fn changes_nothing(path: &str) -> bool {
+    ["/stop", "/preview", "/effects/check", "/diagnoses"].iter().any(|end| path.ends_with(end))
+}
+
+/// Middleware: refuses before anything is read, and tells handlers what the caller may do.
+pub async fn guard(State(door): State<Door>, mut request: Request, next: Next) -> Response {
     match door.check(request.method(), request.uri(), request.headers()) {
-        Ok(()) => next.run(request).await,
+        Ok(()) => {
+            let access = door.access(request.headers(), request.uri());
+            request.extensions_mut().insert(access);
+            next.run(request).await
+        }
         Err(problem) => problem.into_response(),
     }
 }
@@ -132,7 +170,7 @@ mod tests {
 
     #[test]
     fn beyond_loopback_a_token_is_needed() {
-        let door = Door::with_token("s3cret");
+        let door = Door::with_tokens("s3cret", None);
         let host = ("host", "bench.lab:8080");
         for (path, headers, refused) in [
             ("/api/v1/bench", vec![host], Some(401)),
@@ -143,6 +181,24 @@ mod tests {
             ("/", vec![host], None),
         ] {
             assert_eq!(check(&door, Method::GET, path, &headers), refused, "{path} {headers:?}");
+        }
+    }
+
+    #[test]
+    fn a_token_that_reads_looks_and_stops() {
+        let door = Door::with_tokens("s3cret", Some("looker"));
+        let headers = [("host", "bench.lab:8080"), ("authorization", "Bearer looker")];
+        for (method, path, refused) in [
+            (Method::GET, "/api/v1/bench", None),
+            (Method::POST, "/api/v1/bench/a/stop", None),
+            (Method::POST, "/api/v1/procedures/friction/preview", None),
+            (Method::POST, "/api/v1/bench/a/acknowledge", Some(403)),
+            (Method::POST, "/api/v1/runs", Some(403)),
+            (Method::POST, "/api/v1/runs/1/stop", None),
+            (Method::POST, "/api/v1/runs/1/resume", Some(403)),
+            (Method::DELETE, "/api/v1/effects/friction/rub", Some(403)),
+        ] {
+            assert_eq!(check(&door, method.clone(), path, &headers), refused, "{method} {path}");
         }
     }
 }

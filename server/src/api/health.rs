@@ -1,7 +1,9 @@
 //! The daemon about itself.
 
+use super::door::Access;
 use super::extract::{Answer, Json};
 use super::problem::{Problem, Refusals};
+use axum::Extension;
 use axum::extract::Request;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -13,14 +15,21 @@ pub struct Health {
     pub process: u32,
     /// Why the dashboard is not part of this build, where it is not.
     pub dashboard_missing: Option<String>,
+    /// What the caller may do.
+    pub access: Access,
 }
 
 /// Whether the daemon is there
 #[utoipa::path(get, path = "/health", tag = "daemon",
     responses((status = 200, description = "It is", body = Health), Refusals))]
-pub async fn health() -> Answer<Health> {
+pub async fn health(Extension(access): Extension<Access>) -> Answer<Health> {
     let dashboard_missing = jointbench_ui::missing().map(str::to_owned);
-    Ok(Json(Health { version: env!("CARGO_PKG_VERSION").to_owned(), process: std::process::id(), dashboard_missing }))
+    Ok(Json(Health {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        process: std::process::id(),
+        dashboard_missing,
+        access,
+    }))
 }
 
 /// This description

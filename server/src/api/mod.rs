@@ -20,7 +20,7 @@ mod size;
 mod specification;
 mod transfer;
 
-pub use door::Door;
+pub use door::{Access, Door};
 pub use health::Health;
 pub use problem::Problem;
 
@@ -83,6 +83,9 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(bench::get))
         .routes(routes!(bench::stop))
         .routes(routes!(bench::acknowledge))
+        .routes(routes!(bench::retry))
+        .routes(routes!(bench::description))
+        .routes(routes!(bench::safety))
         .routes(routes!(bench::instruments))
         .routes(routes!(procedures::list))
         .routes(routes!(procedures::preview))

@@ -90,7 +90,7 @@ impl Problem {
     }
 
     pub fn unauthorized() -> Self {
-        let detail = "this daemon listens beyond loopback: send the token as `Authorization: Bearer TOKEN`";
+        let detail = "this daemon was started with a token: send it as `Authorization: Bearer TOKEN`";
         Self::new(StatusCode::UNAUTHORIZED, "unauthorized", "A token is needed", detail)
     }
 

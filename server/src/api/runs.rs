@@ -18,8 +18,10 @@ pub struct RunQuery {
     pub limit: Option<u32>,
     /// Leave out so many of the newest.
     pub offset: Option<u32>,
-    /// Words, and terms such as `kind:friction`, `tag:oil`, `-state:failed`, `rows>1000`, `after:2026-01-31`; all must hold.
+    /// Words, and terms such as `kind:friction`, `tag:oil`, `-state:failed`, `duration>2min`, `after:2026-01-31`; all must hold.
     pub search: Option<String>,
+    /// The search is still being typed: terms that are not understood are left out, and told, instead of refused.
+    pub typing: bool,
 }
 
 /// Runs, newest first
@@ -27,7 +29,11 @@ pub struct RunQuery {
     responses((status = 200, description = "A page of runs", body = RunList), Refusals))]
 pub async fn list(State(lab): State<Lab>, Query(query): Query<RunQuery>) -> Answer<RunList> {
     let limit = query.limit.unwrap_or(50).min(500);
-    Ok(Json(lab.runs(limit, query.offset.unwrap_or(0), query.search.as_deref()).await?))
+    let (offset, search) = (query.offset.unwrap_or(0), query.search.as_deref());
+    Ok(Json(match query.typing {
+        true => lab.runs_while_typing(limit, offset, search.unwrap_or_default()).await?,
+        false => lab.runs(limit, offset, search).await?,
+    }))
 }
 
 /// Plans a procedure, checks it against the limits and starts it

@@ -120,7 +120,12 @@ impl BenchHandle {
         wait.await.map_err(|_| self.gone())
     }
 
-    /// Tries again to open the instruments that did not answer.
+    /// As [`BenchHandle::refresh`], as soon as the run that is on has ended.
+    pub fn refresh_later(&self) -> Result<(), LabError> {
+        self.send(Command::Refresh { done: oneshot::channel().0 })
+    }
+
+    /// Tries the instruments again that did not answer.
     pub async fn reopen(&self) -> Result<(), LabError> {
         let (done, wait) = oneshot::channel();
         self.send(Command::Open { done })?;

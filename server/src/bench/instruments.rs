@@ -73,6 +73,7 @@ fn described(description: &BenchDescription, asked: &Asked) -> Instrument {
         ready: asked.identity.is_ok(),
         identity: asked.identity.clone().ok().map(Into::into),
         fault: asked.identity.as_ref().err().map(ToString::to_string),
+        since: asked.identity.is_err().then(|| Timestamp::now().to_string()),
     }
 }
 
@@ -86,6 +87,7 @@ fn unreached(description: &BenchDescription, fault: String) -> Instrument {
         ready: false,
         identity: None,
         fault: Some(fault),
+        since: Some(Timestamp::now().to_string()),
     }
 }
 

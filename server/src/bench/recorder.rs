@@ -6,7 +6,8 @@ use crate::lab::{run_event, state_view};
 use crate::live::Rows;
 use crate::view::{BenchState, LiveMessage, Progress};
 use jointbench_devices::MockBench;
-use jointbench_procedure::{Commit, Live, Recorder, RecorderFault, RunId, RunState};
+use jointbench_instrument::Fault;
+use jointbench_procedure::{Commit, EventKind, Live, Recorder, RecorderFault, RunId, RunState};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 use tokio::sync::watch;
@@ -25,6 +26,8 @@ pub(super) struct StoreRecorder<'a> {
     told_progress: Option<Instant>,
     began: Instant,
     state: RunState,
+    /// Of instruments that did not come back.
+    faults: Vec<Fault>,
 }
 
 impl<'a> StoreRecorder<'a> {
@@ -36,7 +39,11 @@ impl<'a> StoreRecorder<'a> {
         run: RunId,
     ) -> Self {
         let (told_events, told_progress, began, state) = (0, None, Instant::now(), RunState::Queued);
-        Self { start, status, runtime, mock, run, told_events, told_progress, began, state }
+        Self { start, status, runtime, mock, run, told_events, told_progress, began, state, faults: Vec::new() }
+    }
+
+    pub fn into_faults(self) -> Vec<Fault> {
+        self.faults
     }
 
     fn bench(&self) -> &str {
@@ -91,6 +98,10 @@ impl Recorder for StoreRecorder<'_> {
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
         let Commit { run, state, events, rows } = commit;
         let store = &self.start.store;
+        self.faults.extend(events.iter().filter_map(|event| match &event.kind {
+            EventKind::Fault { fault, recovered: false } => Some(fault.clone()),
+            _ => None,
+        }));
         if let Some(mock) = self.mock {
             self.runtime.block_on(store.fill_disk(mock.disk_is_full())).map_err(fault)?;
         }

@@ -1,8 +1,9 @@
 //! What a bench thread tells of itself.
 
 use crate::view::{BenchState, Blocked, Instrument, Progress};
-use jointbench_instrument::Trace;
+use jiff::Timestamp;
 use jointbench_instrument::limits::Limited;
+use jointbench_instrument::{Fault, Trace};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Status {
@@ -32,6 +33,15 @@ impl Status {
 
     pub fn reading(&self, quantity: Limited) -> Option<f64> {
         self.readings.iter().find(|(limited, _)| *limited == quantity).map(|(_, value)| *value)
+    }
+
+    /// A run has ended with a fault of an instrument, which is not ready until it was tried again.
+    pub(super) fn found_wanting(&mut self, fault: &Fault) {
+        if let Some(instrument) = self.instruments.iter_mut().find(|one| one.name == fault.instrument) {
+            instrument.ready = false;
+            instrument.fault = Some(fault.to_string());
+            instrument.since.get_or_insert_with(|| Timestamp::now().to_string());
+        }
     }
 
     /// The faults of the instruments, in one sentence.

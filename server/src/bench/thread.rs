@@ -9,6 +9,7 @@ use crate::lab::{safe_view, state_view};
 use crate::live::Hub;
 use crate::store::Store;
 use crate::view::{BenchState, Blocked, LiveMessage};
+use jointbench_instrument::roles::Instrument;
 use jointbench_procedure::{Control, Plan, RunEnd, RunId, RunState, Safe};
 use std::io;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -65,7 +66,6 @@ struct Owner {
 impl Owner {
     fn serve(mut self, commands: &Receiver<Command>) {
         self.open();
-        self.refresh();
         // Whoever was here before may have been killed: nothing is known of the bench until it is secured.
         let safe = self.secure();
         for run in std::mem::take(&mut self.start.interrupted) {
@@ -87,15 +87,17 @@ impl Owner {
                     self.secure();
                 }
                 Command::Open { done } => {
-                    let was_open = self.is_open();
-                    self.open();
-                    if !was_open && self.is_open() {
+                    self.let_time_pass();
+                    let came_back = if self.is_open() { self.recover() } else { self.open() };
+                    if came_back {
                         self.secure();
+                    } else {
+                        self.rest();
                     }
                     let _ = done.send(());
                 }
                 Command::Refresh { done } => {
-                    self.refresh();
+                    self.rest();
                     let _ = done.send(());
                 }
                 Command::Quit => break,
@@ -119,7 +121,7 @@ impl Owner {
         commands.recv().ok()
     }
 
-    /// Moves the clock of a mock bench, which nobody else does between runs: the full disk that it has may be over.
+    /// Moves the clock of a mock bench, which nobody else does between runs: the bad day that it has may be over.
     fn let_time_pass(&self) {
         let Some(mock) = self.opened.as_ref().and_then(|opened| opened.mock.as_ref()) else { return };
         let clock = mock.clock();
@@ -157,11 +159,8 @@ impl Owner {
         self.opened.as_ref().is_some_and(|opened| opened.bench.is_some())
     }
 
-    /// Opens what is not open. Instruments that answer already keep their ports.
-    fn open(&mut self) {
-        if self.is_open() {
-            return;
-        }
+    /// Whether all instruments answer.
+    fn open(&mut self) -> bool {
         // The ports of a half-open bench are let go first.
         self.opened = None;
         let opened = open(&self.start.description);
@@ -172,13 +171,35 @@ impl Owner {
                 Some(fault) => tracing::warn!(bench = self.name(), name, port, fault, "instrument not ready"),
             }
         }
-        let state = if opened.bench.is_some() { BenchState::Idle } else { BenchState::Offline };
-        let instruments = opened.instruments.clone();
+        let mut instruments = opened.instruments.clone();
         self.opened = Some(opened);
         self.change(|status| {
-            status.state = state;
+            for instrument in instruments.iter_mut().filter(|instrument| !instrument.ready) {
+                let before = status.instruments.iter().find(|before| before.role == instrument.role);
+                instrument.since = before.and_then(|before| before.since.clone()).or(instrument.since.take());
+            }
             status.instruments = instruments;
         });
+        self.is_open()
+    }
+
+    /// Tries again what a run has found wanting. Whether all of it answers.
+    fn recover(&mut self) -> bool {
+        let Some(bench) = self.opened.as_mut().and_then(|opened| opened.bench.as_mut()) else { return false };
+        let mut instruments = self.status.borrow().instruments.clone();
+        for wanting in instruments.iter_mut().filter(|instrument| !instrument.ready) {
+            match bench.instrument(&wanting.name).map(Instrument::recover) {
+                Some(Ok(identity)) => {
+                    (wanting.ready, wanting.identity) = (true, Some(identity.into()));
+                    (wanting.fault, wanting.since) = (None, None);
+                }
+                Some(Err(fault)) => wanting.fault = Some(fault.to_string()),
+                None => {}
+            }
+        }
+        let all = instruments.iter().all(|instrument| instrument.ready);
+        self.change(|status| status.instruments = instruments);
+        all
     }
 
     fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Control>) {
@@ -190,18 +211,14 @@ impl Owner {
         };
         let mut recorder = StoreRecorder::new(&self.start, &self.status, &self.runtime, mock.as_ref(), run);
         let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
+        let faults = recorder.into_faults();
         self.unkept.push((run, end.clone()));
         self.keep_ends();
-        self.refresh_with(end.safe, end.reason.as_deref(), Some(run));
+        self.block_unless_safe(end.safe, end.reason.as_deref(), Some(run));
+        self.change(|status| faults.iter().for_each(|fault| status.found_wanting(fault)));
         // Free before it is told: whoever hears of the end may start the next run.
         lock(&self.start.slot).take();
-        let state = if end.safe == Safe::UnsafeUnknown { BenchState::Fault } else { BenchState::Idle };
-        self.change(|status| {
-            status.state = state;
-            status.run = None;
-            status.progress = None;
-            status.readings.clear();
-        });
+        self.rest();
     }
 
     fn secure(&mut self) -> Safe {
@@ -209,9 +226,9 @@ impl Owner {
             // A bench that is merely not plugged in needs no acknowledgement; it is secured when it is opened.
             if !self.start.interrupted.is_empty() {
                 let reason = "a run was interrupted and the instruments do not answer";
-                self.refresh_with(Safe::UnsafeUnknown, Some(reason), None);
+                self.block_unless_safe(Safe::UnsafeUnknown, Some(reason), None);
             }
-            self.change(|status| status.state = BenchState::Offline);
+            self.rest();
             return Safe::UnsafeUnknown;
         };
         let secured = jointbench_procedure::secure(bench);
@@ -219,14 +236,12 @@ impl Owner {
             tracing::warn!(bench = self.start.description.name, "{note}");
         }
         let reason = (!secured.notes.is_empty()).then(|| secured.notes.join("; "));
-        self.refresh_with(secured.safe, reason.as_deref(), None);
-        let state = if secured.safe == Safe::UnsafeUnknown { BenchState::Fault } else { BenchState::Idle };
-        self.change(|status| status.state = state);
+        self.block_unless_safe(secured.safe, reason.as_deref(), None);
+        self.rest();
         secured.safe
     }
 
-    /// Blocks the bench where it is not known to be safe.
-    fn refresh_with(&mut self, safe: Safe, reason: Option<&str>, run: Option<RunId>) {
+    fn block_unless_safe(&self, safe: Safe, reason: Option<&str>, run: Option<RunId>) {
         if safe == Safe::UnsafeUnknown {
             let reason = format!("the bench is not known to be safe: {}", reason.unwrap_or("no cause is known"));
             let blocked = self.runtime.block_on(self.start.store.block_bench(self.name(), run, &reason));
@@ -234,23 +249,31 @@ impl Owner {
                 tracing::error!(bench = self.name(), %fault, "the block of the bench could not be kept");
             }
         }
-        self.refresh();
     }
 
-    fn refresh(&mut self) {
-        match self.runtime.block_on(self.start.store.bench_block(self.name())) {
-            Ok(block) => {
-                let blocked = block.map(|block| Blocked { reason: block.reason, since: block.since });
-                let open = self.is_open();
-                self.change(|status| {
-                    if blocked.is_none() && status.state == BenchState::Fault && open {
-                        status.state = BenchState::Idle;
-                    }
-                    status.blocked = blocked;
-                });
+    /// The state of a bench on which nothing is on: what the store says of it, and its instruments.
+    fn rest(&self) {
+        let blocked = match self.runtime.block_on(self.start.store.bench_block(self.name())) {
+            Ok(block) => block.map(|block| Blocked { stopped: block.stopped, reason: block.reason, since: block.at }),
+            Err(fault) => {
+                tracing::error!(bench = self.name(), %fault, "the state of the bench cannot be read");
+                self.status.borrow().blocked.clone()
             }
-            Err(fault) => tracing::error!(bench = self.name(), %fault, "the state of the bench cannot be read"),
-        }
+        };
+        let open = self.is_open();
+        self.change(|status| {
+            status.state = match &blocked {
+                Some(blocked) if blocked.stopped => BenchState::Stopped,
+                Some(_) => BenchState::Fault,
+                None if !open => BenchState::Offline,
+                None if status.faults().is_some() => BenchState::Fault,
+                None => BenchState::Idle,
+            };
+            status.blocked = blocked;
+            status.run = None;
+            status.progress = None;
+            status.readings.clear();
+        });
     }
 
     fn change(&self, change: impl FnOnce(&mut Status)) {

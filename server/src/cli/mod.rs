@@ -21,6 +21,7 @@ mod require;
 mod run;
 mod runs;
 mod serve;
+mod steer;
 mod transfer;
 
 use arguments::{Arguments, Command};
@@ -47,7 +48,10 @@ pub fn main() -> ExitCode {
         Command::Procedures(arguments) => library::procedures(arguments.id.as_deref()),
         Command::Effects(arguments) => library::effects(arguments.id.as_deref()),
         Command::Run(arguments) => run::run(&arguments),
-        Command::Stop(arguments) => runs::stop(&arguments),
+        Command::Stop(arguments) => steer::stop(&arguments),
+        Command::Pause(arguments) => steer::pause(&arguments),
+        Command::Resume(arguments) => steer::resume(&arguments),
+        Command::Reset(arguments) => steer::reset(&arguments),
         Command::Runs(arguments) => runs::runs(&arguments),
         Command::Autopilot(arguments) => autopilot::autopilot(&arguments),
         Command::Diagnose(arguments) => offline::diagnose(&arguments),

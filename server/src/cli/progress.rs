@@ -10,6 +10,7 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 pub struct RunProgress {
     bar: Option<ProgressBar>,
     told: Option<Instant>,
+    paused: bool,
 }
 
 impl RunProgress {
@@ -19,10 +20,24 @@ impl RunProgress {
             ProgressBar::new(1000)
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("##-"))
         });
-        Self { bar, told: None }
+        Self { bar, told: None, paused: false }
+    }
+
+    /// Told once, until it goes on.
+    pub fn paused(&mut self, run: i64) {
+        let said = format!("paused: `jointbench resume {run}` lets it go on");
+        if let Some(bar) = &self.bar {
+            bar.set_message(said);
+        } else if !self.paused {
+            eprintln!("  {said}");
+        }
+        self.paused = true;
     }
 
     pub fn show(&mut self, progress: &Progress) {
+        if std::mem::take(&mut self.paused) {
+            self.told = None;
+        }
         let whole_s = progress.elapsed_s + progress.remaining_s;
         let share = if whole_s > 0.0 { (progress.elapsed_s / whole_s).clamp(0.0, 1.0) } else { 0.0 };
         let left = format!("{:.0} s left", progress.remaining_s);

@@ -115,7 +115,15 @@ fn judge(found: Option<&Found>, demands: &[(&Requirement, Kept)], quiet: bool) -
 /// The run as it has just started, or as it ended where that is waited for.
 fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     let run: Run = match arguments.continues {
-        Some(before) => client.post(&format!("/runs/{before}/continue"), &())?,
+        Some(before) => {
+            let run: Run = client.get(&format!("/runs/{before}"))?;
+            if run.summary.state == RunState::Paused {
+                return Err(Exit::bad_input(format!(
+                    "run {before} is paused: `jointbench resume {before}` goes on with it"
+                )));
+            }
+            client.post(&format!("/runs/{before}/continue"), &())?
+        }
         None => client.post("/runs", &new_run(client, arguments)?)?,
     };
     let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);
@@ -174,8 +182,10 @@ pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
             shown.end();
             return Ok(run);
         }
-        if let Some(progress) = &run.progress {
-            shown.show(progress);
+        match &run.progress {
+            _ if run.summary.state == RunState::Paused => shown.paused(id),
+            Some(progress) => shown.show(progress),
+            None => {}
         }
         std::thread::sleep(LOOK_EVERY);
     }

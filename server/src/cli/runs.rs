@@ -1,13 +1,12 @@
-//! `jointbench runs` and `jointbench stop`: what was measured, and how a run that is on is ended.
+//! `jointbench runs`: what was measured.
 
-use super::arguments::{Runs, Stop};
-use super::client::Client;
-use super::exit::{Done, Exit};
+use super::arguments::Runs;
+use super::exit::Done;
 use super::offline::json_out;
-use super::run::{ending, is_over, wait};
+use super::run::is_over;
 use super::serve::runtime;
 use super::transfer::{Way, open};
-use crate::view::{Run, RunList, RunState, RunSummary, Safe, word};
+use crate::view::{RunList, RunSummary, word};
 
 /// Of a run that is not over, in a folder that no daemon has.
 const NO_DAEMON: &str =
@@ -54,33 +53,6 @@ fn encoded(text: &str) -> String {
         other => format!("%{other:02X}"),
     };
     text.bytes().map(byte).collect()
-}
-
-pub fn stop(arguments: &Stop) -> Done {
-    let client = Client::new(&arguments.reach);
-    let id = match arguments.run {
-        Some(id) => id,
-        None => the_one_that_is_on(&client)?,
-    };
-    let how = if arguments.now { "abort" } else { "stop" };
-    let _: Run = client.post(&format!("/runs/{id}/{how}"), &())?;
-    let run = wait(&client, id)?;
-    println!("{}", ending(&run));
-    let failed = matches!(run.summary.state, RunState::Failed | RunState::Interrupted);
-    match failed || run.summary.safe == Some(Safe::UnsafeUnknown) {
-        true => Err(Exit::failed("")),
-        false => Ok(()),
-    }
-}
-
-fn the_one_that_is_on(client: &Client) -> Result<i64, Exit> {
-    let list: RunList = client.get("/runs?limit=100")?;
-    let on: Vec<String> = list.runs.iter().filter(|run| !is_over(run.state)).map(|run| run.id.to_string()).collect();
-    match on.as_slice() {
-        [one] => one.parse().map_err(|_| Exit::failed(format!("run {one} is no number"))),
-        [] => Err(Exit::bad_input("no run is on: there is nothing to stop")),
-        several => Err(Exit::bad_input(format!("runs {} are on: name one", several.join(" and ")))),
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Benches and what they can be asked to do.
 
-use super::convert::bench_view;
+use super::convert::{bench_view, safety_entry};
 use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
 use crate::store::RunFilter;
@@ -10,7 +10,7 @@ use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
 use jointbench_procedure::{BenchFacts, Plan, PlanFault, Procedure, catalogue, procedure};
 use serde_json::{Map, Value};
 
-/// So many of the latest runs are looked at for one of this bench.
+/// So many of the latest runs are looked at for one of this bench, and so much of its safety record is told.
 const RECENT: u32 = 100;
 
 impl Lab {
@@ -30,11 +30,31 @@ impl Lab {
         })
     }
 
-    /// Ends a run on this bench at once, or secures the idle bench.
+    /// Ends a run on this bench at once, or secures the idle bench; nothing starts on it until somebody resets it.
     pub async fn emergency_stop(&self, name: &str) -> Answer<Bench> {
         tracing::warn!(bench = name, "software stop");
-        self.handle(name)?.stop().await?;
+        let bench = self.handle(name)?;
+        let run = bench.status().run;
+        bench.stop().await?;
+        if self.inner.store.bench_block(name).await?.is_none() {
+            self.inner.store.stop_bench(name, run, "the software stop was pressed").await?;
+        }
+        bench.refresh_later()?;
         self.bench(name)
+    }
+
+    /// Tries the instruments again that are not ready.
+    pub async fn retry(&self, name: &str) -> Answer<Bench> {
+        let bench = self.handle(name)?;
+        drop(bench.claim()?);
+        bench.reopen().await?;
+        self.bench(name)
+    }
+
+    pub async fn safety(&self, name: &str) -> Answer<Vec<view::SafetyEntry>> {
+        self.handle(name)?;
+        let entries = self.inner.store.safety(name, RECENT).await?;
+        Ok(entries.into_iter().map(safety_entry).collect())
     }
 
     pub async fn acknowledge(&self, name: &str, reason: &str) -> Answer<Bench> {
@@ -126,19 +146,19 @@ impl Lab {
 fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
     let status = bench.status();
     let faults = status.faults();
-    let busy = !matches!(status.state, BenchState::Idle | BenchState::Offline | BenchState::Fault);
+    let busy = matches!(status.state, BenchState::Running | BenchState::Paused | BenchState::Securing);
     vec![
         view::Check {
             name: "instruments".into(),
             ok: faults.is_none(),
             detail: faults.clone().unwrap_or_else(|| "all answer".into()),
-            cure: faults.map(|_| "check power, cables and the ports in the bench description".into()),
+            cure: faults.map(|_| "check power, cables and ports, then try the instruments again".into()),
         },
         view::Check {
             name: "acknowledged".into(),
             ok: status.blocked.is_none(),
             detail: status.blocked.as_ref().map_or_else(|| "nothing open".into(), |blocked| blocked.reason.clone()),
-            cure: status.blocked.map(|_| "look at the bench, then acknowledge it with a reason".into()),
+            cure: status.blocked.map(|_| "look at the bench, then reset it with a reason".into()),
         },
         view::Check {
             name: "free".into(),

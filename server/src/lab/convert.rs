@@ -3,7 +3,7 @@
 use super::LabError;
 use crate::bench::Status;
 use crate::config::BenchDescription;
-use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord};
+use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord};
 use crate::view;
 use jointbench_instrument::limits::Limited;
 use jointbench_procedure::{Control, EventKind, RunState, Safe};
@@ -70,6 +70,11 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
             link_range_rad: constants.link_range_rad,
         },
     }
+}
+
+pub(super) fn safety_entry(record: SafetyRecord) -> view::SafetyEntry {
+    let SafetyRecord { blocked, stopped, reason, run, at } = record;
+    view::SafetyEntry { blocked, stopped, reason, run, at }
 }
 
 pub(super) fn summary(record: &RunRecord) -> view::RunSummary {

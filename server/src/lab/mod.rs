@@ -52,6 +52,8 @@ struct Inner {
     flights: Flights,
     /// Whose turn it is to work out what effects are worth.
     worth: tokio::sync::Mutex<()>,
+    /// Whose turn it is to make a version that has no parent.
+    first: tokio::sync::Mutex<()>,
 }
 
 impl Lab {
@@ -82,7 +84,14 @@ impl Lab {
             }
         }
         let lab = Lab {
-            inner: Arc::new(Inner { store, hub, benches, flights: Flights::default(), worth: Default::default() }),
+            inner: Arc::new(Inner {
+                store,
+                hub,
+                benches,
+                flights: Flights::default(),
+                worth: Default::default(),
+                first: Default::default(),
+            }),
         };
         lab.wait_until_secured().await;
         Ok(lab)
@@ -97,6 +106,7 @@ impl Lab {
                 benches: Vec::new(),
                 flights: Flights::default(),
                 worth: Default::default(),
+                first: Default::default(),
             }),
         }
     }

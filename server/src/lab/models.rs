@@ -41,6 +41,15 @@ impl Lab {
         let whole = self.tables(runs).await?;
         let table = excluding::without(whole.clone(), &excluded)?;
         let spec = self.spec(table.kind(), effects).await?;
+        let _turn = match parent {
+            None => Some(self.inner.first.lock().await),
+            Some(_) => None,
+        };
+        if parent.is_none()
+            && let Some(there) = self.first_version(run, more_runs, &spec, &excluded).await?
+        {
+            return convert::model(there);
+        }
         let options = Options::default();
         let chosen = reread(&options)?;
         let offer = self.offer(&table, runs, None).await?;
@@ -83,6 +92,24 @@ impl Lab {
         );
         self.hub().tell(LiveMessage::Model { run, model: record.id });
         convert::model(record)
+    }
+
+    /// The newest version, where it was made of just that and without a parent: pages that open a run at once share it.
+    async fn first_version(
+        &self,
+        run: i64,
+        more_runs: &[i64],
+        spec: &ModelSpec,
+        excluded: &[Exclusion],
+    ) -> Answer<Option<ModelRecord>> {
+        let Some(newest) = self.inner.store.models(run).await?.pop() else { return Ok(None) };
+        let fit: Fit = reread(&newest.fit)?;
+        let alike = newest.parent.is_none()
+            && newest.more_runs == more_runs
+            && newest.effects == spec.effects
+            && reread::<_, Vec<Exclusion>>(&newest.excluded)? == excluded
+            && fit.own.iter().all(|own| spec.own.contains(own));
+        Ok(alike.then_some(newest))
     }
 
     pub async fn models(&self, run: i64) -> Answer<Vec<Model>> {

@@ -2,7 +2,7 @@
 
 use super::{Answer, Lab, LabError, convert};
 use crate::bench::BenchHandle;
-use crate::store::{NewRun, RunFilter, RunRecord};
+use crate::store::{NewRun, RunFilter, RunRecord, Search};
 use crate::view::{self, Run, RunEvent, RunList, Samples};
 use jointbench_instrument::{Meta, RunTable};
 use jointbench_procedure::{Control, Plan};
@@ -30,9 +30,10 @@ impl Lab {
             return Err(LabError::Invalid(format!("the plan is refused: {}", failed.join("; "))));
         }
         if let Some(block) = self.inner.store.bench_block(bench.name()).await? {
+            let (name, word) = (bench.name(), if block.stopped { "stopped" } else { "blocked" });
             return Err(LabError::Conflict(format!(
-                "bench {} is blocked: {}. Look at it, then acknowledge with a reason",
-                bench.name(),
+                "bench {name} is {word}: {}. Look at it, then reset it with a reason: in the dashboard, or \
+                 `jointbench reset {name} --reason '…'`",
                 block.reason
             )));
         }
@@ -71,7 +72,14 @@ impl Lab {
     pub async fn runs(&self, limit: u32, offset: u32, search: Option<&str>) -> Answer<RunList> {
         let filter = RunFilter { limit, offset, search: search.map(str::to_owned) };
         let (total, records) = self.inner.store.runs(&filter).await?;
-        Ok(RunList { total, runs: records.iter().map(convert::summary).collect() })
+        Ok(RunList { total, runs: records.iter().map(convert::summary).collect(), unclear: None })
+    }
+
+    /// The runs that what is understood of a search finds.
+    pub async fn runs_while_typing(&self, limit: u32, offset: u32, search: &str) -> Answer<RunList> {
+        let (understood, refused) = Search::understood(search);
+        let found = self.runs(limit, offset, Some(&understood)).await?;
+        Ok(RunList { unclear: refused.map(|fault| fault.to_string()), ..found })
     }
 
     pub async fn control(&self, id: i64, control: Control) -> Answer<Run> {

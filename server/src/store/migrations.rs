@@ -7,7 +7,7 @@ use std::future::{self, Future};
 use std::pin::Pin;
 
 /// Name and text of every file in `migrations/`, in order. Listed by hand: the macro that would do it compiles SQLite twice.
-const FILES: [(&str, &str); 8] = [
+const FILES: [(&str, &str); 9] = [
     ("0001_runs.sql", include_str!("../../../migrations/0001_runs.sql")),
     ("0002_models.sql", include_str!("../../../migrations/0002_models.sql")),
     ("0003_safety.sql", include_str!("../../../migrations/0003_safety.sql")),
@@ -16,6 +16,7 @@ const FILES: [(&str, &str); 8] = [
     ("0006_notes.sql", include_str!("../../../migrations/0006_notes.sql")),
     ("0007_kept.sql", include_str!("../../../migrations/0007_kept.sql")),
     ("0008_excluded.sql", include_str!("../../../migrations/0008_excluded.sql")),
+    ("0009_stopped.sql", include_str!("../../../migrations/0009_stopped.sql")),
 ];
 
 #[derive(Debug)]

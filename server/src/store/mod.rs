@@ -27,9 +27,10 @@ mod view;
 
 pub use error::StoreError;
 pub use records::{
-    AutopilotRecord, BenchBlock, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord,
-    OwnEffectRecord, RunFilter, RunRecord, View, ViewColumn,
+    AutopilotRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord, OwnEffectRecord,
+    RunFilter, RunRecord, SafetyRecord, View, ViewColumn,
 };
+pub use search::Search;
 
 use sqlx::SqlitePool;
 use std::fs::File;

@@ -153,10 +153,13 @@ pub struct AutopilotRecord {
 
 /// Why a bench must not move.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BenchBlock {
+pub struct SafetyRecord {
+    pub blocked: bool,
+    /// By the software stop.
+    pub stopped: bool,
     pub reason: String,
-    pub since: String,
     pub run: Option<RunId>,
+    pub at: String,
 }
 
 /// Samples of a window, drawn at a width.

@@ -1,42 +1,62 @@
 //! Which bench must not move until a person has looked at it.
 
 use super::runs::now;
-use super::{BenchBlock, Store, StoreError};
+use super::{SafetyRecord, Store, StoreError};
 use jointbench_procedure::{RunId, Safe};
 use sqlx::SqliteConnection;
 
 impl Store {
     /// Why the bench must not move, or `None`.
-    pub async fn bench_block(&self, bench: &str) -> Result<Option<BenchBlock>, StoreError> {
-        let newest: Option<(bool, String, String, Option<RunId>)> = sqlx::query_as(
-            "SELECT blocked, reason, at, run FROM bench_safety WHERE bench = ? ORDER BY id DESC LIMIT 1",
+    pub async fn bench_block(&self, bench: &str) -> Result<Option<SafetyRecord>, StoreError> {
+        Ok(self.safety(bench, 1).await?.pop().filter(|newest| newest.blocked))
+    }
+
+    /// The newest entries of a bench, newest first.
+    pub async fn safety(&self, bench: &str, limit: u32) -> Result<Vec<SafetyRecord>, StoreError> {
+        let entries: Vec<(bool, bool, String, Option<RunId>, String)> = sqlx::query_as(
+            "SELECT blocked, stopped, reason, run, at FROM bench_safety WHERE bench = ? ORDER BY id DESC LIMIT ?",
         )
         .bind(bench)
-        .fetch_optional(&self.readers)
+        .bind(limit)
+        .fetch_all(&self.readers)
         .await?;
-        Ok(newest.and_then(|(blocked, reason, since, run)| blocked.then_some(BenchBlock { reason, since, run })))
+        let record = |(blocked, stopped, reason, run, at)| SafetyRecord { blocked, stopped, reason, run, at };
+        Ok(entries.into_iter().map(record).collect())
     }
 
     pub async fn block_bench(&self, bench: &str, run: Option<RunId>, reason: &str) -> Result<(), StoreError> {
-        enter(&mut *self.writer.acquire().await?, bench, true, run, reason).await
+        enter(&mut *self.writer.acquire().await?, bench, Word::Block, run, reason).await
+    }
+
+    /// A person has pressed the software stop.
+    pub async fn stop_bench(&self, bench: &str, run: Option<RunId>, reason: &str) -> Result<(), StoreError> {
+        enter(&mut *self.writer.acquire().await?, bench, Word::Stop, run, reason).await
     }
 
     /// A person has looked; `reason` is what they say about it.
     pub async fn acknowledge_bench(&self, bench: &str, reason: &str) -> Result<(), StoreError> {
-        enter(&mut *self.writer.acquire().await?, bench, false, None, reason).await
+        enter(&mut *self.writer.acquire().await?, bench, Word::Release, None, reason).await
     }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Word {
+    Block,
+    Stop,
+    Release,
 }
 
 async fn enter(
     writer: &mut SqliteConnection,
     bench: &str,
-    blocked: bool,
+    word: Word,
     run: Option<RunId>,
     reason: &str,
 ) -> Result<(), StoreError> {
-    sqlx::query("INSERT INTO bench_safety (bench, blocked, reason, run, at) VALUES (?, ?, ?, ?, ?)")
+    sqlx::query("INSERT INTO bench_safety (bench, blocked, stopped, reason, run, at) VALUES (?, ?, ?, ?, ?, ?)")
         .bind(bench)
-        .bind(blocked)
+        .bind(word != Word::Release)
+        .bind(word == Word::Stop)
         .bind(reason)
         .bind(run)
         .bind(now())
@@ -55,7 +75,7 @@ pub(super) async fn keep_safe(writer: &mut SqliteConnection, run: RunId, safe: S
         .await?;
     if safe == Safe::UnsafeUnknown {
         let reason = format!("run {run} ended without the bench being known to be safe");
-        enter(writer, &bench, true, Some(run), &reason).await?;
+        enter(writer, &bench, Word::Block, Some(run), &reason).await?;
     }
     Ok(())
 }

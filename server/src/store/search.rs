@@ -1,7 +1,8 @@
 //! The query language of the list of runs.
 //!
 //! Terms with blanks between, all of which must hold: a word is looked for in bench, procedure, kind, state, reason, tags and
-//! notes; `key:value` in one field; `rows>1000` compares; `-` before a term means that it must not hold; `"two words"` are one.
+//! notes; `key:value` in one field, whose beginning is enough where no run has just that; `rows>1000` and `duration>2min`
+//! compare; `-` before a term means that it must not hold; `"two words"` are one.
 
 use super::StoreError;
 use jointbench_instrument::Kind;
@@ -9,13 +10,15 @@ use jointbench_procedure::{RunState, Safe};
 use serde::de::{DeserializeOwned, IntoDeserializer, value};
 use sqlx::{QueryBuilder, Sqlite};
 
-/// Words that are compared whole, with the column that they are in.
+/// Words of which the beginning is enough, with the column that they are in.
 const FIELDS: [(&str, &str); 5] =
     [("bench", "bench"), ("procedure", "procedure"), ("kind", "kind"), ("state", "state"), ("safe", "safe")];
 /// Numbers, with their column.
 const NUMBERS: [(&str, &str); 3] = [("id", "id"), ("rows", "rows"), ("duration", "duration_s")];
 const KEYS: &str =
-    "bench: procedure: kind: state: safe: tag: note: simulated:yes after:2026-01-31 before: id> rows> duration>";
+    "bench: procedure: kind: state: safe: tag: note: simulated:yes after:2026-01-31 before: id> rows> duration>2min";
+/// How a duration may be written, in seconds; without one it is seconds.
+const DURATIONS: [(&str, f64); 4] = [("min", 60.0), ("h", 3600.0), ("m", 60.0), ("s", 1.0)];
 
 #[derive(Debug, Clone, PartialEq)]
 enum Condition {
@@ -35,14 +38,19 @@ pub struct Search(Vec<(bool, Condition)>);
 
 impl Search {
     pub fn parse(text: &str) -> Result<Self, StoreError> {
-        let terms = terms(text).into_iter().map(|term| {
-            let (without, rest) = match term.strip_prefix('-') {
-                Some(rest) if !rest.is_empty() => (true, rest),
-                _ => (false, term.as_str()),
-            };
-            condition(rest).map(|condition| (without, condition))
-        });
-        Ok(Self(terms.collect::<Result<_, _>>()?))
+        Ok(Self(terms(text).iter().map(|term| read(term)).collect::<Result<_, _>>()?))
+    }
+
+    /// The part of a search that is understood, and why the first of the other terms is not.
+    pub fn understood(text: &str) -> (String, Option<StoreError>) {
+        let (mut kept, mut refused) = (Vec::new(), None);
+        for term in terms(text) {
+            match read(&term) {
+                Ok(_) => kept.push(format!("\"{term}\"")),
+                Err(fault) => refused = refused.or(Some(fault)),
+            }
+        }
+        (kept.join(" "), refused)
     }
 
     /// ` WHERE …`, with every value bound.
@@ -66,7 +74,10 @@ impl Condition {
                 push_note(query, word);
             }
             Condition::Field(column, value) => {
-                query.push("lower(").push(*column).push(") = ").push_bind(value.clone());
+                let column = format!("lower({column})");
+                query.push("CASE WHEN EXISTS (SELECT 1 FROM runs WHERE ").push(&column).push(" = ");
+                query.push_bind(value.clone()).push(") THEN ").push(&column).push(" = ").push_bind(value.clone());
+                query.push(" ELSE instr(").push(&column).push(", ").push_bind(value.clone()).push(") = 1 END");
             }
             Condition::Tag(tag) => {
                 query.push("EXISTS (SELECT 1 FROM tags WHERE run = runs_told.id AND lower(tag) = ");
@@ -92,6 +103,15 @@ fn push_note(query: &mut QueryBuilder<Sqlite>, word: &str) {
     query.push_bind(word.to_owned()).push(") > 0)");
 }
 
+/// A condition, and whether it must not hold.
+fn read(term: &str) -> Result<(bool, Condition), StoreError> {
+    let (without, rest) = match term.strip_prefix('-') {
+        Some(rest) if !rest.is_empty() => (true, rest),
+        _ => (false, term),
+    };
+    Ok((without, condition(rest)?))
+}
+
 fn condition(term: &str) -> Result<Condition, StoreError> {
     let refuse = |what: String| StoreError::Search { term: term.to_owned(), what };
     for (name, column) in NUMBERS {
@@ -99,13 +119,18 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
         let operators = [(">=", " >= "), ("<=", " <= "), (">", " > "), ("<", " < "), ("=", " = "), (":", " = ")];
         if let Some((value, operator)) = operators.iter().find_map(|(sign, sql)| Some((rest.strip_prefix(sign)?, *sql)))
         {
-            let number = value.parse::<f64>().ok().filter(|number| number.is_finite());
+            let units = DURATIONS.iter().filter(|_| name == "duration");
+            let with_unit = units.filter_map(|(unit, s)| Some((value.strip_suffix(unit)?.trim_end(), *s))).next();
+            let (figure, factor) = with_unit.unwrap_or((value, 1.0));
+            let number = figure.parse::<f64>().ok().map(|number| number * factor).filter(|number| number.is_finite());
             let number = number.ok_or_else(|| refuse(format!("{value:?} is no number")))?;
             return Ok(Condition::Number(column, operator, number));
         }
     }
     let Some((key, value)) = term.split_once(':') else { return Ok(Condition::Word(term.to_owned())) };
     if let Some((_, column)) = FIELDS.iter().find(|(name, _)| *name == key) {
+        // As the pages call it.
+        let value = if (key, value) == ("state", "done") { "completed" } else { value };
         match key {
             "kind" => known::<Kind>(value),
             "state" => known::<RunState>(value),
@@ -130,9 +155,11 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
     }
 }
 
-/// Whether it is one of the words of a type; the fault names them all.
+/// Whether a word of a type begins like that; the fault names them all.
 fn known<T: DeserializeOwned>(word: &str) -> Result<(), value::Error> {
-    T::deserialize(word.into_deserializer()).map(drop)
+    let Err(fault): Result<T, value::Error> = T::deserialize(word.into_deserializer()) else { return Ok(()) };
+    let begins = fault.to_string().split_once("expected").is_some_and(|(_, all)| all.contains(&format!("`{word}")));
+    if begins { Ok(()) } else { Err(fault) }
 }
 
 /// Split at blanks outside quotation marks, in lower case.
@@ -160,6 +187,15 @@ mod tests {
             terms("  kind:Friction \"warm oil\" note:\"two words\""),
             ["kind:friction", "warm oil", "note:two words"]
         );
+    }
+
+    #[test]
+    fn what_is_still_being_typed_is_left_out_and_told() {
+        let (understood, refused) = Search::understood("oil rows> \"note:two words\" colour:r");
+        assert_eq!(understood, "\"oil\" \"note:two words\"");
+        assert!(refused.unwrap().to_string().contains("rows>"));
+        assert_eq!(Search::parse(&understood).unwrap(), Search::parse("oil note:\"two words\"").unwrap());
+        assert!(Search::understood("state: procedure: state:comp").1.is_none());
     }
 
     #[test]

@@ -11,6 +11,8 @@ pub enum BenchState {
     Paused,
     /// Drive torque goes off and the brake current to zero.
     Securing,
+    /// By the software stop, until somebody resets it.
+    Stopped,
     /// An instrument does not do what it should.
     Fault,
     /// The instruments could not be opened.
@@ -34,9 +36,24 @@ pub struct Bench {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Blocked {
+    /// By the software stop; otherwise it is not known whether the bench is safe.
+    pub stopped: bool,
     pub reason: String,
     #[schema(format = DateTime)]
     pub since: String,
+}
+
+/// An entry of a bench's safety record, which is only appended to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SafetyEntry {
+    /// The bench must not move from here on; otherwise a person has released it.
+    pub blocked: bool,
+    /// By the software stop.
+    pub stopped: bool,
+    pub reason: String,
+    pub run: Option<i64>,
+    #[schema(format = DateTime)]
+    pub at: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -51,6 +68,9 @@ pub struct Instrument {
     pub identity: Option<InstrumentIdentity>,
     /// What is wrong and what to do about it.
     pub fault: Option<String>,
+    /// Since when it is not ready.
+    #[schema(format = DateTime)]
+    pub since: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

@@ -107,6 +107,8 @@ pub struct RunList {
     /// Runs that match, whatever the page.
     pub total: u64,
     pub runs: Vec<RunSummary>,
+    /// Of a search that is still being typed: what is not understood, and left out.
+    pub unclear: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -31,6 +31,7 @@ pub fn settings(data: &Path, pace: Option<f64>) -> DaemonSettings {
         listen: "127.0.0.1:0".parse().unwrap(),
         data: data.to_owned(),
         token: None,
+        read_token: None,
         benches: vec![BenchDescription::mock(BENCH, mock)],
     }
 }

@@ -29,11 +29,17 @@ fn beyond_loopback_the_token_opens_the_api() {
     let daemon = TestDaemon::start_with(None, |settings| {
         settings.listen = "0.0.0.0:0".parse().unwrap();
         settings.token = Some("correct horse".into());
+        settings.read_token = Some("looking horse".into());
     });
     let (status, problem) = daemon.get("/api/v1/bench");
     assert_eq!((status, problem["type"].as_str()), (401, Some("urn:jointbench:unauthorized")));
     assert_eq!(daemon.get_with("/api/v1/bench", &[("authorization", "Bearer wrong horse")]).0, 401);
-    assert_eq!(daemon.get_with("/api/v1/bench", &[("authorization", "Bearer correct horse")]).0, 200);
+    for (token, access, changes) in [("correct horse", "full", 404), ("looking horse", "read", 403)] {
+        let bearer = [("authorization", &*format!("Bearer {token}"))];
+        assert_eq!(daemon.get_with("/api/v1/health", &bearer).1["access"], access);
+        assert_eq!(daemon.post_with("/api/v1/runs/1/pause", b"", &bearer).0, changes, "{token}");
+        assert_eq!(daemon.post_with(&format!("/api/v1/bench/{BENCH}/stop"), b"", &bearer).0, 200, "{token}");
+    }
 }
 
 #[test]

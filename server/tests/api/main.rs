@@ -10,3 +10,4 @@ mod own_effects;
 mod problems;
 mod revisions;
 mod runs;
+mod safety;

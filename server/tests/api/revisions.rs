@@ -30,6 +30,25 @@ fn text(daemon: &TestDaemon, path: &str) -> String {
 }
 
 #[test]
+fn a_run_has_one_first_version_however_many_pages_open_it() {
+    let daemon = TestDaemon::start();
+    let run = rubbing_run(&daemon, 12_345);
+    let first = |effects: Value| {
+        let (status, model) = daemon.post("/api/v1/models", &json!({"run": run, "effects": effects}).to_string());
+        assert_eq!(status, 201, "{model}");
+        model["id"].clone()
+    };
+    let bare = || first(json!(["load_transmission", "coulomb", "viscous"]));
+    let ids: Vec<Value> = std::thread::scope(|scope| {
+        let pages: Vec<_> = (0..3).map(|_| scope.spawn(bare)).collect();
+        pages.into_iter().map(|page| page.join().unwrap()).collect()
+    });
+    assert!(ids.iter().all(|id| *id == ids[0]), "{ids:?}");
+    assert_ne!(first(json!(["load_transmission", "coulomb"])), ids[0], "another set is another version");
+    assert_eq!(daemon.get(&format!("/api/v1/models?run={run}")).1.as_array().unwrap().len(), 2);
+}
+
+#[test]
 fn two_versions_stand_side_by_side() {
     let Two { daemon, run, bare, better } = two_versions();
     let (status, found) = daemon.get(&format!("/api/v1/models/{}/compare/{}", bare["id"], better["id"]));

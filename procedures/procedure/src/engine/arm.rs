@@ -12,7 +12,7 @@ impl Session<'_> {
     pub(super) fn arm(&mut self) -> Result<(), Ending> {
         if let Some(reason) = self.journal.blocked()? {
             let name = &self.bench.name;
-            return Err(Ending::NotReady(format!("bench {name} is blocked ({reason}): look at it, then acknowledge")));
+            return Err(Ending::NotReady(format!("bench {name} is blocked ({reason}): look at it, then reset it")));
         }
         self.check_plan()?;
         self.identify()?;

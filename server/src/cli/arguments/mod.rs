@@ -2,9 +2,11 @@
 
 mod kept;
 mod model;
+mod steer;
 
 pub use kept::{Export, Identify, Import, Report, Reproduce, Runs, StorePlace};
 pub use model::{Model, ModelCommand};
+pub use steer::{Reset, Steer, Stop};
 
 use super::log::LogForm;
 use super::own::OwnEffects;
@@ -54,8 +56,16 @@ pub enum Command {
     )]
     Run(Run),
     /// End a run that is on: the brake is unloaded while the shaft turns, and what was measured is kept
-    #[command(after_help = STOP)]
+    #[command(after_help = steer::STOP)]
     Stop(Stop),
+    /// Let a run that is on come to rest between two steps, and wait there
+    #[command(after_help = steer::STEER)]
+    Pause(Steer),
+    /// Let a paused run go on
+    #[command(after_help = steer::STEER)]
+    Resume(Steer),
+    /// Release a bench after a software stop, or after an end that is not known to be safe
+    Reset(Reset),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
     /// Measure, diagnose and measure again on a running daemon, until nothing is missing
@@ -120,6 +130,9 @@ pub struct Place {
     /// Needed to listen beyond loopback; callers send it as `Authorization: Bearer TOKEN`
     #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
     pub token: Option<String>,
+    /// A second token, for those who only look; it can press the software stop, too
+    #[arg(long, value_name = "TOKEN", env = "JOINTBENCH_READ_TOKEN", hide_env_values = true)]
+    pub read_token: Option<String>,
     /// Write the traffic of every instrument down in this folder, to read and to replay
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
@@ -188,26 +201,10 @@ pub struct Run {
     pub reach: Reach,
 }
 
-#[derive(Debug, Args)]
-pub struct Stop {
-    /// Number of the run [default: the one that is on]
-    pub run: Option<i64>,
-    /// End it at once: the shaft comes to rest, then the brake's current is taken away. That leaves poles in a brake that
-    /// was loaded: make `demagnetise` before the next run that counts on it
-    #[arg(long)]
-    pub now: bool,
-    #[command(flatten)]
-    pub reach: Reach,
-}
-
 const DECIDED: &str = "\
 Exit codes: 0 a verdict, whatever it says, 2 bad arguments or bad input, 3 the data do not allow one: too little was measured \
 to find fault with the model, or the columns contradict each other. With --json `undecided` says why, and is there with 3 \
 only; `adequate` beside it says that nothing was found, not that nothing is there.";
-
-const STOP: &str = "\
-Exit codes: 0 the run has ended and the bench is safe, 1 the run failed before it could be ended or the bench is not known \
-to be safe, 2 nothing is there to be ended: no run is on, or the one that is named is over.";
 
 const AUTOPILOT: &str = "\
 It makes a run, fits the baseline and diagnoses it. What is missing and certain is added. Where two effects explain the

@@ -171,6 +171,16 @@ fn runs_are_found_by_field_tag_note_and_number() {
         assert_eq!(found("ozone bench:joint-b").await, [2]);
         assert_eq!(found("note:\"of ozone\"").await, [2]);
         assert_eq!(found("rows>=500 duration>0").await, [imported]);
+        assert_eq!(found("state:done").await, [imported], "as the pages call it");
+        assert_eq!(found("state:comp -bench:joint-b").await, [imported]);
+        assert_eq!(found("-state:").await, [0i64; 0], "every state begins like that");
+        let all = found("").await;
+        assert_eq!(found("bench:joi").await, all);
+        assert_eq!(found("bench:joint-b").await, [2], "a name that is there is meant whole");
+        let long = store.import(&new_run(), &[], rows(0, 40_000)).await.unwrap();
+        assert_eq!(found("duration>2min").await, [long]);
+        assert_eq!(found("duration>0.04h rows>=500").await, [long]);
+        assert_eq!(found("duration<=120s").await, [imported]);
         assert_eq!(found("-duration>0").await, [2, 1], "what is not known does not hold");
         assert_eq!(found("after:2020-01-01 before:2020-01-02").await, [0i64; 0]);
         assert_eq!(store.run(1).await.unwrap().tags, ["Oil"]);
