@@ -182,6 +182,7 @@ export async function openWorkbench(another, address) {
 export async function firstUse(page, base) {
 	const answer = await page.goto(base);
 	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
+	await page.getByRole('button', { name: 'Make a demo run' }).waitFor({ timeout: 30_000 });
 	await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 30_000 });
 	const jumps = await jumpsOf(page);
 	return { jumps, policy: answer.headers()['content-security-policy'] ?? '' };
@@ -212,6 +213,12 @@ export async function observe(page, base) {
 	await page.getByRole('button', { name: 'Operator' }).click();
 	await page.getByText('this browser only observes').waitFor({ timeout: 30_000 });
 	expect(await page.getByRole('button', { name: 'Start' }).isDisabled(), 'an observer can start');
+	await dropFiles(page, base, [['foreign.csv', FOREIGN]]);
+	const form = page.getByRole('form', { name: /foreign.csv/ });
+	for (const [name, value] of [['torque constant', '0.08'], ['gear ratio', '50'], ['rotor inertia', '4e-5']]) await form.getByLabel(name).fill(value);
+	await form.getByRole('button', { name: 'Import' }).click();
+	await form.getByText('this browser only observes').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'an observer can import'));
+	await page.goto(base);
 }
 
 /** A page whose line to the daemon is cut and comes back: it says so, lets nothing start, and then knows what went on without it. Gives what it said. */
@@ -246,12 +253,36 @@ export async function stopByKey(page, who) {
 	await page.getByRole('button', { name: 'The bench stands still' }).click({ timeout: 500 }).catch(() => {});
 }
 
-/** A table with foreign names and units. */
-export const FOREIGN = ['Time [ms],pos_deg,Iq [A]', ...Array.from({ length: 200 }, (_, i) => `${i * 4},${i % 90},0.${i % 9}`)].join('\n');
+/** Every bench that the software stop holds: nothing starts, and the page says why, until it is reset in two steps and with a reason. Gives how many were held. */
+export async function resetStopped(page, base) {
+	const benches = await (await fetch(`${base}/api/v1/bench`)).json();
+	const stopped = benches.filter(({ state }) => state === 'stopped');
+	for (const { name } of stopped) {
+		await page.goto(`${base}/?bench=${name}`);
+		const held = page.getByRole('region', { name: 'Bench stopped' });
+		await held.waitFor({ timeout: 30_000 }).catch(() => expect(false, `the page does not say that ${name} is stopped`));
+		await page.locator('header .state', { hasText: 'STOPPED' }).waitFor({ timeout: 30_000 });
+		await page.locator('#start-reason', { hasText: 'the bench is stopped' }).waitFor({ timeout: 30_000 });
+		expect(await page.getByRole('button', { name: 'Start' }).isDisabled(), `a run can be started on ${name}, which is stopped`);
+		const reset = held.getByRole('button', { name: 'Reset the bench' });
+		await held.getByLabel('What was found and done').fill('walked past');
+		expect(await reset.isDisabled(), 'one step is enough to reset a bench');
+		await held.getByLabel('I have looked at the bench').check();
+		await reset.click();
+		await held.waitFor({ state: 'detached', timeout: 30_000 });
+		await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 30_000 });
+		await page.goto(`${base}/log`);
+		await page.getByText('walked past').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the log does not tell of the reset'));
+	}
+	return stopped.length;
+}
 
-/** Drops files, each a name and a text, on the page of the runs to import them. */
-export async function dropFiles(page, base, files) {
-	await page.goto(`${base}/runs`);
+/** A table with foreign names and units, semicolons between its columns and commas in its numbers. */
+export const FOREIGN = ['Time [ms];pos_deg;Iq [A]', ...Array.from({ length: 200 }, (_, i) => `${i * 4};${i % 90};0,${i % 9}`)].join('\n');
+
+/** Drops files, each a name and a text, on a page to import them. */
+export async function dropFiles(page, base, files, path = '/runs') {
+	await page.goto(base + path);
 	await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
 	await page.evaluate((files) => {
 		const dataTransfer = new DataTransfer();
@@ -262,7 +293,7 @@ export async function dropFiles(page, base, files) {
 
 /** Drops a table on the page to import it; the form that asks what its columns are. */
 export async function chooseForeign(page, base, table) {
-	await dropFiles(page, base, [['foreign.csv', table]]);
+	await dropFiles(page, base, [['foreign.csv', table]], '/settings');
 	const form = page.getByRole('form', { name: /foreign.csv/ });
 	await form.waitFor({ timeout: 30_000 });
 	return form;

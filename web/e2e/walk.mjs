@@ -1,13 +1,13 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
-// both, by keyboard too, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; the software stop by key;
+// both, by keyboard too, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; the software stop by key, and its reset; a search that is still being typed; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
 import { askForNone, bringBack, byKeyboard, dashesOf, manyRuns, readResults, takeAway, zoomWhileFollowing } from './looks.mjs';
-import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, openWorkbench, readResult, readVersion, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
+import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, openWorkbench, readResult, readVersion, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** Without typeset formulas, whose script comes with the first of them. */
@@ -129,7 +129,17 @@ await tell('walk', async () => {
 	const moves = await moving(watcher);
 	expect(moves.length === 0, `with little motion asked for these still move: ${moves.join(', ')}`);
 	await stopByKey(watcher, 'observer');
+	expect((await resetStopped(page, where.base)) === 1, 'the stop of the observer does not hold');
 	await stopByKey(page, 'operator');
+	expect((await resetStopped(page, where.base)) === 1, 'the stop of the operator does not hold');
+	await page.goto(`${where.base}/runs?search=${encodeURIComponent('procedure:fric duration>1s rows>')}`);
+	await page.getByRole('link', { name: `#${run}` }).first().waitFor({ timeout: 30_000 });
+	await page.getByText(/rows>/).first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'a half-typed term of a search is not told'));
+	const lost = await another(where.base, []);
+	await lost.goto(`${where.base}/runs/987654`);
+	await lost.getByText('there is no run 987654').waitFor({ timeout: 30_000 });
+	await audit(lost, 'a run that is not there');
+	await lost.close();
 	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
 	await page.getByLabel(`Compare run ${run + 1}`).check();

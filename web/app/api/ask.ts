@@ -1,5 +1,6 @@
 import type { paths } from '../../gen/schema';
 import { Refusal, asRefusal } from './problem';
+import { role } from '../state/role.svelte';
 import { authorization } from './token';
 
 type Method = 'get' | 'post' | 'put' | 'delete';
@@ -11,7 +12,7 @@ type Answer<O> = O extends { responses: infer R } ? { [S in keyof R & (200 | 201
 
 interface Loose {
 	path?: Record<string, string | number>;
-	query?: Record<string, string | number | undefined>;
+	query?: Record<string, string | number | boolean | undefined>;
 	body?: unknown;
 }
 
@@ -27,6 +28,9 @@ export async function ask<P extends keyof paths, M extends Method>(method: M, ad
 
 /** The answer to a request with the token that a person gave, or a refusal that a page can show. */
 export async function request(href: string, { headers, ...rest }: RequestInit = {}): Promise<Response> {
+	if (role.observing && rest.method && rest.method !== 'GET' && !/\/(stop|preview|check|diagnoses)$/.test(href)) {
+		throw new Refusal({ title: 'Not by an observer', detail: role.barred, status: 403 });
+	}
 	try {
 		const answer = await fetch(href, { ...rest, headers: { ...headers, ...authorization() } });
 		if (answer.ok) return answer;

@@ -12,6 +12,8 @@ export const api = {
 	benches: (signal?: Signal) => ask('get', '/api/v1/bench', {}, signal),
 	acknowledge: (bench: string, reason: string) =>
 		ask('post', '/api/v1/bench/{bench}/acknowledge', { path: { bench }, body: { reason } }),
+	retry: (bench: string) => ask('post', '/api/v1/bench/{bench}/retry', { path: { bench } }),
+	safety: (bench: string, signal?: Signal) => ask('get', '/api/v1/bench/{bench}/safety', { path: { bench } }, signal),
 	stopBench: (bench: string, signal?: Signal) =>
 		ask('post', '/api/v1/bench/{bench}/stop', { path: { bench } }, signal),
 
@@ -20,7 +22,7 @@ export const api = {
 	preview: (id: string, bench: string, parameters: Values, signal?: Signal) =>
 		ask('post', '/api/v1/procedures/{id}/preview', { path: { id }, body: { bench, parameters } }, signal),
 
-	runs: (query: { limit?: number; offset?: number; search?: string }, signal?: Signal) =>
+	runs: (query: { limit?: number; offset?: number; search?: string; typing?: boolean }, signal?: Signal) =>
 		ask('get', '/api/v1/runs', { query }, signal),
 	run: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}', { path: { id } }, signal),
 	identification: (id: number, signal?: Signal) =>

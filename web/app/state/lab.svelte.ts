@@ -6,6 +6,7 @@ import type { Frame } from '../api/frame';
 import { chase } from '../plot/chase';
 import { Tape } from '../plot/tape';
 import { renewed } from './benches';
+import { role } from './role.svelte';
 
 /** With nothing heard for so long, the page asks. */
 const QUIET_MS = 1500;
@@ -49,6 +50,11 @@ class LabState {
 	silence_ms = $derived(Math.max(0, this.now_ms - this.heard_ms));
 	lost = $derived(!this.line || this.silence_ms > STALE_MS);
 
+	/** A bench as the daemon has just told of it. */
+	put(bench: Bench): void {
+		this.benches = renewed(this.benches ?? [], bench);
+	}
+
 	start(): () => void {
 		const hangUp = connectLive({
 			message: (message) => this.take(message),
@@ -56,12 +62,15 @@ class LabState {
 			line: (up) => this.setLine(up),
 		});
 		const clock = setInterval(() => this.tick(), 250);
-		void this.ask();
-		return () => {
+		this.leave = () => {
 			hangUp();
 			clearInterval(clock);
 		};
+		void this.ask();
+		return this.leave;
 	}
+
+	private leave = () => {};
 
 	private tick(): void {
 		this.now_ms = performance.now();
@@ -77,10 +86,11 @@ class LabState {
 		try {
 			this.benches = await api.benches(AbortSignal.timeout(2500));
 			this.hear();
-			this.unauthorized = false;
 		} catch (failure) {
 			// Silence is shown by its age.
 			this.unauthorized = asRefusal(failure).status === 401;
+			// The page begins anew with a token.
+			if (this.unauthorized) this.leave();
 		}
 		this.asking = false;
 	}
@@ -97,13 +107,14 @@ class LabState {
 		this.runStates = {};
 		this.progress = {};
 		void this.ask();
+		void api.health().then(({ access }) => (role.reads = access === 'read'), () => {});
 	}
 
 	private take(message: LiveMessage): void {
 		this.hear();
 		switch (message.type) {
 			case 'bench': {
-				this.benches = renewed(this.benches ?? [], message.bench);
+				this.put(message.bench);
 				break;
 			}
 			case 'state':
