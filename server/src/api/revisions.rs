@@ -42,7 +42,7 @@ pub async fn worth(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Wo
 /// What an effect more would add to the prediction of a model version, at each point of its residuals
 #[utoipa::path(get, path = "/models/{id}/with/{effect}", operation_id = "predict_with", tag = "models",
     params(("id" = i64, Path, description = "Model version"), ("effect" = String, Path, description = "An effect that it lacks")),
-    responses((status = 200, description = "In the unit of the residuals; nothing is kept", body = Vec<f64>), Refusals))]
+    responses((status = 200, description = "In the unit of the residuals", body = Vec<f64>), Refusals))]
 pub async fn with_effect(State(lab): State<Lab>, Path((id, effect)): Path<(i64, String)>) -> Answer<Vec<f64>> {
     Ok(Json(lab.with_effect(id, effect).await?))
 }

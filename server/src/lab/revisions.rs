@@ -52,7 +52,12 @@ impl Lab {
     }
 
     /// What an effect more would add to the prediction at each point of the version's residuals, all fitted again with it.
+    /// Kept, but for a user's effect, whose formula may change.
     pub async fn with_effect(&self, model: i64, effect: String) -> Answer<Vec<f64>> {
+        let kept_as = format!("with {effect}");
+        if let Some(kept) = self.inner.store.kept(model, &kept_as).await? {
+            return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
+        }
         let record = self.inner.store.model(model).await?;
         let before: Fit = reread(&record.fit)?;
         let whole = self.tables(&record.runs()).await?;
@@ -60,14 +65,20 @@ impl Lab {
         let mut own = before.own.clone();
         let theirs = self.own_effects(before.kind).await?;
         own.extend(theirs.into_iter().filter(|one| one.id() == effect && !before.own.iter().any(|o| o.id() == effect)));
+        let changes = own.iter().any(|one| one.id() == effect);
         let spec = ModelSpec::with_own(before.kind, record.effects.iter().chain([&effect]), own)?;
-        blocking(move || {
+        let added: Vec<f64> = blocking(move || {
             let options = Options::default();
             let after = jointbench_model::fit(&fitted, &spec, &options)?;
             let [before, after] = [before, after].map(|fit| jointbench_model::residuals(&whole, &fit, &options));
             Ok(after?.predicted.iter().zip(before?.predicted).map(|(after, before)| after - before).collect())
         })
-        .await
+        .await?;
+        if !changes {
+            let json = serde_json::to_vec(&added).map_err(|fault| LabError::Internal(fault.to_string()))?;
+            self.inner.store.keep(model, &kept_as, &json).await?;
+        }
+        Ok(added)
     }
 
     pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {
