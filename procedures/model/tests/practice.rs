@@ -3,7 +3,8 @@
 mod common;
 
 use common::{read, shared};
-use jointbench_model::{ModelSpec, Options, ParameterState, Verdict, diagnose, discover, fit};
+use jointbench_instrument::RunTable;
+use jointbench_model::{Fit, ModelSpec, Options, ParameterState, Verdict, diagnose, discover, fit};
 use serde_json::Value;
 
 fn check_family(family: &str) {
@@ -22,6 +23,9 @@ fn check_family(family: &str) {
         let name = case.file_name().unwrap().to_string_lossy().into_owned();
         let same = fit(&run, &ModelSpec::new(spec.kind, &whole.model).unwrap(), &Options::default()).unwrap();
         assert_eq!(same.parameters, whole.fit.parameters, "{name}: a fit of the same effects is the same model");
+        if whole.verdict == Verdict::Adequate {
+            check_removed(&name, &run, &whole.fit);
+        }
         match answer["verdict"].as_str().unwrap() {
             "adequate" => {
                 assert_eq!(first.verdict, Verdict::Adequate, "{name}: {}", first.summary);
@@ -43,6 +47,21 @@ fn check_family(family: &str) {
                 assert!(end <= 1.1 * floor, "{name}: {end} over the floor {floor}");
             }
         }
+    }
+}
+
+/// What is taken out of a complete model is what is named, where the error clearly misses it.
+fn check_removed(name: &str, run: &RunTable, complete: &Fit) {
+    for removed in &complete.effects {
+        let rest = complete.effects.iter().filter(|e| *e != removed);
+        let Ok(spec) = ModelSpec::new(run.kind(), rest) else { continue };
+        let found = diagnose(run, &spec, &Options::default()).unwrap();
+        if found.fit.validation_rms < 1.15 * complete.validation_rms {
+            continue;
+        }
+        let first = found.suggestions.first().map(|s| (&s.effect, &s.confounded_with));
+        let is_named = first.is_some_and(|(effect, ties)| effect == removed || ties.contains(removed));
+        assert!(is_named, "{name} without {removed}: {}", found.summary);
     }
 }
 

@@ -95,7 +95,9 @@ pub struct Moved<'p> {
 pub fn moved<'p>(was: &Terms<'p>, is: &Terms<'p>, effects: &[impl AsRef<str>]) -> Option<Moved<'p>> {
     let (then, now) = (was.linear(), is.linear());
     let both = was.terms.iter().enumerate().filter(|(_, term)| effects.iter().any(|id| id.as_ref() == term.id()));
-    let mut both = both.filter_map(|(at, term)| Some((at, term, is.terms.iter().position(|t| t.id() == term.id())?)));
+    // In another form its factors mean something else.
+    let same = |a: &Term, b: &Term| a.id() == b.id() && a.form.linear == b.form.linear;
+    let mut both = both.filter_map(|(at, term)| Some((at, term, is.terms.iter().position(|t| same(t, term))?)));
     both.find_map(|(at, term, there)| {
         let mut pairs = (0..term.columns.len()).map(|k| (k, then.factors[at][k], now.factors[there][k]));
         let is_wrong = |k: usize, was: f64, is: f64| {
