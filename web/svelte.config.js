@@ -11,5 +11,5 @@ const placeOf = (filename) => components.findIndex((file) => slashes(filename).e
 
 export default {
 	preprocess: vitePreprocess(),
-	compilerOptions: { runes: true, cssHash: ({ filename }) => `s${placeOf(filename)}` },
+	compilerOptions: { runes: true, discloseVersion: false, cssHash: ({ filename }) => `s${placeOf(filename)}` },
 };

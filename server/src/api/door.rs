@@ -83,7 +83,7 @@ impl Door {
 
 /// Stopping, which everybody may do, and questions that need a body.
 fn changes_nothing(path: &str) -> bool {
-    ["/stop", "/preview", "/effects/check", "/diagnoses"].iter().any(|end| path.ends_with(end))
+    ["/stop", "/preview", "/effects/check", "/diagnoses", "/evaluate"].iter().any(|end| path.ends_with(end))
 }
 
 /// Middleware: refuses before anything is read, and tells handlers what the caller may do.

@@ -121,11 +121,13 @@ impl Owner {
         commands.recv().ok()
     }
 
-    /// Moves the clock of a mock bench, which nobody else does between runs: the bad day that it has may be over.
+    /// Moves the clock of a mock bench by a second of the wall's, which nobody else does between runs: the bad day that it
+    /// has may be over.
     fn let_time_pass(&self) {
         let Some(mock) = self.opened.as_ref().and_then(|opened| opened.mock.as_ref()) else { return };
         let clock = mock.clock();
-        clock.sleep_until_s(clock.now_s() + KEEP_EVERY.as_secs_f64());
+        let pace = self.start.description.pace().unwrap_or(1.0).max(1.0);
+        clock.sleep_until_s(clock.now_s() + pace * KEEP_EVERY.as_secs_f64());
         if let Err(fault) = self.runtime.block_on(self.start.store.fill_disk(mock.disk_is_full())) {
             tracing::error!(bench = self.name(), %fault, "the mock bench's full disk is not what it should be");
         }

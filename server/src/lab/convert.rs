@@ -134,6 +134,7 @@ fn sentence(kind: &EventKind) -> String {
         EventKind::StepStarted { label, repeat, .. } => format!("{label} (repeat {})", repeat + 1),
         EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows", step + 1),
         EventKind::Control { control: Control::Quit } => "the daemon was told to end".to_owned(),
+        EventKind::Control { control: Control::EStop } => "the software stop was pressed".to_owned(),
         EventKind::Control { control } => {
             let asked = serde_json::to_value(control).ok();
             format!("a person asked: {}", asked.as_ref().and_then(Value::as_str).unwrap_or("control"))
