@@ -94,7 +94,8 @@ impl Lab {
         convert::model(record)
     }
 
-    /// The newest version, where it was made of just that and without a parent: pages that open a run at once share it.
+    /// The version that was made of just that and without a parent, where there is one: pages that open a run at once share
+    /// it, and so does an autopilot that begins with the run.
     async fn first_version(
         &self,
         run: i64,
@@ -102,14 +103,17 @@ impl Lab {
         spec: &ModelSpec,
         excluded: &[Exclusion],
     ) -> Answer<Option<ModelRecord>> {
-        let Some(newest) = self.inner.store.models(run).await?.pop() else { return Ok(None) };
-        let fit: Fit = reread(&newest.fit)?;
-        let alike = newest.parent.is_none()
-            && newest.more_runs == more_runs
-            && newest.effects == spec.effects
-            && reread::<_, Vec<Exclusion>>(&newest.excluded)? == excluded
-            && fit.own.iter().all(|own| spec.own.contains(own));
-        Ok(alike.then_some(newest))
+        for version in self.inner.store.models(run).await?.into_iter().rev() {
+            let is_alike =
+                version.parent.is_none() && version.more_runs == more_runs && version.effects == spec.effects;
+            if is_alike
+                && reread::<_, Vec<Exclusion>>(&version.excluded)? == excluded
+                && reread::<_, Fit>(&version.fit)?.own.iter().all(|own| spec.own.contains(own))
+            {
+                return Ok(Some(version));
+            }
+        }
+        Ok(None)
     }
 
     pub async fn models(&self, run: i64) -> Answer<Vec<Model>> {

@@ -222,18 +222,7 @@ impl Pilot {
             Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
             None => None,
         };
-        // The run that it begins with may have this version already.
-        let mut versions = match (parent, self.runs.as_slice()) {
-            (None, [run]) => self.lab.models(*run).await?,
-            _ => Vec::new(),
-        };
-        versions.retain(|one| {
-            one.parent.is_none() && one.effects == effects && one.more_runs.is_empty() && one.excluded.is_empty()
-        });
-        let model = match versions.pop() {
-            Some(known) => known,
-            None => self.lab.create_model(&self.runs, effects, parent, None).await?,
-        };
+        let model = self.lab.create_model(&self.runs, effects, parent, None).await?;
         let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
         let found = self.diagnosed(&model, step).await?;
         Ok((model, found))
