@@ -362,6 +362,27 @@ export async function flyAndStop(page, address) {
 	return ended.innerText();
 }
 
+/** Lets an autopilot that may make no run go to its end from the first version of a run; the page has to follow it there. Gives the version and what is said of it. */
+export async function flyToEnd(page, address) {
+	await page.goto(address);
+	await readVersion(page);
+	const form = page.getByRole('form', { name: 'Autopilot' });
+	await form.getByLabel('bench time').fill('0.01');
+	const ended = await toAnotherVersion(page, () => form.getByRole('button', { name: 'Start the autopilot' }).click(), RUN_MS);
+	await page.getByText('The autopilot has ended with this version.').waitFor({ timeout: 30_000 });
+	return { ...ended, said: await page.locator('[data-autopilot]').innerText() };
+}
+
+/** Takes the last effect out of the model, and comes back; how far things jump on the way. */
+export async function removeAndUndo(page) {
+	const before = await jumpsOf(page);
+	await toAnotherVersion(page, () => page.getByRole('list', { name: 'Effects of the model' }).getByRole('button').last().click());
+	await page.waitForTimeout(700);
+	await toAnotherVersion(page, () => page.keyboard.press('z'));
+	await page.waitForTimeout(700);
+	return (await jumpsOf(page)) - before;
+}
+
 /** Writes an effect of one's own with a mistake in it, mends it, tries it on the run and adds it. */
 export async function writeEffect(page, run) {
 	await page.getByRole('button', { name: 'Own formula' }).click();

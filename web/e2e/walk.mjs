@@ -1,13 +1,13 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
-// both, by keyboard too, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot; an observer in a second browser; the software stop by key, and its reset; a search that is still being typed; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures;
+// both, by keyboard too, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; an observer in a second browser; the software stop by key, and its reset; a search that is still being typed; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
 import { askForNone, bringBack, byKeyboard, dashesOf, manyRuns, readResults, takeAway, zoomWhileFollowing } from './looks.mjs';
-import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, openWorkbench, readResult, readVersion, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
+import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
 /** Without typeset formulas, whose script comes with the first of them. */
@@ -120,6 +120,13 @@ await tell('walk', async () => {
 	expect(/Where it ended\. A person has ended it/.test(ended), `the autopilot does not say where it ended: ${ended}`);
 	expect(ended.includes(`from run #${run}`), `the autopilot does not say where it was started: ${ended}`);
 	await audit(page, 'the autopilot');
+	const flown = await flyToEnd(page, `${where.base}/workbench/${run + 1}`);
+	expect(/no runs made/.test(flown.said) && flown.said.includes(`from run #${run + 1}`), `the autopilot does not say that it made no run: ${flown.said}`);
+	const { added } = (await rest(`/models?run=${run + 1}`)).find((model) => String(model.id) === flown.model);
+	expect(added.length > 0, 'the page does not follow the autopilot to the version it ended with');
+	const jumped = await removeAndUndo(page);
+	expect(jumped < 0.1, `removing an effect and undoing that makes the page jump, by ${jumped}`);
+	console.log(`layout shift of removing and undoing: ${jumped.toFixed(4)}`);
 
 	for (const path of ['/', '/log', '/settings']) {
 		await page.goto(where.base + path);

@@ -3,8 +3,8 @@ const heights = (): Record<string, number> => JSON.parse(localStorage.getItem(KE
 /** The same thing is as high again in a window that is about as wide. */
 const keyOf = (what: string) => `${what} ${Math.round(innerWidth / 60)}`;
 
-/** Height [px] that a card had when it was last drawn; one that was never drawn is given the window, so that nothing below it can jump. */
-export const placeOf = (what: string): number => heights()[keyOf(what)] ?? innerHeight;
+/** Height [px] that a card had when it was last drawn. */
+export const placeOf = (what: string): number | undefined => heights()[keyOf(what)];
 
 export function keepPlace(what: string, height_px: number): void {
 	localStorage.setItem(KEPT, JSON.stringify({ ...heights(), [keyOf(what)]: Math.round(height_px) }));

@@ -27,7 +27,7 @@ export function measuring(bench: Bench) {
 		if (!ended || !mine) return;
 		const stayed = mine.from === untrack(() => bench.model?.id);
 		mine = null;
-		if (ended.model != null && stayed) bench.arrive(ended.model);
+		if (ended.model != null && stayed) bench.arrive(ended.model, 'The new run is measured: what the page says is of all runs together.');
 	});
 
 	async function start(): Promise<void> {

@@ -1,4 +1,5 @@
 import type { Model } from '../api/types';
+import { words } from '../format/label';
 
 /** From the root of the tree to a version: the story that the waterfall tells. */
 export function chain(models: readonly Model[], id: number): Model[] {
@@ -28,10 +29,10 @@ export function sameData(one: Model, other: Model): boolean {
 }
 
 /** What a version did to its parent, in a few words. */
-export function stepName(model: Model, before?: Model): string {
+export function stepName(model: Model, before?: Model, titleOf = words): string {
 	if (model.parent == null) return 'start';
-	const parts = [...model.added.map((id) => `+ ${id}`), ...model.removed.map((id) => `− ${id}`)];
-	if (parts.length > 0) return parts.join(', ').replaceAll('_', ' ');
+	const parts = [...model.added.map((id) => `+ ${titleOf(id)}`), ...model.removed.map((id) => `− ${titleOf(id)}`)];
+	if (parts.length > 0) return parts.join(', ');
 	if (before && before.excluded.length !== model.excluded.length) {
 		return before.excluded.length < model.excluded.length ? 'without some samples' : 'with samples again';
 	}

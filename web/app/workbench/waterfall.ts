@@ -1,4 +1,5 @@
 import type { Model, Suggestion, Worth } from '../api/types';
+import { words } from '../format/label';
 import { sameData, stepName } from './tree';
 
 export interface Bar {
@@ -14,12 +15,12 @@ export interface Bar {
 }
 
 /** One bar for each version on the way, and a last one for the effect that would come next. */
-export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' | 'validation_rms'> | null): Bar[] {
+export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' | 'validation_rms'> | null, titleOf = words): Bar[] {
 	const bars: Bar[] = path.map((model, i) => {
 		const before = path[i - 1];
 		return {
 			key: `v${model.id}`,
-			label: stepName(model, before),
+			label: stepName(model, before, titleOf),
 			held: model.validation_rms,
 			training: model.rms,
 			change: before && sameData(before, model) ? model.validation_rms / before.validation_rms - 1 : null,
@@ -29,7 +30,7 @@ export function barsOf(path: readonly Model[], next: Pick<Suggestion, 'effect' |
 	if (next) {
 		const before = path.at(-1)?.validation_rms;
 		const change = before ? next.validation_rms / before - 1 : null;
-		bars.push({ key: 'next', label: `+ ${next.effect.replaceAll('_', ' ')}?`, held: next.validation_rms, training: null, change, id: null });
+		bars.push({ key: 'next', label: `+ ${titleOf(next.effect)}?`, held: next.validation_rms, training: null, change, id: null });
 	}
 	return bars;
 }

@@ -126,10 +126,10 @@ export function openWorkbench(id: number) {
 		void reveal('beside');
 	}
 
-	/** The same model with the run that was made for it: shown from its verdict on. */
-	function arrive(version: number): void {
+	/** A version that was made meanwhile: shown from its verdict on. */
+	function arrive(version: number, text: string): void {
 		router.set({ model: version, with: null, region: null, side: null, zoom: null }, 'push');
-		notice = { text: 'The new run is measured: what the page says is of all runs together.', good: true };
+		notice = { text, good: true };
 		void reveal('verdict');
 	}
 
