@@ -31,6 +31,7 @@ export type Region = Schemas['Region'];
 export type ResidualSet = Schemas['ResidualSet'];
 export type Run = Schemas['Run'];
 export type RunEvent = Schemas['RunEvent'];
+export type RunList = Schemas['RunList'];
 export type RunSummary = Schemas['RunSummary'];
 export type RunState = Schemas['RunState'];
 export type Samples = Schemas['Samples'];

@@ -71,7 +71,7 @@ export function prose(sentence: string, effects: readonly { id: string; title: s
 }
 
 /** Width of a letter of the small print, on average [px]. */
-const LETTER_PX = 6.1;
+export const LETTER_PX = 6.1;
 
 /** As much of a text as has room, for drawings that cannot wrap; give the whole text in a title. */
 export function cut(text: string, width_px: number): string {

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { partsOf, quantitiesCsv, sayQuantity, tableOf } from './said';
+import { judged, partsOf, quantitiesCsv, sayQuantity, tableOf } from './said';
 
 it('says a quantity with one prefix for value and interval', () => {
 	expect(sayQuantity({ value: 3.2e-5, unit: 'Nm·s/rad', ci95: [3.16e-5, 3.24e-5] })).toEqual({ value: '32.00', interval: '± 0.40', unit: 'µNm·s/rad' });
@@ -42,4 +42,10 @@ it('takes a campaign apart into its parts, and nothing else', () => {
 		{ id: 'Friction compensation', title: 'Friction compensation', verdict: 'failed', said: 'The run ended before this part.', quantities: [], figures: [] },
 	]);
 	expect(partsOf({ summary: 'PASS: every way is consistent.', quantities: [], figures: [] }).parts).toEqual([]);
+});
+
+it('takes the word from a result that was held against a data sheet', () => {
+	expect(judged('identified', 'PASS: every way is consistent.')).toMatchObject({ word: 'PASS', mood: 'good', rest: 'every way is consistent.' });
+	expect(judged('identified', 'OUT OF TOLERANCE on X.')).toMatchObject({ word: 'OUT OF TOLERANCE', mood: 'bad', rest: 'on X.' });
+	expect(judged('inconclusive', 'NOT SURE: X.')).toMatchObject({ word: 'INCONCLUSIVE', rest: 'NOT SURE: X.' });
 });

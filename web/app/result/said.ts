@@ -11,6 +11,14 @@ const VERDICTS: Record<Identification['verdict'], { word: string; icon: string; 
 
 export const sayVerdict = (verdict: Identification['verdict']) => VERDICTS[verdict];
 
+/** Held against a data sheet, the summary begins with what came of it: that is the word then, and the rest follows. */
+export function judged(verdict: Identification['verdict'], summary: string) {
+	const word = /^(PASS|OUT OF TOLERANCE)\b:? */.exec(summary);
+	if (verdict !== 'identified' || !word) return { ...VERDICTS[verdict], rest: summary };
+	const passed = word[1] === 'PASS';
+	return { word: word[1]!, icon: passed ? '✓' : '✕', mood: (passed ? 'good' : 'bad') as Mood, rest: summary.slice(word[0].length) };
+}
+
 /** A quantity with one prefix for value and interval: `32.1 ± 0.4 µNm·s/rad`; an uneven interval is said by its ends. */
 export function sayQuantity(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci95'>, shown: Scale = { factor: 1, unit: of.unit }): { value: string; interval: string; unit: string } {
 	const [value, unit] = [of.value * shown.factor, shown.unit];
