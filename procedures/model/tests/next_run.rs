@@ -65,6 +65,7 @@ fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
     assert_eq!(open.ties.len(), 1, "{}", before.summary);
     let names: Vec<&str> = open.ties[0].1.iter().map(String::as_str).chain([open.ties[0].0.as_str()]).collect();
     assert!(names.contains(&"load_linear") && names.contains(&"load_quadratic"), "{names:?}");
+    assert!(names.iter().all(|name| before.summary.contains(name)), "one of a tie alone is told: {}", before.summary);
 
     let ask = |menu: &[Choice]| next_run(&first, &open, menu, &Options::default()).unwrap();
     let same = strokes("same", &SPEEDS, 8.0, 1.0);

@@ -344,6 +344,11 @@ fn every_edge_is_within_a_step_of_the_stage_and_the_best_place_is_found() {
     assert!(bars.y.iter().all(|share| *share >= line.y[0]), "{bars:?}");
     assert!((bars.band[0][0]..=bars.band[0][1]).contains(&(truth.radial_m[0].abs() / 0.15e-3)), "{bars:?}");
 
+    let drawn = &found.figures[1].series;
+    let (fitted, smallest) = (&drawn[2], &drawn[3]);
+    let best_m = found.quantity("best_radial_shift").unwrap().value;
+    assert!(smallest.x == [best_m] && fitted.y.iter().all(|error| *error >= smallest.y[0]), "{drawn:?}");
+
     // Behind the run the sensor is back in its place, and the best one is better.
     let at_m = bench.stage.as_mut().unwrap().pose().unwrap().shift_m[0];
     assert!(at_m.abs() < 1e-6, "{at_m} m");

@@ -20,22 +20,22 @@ const WORTH_TELLING: f64 = 0.99;
 pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
     let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, complete));
     let first = &suggestions[0];
-    let more: Vec<&str> = suggestions[1..].iter().map(|s| s.effect.as_str()).collect();
+    let more: Vec<String> = suggestions[1..].iter().map(or_rival).collect();
     let then = if more.is_empty() { String::new() } else { format!(", then {}", list(&more)) };
     let with = figure(first.validation_rms, &fit.unit);
-    let effect = &first.effect;
+    let (effect, named) = (&first.effect, or_rival(first));
     let all = match more.is_empty() {
         true => String::new(),
         false => format!(" and with all of them to {}", figure(complete.validation_rms, &fit.unit)),
     };
     let gain = if with == error {
         format!(
-            "{effect} is missing{then}: it acts around reversals; settled motion has a held-out error of {error} with it \
+            "{named} is missing{then}: it acts around reversals; settled motion has a held-out error of {error} with it \
              and without it, and {floor}."
         )
     } else {
         format!(
-            "{effect} is missing{then}: with {effect} the held-out error falls from {error} to {with}{all}; {floor}."
+            "{named} is missing{then}: with {effect} the held-out error falls from {error} to {with}{all}; {floor}."
         )
     };
     let beyond = match found.end_verdict() {
@@ -51,6 +51,15 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         _ => String::new(),
     };
     format!("{}{gain}{beyond}{}{}", attention(found), open(found), taken_back(found, &fit.unit))
+}
+
+/// An effect with what this run cannot tell it from: one of them alone would say more than the run knows.
+fn or_rival(suggestion: &Suggestion) -> String {
+    let Suggestion { effect, confounded_with: rivals, .. } = suggestion;
+    match rivals.is_empty() {
+        true => effect.clone(),
+        false => format!("{effect} (or {} in its place: this run cannot tell)", rivals.join(" or ")),
+    }
 }
 
 /// What is left at the end of the search, where `fit` is its model. `is_cut`: it ended because no more effects were asked for.

@@ -188,7 +188,7 @@ fn figures(points: &[Point]) -> Vec<Figure> {
     };
     vec![
         figure("felt_over_asked", "Torque felt over torque asked for", "torque felt", |point| point.felt_nm),
-        figure("error_over_asked", "Error of the torque asked for", "felt less asked", |point| {
+        figure("error_over_asked", "Error of the torque asked for", "torque felt less asked for", |point| {
             point.felt_nm - point.asked_nm
         }),
     ]

@@ -163,6 +163,9 @@ fn told(found: &[(&Way, Found)]) -> String {
     }
 }
 
+/// Pieces that the fitted error is drawn in.
+const FITTED: u32 = 60;
+
 /// The error's harmonics over the radial shift.
 struct Map {
     shift_m: Vec<f64>,
@@ -174,6 +177,8 @@ struct Best {
     shift_m: f64,
     ci95: [f64; 2],
     once_rad: f64,
+    /// By how much the error changes with the shift, far from the best place.
+    rad_per_m: f64,
 }
 
 impl Map {
@@ -205,11 +210,24 @@ impl Map {
         let share = (1.0 / n + (shift_m - mean_m).powi(2) / spread).sqrt();
         let reach_m = line.reach[1] * spread.sqrt() * share / slope;
         let once = [cos.values[0] + cos.values[1] * shift_m, sin.values[0] + sin.values[1] * shift_m];
-        Some(Best { shift_m, ci95: [shift_m - reach_m, shift_m + reach_m], once_rad: once[0].hypot(once[1]) })
+        let ci95 = [shift_m - reach_m, shift_m + reach_m];
+        Some(Best { shift_m, ci95, once_rad: once[0].hypot(once[1]), rad_per_m: slope })
     }
 
     fn figure(self) -> Figure {
         let once = self.once_rad.iter().map(|once| once[0].hypot(once[1])).collect();
+        let fitted = self.best().into_iter().flat_map(|best| {
+            let (low, high) =
+                self.shift_m.iter().fold((best.shift_m, best.shift_m), |(l, h), x| (l.min(*x), h.max(*x)));
+            let places: Vec<f64> =
+                (0..=FITTED).map(|i| low + (high - low) * f64::from(i) / f64::from(FITTED)).collect();
+            let errors = places.iter().map(|x| best.once_rad.hypot(best.rad_per_m * (x - best.shift_m))).collect();
+            [
+                Series::new("once a turn, fitted", Mark::Line, places, errors),
+                Series::new("smallest", Mark::Points, vec![best.shift_m], vec![best.once_rad]),
+            ]
+        });
+        let fitted: Vec<Series> = fitted.collect();
         Figure {
             name: "map".into(),
             title: "Harmonics of the error over the radial shift".into(),
@@ -219,7 +237,10 @@ impl Map {
             series: vec![
                 Series::new("once a turn", Mark::Points, self.shift_m.clone(), once),
                 Series::new("twice a turn", Mark::Points, self.shift_m, self.twice_rad),
-            ],
+            ]
+            .into_iter()
+            .chain(fitted)
+            .collect(),
         }
     }
 }
