@@ -25,11 +25,21 @@ pub struct EffectInfo<'e> {
 }
 
 impl<'e> EffectInfo<'e> {
-    /// Unit of a parameter. `a_2` is the second of its kind and has the unit of `a`.
+    /// Unit of a parameter.
     pub fn unit(&self, name: &str) -> &'e str {
+        self.parameter(name).map_or("1", |p| &p.unit)
+    }
+
+    /// The least and the largest value of a parameter that is physically sensible.
+    pub(crate) fn bounds(&self, name: &str) -> (f64, f64) {
+        self.parameter(name).map_or((f64::NEG_INFINITY, f64::INFINITY), |p| (p.min, p.max))
+    }
+
+    /// `a_2` is the second of its kind and is what `a` is.
+    fn parameter(&self, name: &str) -> Option<&'e ParameterInfo> {
         let family = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
         let find = |name: &str| self.parameters.iter().find(|p| p.name == name);
-        find(name).or_else(|| find(family)).map_or("1", |p| &p.unit)
+        find(name).or_else(|| find(family))
     }
 }
 

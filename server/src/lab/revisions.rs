@@ -98,6 +98,10 @@ impl Lab {
         let fit = file.check()?;
         let table = self.measurement(import.run).await?;
         let (kept, held) = (fit.clone(), blocking(move || jointbench_model::evaluate(&fit, &table)).await?);
+        if !held.rms.is_finite() {
+            let why = "this model predicts numbers on the run that are not finite: check its parameters";
+            return Err(LabError::Invalid(why.to_owned()));
+        }
         let new = NewModel {
             run: import.run,
             more_runs: Vec::new(),

@@ -100,4 +100,9 @@ fn what_is_exported_comes_in_again_unchanged() {
     let (status, problem) = daemon.post("/api/v1/models/import", &bad);
     assert_eq!(status, 422, "{problem}");
     assert!(problem["detail"].as_str().unwrap().contains("did you mean tanh"), "{problem}");
+    let mut bad: Value = serde_json::from_str(&body).unwrap();
+    bad["model"]["fit"]["terms"][0]["form"] = "other".into();
+    let (status, problem) = daemon.post("/api/v1/models/import", &bad.to_string());
+    assert_eq!(status, 422, "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("has the form other: expected is"), "{problem}");
 }

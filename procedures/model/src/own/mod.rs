@@ -91,6 +91,13 @@ impl OwnEffect {
         self.formula.shape.iter().map(range).collect()
     }
 
+    /// The one way of writing the effect, without starting points.
+    pub(crate) fn form(&self, view: &View) -> Form<'_> {
+        let name = |p: usize| self.definition.parameters[p].name.as_str();
+        let linear = self.formula.columns.iter().map(|(p, _)| name(*p)).collect();
+        Form { name: "formula", linear, shape: self.shapes(view), grid: Vec::new() }
+    }
+
     fn grid(&self, shapes: &[Shape]) -> Vec<Vec<f64>> {
         ranges::grid(shapes, self.formula.shape.iter().map(|p| self.definition.parameters[*p].start))
     }
@@ -124,16 +131,13 @@ impl Effect for OwnEffect {
 
     /// Starting points at which the formula is finite and says something.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let shape = self.shapes(view);
         let tells = |columns: &Columns| is_finite(columns) && columns.iter().all(|c| c.iter().any(|x| *x != 0.0));
-        let mut grid = self.grid(&shape);
+        let mut grid = self.grid(&self.shapes(view));
         grid.retain(|start| tells(&self.evaluate(start, view)));
         if grid.is_empty() {
             return Vec::new();
         }
-        let name = |p: usize| self.definition.parameters[p].name.as_str();
-        let linear = self.formula.columns.iter().map(|(p, _)| name(*p)).collect();
-        vec![Form { name: "formula", linear, shape, grid }]
+        vec![Form { grid, ..self.form(view) }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -1,6 +1,6 @@
 //! A fit as a JSON file that travels.
 
-use crate::effects::find_with_own;
+use super::terms;
 use crate::report::Fit;
 use crate::{ModelError, ModelSpec};
 use serde::{Deserialize, Serialize};
@@ -40,19 +40,12 @@ impl ModelFile {
             return Err(ModelError::BadFile(format!("{found}, but this program reads {FORMAT} version {VERSION}")));
         }
         let fit = self.fit;
-        ModelSpec::with_own(fit.kind, fit.effects.iter().map(String::as_str), fit.own.clone())?;
-        for term in &fit.terms {
-            find_with_own(fit.kind, &fit.own, &term.effect)?;
-            if !fit.effects.contains(&term.effect) {
-                return Err(ModelError::BadFile(format!("a term of {}, which is not in the model", term.effect)));
-            }
-            if term.linear.iter().chain(&term.shape).any(|v| !v.is_finite()) {
-                return Err(ModelError::BadFile(format!("a parameter of {} is not finite", term.effect)));
-            }
-            if term.names.len() != term.linear.len() + term.shape.len() {
-                return Err(ModelError::UnknownForm { effect: term.effect.clone(), form: term.form.clone() });
-            }
+        let spec = ModelSpec::with_own(fit.kind, fit.effects.iter().map(String::as_str), fit.own.clone())?;
+        if let Some(term) = fit.terms.iter().find(|term| !spec.contains(&term.effect)) {
+            return Err(ModelError::BadFile(format!("a term of {}, which is not in the model", term.effect)));
         }
+        let effects = fit.effects.iter().map(|id| spec.find(id)).collect::<Result<Vec<_>, _>>()?;
+        terms::check(&fit, &effects)?;
         Ok(fit)
     }
 }

@@ -7,6 +7,7 @@ mod parts;
 mod predict;
 mod suffix;
 mod table;
+mod terms;
 mod written;
 
 pub use file::ModelFile;
