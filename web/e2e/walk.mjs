@@ -7,9 +7,10 @@ import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
 import { askForNone, bringBack, byKeyboard, dashesOf, manyRuns, readResults, takeAway, zoomWhileFollowing } from './looks.mjs';
-import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, FOREIGN, importForeign, loseAndFind, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
+import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, FOREIGN, importForeign, loseAndFind, makeRun, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
+const FIT_MS = 60_000;
 /** Without typeset formulas, whose script comes with the first of them. */
 const BUNDLE_BYTES = 150_000;
 /** Short runs whose results look unlike each other; the last two where the daemon has an encoder bench. */
@@ -163,6 +164,11 @@ await tell('walk', async () => {
 	expect(rows < 100, `${rows} rows exist of ten thousand runs: only those on the screen should`);
 	expect(jump_ms < 2000, `the jump to the last of ten thousand runs takes ${jump_ms} ms`);
 	console.log(`ten thousand runs: ${rows} rows, jump to the last ${jump_ms} ms`);
+
+	const again = await makeRun(where.base, 'friction', { load_levels: 1, warm_up_s: 2, dwell_s: 0.6, fast_speeds: 4 });
+	await page.goto(`${where.base}/runs/${again}`);
+	await page.locator('[data-trend=tau_c]').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the result does not stand behind that of the earlier run'));
+	await audit(page, 'the result over runs');
 
 	const { name, table, report } = await takeAway(page, where.base, run + 1);
 	expect(name === `run-${run + 1}.csv` && /^time_s,/.test(table), `the run leaves as ${name}: ${table.slice(0, 60)}`);

@@ -3,7 +3,7 @@
 use super::extract::{Answer, Json, Path};
 use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
-use crate::view::{Beside, Identification};
+use crate::view::{Beside, Earlier, Identification};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{Html, IntoResponse};
@@ -13,6 +13,13 @@ use axum::response::{Html, IntoResponse};
     responses((status = 200, description = "What the run shows", body = Identification), Refusals))]
 pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Identification> {
     Ok(Json(lab.identification(id).await?))
+}
+
+/// What the complete runs of the same bench and procedure before this one have found, newest first, twelve at most
+#[utoipa::path(get, path = "/runs/{id}/earlier", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "Quantities of earlier runs", body = Vec<Earlier>), Refusals))]
+pub async fn earlier(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Earlier>> {
+    Ok(Json(lab.earlier(id).await?))
 }
 
 /// The run, also one that is on, beside the last model of its kind from another run of its bench; `null` without one

@@ -103,6 +103,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(runs::samples))
         .routes(routes!(runs::statistics))
         .routes(routes!(identifications::get))
+        .routes(routes!(identifications::earlier))
         .routes(routes!(identifications::beside))
         .routes(routes!(identifications::report))
         .routes(routes!(transfer::export))

@@ -1,10 +1,43 @@
 //! What a procedure makes of a run that is kept.
 
 use super::{Answer, Lab, LabError, reread};
-use crate::view::Identification;
+use crate::store::Subject;
+use crate::view::{Earlier, Identification, Quantity};
 use jointbench_procedure::parameter::Values;
 
+/// As many as a small plot can show.
+const EARLIER: u32 = 12;
+/// Under which name the quantities of a complete run are kept.
+const QUANTITIES: &str = "quantities";
+
 impl Lab {
+    /// What earlier runs have found with which this one can be compared, newest first. A run of which this version makes
+    /// nothing is left out.
+    pub async fn earlier(&self, id: i64) -> Answer<Vec<Earlier>> {
+        self.inner.store.run(id).await?;
+        let _turn = self.inner.earlier.lock().await;
+        let mut told = Vec::new();
+        for (run, created_at) in self.inner.store.earlier(id, EARLIER).await? {
+            match self.quantities(run).await {
+                Ok(quantities) => told.push(Earlier { run, created_at, quantities }),
+                Err(LabError::NotFound(_) | LabError::Invalid(_)) => {}
+                Err(fault) => return Err(fault),
+            }
+        }
+        Ok(told)
+    }
+
+    /// The figures of a run that is complete: worked out once, then kept.
+    async fn quantities(&self, run: i64) -> Answer<Vec<Quantity>> {
+        if let Some(kept) = self.inner.store.kept(Subject::Run(run), QUANTITIES).await? {
+            return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
+        }
+        let quantities = self.identification(run).await?.result.quantities;
+        let json = serde_json::to_vec(&quantities).map_err(|fault| LabError::Internal(fault.to_string()))?;
+        self.inner.store.keep(Subject::Run(run), QUANTITIES, &json).await?;
+        Ok(quantities)
+    }
+
     /// Worked out anew from the samples, so that it is always the present code's; `None` where the procedure asks nothing of
     /// its run but samples.
     pub async fn identification(&self, id: i64) -> Answer<Identification> {

@@ -52,6 +52,8 @@ struct Inner {
     flights: Flights,
     /// Whose turn it is to work out what effects are worth.
     worth: tokio::sync::Mutex<()>,
+    /// Whose turn it is to work out what earlier runs have found.
+    earlier: tokio::sync::Mutex<()>,
     /// Whose turn it is to make a version that has no parent.
     first: tokio::sync::Mutex<()>,
 }
@@ -90,6 +92,7 @@ impl Lab {
                 benches,
                 flights: Flights::default(),
                 worth: Default::default(),
+                earlier: Default::default(),
                 first: Default::default(),
             }),
         };
@@ -106,6 +109,7 @@ impl Lab {
                 benches: Vec::new(),
                 flights: Flights::default(),
                 worth: Default::default(),
+                earlier: Default::default(),
                 first: Default::default(),
             }),
         }

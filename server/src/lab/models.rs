@@ -2,7 +2,7 @@
 
 use super::excluding;
 use super::{Answer, Lab, LabError, Offer, convert, next_run, reread};
-use crate::store::{ModelRecord, NewModel};
+use crate::store::{ModelRecord, NewModel, Subject};
 use crate::view::{self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ResidualSet, finite};
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options};
@@ -78,7 +78,7 @@ impl Lab {
         let record = self.inner.store.save_model(&new).await?;
         // Without them the version stands all the same; whoever asks for them is told why.
         if let Some(json) = left.and_then(|left| written(&left, &excluded).ok()) {
-            self.inner.store.keep(record.id, RESIDUALS, &json).await?;
+            self.inner.store.keep(Subject::Model(record.id), RESIDUALS, &json).await?;
         }
         if let Some(diagnosis) = &diagnosis {
             self.inner.store.save_diagnosis(record.id, &reread(diagnosis)?).await?;
@@ -131,7 +131,7 @@ impl Lab {
 
     /// What the version leaves of its runs, as JSON ([`ResidualSet`]). Kept with the version; worked out where it is not.
     pub async fn residuals(&self, id: i64) -> Answer<Vec<u8>> {
-        if let Some(kept) = self.inner.store.kept(id, RESIDUALS).await? {
+        if let Some(kept) = self.inner.store.kept(Subject::Model(id), RESIDUALS).await? {
             return Ok(kept);
         }
         let model = self.inner.store.model(id).await?;
@@ -139,7 +139,7 @@ impl Lab {
         let table = self.tables(&model.runs()).await?;
         let left = blocking(move || jointbench_model::residuals(&table, &fit, &Options::default())).await?;
         let json = written(&left, &reread::<_, Vec<Exclusion>>(&model.excluded)?)?;
-        self.inner.store.keep(id, RESIDUALS, &json).await?;
+        self.inner.store.keep(Subject::Model(id), RESIDUALS, &json).await?;
         Ok(json)
     }
 

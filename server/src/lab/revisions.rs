@@ -2,7 +2,7 @@
 
 use super::models::blocking;
 use super::{Answer, Lab, LabError, convert, reread};
-use crate::store::NewModel;
+use crate::store::{NewModel, Subject};
 use crate::view::{Comparison, Evaluation, LiveMessage, Model, ModelImport, Worth, finite};
 use jointbench_model::transfer::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options};
@@ -26,7 +26,7 @@ impl Lab {
     /// Kept; worked out for one version at a time, so that a page that is opened again does not have it done twice.
     pub async fn worth(&self, model: i64) -> Answer<Vec<Worth>> {
         let _turn = self.inner.worth.lock().await;
-        if let Some(kept) = self.inner.store.kept(model, WORTH).await? {
+        if let Some(kept) = self.inner.store.kept(Subject::Model(model), WORTH).await? {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
         let record = self.inner.store.model(model).await?;
@@ -47,7 +47,7 @@ impl Lab {
         };
         let worth: Vec<Worth> = blocking(move || Ok(effects.into_iter().map(said).collect())).await?;
         let json = serde_json::to_vec(&worth).map_err(|fault| LabError::Internal(fault.to_string()))?;
-        self.inner.store.keep(model, WORTH, &json).await?;
+        self.inner.store.keep(Subject::Model(model), WORTH, &json).await?;
         Ok(worth)
     }
 
@@ -55,7 +55,7 @@ impl Lab {
     /// Kept, but for a user's effect, whose formula may change.
     pub async fn with_effect(&self, model: i64, effect: String) -> Answer<Vec<f64>> {
         let kept_as = format!("with {effect}");
-        if let Some(kept) = self.inner.store.kept(model, &kept_as).await? {
+        if let Some(kept) = self.inner.store.kept(Subject::Model(model), &kept_as).await? {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
         let record = self.inner.store.model(model).await?;
@@ -76,7 +76,7 @@ impl Lab {
         .await?;
         if !changes {
             let json = serde_json::to_vec(&added).map_err(|fault| LabError::Internal(fault.to_string()))?;
-            self.inner.store.keep(model, &kept_as, &json).await?;
+            self.inner.store.keep(Subject::Model(model), &kept_as, &json).await?;
         }
         Ok(added)
     }

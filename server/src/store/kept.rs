@@ -1,4 +1,4 @@
-//! What was worked out of a model version: once, then only read. Its runs and its fit never change.
+//! What was worked out of a model version or of a complete run: once, then only read. Runs and fits never change.
 
 use super::{Store, StoreError};
 
@@ -6,12 +6,30 @@ use super::{Store, StoreError};
 const SOFTWARE: &str = env!("CARGO_PKG_VERSION");
 const LEVEL: i32 = 3;
 
+/// Of what it was worked out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    Model(i64),
+    Run(i64),
+}
+
+impl Subject {
+    fn parts(self) -> (&'static str, i64) {
+        match self {
+            Subject::Model(id) => ("model", id),
+            Subject::Run(id) => ("run", id),
+        }
+    }
+}
+
 impl Store {
     /// Keeps an answer as the API tells it.
-    pub async fn keep(&self, model: i64, what: &str, json: &[u8]) -> Result<(), StoreError> {
+    pub async fn keep(&self, subject: Subject, what: &str, json: &[u8]) -> Result<(), StoreError> {
         let packed = zstd::encode_all(json, LEVEL).map_err(|fault| StoreError::Damaged(fault.to_string()))?;
-        sqlx::query("INSERT OR REPLACE INTO kept (model, what, software, packed) VALUES (?, ?, ?, ?)")
-            .bind(model)
+        let (subject, id) = subject.parts();
+        sqlx::query("INSERT OR REPLACE INTO kept (subject, id, what, software, packed) VALUES (?, ?, ?, ?, ?)")
+            .bind(subject)
+            .bind(id)
             .bind(what)
             .bind(SOFTWARE)
             .bind(packed)
@@ -21,10 +39,12 @@ impl Store {
     }
 
     /// `None` where it has to be worked out.
-    pub async fn kept(&self, model: i64, what: &str) -> Result<Option<Vec<u8>>, StoreError> {
+    pub async fn kept(&self, subject: Subject, what: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        let (subject, id) = subject.parts();
         let packed: Option<Vec<u8>> =
-            sqlx::query_scalar("SELECT packed FROM kept WHERE model = ? AND what = ? AND software = ?")
-                .bind(model)
+            sqlx::query_scalar("SELECT packed FROM kept WHERE subject = ? AND id = ? AND what = ? AND software = ?")
+                .bind(subject)
+                .bind(id)
                 .bind(what)
                 .bind(SOFTWARE)
                 .fetch_optional(&self.readers)

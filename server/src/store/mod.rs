@@ -26,6 +26,7 @@ mod tests;
 mod view;
 
 pub use error::StoreError;
+pub use kept::Subject;
 pub use records::{
     AutopilotRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord, OwnEffectRecord,
     RunFilter, RunRecord, SafetyRecord, View, ViewColumn,

@@ -90,6 +90,15 @@ impl Store {
         Ok((total as u64, runs))
     }
 
+    /// Complete runs of the same bench and procedure before this one, newest first. A mock bench and a real one of the same
+    /// name are two.
+    pub async fn earlier(&self, run: RunId, limit: u32) -> Result<Vec<(RunId, String)>, StoreError> {
+        let query = "SELECT r.id, r.created_at FROM runs AS r JOIN runs AS this ON this.id = ? \
+            WHERE r.bench = this.bench AND r.procedure = this.procedure AND r.simulated = this.simulated \
+            AND r.id < this.id AND r.state = 'completed' ORDER BY r.id DESC LIMIT ?";
+        Ok(sqlx::query_as(query).bind(run).bind(limit).fetch_all(&self.readers).await?)
+    }
+
     /// The last run that went on with this one.
     pub async fn continued_by(&self, run: RunId) -> Result<Option<RunId>, StoreError> {
         let query = "SELECT MAX(id) FROM runs WHERE json_extract(meta, '$.continues.run') = ?";

@@ -49,6 +49,14 @@ pub struct Shown {
     pub figures: Vec<Figure>,
 }
 
+/// What an earlier run of the same bench and procedure has found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Earlier {
+    pub run: i64,
+    pub created_at: String,
+    pub quantities: Vec<Quantity>,
+}
+
 /// A run beside the last model of its kind that its bench has from another run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Beside {

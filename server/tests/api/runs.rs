@@ -88,6 +88,32 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     assert!(!page.contains("<script") && !page.contains("src="), "complete in itself");
 }
 
+#[test]
+fn a_result_stands_beside_those_of_earlier_runs() {
+    let daemon = TestDaemon::start();
+    let earlier = |id: i64| daemon.get(&format!("/api/v1/runs/{id}/earlier"));
+    let first = start(&daemon);
+    daemon.wait_for_end(first);
+    let aborted = start(&daemon);
+    daemon.post(&format!("/api/v1/runs/{aborted}/abort"), "");
+    assert_eq!(daemon.wait_for_end(aborted)["state"], "aborted");
+    let [second, third] = [(); 2].map(|()| {
+        let id = start(&daemon);
+        assert_eq!(daemon.wait_for_end(id)["state"], "completed");
+        id
+    });
+    assert_eq!(earlier(first), (200, json!([])));
+    let (status, told) = earlier(third);
+    let runs: Vec<_> = told.as_array().unwrap().iter().map(|one| one["run"].as_i64().unwrap()).collect();
+    assert_eq!((status, runs), (200, vec![second, first]), "newest first, and none that was not finished: {told}");
+    let (_, found) = daemon.get(&format!("/api/v1/runs/{first}/identification"));
+    assert!(found["quantities"].as_array().unwrap().len() > 4, "{found}");
+    assert_eq!(told[1]["quantities"], found["quantities"]);
+    assert_eq!(earlier(third).1, told, "read where it was worked out");
+    assert_eq!(earlier(second).1.as_array().unwrap().len(), 1);
+    assert_eq!(earlier(77).0, 404);
+}
+
 /// Its end is kept a moment before its bench is free.
 #[test]
 fn whoever_sees_a_run_over_may_start_the_next() {

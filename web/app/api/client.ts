@@ -27,6 +27,7 @@ export const api = {
 	run: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}', { path: { id } }, signal),
 	identification: (id: number, signal?: Signal) =>
 		ask('get', '/api/v1/runs/{id}/identification', { path: { id } }, signal),
+	earlier: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/earlier', { path: { id } }, signal),
 	beside: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/beside', { path: { id } }, signal),
 	start: (bench: string, procedure: string, parameters: Values) =>
 		ask('post', '/api/v1/runs', { body: { bench, procedure, parameters } }),

@@ -9,6 +9,7 @@ export type Bench = Schemas['Bench'];
 export type Channel = Schemas['ChannelInfo'];
 export type Comparison = Schemas['Comparison'];
 export type Diagnosis = Schemas['Diagnosis'];
+export type Earlier = Schemas['Earlier'];
 export type Effect = Schemas['Effect'];
 export type EffectCheck = Schemas['EffectCheck'];
 export type EffectDefinition = Schemas['EffectDefinition'];

@@ -1,4 +1,4 @@
-use super::super::{NewModel, RunFilter, StoreError};
+use super::super::{NewModel, RunFilter, StoreError, Subject};
 use super::*;
 use jointbench_procedure::Safe;
 use serde_json::{Value, json};
@@ -239,11 +239,12 @@ fn model_versions_are_a_tree() {
         assert!(matches!(astray, StoreError::OtherRun { .. }), "{astray}");
         assert!(matches!(store.save_model(&model(run, Some(77), &[])).await, Err(StoreError::NoModel(77))));
 
-        assert_eq!(store.kept(left.id, "worth").await.unwrap(), None);
-        store.keep(left.id, "worth", b"[1]").await.unwrap();
-        store.keep(left.id, "worth", b"[2]").await.unwrap();
-        assert_eq!(store.kept(left.id, "worth").await.unwrap().as_deref(), Some(&b"[2]"[..]));
-        assert_eq!(store.kept(right.id, "worth").await.unwrap(), None);
+        assert_eq!(store.kept(Subject::Model(left.id), "worth").await.unwrap(), None);
+        store.keep(Subject::Model(left.id), "worth", b"[1]").await.unwrap();
+        store.keep(Subject::Model(left.id), "worth", b"[2]").await.unwrap();
+        assert_eq!(store.kept(Subject::Model(left.id), "worth").await.unwrap().as_deref(), Some(&b"[2]"[..]));
+        assert_eq!(store.kept(Subject::Model(right.id), "worth").await.unwrap(), None);
+        assert_eq!(store.kept(Subject::Run(left.id), "worth").await.unwrap(), None);
 
         let told = store.save_diagnosis(left.id, &json!({"verdict": "adequate"})).await.unwrap();
         assert_eq!(store.diagnosis(told.id).await.unwrap(), told);
