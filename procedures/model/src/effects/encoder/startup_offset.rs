@@ -3,19 +3,22 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
+use std::sync::LazyLock;
 
 pub struct StartupOffset;
 
+/// A run of more repeats than this has more offsets than can be searched for.
+const MOST: usize = 256;
+
 /// One offset for each repeat after the first.
-static NAMES: [&str; 12] =
-    ["xi_1", "xi_2", "xi_3", "xi_4", "xi_5", "xi_6", "xi_7", "xi_8", "xi_9", "xi_10", "xi_11", "xi_12"];
+static NAMES: LazyLock<Vec<String>> = LazyLock::new(|| (1..=MOST).map(|r| format!("xi_{r}")).collect());
 
 static INFO: EffectInfo = EffectInfo {
     id: "startup_offset",
     kind: Kind::Encoder,
     title: "Start-up offset",
     sentence: "The encoder finds another zero at every power-up.",
-    formula: "ξ_r for every repeat r after the first, up to twelve",
+    formula: "ξ_r for every repeat r after the first, up to 256",
     source: "thesis on joint test benches, section 4.3 (start-up initialisation error)",
     looks: "another constant in every repeat",
     parameters: &[parameter("xi", "rad", f64::NEG_INFINITY, f64::INFINITY)],
@@ -29,8 +32,8 @@ impl Effect for StartupOffset {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         match restarts(view).len() {
-            0 => Vec::new(),
-            n => vec![Form::linear(&NAMES[..n])],
+            n @ 1..=MOST => vec![Form::linear(&NAMES[..n].iter().map(String::as_str).collect::<Vec<_>>())],
+            _ => Vec::new(),
         }
     }
 
@@ -40,10 +43,48 @@ impl Effect for StartupOffset {
     }
 }
 
-/// Numbers of the repeats after the first, as many as have a name.
+/// Numbers of the repeats after the first.
 fn restarts(view: &View) -> Vec<f64> {
     let mut numbers = view.get(Signal::Repeat).to_vec();
     numbers.sort_by(f64::total_cmp);
     numbers.dedup();
-    numbers.into_iter().skip(1).take(NAMES.len()).collect()
+    numbers.into_iter().skip(1).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{ModelSpec, Options, Verdict, discover};
+    use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// Two ways there and back at each power-up.
+    fn started(power_ups: usize) -> RunTable {
+        const WAY: usize = 125;
+        let names = ["time_s", "reference_position_rad", "test_position_rad", "segment", "repeat"];
+        let mut trace = Trace::new(names.map(Channel::new).into());
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut scatter = |size: f64| size * (random.random::<f64>() - 0.5);
+        let offsets: Vec<f64> = (0..power_ups).map(|_| scatter(1e-3)).collect();
+        for i in 0..power_ups * 4 * WAY {
+            let (segment, at) = (i / WAY, i % WAY);
+            let repeat = segment / 4;
+            let angle = 0.03 * if segment.is_multiple_of(2) { at } else { WAY - at } as f64;
+            let test = angle + offsets[repeat] + scatter(2e-5);
+            trace.push_row(&[0.004 * i as f64, angle, test, segment as f64, repeat as f64]);
+        }
+        RunTable::new(Meta { kind: Some(Kind::Encoder), ..Meta::default() }, trace).unwrap()
+    }
+
+    #[test]
+    fn every_power_up_has_its_offset() {
+        for power_ups in [6, 18, 60] {
+            let spec = ModelSpec::new(Kind::Encoder, ["offset"]).unwrap();
+            let found = discover(&started(power_ups), &spec, &Options::default(), 4, |_| {}).unwrap();
+            assert_eq!(found.model, ["offset", "startup_offset"], "{}", found.summary);
+            assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+            let offsets = found.fit.parameters.iter().filter(|p| p.effect == "startup_offset");
+            assert_eq!(offsets.count(), power_ups - 1);
+        }
+    }
 }
