@@ -9,7 +9,7 @@ use crate::fit::report;
 use crate::linear::dot;
 use crate::maps::{Maps, yardstick};
 use crate::prepare::{Prepared, prepare};
-use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Parameter, Region, Silent, Step, Suggestion, Verdict};
+use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Parameter, Region, Step, Suggestion, Verdict};
 use crate::select::held_out;
 use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
@@ -61,12 +61,9 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         structure,
         imitated: found.open.clone(),
         experiment: experiment(&found, &prepared),
-        silent: found
-            .silent
-            .iter()
-            .map(|s| Silent { effect: s.effect.into(), minimum_detectable_rms: s.detectable_rms })
-            .collect(),
+        silent: found.silent(),
         not_visible: found.not_visible(),
+        left_out: found.left_out(),
         suggestions,
         fit,
     })
@@ -117,7 +114,9 @@ pub fn discover(
         structure,
         imitated: found.open.clone(),
         experiment: experiment(&found, &prepared),
+        silent: found.silent(),
         not_visible: found.not_visible(),
+        left_out: found.left_out(),
         fit,
     })
 }

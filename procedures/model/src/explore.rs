@@ -1,6 +1,10 @@
 //! From a model to the model that is left when nothing more can be named, with everything learnt on the way.
 
 mod given;
+mod others;
+mod withdrawn;
+
+pub use withdrawn::{Withdrawal, Withdrawn};
 
 use crate::assembly::Assembly;
 use crate::effect::Stage;
@@ -9,10 +13,11 @@ use crate::linear::dot;
 use crate::maps::Maps;
 use crate::memory::memory;
 use crate::prepare::Prepared;
-use crate::report::{Imitated, Invisible, NoiseFloor, Parameter, ParameterState, Verdict};
-use crate::select::{Library, Move, Rival, Search, Silence, held_out, moved};
+use crate::report::{Imitated, Invisible, LeftOut, NoiseFloor, Parameter, ParameterState, Silent, Verdict};
+use crate::select::{Library, Move, Rival, Search, held_out, moved};
 use crate::terms::{Term, Terms};
 use crate::{ModelError, ModelSpec, Options, floor};
+use others::Others;
 
 /// What was added or removed, and the model after it.
 pub struct Advance<'p> {
@@ -22,27 +27,11 @@ pub struct Advance<'p> {
     pub after: Assembly<'p>,
 }
 
-/// An effect that came in and was taken back, with the held-out RMS that the last model would have with it.
-pub struct Withdrawn<'p> {
-    pub effect: &'p str,
-    pub why: Withdrawal,
-    pub held_out_rms: f64,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Withdrawal {
-    /// The run does not decide its size or shape.
-    Undecided,
-    /// It explains only a part of what shows over its own axis.
-    HalfExplains,
-}
-
 pub struct Exploration<'p> {
     pub start: Assembly<'p>,
     pub advances: Vec<Advance<'p>>,
     pub withdrawn: Vec<Withdrawn<'p>>,
-    pub silent: Vec<Silence<'p>>,
-    pub invisible: Vec<Invisible>,
+    others: Others,
     /// Maps of what the last model leaves.
     pub maps: Maps,
     pub floor: NoiseFloor,
@@ -134,10 +123,7 @@ impl<'p> Exploration<'p> {
         let open = open.and_then(|open| moves(open.rival.term.id(), &search.now, &open.with));
         let upheld = search.upheld.iter().filter(|id| search.now.contains(id));
         let upheld = upheld.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
-        let taken_back = taken_back.into_iter().filter(|(effect, _)| !search.now.contains(effect));
-        let with = |effect| held_out_rms(&search.laid_with(effect));
-        let withdrawn = taken_back.map(|(effect, why)| Withdrawn { effect, why, held_out_rms: with(effect) }).collect();
-        let silent = search.silences();
+        let withdrawn = withdrawn::all(&search, &taken_back);
         let ties = open_ties(&search, &advances);
         let now = advances.last().map_or(&start, |a| &a.after);
         if now.effects.len() < start.effects.len() + most
@@ -151,10 +137,9 @@ impl<'p> Exploration<'p> {
             advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
             advances.last().into_iter().for_each(&mut *on_advance);
         }
-        let mut invisible = library.invisible;
-        invisible.retain(|i| !start.hidden.iter().any(|h| h.effect == i.effect));
+        let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn);
         let floor = floor::noise_floor(prepared, &residual);
-        Ok(Self { start, advances, withdrawn, silent, invisible, maps, floor, ties, upheld, open })
+        Ok(Self { start, advances, withdrawn, others, maps, floor, ties, upheld, open })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
@@ -167,7 +152,17 @@ impl<'p> Exploration<'p> {
 
     /// Effects that this run cannot show, those of the model first.
     pub fn not_visible(&self) -> Vec<Invisible> {
-        self.start.hidden.iter().chain(&self.invisible).cloned().collect()
+        self.start.hidden.iter().chain(&self.others.invisible).cloned().collect()
+    }
+
+    /// Effects that were looked for and not found.
+    pub fn silent(&self) -> Vec<Silent> {
+        self.others.silent.clone()
+    }
+
+    /// Effects that were tried and left out.
+    pub fn left_out(&self) -> Vec<LeftOut> {
+        self.others.left_out.clone()
     }
 
     /// What this run cannot tell an effect of the last model from: the model is as good with it in its place.

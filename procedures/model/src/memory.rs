@@ -10,7 +10,7 @@ use crate::assembly::Assembly;
 use crate::effect::Stage;
 use crate::linear::Basis;
 use crate::prepare::Problem;
-use crate::select::{Ground, Library, Rival, significance};
+use crate::select::{Ground, Library, Rival, Silence, significance};
 use crate::terms::{Term, Terms, polish};
 
 /// An effect with a memory must take this share of the squared error around reversals.
@@ -50,6 +50,17 @@ pub fn memory<'p>(now: &Assembly<'p>, options: &Options) -> Option<Rival<'p>> {
     let (term, share) = reversals.best()?;
     let p_value = significance(&term, &reversals.library, &reversals.ground, options);
     (share >= MOST && p_value <= options.alpha).then(|| Rival::alone(term, share, p_value))
+}
+
+/// Effects with a memory that are not in the model, with the smallest that would have taken enough beside what is left
+/// around reversals.
+pub fn silences<'p>(now: &Assembly<'p>) -> Vec<Silence<'p>> {
+    let is_meant = |id: &str| now.spec.find(id).is_ok_and(|e| now.is_apart(e)) && !now.effects.iter().any(|e| e == id);
+    let Some(Reversals { problem, ground, library }) = Reversals::new(now, is_meant) else { return Vec::new() };
+    let detectable_rms = (MOST / (1.0 - MOST) * ground.energy / problem.rows() as f64).sqrt();
+    let mut seen: Vec<&str> = library.candidates.iter().map(|c| c.id()).collect();
+    seen.dedup();
+    seen.into_iter().map(|effect| Silence { effect, detectable_rms }).collect()
 }
 
 /// A memory effect of the model in its best form. `None` where there is nothing to choose it by.

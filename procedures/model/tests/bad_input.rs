@@ -138,6 +138,67 @@ fn assert_finite(found: &Diagnosis) {
     assert!(!found.summary.contains("NaN") && !found.summary.contains("inf"), "{}", found.summary);
 }
 
+/// Every effect that is not in the model is told of once: suggested, silent, not visible or left out.
+fn assert_each_told_once(found: &Diagnosis, spec: &ModelSpec) {
+    for effect in spec.known().map(|effect| effect.info().id).filter(|id| !spec.contains(id)) {
+        let told = [
+            found.suggestions.iter().filter(|s| s.effect == effect).count(),
+            found.silent.iter().filter(|s| s.effect == effect && s.minimum_detectable_rms.is_finite()).count(),
+            found.not_visible.iter().filter(|s| s.effect == effect && s.why.len() > 10).count(),
+            found.left_out.iter().filter(|s| s.effect == effect && s.why.len() > 10).count(),
+        ];
+        assert_eq!(told.iter().sum::<usize>(), 1, "{} {effect}: {told:?}", spec.kind);
+    }
+}
+
+/// Five speeds in both directions, from one to the next in 0.4 s.
+fn with_ramps() -> RunTable {
+    let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
+    let mut trace = Trace::new(names.map(Channel::new).into());
+    let (mut position, mut before) = (0.0, 0.0);
+    for leg in 0..40 {
+        let target = [2.0, 3.0, 4.5, 6.0, 9.0][leg / 2 % 5] * if leg % 2 == 0 { 1.0 } else { -1.0 };
+        for k in 0..300 {
+            let i = leg * 300 + k;
+            let velocity: f64 = before + (target - before) * (k as f64 / 100.0).min(1.0);
+            position += 0.004 * velocity;
+            let torque = 0.03 * velocity.signum() + 1e-3 * velocity + 2e-3 * scatter(i, 5);
+            trace.push_row(&[0.004 * i as f64, position, velocity, torque / 0.08, leg as f64, (leg / 10) as f64]);
+        }
+        before = target;
+    }
+    RunTable::new(meta(), trace).unwrap()
+}
+
+#[test]
+fn no_effect_is_forgotten() {
+    let run = with_ramps();
+    let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
+    let found = diagnose(&run, &spec, &Options::default()).unwrap();
+    assert_each_told_once(&found, &spec);
+    assert!(found.silent.iter().any(|s| s.effect == "presliding" && s.minimum_detectable_rms > 0.0), "{found:?}");
+    let told = |id: &str| found.not_visible.iter().find(|n| n.effect == id).map(|n| n.why.as_str()).unwrap_or_default();
+    assert!(told("signal_delay").contains("on ramps"), "{}", told("signal_delay"));
+
+    let one_way = |name: &str, i: usize, v: f64| match name {
+        "reference_position_rad" => 0.01 * i as f64,
+        "test_position_rad" => 0.01 * i as f64 + 1e-4 * scatter(i, 3),
+        _ => v,
+    };
+    let run = try_table(Kind::Encoder, &Shape { segment: 250, repeats: 3, ..Shape::default() }, one_way).unwrap();
+    let spec = ModelSpec::baseline(&run).unwrap();
+    let found = diagnose(&run, &spec, &Options::default()).unwrap();
+    assert_each_told_once(&found, &spec);
+    let told = found.not_visible.iter().find(|n| n.effect == "direction_hysteresis");
+    assert!(told.is_some_and(|n| n.why.contains("looks like what the model has already")), "{told:?}");
+
+    for kind in Kind::ALL {
+        let run = common::tables::table(kind, &Shape { segment: 300, repeats: 3, ..Shape::default() });
+        let spec = ModelSpec::baseline(&run).unwrap();
+        assert_each_told_once(&diagnose(&run, &spec, &Options::default()).unwrap(), &spec);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
@@ -161,6 +222,7 @@ proptest! {
         let spec = ModelSpec::new(kind, given.effects.iter().map(String::as_str).chain(more.skip(every).step_by(every))).unwrap();
         if let Ok(found) = diagnose(&run, if mix % 2 == 0 { &given } else { &spec }, &Options::default()) {
             assert_finite(&found);
+            assert_each_told_once(&found, if mix % 2 == 0 { &given } else { &spec });
             let drawn = maps(&run, &found.fit, &Options::default()).unwrap();
             prop_assert!(drawn.axes.iter().flat_map(|a| &a.bins).all(|b| b.mean.is_finite() && b.rows > 0));
         }

@@ -1,8 +1,10 @@
 //! Results as a person reads them.
 
+mod others;
+
 use jointbench_instrument::Motion;
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, Invisible, NoiseFloor, Parameter, ParameterPair,
+    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Parameter, ParameterPair,
     ParameterState, Region, ResidualKind, Suggestion, Verdict, formula, words,
 };
 use std::path::Path;
@@ -104,13 +106,7 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
         suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
         next_run(diagnosis.experiment.as_ref());
     }
-    not_visible(&diagnosis.not_visible);
-}
-
-fn not_visible(hidden: &[Invisible]) {
-    for effect in hidden {
-        println!("cannot be seen here: {} ({})", effect.effect, effect.why);
-    }
+    others::print(&diagnosis.silent, &diagnosis.not_visible, &diagnosis.left_out, &diagnosis.fit.unit);
 }
 
 pub fn discovery(discovery: &Discovery) {
@@ -146,7 +142,7 @@ pub fn discovery(discovery: &Discovery) {
     regions(&discovery.regions, &discovery.fit.unit);
     own_formula(&discovery.shows_over, &discovery.fit);
     next_run(discovery.experiment.as_ref());
-    not_visible(&discovery.not_visible);
+    others::print(&discovery.silent, &discovery.not_visible, &discovery.left_out, &discovery.fit.unit);
 }
 
 /// What the library lacks, the user may know: over the axes that the summary has named.

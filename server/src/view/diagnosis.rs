@@ -67,6 +67,9 @@ pub struct Finding {
     pub silent: Vec<Silent>,
     /// Effects that this data cannot show.
     pub not_visible: Vec<Invisible>,
+    /// Effects that were tried and left out.
+    #[serde(default)]
+    pub left_out: Vec<LeftOut>,
 }
 
 /// How well the measurement repeats itself.
@@ -142,6 +145,13 @@ pub struct Silent {
     pub effect: String,
     /// RMS of the smallest effect that would have been found with 80 % probability.
     pub minimum_detectable_rms: f64,
+}
+
+/// An effect that was tried and is not in the model, though it might be there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LeftOut {
+    pub effect: String,
+    pub why: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -59,6 +59,9 @@ pub struct Diagnosis {
     pub silent: Vec<Silent>,
     /// Effects that this data cannot show.
     pub not_visible: Vec<Invisible>,
+    /// Effects that were tried and left out.
+    #[serde(default)]
+    pub left_out: Vec<LeftOut>,
 }
 
 /// How well the measurement repeats itself.
@@ -150,6 +153,13 @@ pub struct Silent {
     pub minimum_detectable_rms: f64,
 }
 
+/// An effect that was tried and is not in the model, though it might be there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    pub effect: String,
+    pub why: String,
+}
+
 /// An effect that this data cannot show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Invisible {
@@ -200,7 +210,13 @@ pub struct Discovery {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imitated: Option<Imitated>,
     pub experiment: Option<Experiment>,
+    /// Effects that were looked for and not found, with what would have been seen.
+    #[serde(default)]
+    pub silent: Vec<Silent>,
     /// Effects that this data cannot show.
     #[serde(default)]
     pub not_visible: Vec<Invisible>,
+    /// Effects that were tried and left out.
+    #[serde(default)]
+    pub left_out: Vec<LeftOut>,
 }

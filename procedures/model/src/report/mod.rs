@@ -8,7 +8,8 @@ mod residuals;
 
 pub use comparison::{Comparison, ParameterPair};
 pub use diagnosis::{
-    Diagnosis, Discovery, Experiment, Imitated, Invisible, NoiseFloor, Region, Silent, Step, Suggestion, Verdict,
+    Diagnosis, Discovery, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, Region, Silent, Step, Suggestion,
+    Verdict,
 };
 pub use fit::{
     Evaluation, Fit, GivenConstant, Parameter, ParameterState, Preparation, ResidualKind, Scope, SignalRange, Term,

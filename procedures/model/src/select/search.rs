@@ -279,6 +279,11 @@ impl<'l, 'p> Search<'l, 'p> {
         self.added().filter(|term| !self.upheld.contains(&term.id()))
     }
 
+    /// Effects that were withdrawn and stayed out.
+    pub fn given_back(&self) -> impl Iterator<Item = &'p str> {
+        self.withdrawn.iter().copied().filter(|id| !self.now.contains(id))
+    }
+
     pub fn silences(&self) -> Vec<Silence<'p>> {
         silences(&self.now, self.library, &self.withdrawn, self.bar())
     }

@@ -1,0 +1,60 @@
+//! What became of the effects that are not in the last model: each is silent, invisible or left out, and none is forgotten.
+
+use super::Withdrawn;
+use crate::assembly::Assembly;
+use crate::effect::{Effect, Stage};
+use crate::memory;
+use crate::report::{Invisible, LeftOut, Silent};
+use crate::select::{Search, Silence};
+
+#[derive(Default)]
+pub struct Others {
+    /// Looked for and not found, with the smallest that would have been.
+    pub silent: Vec<Silent>,
+    pub invisible: Vec<Invisible>,
+    /// Tried, and left out for a reason.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl Others {
+    pub fn of<'p>(end: &Assembly<'p>, search: &Search<'_, 'p>, withdrawn: &[Withdrawn<'p>]) -> Self {
+        let silences: Vec<Silence> = search.silences().into_iter().chain(memory::silences(end)).collect();
+        let mut others = Self::default();
+        let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
+        for effect in end.spec.known().filter(is_out) {
+            let id = effect.info().id;
+            let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words());
+            if let Some(why) = tried.or_else(|| given(effect, end)) {
+                others.left_out.push(LeftOut { effect: id.into(), why: why.into() });
+            } else if let Some(silence) = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite()) {
+                others.silent.push(Silent { effect: id.into(), minimum_detectable_rms: silence.detectable_rms });
+            } else {
+                others.invisible.push(Invisible { effect: id.into(), why: invisible(effect, end) });
+            }
+        }
+        others
+    }
+}
+
+/// What enters as it is has no size from which it would have been found.
+fn given(effect: &dyn Effect, end: &Assembly) -> Option<&'static str> {
+    let is_tried = effect.is_given() && effect.hidden(&end.prepared.main.view).is_none();
+    is_tried.then_some("it enters as it is measured, and the error is not clearly smaller with it")
+}
+
+fn invisible(effect: &dyn Effect, end: &Assembly) -> String {
+    const ALIKE: &str = "in this data it looks like what the model has already, which takes its place";
+    const RAMP: &str = "settled motion does not show it, and on ramps, where the signals of different instruments are not \
+                        aligned, nothing is searched for; name it in the model, or record a trajectory without steps";
+    let prepared = end.prepared;
+    let remembered = prepared.memory.as_ref().map(|problem| &problem.view);
+    let view = match (end.is_apart(effect), effect.stage()) {
+        (true, Stage::Memory) => remembered,
+        (true, _) => return effect.hidden(&prepared.main.view).unwrap_or_else(|| RAMP.into()),
+        _ => Some(&prepared.main.view),
+    };
+    match view {
+        Some(view) => effect.hidden(view).unwrap_or_else(|| ALIKE.into()),
+        None => "the run has no slow reversals that could show it".into(),
+    }
+}

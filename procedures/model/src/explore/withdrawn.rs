@@ -1,0 +1,49 @@
+//! Effects that came in and were taken back.
+
+use super::held_out_rms;
+use crate::select::Search;
+
+/// An effect that came in and was taken back, with the held-out RMS that the last model would have with it.
+pub struct Withdrawn<'p> {
+    pub effect: &'p str,
+    pub why: Withdrawal,
+    pub held_out_rms: f64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Withdrawal {
+    /// The run does not decide its size or shape.
+    Undecided,
+    /// It explains only a part of what shows over its own axis.
+    HalfExplains,
+    /// It would have to be of an impossible size.
+    Impossible,
+    /// Whatever came in since explains the rest of it.
+    Idle,
+}
+
+impl Withdrawal {
+    pub fn words(self) -> &'static str {
+        match self {
+            Withdrawal::Undecided => "this run does not decide how large it is",
+            Withdrawal::HalfExplains => "it explains only a part of what shows over its own axis",
+            Withdrawal::Impossible => "it would have to be of a size that is physically impossible",
+            Withdrawal::Idle => "beside the other effects it brings nothing that is worth a name",
+        }
+    }
+}
+
+/// What was withdrawn and stayed out, for the reasons that are known or those of the search itself.
+pub fn all<'p>(search: &Search<'_, 'p>, reasons: &[(&'p str, Withdrawal)]) -> Vec<Withdrawn<'p>> {
+    let of = |effect: &'p str| {
+        let with = search.laid_with(effect);
+        let mut sized = with.terms.iter().zip(with.linear().factors);
+        let of_search = match sized.all(|(term, factors)| term.id() != effect || term.allows(&factors)) {
+            true => Withdrawal::Idle,
+            false => Withdrawal::Impossible,
+        };
+        let why = reasons.iter().find(|(id, _)| *id == effect).map_or(of_search, |(_, why)| *why);
+        Withdrawn { effect, why, held_out_rms: held_out_rms(&with) }
+    };
+    search.given_back().map(of).collect()
+}

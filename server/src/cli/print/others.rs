@@ -1,0 +1,44 @@
+//! Effects that are not in a model, as a person reads them.
+
+use jointbench_model::{Invisible, LeftOut, Silent, words};
+
+/// The smallest of what would have been found are named, the rest counted.
+const NAMED_SILENT: usize = 4;
+
+pub fn print(silent: &[Silent], hidden: &[Invisible], left_out: &[LeftOut], unit: &str) {
+    if let Some(said) = silences(silent, unit) {
+        println!("{said}");
+    }
+    for effect in left_out {
+        println!("left out: {} ({})", effect.effect, effect.why);
+    }
+    for effect in hidden {
+        println!("cannot be seen here: {} ({})", effect.effect, effect.why);
+    }
+}
+
+fn silences(silent: &[Silent], unit: &str) -> Option<String> {
+    let mut silent: Vec<&Silent> = silent.iter().collect();
+    silent.sort_by(|a, b| a.minimum_detectable_rms.total_cmp(&b.minimum_detectable_rms));
+    let (named, rest) = silent.split_at(silent.len().min(NAMED_SILENT));
+    let named = named.iter().map(|s| format!("{} {}", s.effect, words::figure(s.minimum_detectable_rms, unit)));
+    let named: Vec<String> = named.collect();
+    let rest = if rest.is_empty() { String::new() } else { format!(", and {} more from above that", rest.len()) };
+    (!named.is_empty()).then(|| format!("would have been found from (rms): {}{rest}", named.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smallest_are_named_and_the_rest_counted() {
+        let silent = |effect: &str, nm: f64| Silent { effect: effect.into(), minimum_detectable_rms: nm };
+        let mut all: Vec<Silent> = [5e-3, 2e-3, 4e-3, 3e-3].iter().map(|nm| silent("gravity", *nm)).collect();
+        all.push(silent("cogging", 1.2e-4));
+        let said = silences(&all, "Nm").unwrap();
+        assert!(said.starts_with("would have been found from (rms): cogging 120 µNm, gravity 2.00 mNm, "), "{said}");
+        assert!(said.ends_with(", and 1 more from above that"), "{said}");
+        assert_eq!(silences(&[], "Nm"), None);
+    }
+}
