@@ -56,7 +56,7 @@ pub fn quantity_of(name: &str) -> Option<&str> {
 }
 
 /// Longest first: `_rad_s` before `_s`, `_nm_per_a` before `_a`.
-const SUFFIXES: [(&str, &str); 16] = [
+const SUFFIXES: [(&str, &str); 18] = [
     ("_nm_per_rad", "Nm/rad"),
     ("_nm_rad", "Nm/rad"),
     ("_nm_s", "Nm·s/rad"),
@@ -70,6 +70,8 @@ const SUFFIXES: [(&str, &str); 16] = [
     ("_hz", "Hz"),
     ("_c", "°C"),
     ("_a", "A"),
+    ("_pa", "Pa"),
+    ("_percent", "%"),
     ("_v", "V"),
     ("_w", "W"),
     ("_s", "s"),

@@ -33,9 +33,10 @@ pub fn residuals(run: &RunTable, fit: &Fit, options: &Options) -> Result<Residua
 }
 
 fn axes(prepared: &Prepared) -> Vec<Axis> {
-    shown(prepared)
-        .map(|s| Axis { name: prepared.column_name(s).into(), unit: prepared.column_unit(s), values: Vec::new() })
-        .collect()
+    let axis = |name: &str, unit| Axis { name: name.into(), unit, values: Vec::new() };
+    let known = shown(prepared).map(|s| axis(prepared.column_name(s), prepared.column_unit(s)));
+    let unknown = prepared.main.view.points.unknown().map(|(column, _)| axis(column, prepared.unknown_unit(column)));
+    known.chain(unknown).collect()
 }
 
 /// Signals that the run has, those that people look at first.
@@ -64,9 +65,10 @@ fn append(
     held_out: bool,
 ) -> Result<(), ModelError> {
     let predicted = predict(fit, problem)?;
-    for (axis, signal) in set.axes.iter_mut().zip(shown(prepared)) {
-        let scale = prepared.column_scale(signal);
-        let values = problem.reduce.apply(problem.view.get(signal).to_vec());
+    let known = shown(prepared).map(|signal| (problem.view.get(signal), prepared.column_scale(signal)));
+    let unknown = problem.view.points.unknown().map(|(_, values)| (values, 1.0));
+    for (axis, (values, scale)) in set.axes.iter_mut().zip(known.chain(unknown)) {
+        let values = problem.reduce.apply(values.to_vec());
         axis.values.extend(values.into_iter().map(|v| v * scale));
     }
     set.error.extend(problem.target.iter().zip(&predicted).map(|(y, p)| y - p));

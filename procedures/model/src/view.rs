@@ -72,12 +72,14 @@ impl Signal {
 #[derive(Debug, Clone, Default)]
 pub struct Signals {
     columns: [Option<Arc<Vec<f64>>>; Signal::COUNT],
+    /// Columns that no effect knows, by name: what is left may depend on them.
+    unknown: Vec<(Arc<str>, Arc<Vec<f64>>)>,
     len: usize,
 }
 
 impl Signals {
     pub fn new(len: usize) -> Self {
-        Self { columns: Default::default(), len }
+        Self { columns: Default::default(), unknown: Vec::new(), len }
     }
 
     pub fn len(&self) -> usize {
@@ -91,6 +93,16 @@ impl Signals {
     pub fn set(&mut self, signal: Signal, values: Vec<f64>) {
         debug_assert_eq!(values.len(), self.len);
         self.columns[signal as usize] = Some(Arc::new(values));
+    }
+
+    pub fn add_unknown(&mut self, column: &str, values: Vec<f64>) {
+        debug_assert_eq!(values.len(), self.len);
+        self.unknown.push((column.into(), Arc::new(values)));
+    }
+
+    /// Columns that no effect knows.
+    pub fn unknown(&self) -> impl Iterator<Item = (&str, &[f64])> {
+        self.unknown.iter().map(|(column, values)| (&**column, values.as_slice()))
     }
 
     pub fn find(&self, signal: Signal) -> Option<&[f64]> {

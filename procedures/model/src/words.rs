@@ -1,6 +1,7 @@
 //! Figures as people say them.
 
 use jointbench_instrument::Kind;
+use jointbench_instrument::units::quantity_of;
 
 /// Factor and prefix of a unit that keep the digits of `size` before the point.
 pub fn prefix(size: f64) -> (f64, &'static str) {
@@ -48,9 +49,8 @@ pub fn list(items: &[impl AsRef<str>]) -> String {
 
 /// A column's name without its unit, as it is spoken.
 pub fn spoken(column: &str) -> String {
-    let units = ["_rad_s2", "_rad_s3", "_rad_s", "_rad", "_nm", "_s", "_c", "_a"];
-    let suffix = units.into_iter().find(|u| column.ends_with(u)).unwrap_or_default();
-    column.trim_end_matches(suffix).replace('_', " ")
+    let quantity = column.strip_suffix("_rad_s3").or_else(|| quantity_of(column));
+    quantity.unwrap_or(column).replace('_', " ")
 }
 
 /// The same for an axis of a run: what turns in a brake run is the current.

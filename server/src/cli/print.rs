@@ -3,6 +3,7 @@
 mod others;
 
 use jointbench_instrument::Motion;
+use jointbench_instrument::units::quantity_of;
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Parameter, ParameterPair,
     ParameterState, Region, ResidualKind, Suggestion, Verdict, formula, words,
@@ -147,6 +148,12 @@ pub fn discovery(discovery: &Discovery) {
 
 /// What the library lacks, the user may know: over the axes that the summary has named.
 fn own_formula(columns: &[String], fit: &Fit) {
+    // A formula can name no column that is an axis only.
+    let is_signal = |column: &&String| {
+        let quantity = quantity_of(column).unwrap_or(column);
+        formula::signals(fit.kind).iter().any(|s| s.column == column.as_str() || s.name == quantity)
+    };
+    let columns: Vec<&String> = columns.iter().filter(is_signal).collect();
     if columns.is_empty() {
         return;
     }
@@ -159,7 +166,7 @@ fn own_formula(columns: &[String], fit: &Fit) {
     let turns = fit.scope.as_ref().is_none_or(|scope| scope.motion != Motion::Linear);
     let angle = formula::signals(fit.kind)
         .iter()
-        .find(|s| s.name.ends_with("position") && columns.contains(&s.column.to_owned()));
+        .find(|s| s.name.ends_with("position") && columns.iter().any(|column| *column == s.column));
     if let Some(angle) = angle.filter(|_| turns) {
         println!(
             "  angles are folded into one turn above; a formula folds this one with wrap({} - p), -π to π",

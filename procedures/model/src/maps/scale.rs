@@ -75,6 +75,17 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
             scales.push(scale);
         }
     }
+    for (column, values) in problem.view.points.unknown() {
+        let values = problem.reduce.apply(values.to_vec());
+        let unit = prepared.unknown_unit(column);
+        let as_read = Scale::new(column, unit.clone(), quantiles(&values, BINS), values);
+        // A sensor that nobody knows may hold the noise of the response: only its mean over a piece says where that was.
+        let held = piece_means(&as_read.values, problem);
+        let scale = Scale::new(column, unit, quantiles(&held, BINS), held);
+        if scale.bins.len() > 1 && !scales.iter().any(|s| s.says_the_same(&as_read)) {
+            scales.push(scale);
+        }
+    }
     let since = since_reversal(problem);
     let since = Scale::new("time_since_reversal_s", "s".into(), quantiles(&since, BINS), since);
     scales.extend((since.bins.len() > 1 && scales.iter().any(|s| s.name == "direction")).then_some(since));

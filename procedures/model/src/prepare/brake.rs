@@ -34,6 +34,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     }
     let rising = segments::direction(&trend(current, run.len() / 400 + 5), 0.0);
     signals.set(Signal::Direction, rising);
+    super::unknown::keep(&mut signals, run);
     let source = Source {
         signals,
         target: column("brake_torque_nm").to_vec(),

@@ -90,6 +90,7 @@ impl Source {
                 signals.set(signal, gather(values));
             }
         }
+        self.signals.unknown().for_each(|(column, values)| signals.add_unknown(column, gather(values)));
         let moved = chunks.iter().map(|c| at(&c.start)..at(&c.start) + c.len()).collect();
         let source = Source {
             signals,
@@ -124,6 +125,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         let still = settled && matches!(signal, Signal::Acceleration | Signal::Jerk);
         points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
     }
+    samples.signals.unknown().for_each(|(column, values)| points.add_unknown(column, mean(values)));
     if settled && let Some(velocity) = points.find(Signal::Velocity) {
         // The sign of the filtered velocity rings after a hard reversal, far into a slow plateau.
         let direction = velocity.iter().map(|v| v.signum()).collect();

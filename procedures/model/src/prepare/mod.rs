@@ -13,6 +13,7 @@ mod repeats;
 mod segments;
 mod stiffness;
 mod sweeps;
+mod unknown;
 
 use crate::effect::Stage;
 use crate::report::{GivenConstant, Preparation};
@@ -160,6 +161,11 @@ impl Prepared {
             _ => jointbench_instrument::units::unit_of(self.column_name(signal)).unwrap_or("1"),
         };
         self.motion.label(unit)
+    }
+
+    /// Unit of a column that the models do not know.
+    pub fn unknown_unit(&self, column: &str) -> String {
+        self.motion.label(jointbench_instrument::units::unit_of(column).unwrap_or("1"))
     }
 
     pub fn unit(&self) -> String {

@@ -44,6 +44,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
             signals.set(signal, values.to_vec());
         }
     }
+    super::unknown::keep(&mut signals, run);
     let mut source = Source {
         signals,
         target,

@@ -110,6 +110,7 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
     if let Some(temperature) = run.column("temperature_c") {
         signals.set(Signal::Temperature, temperature.to_vec());
     }
+    super::unknown::keep(&mut signals, run);
     let source = Source {
         signals,
         target: torque_nm,

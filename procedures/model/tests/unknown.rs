@@ -1,0 +1,68 @@
+//! A column that no effect knows is an axis: what depends on it is told over it.
+
+mod common;
+
+use common::bench::Staircase;
+use jointbench_instrument::{Channel, RunTable, Trace};
+use jointbench_model::{Diagnosis, ModelSpec, Options, Verdict, diagnose, fit, maps, residuals};
+
+const COLUMN: &str = "oil_pressure_pa";
+
+/// Another pressure in each step of 0.6 s.
+fn pressure_pa(time_s: f64) -> f64 {
+    let step = ((time_s - 1e-6) / 0.6) as u64;
+    1e5 + 2e4 * (step.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 61) as f64
+}
+
+/// A staircase with a column beside it, and `nm` more torque in the middle of what that tells.
+fn run(column: &str, nm: f64) -> RunTable {
+    let steps = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 3 }.run(|m| {
+        let middle = (1.5e5..1.9e5).contains(&pressure_pa(m.time));
+        (0.03 + 2e-4 * m.velocity.abs()) * m.velocity.signum() + if middle { nm } else { 0.0 }
+    });
+    let (meta, trace) = steps.into_parts();
+    let names = trace.channels().iter().map(|c| c.name.clone()).chain([column.to_owned()]);
+    let mut with = Trace::new(names.map(Channel::new).collect());
+    for row in 0..trace.column("time_s").unwrap().len() {
+        let known = trace.channels().iter().map(|c| trace.column(&c.name).unwrap()[row]);
+        with.push_row(&known.chain([pressure_pa(trace.column("time_s").unwrap()[row])]).collect::<Vec<_>>());
+    }
+    RunTable::new(meta, with).unwrap()
+}
+
+fn diagnosed(run: &RunTable) -> Diagnosis {
+    diagnose(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap()
+}
+
+#[test]
+fn structure_over_an_unknown_column_is_told_over_it() {
+    let run = run(COLUMN, 3e-3);
+    let found = diagnosed(&run);
+    assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
+    assert!(found.shows_over.iter().any(|axis| axis == COLUMN), "{:?}", found.shows_over);
+    assert!(found.summary.contains("oil pressure"), "{}", found.summary);
+    assert!(found.regions[0].axis == COLUMN && found.regions[0].sentence.contains("Pa"), "{:?}", found.regions);
+
+    let fitted = fit(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    let drawn = maps(&run, &fitted, &Options::default()).unwrap();
+    assert!(drawn.axes.iter().any(|map| map.axis == COLUMN && map.unit == "Pa" && map.removable_share > 0.5));
+    let set = residuals(&run, &fitted, &Options::default()).unwrap();
+    let axis = set.axes.iter().find(|axis| axis.name == COLUMN).unwrap();
+    assert_eq!((axis.values.len(), axis.unit.as_str()), (set.error.len(), "Pa"));
+}
+
+#[test]
+fn a_column_that_moves_nothing_is_no_cause() {
+    let found = diagnosed(&run(COLUMN, 0.0));
+    assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+}
+
+#[test]
+fn what_the_drive_tells_of_its_own_effort_is_no_axis() {
+    for column in ["bus_current_a", "other_torque_nm", "output_position_rad", "torque_skew_s", "state"] {
+        let run = run(column, 0.0);
+        let fitted = fit(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+        let drawn = maps(&run, &fitted, &Options::default()).unwrap();
+        assert!(drawn.axes.iter().all(|map| map.axis != column), "{column}");
+    }
+}
