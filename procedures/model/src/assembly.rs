@@ -16,6 +16,8 @@ pub struct Assembly<'p> {
     pub effects: Vec<String>,
     pub main: Terms<'p>,
     pub moving: Option<Terms<'p>>,
+    /// What the main part takes as given of effects that ramps have decided: a slow step over teeth accelerates as well.
+    wavering: Vec<f64>,
     /// Effects of the model that this data cannot show.
     pub hidden: Vec<Invisible>,
 }
@@ -33,6 +35,7 @@ impl<'p> Assembly<'p> {
             effects: spec.effects.clone(),
             main: Terms::new(&prepared.main),
             moving: prepared.moving.as_ref().map(Terms::new),
+            wavering: vec![0.0; prepared.main.rows()],
             hidden: Vec::new(),
         };
         let mut settled = Vec::new();
@@ -51,8 +54,15 @@ impl<'p> Assembly<'p> {
             }
         }
         let library = Library::for_layout(spec, &prepared.main, prepared.stages(), &settled);
-        assembly.main = lay(&assembly.main, &settled, &library, options);
-        assembly.enter_moving();
+        // What the ramps decide needs the settled part, and that a little of what they decide.
+        for _ in 0..2 {
+            assembly.main.terms.clear();
+            assembly.main = lay(&assembly.main, &settled, &library, options);
+            assembly.enter_moving();
+            if !assembly.take_wavering() {
+                break;
+            }
+        }
         Ok(assembly)
     }
 
@@ -121,10 +131,26 @@ impl<'p> Assembly<'p> {
         }
     }
 
+    /// Takes what ramps tell into the main part, where it has anything to say there.
+    fn take_wavering(&mut self) -> bool {
+        let mut wavering = vec![0.0; self.wavering.len()];
+        if let Some(moving) = &self.moving {
+            let told = moving.terms.iter().zip(moving.linear().factors);
+            for (term, factors) in told.filter(|(term, _)| term.effect.stage() == Stage::Ramp) {
+                let columns = columns(term.effect, term.form.name, &term.shape, self.main.problem);
+                add(&mut wavering, &columns, &factors);
+            }
+        }
+        add(&mut self.main.given, &[std::mem::replace(&mut self.wavering, wavering.clone())], &[-1.0]);
+        add(&mut self.main.given, &[wavering], &[1.0]);
+        self.wavering.iter().any(|torque| *torque != 0.0)
+    }
+
     /// The model of other effects, whose settled part is laid out already.
     pub fn of(&self, main: Terms<'p>, effects: Vec<String>) -> Self {
         let mut next = Self { main, effects, ..self.clone() };
         next.enter_moving();
+        next.take_wavering();
         next
     }
 }

@@ -146,6 +146,11 @@ pub trait Effect: Sync {
         Stage::Settled
     }
 
+    /// The angle over which it is a wave, as often in a turn as its shape says.
+    fn wave(&self) -> Option<Signal> {
+        None
+    }
+
     /// A shape parameter that says only how suddenly the effect comes and goes. At the edge of its range the effect is there
     /// all the same.
     fn suddenness(&self) -> Option<&'static str> {

@@ -2,6 +2,7 @@
 
 mod given;
 mod others;
+mod swift;
 mod withdrawn;
 
 pub use withdrawn::{Withdrawal, Withdrawn};
@@ -35,6 +36,8 @@ pub struct Exploration<'p> {
     /// Maps of what the last model leaves.
     pub maps: Maps,
     pub floor: NoiseFloor,
+    /// Of what it leaves, waves of its effects that pass faster than samples follow.
+    pub swift_rms: f64,
     /// Effects of the last model, and what this run cannot tell them from.
     ties: Vec<(&'p str, &'p str)>,
     /// Effects of the last model that the error would hardly miss.
@@ -80,7 +83,7 @@ impl<'p> Exploration<'p> {
         let mut search = Search::new(begin.main.clone(), &library, &prepared.baseline, left, options);
         let mut effects = begin.effects.clone();
         let mut taken_back = Vec::new();
-        let (maps, residual, open) = loop {
+        let (maps, residual, swift, open) = loop {
             let made = search.next().or_else(|| {
                 let id = undecided(&search, prepared)?;
                 taken_back.push((id, Withdrawal::Undecided));
@@ -89,7 +92,9 @@ impl<'p> Exploration<'p> {
             let made = match made {
                 Some(made) => made,
                 None => {
-                    let residual = search.now.tangent().rest(&search.now.response());
+                    let left = search.now.tangent().rest(&search.now.response());
+                    let residual = swift::without_swift_waves(&search.now, left.clone());
+                    let swift = dot(&left, &left) - dot(&residual, &residual);
                     let maps = Maps::new(prepared, residual.clone(), options);
                     let axis = structured(&maps);
                     if let Some(id) = axis.and_then(|axis| half_explained(&search, axis, prepared, options)) {
@@ -100,7 +105,7 @@ impl<'p> Exploration<'p> {
                         let is_decided = |with: &Terms<'p>, term: &Term<'p>| is_decided(with, term, prepared);
                         match axis.is_none().then(|| search.imitated(is_decided)).flatten() {
                             Some(found) if found.is_clear => search.uphold(found.rival),
-                            open => break (maps, residual, open),
+                            open => break (maps, residual, swift, open),
                         }
                     }
                 }
@@ -139,7 +144,8 @@ impl<'p> Exploration<'p> {
         }
         let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn);
         let floor = floor::noise_floor(prepared, &residual);
-        Ok(Self { start, advances, withdrawn, others, maps, floor, ties, upheld, open })
+        let swift_rms = (swift / prepared.main.rows() as f64).sqrt();
+        Ok(Self { start, advances, withdrawn, others, maps, floor, swift_rms, ties, upheld, open })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
@@ -187,7 +193,7 @@ impl<'p> Exploration<'p> {
     /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
     /// noise, whether or not a map shows where it comes from.
     fn repeats_itself(&self) -> bool {
-        let held_out = self.end_held_out_rms();
+        let held_out = (self.end_held_out_rms().powi(2) - self.swift_rms.powi(2)).max(0.0).sqrt();
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
             || self.floor.rms.is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
     }

@@ -16,6 +16,9 @@ const NOTHING_IN_COMMON: f64 = 0.01;
 /// An effect that was left out is told where held-out error with it would be below this share.
 const WORTH_TELLING: f64 = 0.99;
 
+/// A part of the error that is told by itself, as a share of it.
+const WORTH_A_WORD: f64 = 0.5;
+
 /// What is missing, and what is left when it is there. `fit` is the model at hand, `complete` the one with all suggestions.
 pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
     let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, complete));
@@ -129,7 +132,14 @@ fn floor(found: &Exploration, end: &Fit) -> String {
         false => "",
     };
     let about = if found.floor.ci95.is_some() { "" } else { "about " };
-    format!("the run repeats itself to {about}{}{below}", figure(floor, &end.unit))
+    let swift = match found.swift_rms > WORTH_A_WORD * end.validation_rms {
+        true => format!(
+            ", without {} of waves of the model that pass faster than samples follow",
+            figure(found.swift_rms, &end.unit)
+        ),
+        false => String::new(),
+    };
+    format!("the run repeats itself to {about}{}{swift}{below}", figure(floor, &end.unit))
 }
 
 /// Where what is left shows most.

@@ -1,7 +1,7 @@
 //! Samples in model quantities, and their means over chunks.
 
 use super::repeats::{self, Same};
-use super::{Problem, Reduce, layout, segments};
+use super::{Problem, Reduce, layout, segments, wavering};
 use crate::view::{Constants, Signal, Signals, View};
 use std::ops::Range;
 
@@ -32,7 +32,7 @@ pub struct Layout<'a> {
     pub condition: Vec<usize>,
     /// Rows since the stretch began, where repeats can be compared.
     pub phase: Option<Vec<usize>>,
-    /// Constant speed: what is measured as acceleration is noise.
+    /// Constant speed: what is measured as acceleration is noise, unless the motion wavers.
     pub settled: bool,
     /// Signals in which stretches of one condition must agree to be repeats; none where the condition says all.
     pub inputs: &'a [Same],
@@ -126,6 +126,10 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
     }
     samples.signals.unknown().for_each(|(column, values)| points.add_unknown(column, mean(values)));
+    if settled && let Some(position) = samples.signals.find(Signal::Position) {
+        let wavering = wavering::accelerations(&samples.time_s, position, samples.step_s, &chunks, &group);
+        points.set(Signal::Acceleration, wavering);
+    }
     if settled && let Some(velocity) = points.find(Signal::Velocity) {
         // The sign of the filtered velocity rings after a hard reversal, far into a slow plateau.
         let direction = velocity.iter().map(|v| v.signum()).collect();

@@ -14,6 +14,7 @@ mod segments;
 mod stiffness;
 mod sweeps;
 mod unknown;
+mod wavering;
 
 use crate::effect::Stage;
 use crate::report::{GivenConstant, Preparation};

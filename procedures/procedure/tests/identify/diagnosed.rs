@@ -84,6 +84,17 @@ fn teeth_on_the_way_from_rest_are_told_without_what_is_impossible() {
 }
 
 #[test]
+fn teeth_over_which_the_drive_gives_way_are_all_that_is_told() {
+    // Two waves had brought a friction ripple, three and five a structure that was the rotor's own acceleration.
+    for seed in [32003, 32005, 32009] {
+        let run = seeded(seed, Joint::JointA, &["cogging"], "friction", json!({}));
+        let found = diagnosis(&run);
+        let named: Vec<&str> = found.suggestions.iter().map(|s| s.effect.as_str()).collect();
+        assert_eq!((named.as_slice(), found.structure_remains), (["cogging"].as_slice(), false), "{}", found.summary);
+    }
+}
+
+#[test]
 fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
     let quadratic = |seed| seeded(seed, Joint::JointA, &["stribeck", "viscous_quadratic"], "friction", json!({}));
     // A Stribeck effect whose exponent is 0.5 errs by 1 % more in squares, with 12 mNm of Coulomb friction instead of 30.
@@ -102,7 +113,7 @@ fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
     let spec = ModelSpec::baseline(&run).unwrap().with("stribeck").unwrap();
     let fit = diagnose(&run, &spec, &Options::default()).unwrap().fit;
     let tau_c = fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
-    assert!(tau_c.ci95[0] < 0.022 && tau_c.ci95[1] >= imitated.with, "{tau_c:?}");
+    assert!(tau_c.ci95[0] < 0.022 && tau_c.ci95[1] > 0.99 * imitated.with, "{tau_c:?}");
     assert!(tau_c.note.as_ref().is_some_and(|note| note.contains("viscous_quadratic")), "{tau_c:?}");
     let offered = menu(&BenchFacts::shown_by(&run), &run, &Map::new());
     let next = next_run(&run, &Open::from(&open), &offered, &Options::default()).unwrap().unwrap();

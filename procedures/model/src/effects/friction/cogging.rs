@@ -40,6 +40,10 @@ impl Effect for Cogging {
         forms
     }
 
+    fn wave(&self) -> Option<Signal> {
+        Some(Signal::Position)
+    }
+
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         shape.iter().flat_map(|h| view.harmonic(Signal::Position, *h)).collect()
     }

@@ -37,6 +37,10 @@ impl Effect for FrictionRipple {
         forms
     }
 
+    fn wave(&self) -> Option<Signal> {
+        Some(Signal::Link)
+    }
+
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let [cos, sin] = view.harmonic(Signal::Link, shape[0]);
         let times = |wave: &[f64], signal| wave.iter().zip(view.get(signal)).map(|(w, s)| w * s).collect::<Vec<f64>>();

@@ -1,0 +1,36 @@
+//! Waves that pass faster than samples follow.
+
+use crate::linear::Basis;
+use crate::terms::Terms;
+
+/// A wave that goes on by more than this from sample to sample, rad, is no torque that could be followed.
+const FOLLOWED: f64 = 1.0;
+/// Fewer rows of a stretch do not tell a wave from noise.
+const FEWEST: usize = 10;
+
+/// What a model of settled motion leaves, without the waves of its own effects where these pass that fast. What of a wave
+/// reaches the motor's current there is up to inertia and the drive's control, and says nothing of the joint.
+pub fn without_swift_waves(now: &Terms, mut residual: Vec<f64>) -> Vec<f64> {
+    let view = &now.problem.view;
+    for term in &now.terms {
+        let Some(angle) = term.effect.wave() else { continue };
+        let Some(samples) = view.samples.find(angle).filter(|_| !view.chunks.is_empty()) else { continue };
+        for order in &term.shape {
+            let columns = view.harmonic(angle, *order);
+            let mut start = 0;
+            for rows in now.problem.segment.chunk_by(|a, b| a == b) {
+                let stretch = start..start + rows.len();
+                start = stretch.end;
+                let chunks = &view.chunks[stretch.clone()];
+                let way: f64 = chunks.iter().map(|c| (samples[c.end - 1] - samples[c.start]).abs()).sum();
+                let steps: usize = chunks.iter().map(|c| c.len() - 1).sum();
+                if rows.len() >= FEWEST && order * way > FOLLOWED * steps as f64 {
+                    let waves = columns.iter().map(|c| c[stretch.clone()].to_vec()).collect::<Vec<_>>();
+                    let rest = Basis::of(&waves).rest(&residual[stretch.clone()]);
+                    residual[stretch].copy_from_slice(&rest);
+                }
+            }
+        }
+    }
+    residual
+}
