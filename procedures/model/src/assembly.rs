@@ -26,20 +26,29 @@ impl<'p> Assembly<'p> {
     /// Finds forms and shapes of every effect: the same set of effects is laid out in one way only, whether it was asked
     /// for or found.
     pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec, options: &Options) -> Result<Self, ModelError> {
+        Self::of_effects(prepared, spec, spec.effects.clone(), options)
+    }
+
+    fn of_effects(
+        prepared: &'p Prepared,
+        spec: &'p ModelSpec,
+        effects: Vec<String>,
+        options: &Options,
+    ) -> Result<Self, ModelError> {
         if spec.kind != prepared.kind {
             return Err(ModelError::WrongKind { run: prepared.kind, model: spec.kind });
         }
         let mut assembly = Self {
             prepared,
             spec,
-            effects: spec.effects.clone(),
+            effects,
             main: Terms::new(&prepared.main),
             moving: prepared.moving.as_ref().map(Terms::new),
             wavering: vec![0.0; prepared.main.rows()],
             hidden: Vec::new(),
         };
         let mut settled = Vec::new();
-        for id in &spec.effects {
+        for id in &assembly.effects {
             let effect = spec.find(id)?;
             if let Some(own) = spec.own.iter().find(|own| own.id() == id) {
                 own.check(&prepared.main.view)?;
@@ -144,6 +153,15 @@ impl<'p> Assembly<'p> {
         add(&mut self.main.given, &[std::mem::replace(&mut self.wavering, wavering.clone())], &[-1.0]);
         add(&mut self.main.given, &[wavering], &[1.0]);
         self.wavering.iter().any(|torque| *torque != 0.0)
+    }
+
+    /// The same from the beginning, where ramps reach into the main part: the order in which effects came in would show there
+    /// in the last digits.
+    pub fn settled(self, options: &Options) -> Result<Self, ModelError> {
+        match self.wavering.iter().any(|torque| *torque != 0.0) {
+            true => Self::of_effects(self.prepared, self.spec, self.effects, options),
+            false => Ok(self),
+        }
     }
 
     /// The model of other effects, whose settled part is laid out already.

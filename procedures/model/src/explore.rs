@@ -2,15 +2,14 @@
 
 mod given;
 mod others;
+mod outside;
 mod swift;
 mod withdrawn;
 
 pub use withdrawn::{Withdrawal, Withdrawn};
 
 use crate::assembly::Assembly;
-use crate::effect::Stage;
 use crate::intervals::intervals;
-use crate::linear::dot;
 use crate::maps::Maps;
 use crate::memory::memory;
 use crate::prepare::Prepared;
@@ -36,8 +35,6 @@ pub struct Exploration<'p> {
     /// Maps of what the last model leaves.
     pub maps: Maps,
     pub floor: NoiseFloor,
-    /// Of what it leaves, waves of its effects that pass faster than samples follow.
-    pub swift_rms: f64,
     /// Effects of the last model, and what this run cannot tell them from.
     ties: Vec<(&'p str, &'p str)>,
     /// Effects of the last model that the error would hardly miss.
@@ -45,10 +42,6 @@ pub struct Exploration<'p> {
     /// One that may be there as well.
     pub open: Option<Imitated>,
 }
-
-/// A map must take this share off held-out squared error to be called structure. Over null runs the best map reaches
-/// 2 %, and what is left of well-explained runs 11 %.
-const STRUCTURE_SHARE: f64 = 0.15;
 
 /// More than this share of the remaining squared error, the same in every repeat, is structure.
 const REPEATABLE_SHARE: f64 = 0.6;
@@ -61,9 +54,6 @@ const CLEARLY_NEEDED: f64 = 0.1;
 
 /// So much more error without an effect is no accident, however open its parameters are.
 const UNMISTAKABLE: f64 = 1.0;
-
-/// An effect that takes less than this share of what any function of its own axis would take is not what is missing.
-const WHOLE_EXPLANATION: f64 = 0.7;
 
 impl<'p> Exploration<'p> {
     /// `on_advance` sees every move when it is made.
@@ -83,7 +73,7 @@ impl<'p> Exploration<'p> {
         let mut search = Search::new(begin.main.clone(), &library, &prepared.baseline, left, options);
         let mut effects = begin.effects.clone();
         let mut taken_back = Vec::new();
-        let (maps, residual, swift, open) = loop {
+        let (maps, residual, open) = loop {
             let made = search.next().or_else(|| {
                 let id = undecided(&search, prepared)?;
                 taken_back.push((id, Withdrawal::Undecided));
@@ -92,20 +82,20 @@ impl<'p> Exploration<'p> {
             let made = match made {
                 Some(made) => made,
                 None => {
-                    let left = search.now.tangent().rest(&search.now.response());
-                    let residual = swift::without_swift_waves(&search.now, left.clone());
-                    let swift = dot(&left, &left) - dot(&residual, &residual);
-                    let maps = Maps::new(prepared, residual.clone(), options);
-                    let axis = structured(&maps);
-                    if let Some(id) = axis.and_then(|axis| half_explained(&search, axis, prepared, options)) {
-                        taken_back.push((id, Withdrawal::HalfExplains));
+                    let residual = search.now.tangent().rest(&search.now.response());
+                    let maps = Maps::new(prepared, swift::without_swift_waves(&search.now, residual.clone()), options);
+                    let axis = outside::structured(&maps);
+                    if let Some((id, why)) =
+                        axis.and_then(|axis| outside::taken_back(&search, &maps, axis, prepared, options))
+                    {
+                        taken_back.push((id, why));
                         search.closed = true;
                         search.withdraw(id)
                     } else {
                         let is_decided = |with: &Terms<'p>, term: &Term<'p>| is_decided(with, term, prepared);
                         match axis.is_none().then(|| search.imitated(is_decided)).flatten() {
                             Some(found) if found.is_clear => search.uphold(found.rival),
-                            open => break (maps, residual, swift, open),
+                            open => break (maps, residual, open),
                         }
                     }
                 }
@@ -124,6 +114,9 @@ impl<'p> Exploration<'p> {
             advances.push(Advance { added, removed, ties, after });
             advances.last().into_iter().for_each(&mut *on_advance);
         };
+        if let Some(last) = advances.last_mut() {
+            last.after = last.after.clone().settled(options)?;
+        }
         let moves = |id: &str, was: &Terms<'p>, is: &Terms<'p>| imitated(id, was, is, spec, prepared);
         let open = open.and_then(|open| moves(open.rival.term.id(), &search.now, &open.with));
         let upheld = search.upheld.iter().filter(|id| search.now.contains(id));
@@ -135,7 +128,7 @@ impl<'p> Exploration<'p> {
             && !search.closed
             && let Some(rival) = memory(now, options)
             && let effects = now.effects.iter().map(String::as_str).chain([rival.term.id()]).map(String::from).collect()
-            && let after = now.of(now.main.clone(), effects)
+            && let after = now.of(now.main.clone(), effects).settled(options)?
             && let Some(moving) = &after.moving
             && !Doubt::of(&rival.term, moving, &intervals(moving, prepared.motion).parameters, prepared).is_there()
         {
@@ -144,8 +137,7 @@ impl<'p> Exploration<'p> {
         }
         let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn);
         let floor = floor::noise_floor(prepared, &residual);
-        let swift_rms = (swift / prepared.main.rows() as f64).sqrt();
-        Ok(Self { start, advances, withdrawn, others, maps, floor, swift_rms, ties, upheld, open })
+        Ok(Self { start, advances, withdrawn, others, maps, floor, ties, upheld, open })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
@@ -183,7 +175,7 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        if structured(&self.maps).is_some() || self.repeats_itself() {
+        if outside::structured(&self.maps).is_some() || self.repeats_itself() {
             Verdict::UnexplainedStructure
         } else {
             Verdict::Adequate
@@ -193,7 +185,7 @@ impl<'p> Exploration<'p> {
     /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
     /// noise, whether or not a map shows where it comes from.
     fn repeats_itself(&self) -> bool {
-        let held_out = (self.end_held_out_rms().powi(2) - self.swift_rms.powi(2)).max(0.0).sqrt();
+        let held_out = self.end_held_out_rms();
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
             || self.floor.rms.is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
     }
@@ -318,35 +310,6 @@ fn open_ties<'p>(search: &Search<'_, 'p>, advances: &[Advance<'p>]) -> Vec<(&'p 
         open.extend(new);
     }
     open
-}
-
-/// The axis over which structure remains.
-fn structured(maps: &Maps) -> Option<&str> {
-    maps.removable().filter(|(_, share)| *share > STRUCTURE_SHARE).map(|(axis, _)| axis)
-}
-
-/// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any
-/// function of that axis would take away much more than it does. A wave over the angle is not the answer to a bump at
-/// one angle.
-fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, options: &Options) -> Option<&'p str> {
-    let now = &search.now;
-    let (full, factors) = (now.linear().sse, now.linear().factors);
-    let share = |term: &Term<'p>| {
-        let at = now.terms.iter().position(|t| t.id() == term.id())?;
-        let mut contribution = vec![0.0; now.problem.rows()];
-        for (column, factor) in term.columns.iter().zip(&factors[at]) {
-            contribution.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
-        }
-        let residual = search.now.without(term.id()).linear().residual;
-        let own = 1.0 - full / dot(&residual, &residual);
-        let any =
-            Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;
-        Some((term.id(), own / any))
-    };
-    // What depends on the past is a function of no axis, even where a repeated motion makes it look like one.
-    let of_axes = search.added().filter(|term| term.effect.stage() != Stage::Memory);
-    let least = of_axes.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (least.1 < WHOLE_EXPLANATION).then_some(least.0)
 }
 
 /// Share of the squared error without an effect that the effect takes away.

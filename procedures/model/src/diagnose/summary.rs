@@ -16,9 +16,6 @@ const NOTHING_IN_COMMON: f64 = 0.01;
 /// An effect that was left out is told where held-out error with it would be below this share.
 const WORTH_TELLING: f64 = 0.99;
 
-/// A part of the error that is told by itself, as a share of it.
-const WORTH_A_WORD: f64 = 0.5;
-
 /// What is missing, and what is left when it is there. `fit` is the model at hand, `complete` the one with all suggestions.
 pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
     let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, complete));
@@ -132,14 +129,7 @@ fn floor(found: &Exploration, end: &Fit) -> String {
         false => "",
     };
     let about = if found.floor.ci95.is_some() { "" } else { "about " };
-    let swift = match found.swift_rms > WORTH_A_WORD * end.validation_rms {
-        true => format!(
-            ", without {} of waves of the model that pass faster than samples follow",
-            figure(found.swift_rms, &end.unit)
-        ),
-        false => String::new(),
-    };
-    format!("the run repeats itself to {about}{}{swift}{below}", figure(floor, &end.unit))
+    format!("the run repeats itself to {about}{}{below}", figure(floor, &end.unit))
 }
 
 /// Where what is left shows most.
@@ -225,8 +215,11 @@ fn left_out<'f, 'p>(found: &'f Exploration<'p>) -> impl Iterator<Item = &'f With
 fn taken_back(found: &Exploration, unit: &str) -> String {
     // What could stand in the place of an effect of the model is named there.
     let open: Vec<&Withdrawn> = left_out(found).filter(|w| !found.is_rival(w.effect)).collect();
-    let half = found.withdrawn.iter().filter(|w| w.why == Withdrawal::HalfExplains && !found.is_rival(w.effect));
-    let half: Vec<&str> = half.map(|w| w.effect).rev().collect();
+    let back = |why: Withdrawal| -> Vec<&str> {
+        let taken = found.withdrawn.iter().filter(|w| w.why == why && !found.is_rival(w.effect));
+        taken.map(|w| w.effect).rev().collect()
+    };
+    let (half, borrowing) = (back(Withdrawal::HalfExplains), back(Withdrawal::Borrows));
     let named: Vec<&str> = open.iter().map(|w| w.effect).rev().collect();
     let with = open.iter().map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
     let open = (!open.is_empty()).then(|| {
@@ -244,5 +237,9 @@ fn taken_back(found: &Exploration, unit: &str) -> String {
             if half.len() > 1 { ("they explain", "their own axes") } else { ("it explains", "its own axis") };
         format!(" Taken back: {}, because {explains} only a part of what shows over {own}.", list(&half))
     });
-    open.into_iter().chain(half).collect()
+    let borrowing = (!borrowing.is_empty()).then(|| {
+        let explains = if borrowing.len() > 1 { "they explain" } else { "it explains" };
+        format!(" Taken back: {}, because {explains} nothing beside the structure that remains.", list(&borrowing))
+    });
+    open.into_iter().chain(half).chain(borrowing).collect()
 }

@@ -16,6 +16,8 @@ pub enum Withdrawal {
     Undecided,
     /// It explains only a part of what shows over its own axis.
     HalfExplains,
+    /// Beside any function of the axis over which structure remains it explains nothing.
+    Borrows,
     /// It would have to be of an impossible size.
     Impossible,
     /// Whatever came in since explains the rest of it.
@@ -27,6 +29,7 @@ impl Withdrawal {
         match self {
             Withdrawal::Undecided => "this run does not decide how large it is",
             Withdrawal::HalfExplains => "it explains only a part of what shows over its own axis",
+            Withdrawal::Borrows => "beside the structure that remains it explains nothing",
             Withdrawal::Impossible => "it would have to be of a size that is physically impossible",
             Withdrawal::Idle => "beside the other effects it brings nothing that is worth a name",
         }

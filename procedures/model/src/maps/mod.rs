@@ -67,6 +67,19 @@ impl Maps {
         same.map(|(_, map)| map.removable).max_by(f64::total_cmp)
     }
 
+    /// A column for every bin of an axis in each direction: any function of it is a sum of these.
+    pub fn functions(&self, axis: &str) -> Vec<Vec<f64>> {
+        let scale = |name: &str| self.scales.iter().find(|s| s.name == name);
+        let Some(of) = scale(axis) else { return Vec::new() };
+        let direction = scale("direction").filter(|d| d.name != axis);
+        let sides = direction.map_or(1, |d| d.bins.len());
+        let mut columns = vec![vec![0.0; self.residual.len()]; of.bins.len() * sides];
+        for (row, bin) in of.bin.iter().enumerate() {
+            columns[bin * sides + direction.map_or(0, |d| d.bin[row])][row] = 1.0;
+        }
+        columns
+    }
+
     /// Half of the band of a cell, where it has one, together with the cells of all axes.
     fn half_width(&self, cell: &Cell) -> Option<f64> {
         cell.half_width(self.alpha, self.cells)

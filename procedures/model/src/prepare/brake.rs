@@ -42,7 +42,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         starts: segments::runs(run),
         runs: segments::runs(run),
         cutoff_hz: 0.1 / step_s,
-        segment: segments::integers(run, "segment").filter(|s| s.iter().any(|v| *v != s[0])),
+        segment: segments::numbered(run),
         repeat: segments::integers(run, "repeat"),
         derived_velocity: false,
         time_s,

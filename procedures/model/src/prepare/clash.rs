@@ -11,6 +11,8 @@ const PIECE_S: f64 = 0.2;
 const CLASH: f64 = 1.2;
 /// Torques of motor and link differ by the gear's efficiency too, and by friction that grows with the load.
 const TORQUE_CLASH: f64 = 2.0;
+/// An angle moves by so much, rad, or it may have been held fast.
+const WAY: f64 = 0.1;
 /// Share of the variance in common, below which the columns do not tell the same at all.
 const SAME: f64 = 0.9;
 /// Where a slip of the unit or the sign shows less is enough: much of a motor's torque is friction of which the link knows nothing.
@@ -35,7 +37,7 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
     };
     let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
     let torques = (run.kind() == Kind::Friction).then(|| torque_clash(run)).flatten();
-    motions.chain(torques).collect()
+    motions.chain(torques).chain(dead_load(run)).collect()
 }
 
 /// Pieces of the run that do not reach over the end of a recording, with the time that passes in each.
@@ -91,23 +93,65 @@ fn torque_clash(run: &RunTable) -> Option<String> {
 fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<String> {
     let (time_s, a, b) = (run.column("time_s")?, run.column(one)?, run.column(other)?);
     let is_speed = one.ends_with("_rad_s");
-    let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
-    for (Range { start, end }, passed_s) in pieces(time_s) {
-        let way = match is_speed {
-            // By the trapezoidal rule.
-            true => {
-                a[start..=end].windows(2).map(|v| 0.5 * (v[0] + v[1])).sum::<f64>() * passed_s / (end - start) as f64
-            }
-            false => factor * (a[end] - a[start]),
-        };
-        let turned = b[end] - b[start];
-        (aa, ab, bb) = (aa + way * way, ab + way * turned, bb + turned * turned);
+    if !is_speed && run.kind() != Kind::Friction {
+        let one_rests = rests(one, a, other, b, factor);
+        if let Some(told) = one_rests.or_else(|| rests(other, b, one, a, 1.0 / factor)) {
+            return Some(told);
+        }
     }
-    let times = aa / ab;
-    let tells = ab * ab > SAME * aa * bb && !(1.0 / CLASH..=CLASH).contains(&times);
+    let ways: Vec<(f64, f64)> = pieces(time_s)
+        .map(|(Range { start, end }, passed_s)| {
+            let way = match is_speed {
+                // By the trapezoidal rule.
+                true => {
+                    a[start..=end].windows(2).map(|v| 0.5 * (v[0] + v[1])).sum::<f64>() * passed_s
+                        / (end - start) as f64
+                }
+                false => factor * (a[end] - a[start]),
+            };
+            (way, b[end] - b[start])
+        })
+        .collect();
+    let times = alike(&ways).or_else(|| mostly(&ways))?;
+    let tells = !(1.0 / CLASH..=CLASH).contains(&times);
     tells.then(|| {
         let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
         format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign")
+    })
+}
+
+/// An angle that never changes while the other one moves on.
+fn rests(one: &str, a: &[f64], other: &str, b: &[f64], factor: f64) -> Option<String> {
+    let (low, high) = b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let moved = (high - low) / factor;
+    (moved > WAY && a.iter().all(|v| *v == a[0])).then(|| {
+        format!("{one} never changes, while {other} says that it moved by {moved:.3} rad: it was not connected")
+    })
+}
+
+/// How many times the second the first is, where both move alike.
+fn alike(ways: &[(f64, f64)]) -> Option<f64> {
+    let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().map(f).sum::<f64>();
+    let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
+    (ab * ab > SAME * aa * bb).then_some(aa / ab)
+}
+
+/// The same of most pieces: an angle within a turn leaps in the others.
+fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
+    const MOST: f64 = 0.6;
+    const NEAR: f64 = 0.1;
+    let times: Vec<f64> = ways.iter().filter(|w| w.1 != 0.0).map(|w| w.0 / w.1).collect();
+    let middle = super::median(times.iter().copied());
+    let near = times.iter().filter(|t| (*t / middle - 1.0).abs() < NEAR).count();
+    (near as f64 > MOST * ways.len() as f64).then_some(middle)
+}
+
+/// A load that is the same in every sample, and not zero: no sensor tells that.
+fn dead_load(run: &RunTable) -> Option<String> {
+    let load = run.column("link_torque_nm").filter(|_| run.kind() == Kind::Friction)?;
+    let is_dead = load[0] != 0.0 && load.iter().all(|v| *v == load[0]);
+    is_dead.then(|| {
+        format!("link_torque_nm is {} Nm in every sample, which no sensor tells: it was not connected", load[0])
     })
 }
 
@@ -166,6 +210,32 @@ mod tests {
             "a fifth of the torque is friction that the link cannot know"
         );
         assert_eq!((rubbing(1000.0, 1.0, 1.2).len(), rubbing(-1.0, 1.0, 1.2).len()), (1, 1));
+    }
+
+    #[test]
+    fn an_angle_that_is_not_connected_or_leaps_in_degrees_is_told() {
+        let told = |kind: Kind, names: [&str; 4], row: &dyn Fn(f64) -> [f64; 3]| {
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            for i in 0..4000 {
+                let t = 0.004 * f64::from(i);
+                let [a, b, c] = row(t);
+                trace.push_row(&[t, a, b, c]);
+            }
+            clashes(
+                &RunTable::new(Meta { kind: Some(kind), gear_ratio: Some(50.0), ..Meta::default() }, trace).unwrap(),
+            )
+        };
+        let encoder = ["time_s", "reference_position_rad", "test_position_rad", "temperature_c"];
+        let turn = |a: f64| (a + 3.0).rem_euclid(std::f64::consts::TAU) - 3.0;
+        let of = |scale: f64| told(Kind::Encoder, encoder, &|t| [turn(2.0 * t), scale * turn(2.0 * t), 20.0]);
+        assert_eq!(of(1.0), Vec::<String>::new());
+        assert!(matches!(&of(57.296)[..], [one] if one.contains("57.296 times")), "{:?}", of(57.296));
+        let dead = told(Kind::Encoder, encoder, &|t| [turn(2.0 * t), 0.7, 20.0]);
+        assert!(dead.len() == 1 && dead[0].starts_with("test_position_rad never changes"), "{dead:?}");
+        let stiffness = ["time_s", "motor_position_rad", "link_position_rad", "link_torque_nm"];
+        let held = |way: f64| told(Kind::Stiffness, stiffness, &|t| [way * t.sin(), 0.7, (3.0 * t).sin()]);
+        assert_eq!(held(0.2), Vec::<String>::new(), "the link was held fast, and the joint gives way");
+        assert!(held(30.0)[0].starts_with("link_position_rad never changes"), "{:?}", held(30.0));
     }
 
     #[test]

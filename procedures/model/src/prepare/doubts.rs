@@ -7,7 +7,7 @@ const OTHER_RATE: f64 = 1.2;
 
 /// Each in a sentence.
 pub fn doubts(run: &RunTable) -> Vec<String> {
-    [rate(run), gear(run)].into_iter().flatten().collect()
+    [rate(run), gear(run), segments(run)].into_iter().flatten().collect()
 }
 
 fn rate(run: &RunTable) -> Option<String> {
@@ -30,6 +30,11 @@ fn gear(run: &RunTable) -> Option<String> {
     column.filter(|_| asked).map(|column| {
         format!("gear_ratio is not among the facts: {column} is taken as it is on the motor's side (a ratio of 1)")
     })
+}
+
+fn segments(run: &RunTable) -> Option<String> {
+    (run.column("segment").is_some() && super::segments::numbered(run).is_none())
+        .then(|| "column segment numbers no segments of a run: they are looked for instead".into())
 }
 
 #[cfg(test)]

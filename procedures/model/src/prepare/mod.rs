@@ -188,6 +188,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     if run.len() < SHORTEST {
         return Err(ModelError::TooFewSamples { usable: run.len(), needed: SHORTEST, what: "samples" });
     }
+    if run.kind() == Kind::Stiffness && run.column("link_torque_nm").is_some_and(is_constant) {
+        return Err(ModelError::Constant { column: "link_torque_nm".into() });
+    }
     let (prepared, response) = match run.kind() {
         Kind::Friction => (friction::prepare(run, options)?, "motor_current_a"),
         Kind::Encoder => (encoder::prepare(run, options)?, "test_position_rad − reference_position_rad"),

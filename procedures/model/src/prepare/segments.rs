@@ -83,6 +83,15 @@ pub fn integers(run: &RunTable, column: &str) -> Option<Vec<i64>> {
     run.column(column).map(|values| values.iter().map(|v| *v as i64).collect())
 }
 
+/// The segments as a run numbers them. `None` where the column numbers none: one number for all of the run, or another one every
+/// few samples.
+pub fn numbered(run: &RunTable) -> Option<Vec<i64>> {
+    const LEAST_SAMPLES: usize = 8;
+    let segment = integers(run, "segment")?;
+    let segments = segment.chunk_by(|a, b| a == b).count();
+    (1 < segments && segments * LEAST_SAMPLES < segment.len()).then_some(segment)
+}
+
 /// Rows of a long signal that are enough to know its period, and lags that are tried.
 const ENOUGH: usize = 4_000;
 

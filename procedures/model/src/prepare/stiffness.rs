@@ -52,7 +52,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         starts: segments::runs(run),
         runs: segments::runs(run),
         cutoff_hz,
-        segment: segments::integers(run, "segment"),
+        segment: segments::numbered(run),
         repeat: segments::integers(run, "repeat"),
         derived_velocity: measured.is_none(),
         time_s,

@@ -13,5 +13,5 @@ pub use ground::Ground;
 pub use imitated::moved;
 pub use layout::{enter, lay};
 pub use library::Library;
-pub use rivals::{Rival, is_tie, significance};
+pub use rivals::{Rival, alone, is_tie, significance};
 pub use search::{Move, Search, Silence, held_out};

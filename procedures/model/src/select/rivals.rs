@@ -177,6 +177,11 @@ pub fn significance(term: &Term, library: &Library, ground: &Ground, options: &O
     family_wise(term, scores.collect(), ground, options)
 }
 
+/// The p-value of one effect that nothing else was tried beside.
+pub fn alone(term: &Term, ground: &Ground, options: &Options) -> f64 {
+    family_wise(term, Vec::new(), ground, options)
+}
+
 /// The same from scores that are there already.
 fn family_wise(term: &Term, mut scores: Vec<Score>, ground: &Ground, options: &Options) -> f64 {
     let own = ground.score(&term.columns, &ground.own(&term.columns));
@@ -202,7 +207,7 @@ pub(super) fn encompasses(now: &Terms, one: &Term, other: &Term, options: &Optio
         with.terms.push(there.clone());
         with.refine();
         let ground = Ground::of(&with);
-        (ground.own(&beside.columns).share, family_wise(beside, Vec::new(), &ground, options))
+        (ground.own(&beside.columns).share, alone(beside, &ground, options))
     };
     let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));
     needed >= options.practical_share && p_value <= options.alpha && needless < options.practical_share
