@@ -28,6 +28,8 @@ pub enum ModelError {
     Collinear { first: String, second: String },
     #[error("{column} never changes: nothing can be identified; record a run in which it does")]
     Constant { column: String },
+    #[error("{column} reaches {value:e}, with which nothing can be computed; check its unit and how it was written")]
+    TooLarge { column: String, value: f64 },
     /// A user's effect is not written as it should be, with the character.
     #[error(transparent)]
     Formula(#[from] Box<crate::FormulaFault>),

@@ -101,6 +101,18 @@ fn a_response_that_never_changes_is_an_error_that_names_it() {
 }
 
 #[test]
+fn numbers_that_nothing_can_be_computed_with_are_refused_by_their_column() {
+    for kind in Kind::ALL {
+        for column in kind.required_columns().iter().filter(|c| **c != "time_s") {
+            let run =
+                try_table(kind, &Shape::default(), |name, _, v| if name == *column { 1e200 * v } else { v }).unwrap();
+            let refused = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap_err();
+            assert!(matches!(&refused, ModelError::TooLarge { column: named, .. } if named == column), "{refused}");
+        }
+    }
+}
+
+#[test]
 fn a_load_that_never_changes_is_told_before_all_else() {
     let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 1 }.run_at(&[0.0], |m| 0.03 * m.velocity.signum());
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();

@@ -90,6 +90,9 @@ impl Reduce {
     }
 }
 
+/// Squares of larger numbers, and sums of these, are none any more.
+const LARGEST: f64 = 1e100;
+
 /// Fewer samples tell nothing.
 const SHORTEST: usize = 16;
 
@@ -188,8 +191,11 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     if run.len() < SHORTEST {
         return Err(ModelError::TooFewSamples { usable: run.len(), needed: SHORTEST, what: "samples" });
     }
-    if run.kind() == Kind::Stiffness && run.column("link_torque_nm").is_some_and(is_constant) {
-        return Err(ModelError::Constant { column: "link_torque_nm".into() });
+    let columns = run.trace().channels().iter().zip(run.trace().columns());
+    for (channel, values) in columns {
+        if let Some(value) = values.iter().find(|v| v.abs() > LARGEST) {
+            return Err(ModelError::TooLarge { column: channel.name.clone(), value: *value });
+        }
     }
     let (prepared, response) = match run.kind() {
         Kind::Friction => (friction::prepare(run, options)?, "motor_current_a"),
