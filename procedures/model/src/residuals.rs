@@ -1,6 +1,7 @@
 //! The residual of a fit at every point with everything that it may depend on.
 
 use crate::fit::{predict, prepare_alike};
+use crate::pieces::pieces;
 use crate::prepare::{Prepared, Problem};
 use crate::report::{Axis, Fit, ResidualSet};
 use crate::view::Signal;
@@ -24,6 +25,7 @@ pub fn residuals(run: &RunTable, fit: &Fit, options: &Options) -> Result<Residua
         held_out: Vec::new(),
         segment: Vec::new(),
         repeat: Vec::new(),
+        piece: Vec::new(),
     };
     append(&mut set, &prepared, &prepared.main, fit, false)?;
     if let Some(moving) = &prepared.moving {
@@ -77,5 +79,7 @@ fn append(
     set.held_out.extend(std::iter::repeat_n(held_out, problem.rows()));
     set.segment.extend_from_slice(&problem.segment);
     set.repeat.extend_from_slice(&problem.repeat);
+    let next = set.piece.last().map_or(0, |last| last + 1);
+    set.piece.extend(pieces(problem, 1).0.into_iter().map(|piece| next + piece));
     Ok(())
 }

@@ -231,6 +231,8 @@ pub struct ResidualSet {
     pub excluded: Vec<bool>,
     pub segment: Vec<i64>,
     pub repeat: Vec<i64>,
+    /// Pieces of the run that may be called independent of each other, numbered in their order: what bands count.
+    pub piece: Vec<usize>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

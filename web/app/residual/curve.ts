@@ -7,10 +7,10 @@ export interface Point extends Tally {
 }
 
 /** Mean residual along one axis. */
-export function curve(values: readonly number[], edges: number[], residual: readonly number[], kept: Uint8Array, noise: number): Point[] {
+export function curve(values: readonly number[], edges: number[], residual: readonly number[], kept: Uint8Array, noise: number, piece: readonly number[]): Point[] {
 	const sums = edges.slice(1).map(() => new Sums());
 	for (let i = 0; i < residual.length; i++) {
-		if (kept[i]) sums[binOf(edges, values[i]!)]?.add(residual[i]!);
+		if (kept[i]) sums[binOf(edges, values[i]!)]?.add(residual[i]!, piece[i]!);
 	}
 	return sums.map((s, i) => ({ ...s.tally(noise), from: edges[i]!, to: edges[i + 1]! }));
 }

@@ -8,7 +8,7 @@ export interface Line {
 	points: Point[];
 	stroke: string;
 	dash: string;
-	/** Without points and standard errors. */
+	/** Without points and bands. */
 	bare?: boolean;
 	wide?: boolean;
 }
@@ -18,7 +18,8 @@ export function seen(points: readonly Point[], bins: Bins, scale: Place): (Point
 	return points.flatMap((p, i) => (says(p) ? [{ ...p, at: middle(bins, scale, i) }] : []));
 }
 
-const says = (p: Point) => p.n >= ENOUGH && Number.isFinite(p.se);
+/** There are points enough for a mean. */
+export const says = (p: Point) => p.n >= ENOUGH && Number.isFinite(p.se);
 
 /** Half height of an axis that shows all these curves. */
 export function reach(curves: readonly (readonly Point[])[]): number {

@@ -15,6 +15,7 @@ export function residualMap(
 	residual: readonly number[],
 	kept: Uint8Array,
 	noise: number,
+	piece: readonly number[],
 ): ResidualMap {
 	const columns = Math.max(0, x.bins.edges.length - 1);
 	const rows = Math.max(0, y.bins.edges.length - 1);
@@ -23,7 +24,7 @@ export function residualMap(
 		if (!kept[i]) continue;
 		const column = binOf(x.bins.edges, x.values[i]!);
 		const row = binOf(y.bins.edges, y.values[i]!);
-		if (column >= 0 && row >= 0) sums[row * columns + column]!.add(residual[i]!);
+		if (column >= 0 && row >= 0) sums[row * columns + column]!.add(residual[i]!, piece[i]!);
 	}
 	return { x: x.bins, y: y.bins, cells: sums.map((s) => s.tally(noise)) };
 }

@@ -4,7 +4,7 @@ import { curve, explainedShare } from './curve';
 import { residualMap } from './map';
 import { middle, place } from './place';
 import { inOneTurn } from './points';
-import { score, Sums } from './tally';
+import { half, quantile, score, Sums } from './tally';
 import { wholeBins } from './bins';
 import { deepest, depth } from './tally';
 
@@ -77,7 +77,7 @@ describe('residuals', () => {
 
 	it('shows a slope as a slope', () => {
 		const { edges } = binsFor(load, one, all(400));
-		const points = curve(load, edges, residual, all(400), 0);
+		const points = curve(load, edges, residual, all(400), 0, one);
 		expect(points[0]!.mean).toBeCloseTo(-0.0095, 2);
 		expect(points.at(-1)!.mean).toBeGreaterThan(0.008);
 		expect(points.reduce((n, p) => n + p.n, 0)).toBe(400);
@@ -86,23 +86,39 @@ describe('residuals', () => {
 	it('fills the cells of a map and leaves out what is not kept', () => {
 		const kept = Uint8Array.from(load, (l) => (l > 0 ? 1 : 0));
 		const bins = { edges: [-1, 0, 1], levels: null };
-		const map = residualMap({ values: velocity, bins }, { values: load, bins }, residual, kept, 0);
+		const map = residualMap({ values: velocity, bins }, { values: load, bins }, residual, kept, 0, one);
 		expect(map.cells.map((cell) => cell.n > 0)).toEqual([false, false, true, true]);
 		expect(map.cells[3]!.mean).toBeGreaterThan(0.003);
 	});
 });
 
 describe('scores', () => {
-	const tally = (values: number[], floor = 0) => {
+	const tally = (values: number[], floor = 0, piece = (i: number) => i) => {
 		const sums = new Sums();
-		values.forEach((value) => sums.add(value));
+		values.forEach((value, i) => sums.add(value, piece(i)));
 		return sums.tally(floor);
 	};
 	const ten = [1, 2, 1, 2, 1, 2, 1, 2, 1, 2];
 
 	it('has no colour for fewer than ten points', () => {
 		expect(score(tally(ten.slice(1)))).toBeNull();
-		expect(score(tally(ten))).toBe(9);
+		expect(score(tally(ten))).toBeCloseTo(9, 9);
+	});
+
+	it('counts pieces of the run, not points', () => {
+		// Sums of the three pieces about the mean 2: −2, 2, 0, as in the maps of the diagnosis.
+		const found = tally([1, 1, 3, 3, 2], 0, (i) => Math.floor(i / 2));
+		expect([found.mean, found.pieces]).toEqual([2, 3]);
+		expect(found.se).toBeCloseTo(Math.sqrt((8 * 3) / 2) / 5, 12);
+		expect(half(found, 1)! / found.se).toBeCloseTo(4.3027, 4);
+		expect(half(tally(ten, 0, () => 0), 1)).toBeNull();
+		const same = tally([0, 4, 0, 4, 0, 4], 0, () => 0);
+		expect(same.se).toBeCloseTo(Math.sqrt(4.8 / 6), 12);
+	});
+
+	it('has the quantiles of Student', () => {
+		const told = [quantile(0.05, 1), quantile(0.05, 2), quantile(0.05, 7), quantile(0.01, 30), quantile(1e-4, 12)];
+		[12.7062, 4.3027, 2.3646, 2.75, 5.6945].forEach((t, i) => expect(told[i]).toBeCloseTo(t, 3));
 	});
 
 	it('is not surer than the known noise', () => {
@@ -114,7 +130,7 @@ describe('scores', () => {
 it('goes on deepening past the clip, and ends', () => {
 	expect([0, 2.5, 5, 50, 500].map((z) => depth(z, 50))).toEqual([0, 0.5, 1, 2, 2]);
 	expect(depth(-20, 50)).toBeLessThan(depth(-10, 50));
-	expect(deepest([{ n: 100, mean: 3, se: 0.1 }, { n: 2, mean: 9, se: 0.1 }])).toBe(30);
+	expect(deepest([{ n: 100, mean: 3, se: 0.1, pieces: 9 }, { n: 2, mean: 9, se: 0.1, pieces: 2 }])).toBe(30);
 	expect(deepest([])).toBe(10);
 });
 

@@ -13,6 +13,7 @@ const set = (time: number[]): ResidualSet => ({
 	excluded: [],
 	segment: time,
 	repeat: time,
+	piece: time,
 });
 
 it('joins chosen points that follow each other, whatever their order in the list', () => {

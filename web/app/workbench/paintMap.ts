@@ -2,7 +2,7 @@ import { colour, diverging } from '../plot/colour';
 import { type Bins, wholeBins } from '../residual/bins';
 import type { ResidualMap } from '../residual/map';
 import { type Place, middle, place } from '../residual/place';
-import { deepest, depth, score } from '../residual/tally';
+import { beyond, deepest, depth, judged, score } from '../residual/tally';
 
 export const MARGIN = { left: 58, right: 6, top: 6, bottom: 38 };
 
@@ -30,6 +30,7 @@ export function paintMap(
 	const { x, y } = axesOf(map, size);
 	const palette = [colour('--map-lowest'), colour('--map-low'), colour('--map-mid'), colour('--map-high'), colour('--map-highest')] as const;
 	const deep = deepest(map.cells);
+	const shared = judged(map.cells);
 	ctx.clearRect(0, 0, size.width, size.height);
 	const [right, up] = [map.x.edges.map(x.at), map.y.edges.map(y.at)];
 	const columns = right.length - 1;
@@ -46,6 +47,7 @@ export function paintMap(
 		ctx.strokeStyle = colour('--panel');
 		ctx.lineWidth = 1;
 		ctx.strokeRect(...box);
+		if (beyond(cell, shared)) dot(ctx, box);
 		if (marked.has(i)) mark(ctx, box);
 	});
 	frame(ctx, size);
@@ -76,6 +78,12 @@ function hatch(ctx: CanvasRenderingContext2D, [left, top, width, height]: readon
 	}
 	ctx.stroke();
 	ctx.restore();
+}
+
+/** A cell whose mean is beyond the band of all cells together. */
+function dot(ctx: CanvasRenderingContext2D, [left, top, width, height]: readonly [number, number, number, number]): void {
+	ctx.fillStyle = colour('--ink');
+	ctx.fillRect(left + width / 2 - 1, top + height / 2 - 1, 2, 2);
 }
 
 /** A cell with samples that were chosen in another plot. */

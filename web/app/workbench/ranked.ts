@@ -33,7 +33,7 @@ export function rankAxes(set: ResidualSet, figure: readonly number[], side: Side
 		.map((axis) => {
 			const bins = { ...binsFor(axis.values, RUNS_ALONG.test(axis.name) ? [] : set.segment, kept), factor: shown(axis.unit).factor };
 			const { edges } = bins;
-			const over = (which: Uint8Array) => curve(axis.values, edges, figure, which, noise);
+			const over = (which: Uint8Array) => curve(axis.values, edges, figure, which, noise, set.piece);
 			return {
 				axis,
 				bins,

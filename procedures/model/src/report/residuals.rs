@@ -26,4 +26,6 @@ pub struct ResidualSet {
     pub held_out: Vec<bool>,
     pub segment: Vec<i64>,
     pub repeat: Vec<i64>,
+    /// Pieces of the run that may be called independent of each other, numbered in their order: what bands count.
+    pub piece: Vec<usize>,
 }
