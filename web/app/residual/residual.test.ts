@@ -122,6 +122,7 @@ describe('scores', () => {
 	});
 
 	it('is not surer than the known noise', () => {
+		expect(tally([1], 10).se).toBe(10);
 		expect(tally(ten, 10).se).toBeCloseTo(10 / Math.sqrt(10), 9);
 		expect(score(tally(ten, 10))).toBeCloseTo(1.5 / (10 / Math.sqrt(10)), 9);
 	});

@@ -50,9 +50,9 @@ export class Sums {
 		// What a piece has in common is one piece of evidence, however many points it has.
 		const [ss, sn, nn] = this.over;
 		const enough = pieces >= FEWEST;
-		const spread = enough ? ((ss - 2 * mean * sn + mean * mean * nn) * pieces) / (pieces - 1) : ((this.squares - n * mean * mean) * n) / (n - 1);
+		const spread = enough ? ((ss - 2 * mean * sn + mean * mean * nn) * pieces) / (pieces - 1) : n > 1 ? ((this.squares - n * mean * mean) * n) / (n - 1) : 0;
 		const se = Math.max(Math.sqrt(Math.max(0, spread)) / n, noise / Math.sqrt(n));
-		return { n, mean, se: n > 1 || noise > 0 ? se || 0 : Number.POSITIVE_INFINITY, pieces };
+		return { n, mean, se: n > 1 || noise > 0 ? se : Number.POSITIVE_INFINITY, pieces };
 	}
 }
 

@@ -1,6 +1,7 @@
 //! Waves that pass faster than samples follow.
 
 use crate::linear::Basis;
+use crate::prepare::stretches;
 use crate::terms::Terms;
 
 /// A wave that goes on by more than this from sample to sample, rad, is no torque that could be followed.
@@ -17,14 +18,11 @@ pub fn without_swift_waves(now: &Terms, mut residual: Vec<f64>) -> Vec<f64> {
         let Some(samples) = view.samples.find(angle).filter(|_| !view.chunks.is_empty()) else { continue };
         for order in &term.shape {
             let columns = view.harmonic(angle, *order);
-            let mut start = 0;
-            for rows in now.problem.segment.chunk_by(|a, b| a == b) {
-                let stretch = start..start + rows.len();
-                start = stretch.end;
+            for stretch in stretches(&now.problem.segment) {
                 let chunks = &view.chunks[stretch.clone()];
                 let way: f64 = chunks.iter().map(|c| (samples[c.end - 1] - samples[c.start]).abs()).sum();
                 let steps: usize = chunks.iter().map(|c| c.len() - 1).sum();
-                if rows.len() >= FEWEST && order * way > FOLLOWED * steps as f64 {
+                if stretch.len() >= FEWEST && order * way > FOLLOWED * steps as f64 {
                     let waves = columns.iter().map(|c| c[stretch.clone()].to_vec()).collect::<Vec<_>>();
                     let rest = Basis::of(&waves).rest(&residual[stretch.clone()]);
                     residual[stretch].copy_from_slice(&rest);

@@ -46,7 +46,7 @@ impl Source {
     /// Segments, as numbered or as found: stretches of one direction.
     pub fn legs(&self) -> Vec<Range<usize>> {
         let legs = match &self.segment {
-            Some(segment) => segments::stretches(&segment.iter().map(|s| *s as f64).collect::<Vec<_>>()),
+            Some(segment) => segments::stretches(segment),
             None => segments::stretches(self.signals.find(Signal::Direction).unwrap_or_default()),
         };
         legs.into_iter().flat_map(|leg| self.within_runs(leg)).collect()

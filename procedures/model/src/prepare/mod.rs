@@ -23,6 +23,7 @@ use crate::{ModelError, Options, ResidualKind};
 use filter::LowPass;
 use jointbench_instrument::{Kind, Motion, RunTable};
 pub use repeats::Unlike;
+pub use segments::stretches;
 
 /// What a model is judged on: the response at points with the signals that may explain it.
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@ use jointbench_instrument::RunTable;
 use std::ops::Range;
 
 /// Stretches of equal value.
-pub fn stretches(column: &[f64]) -> Vec<Range<usize>> {
+pub fn stretches<T: PartialEq>(column: &[T]) -> Vec<Range<usize>> {
     let mut out = Vec::new();
     let mut start = 0;
     for i in 1..=column.len() {

@@ -1,5 +1,6 @@
 //! What settled motion accelerates all the same: a slow step over teeth wavers about its speed.
 
+use super::segments;
 use crate::linear::dot;
 use std::ops::Range;
 
@@ -34,14 +35,11 @@ pub fn accelerations(
         chunks.iter().map(|c| change(c).unwrap_or(0.0) / (c.len() as f64 * step_s)).collect()
     };
     let (mut at_edges, beside) = (of(0), [of(2 * half as isize), of(2 * half as isize + 1)]);
-    let mut start = 0;
-    for rows in group.chunk_by(|a, b| a == b) {
-        let stretch = start..start + rows.len();
-        start = stretch.end;
+    for stretch in segments::stretches(group) {
         // A wave is in step with what is beside it, or turned over.
         let wavers =
             beside.iter().any(|b| correlation(&at_edges[stretch.clone()], &b[stretch.clone()]).abs() > FOLLOWS);
-        if rows.len() < FEWEST || !wavers {
+        if stretch.len() < FEWEST || !wavers {
             at_edges[stretch].fill(0.0);
         }
     }

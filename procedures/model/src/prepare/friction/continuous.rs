@@ -169,7 +169,7 @@ fn run_number(samples: usize, runs: &[usize]) -> Vec<f64> {
 fn periods(velocity: &[f64], run_of: &[usize], whole: bool) -> (Vec<i64>, Vec<usize>, &'static str) {
     let (mut repeat, mut phase) = (Vec::new(), Vec::new());
     let mut from = "none";
-    let runs = segments::stretches(&run_of.iter().map(|r| *r as f64).collect::<Vec<_>>());
+    let runs = segments::stretches(run_of);
     for rows in runs {
         let first = repeat.last().map_or(0, |last| last + 1);
         let found = if whole { segments::period(&velocity[rows.clone()]) } else { None };

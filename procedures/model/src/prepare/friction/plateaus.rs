@@ -60,10 +60,7 @@ fn settled(leg: Range<usize>, velocity: &[f64], load: Option<&[f64]>, heaviest: 
         let within = (SETTLED_SHARE * heaviest).max(5.0 * scatter);
         steady.iter_mut().zip(&load).for_each(|(s, l)| *s &= (l - held).abs() <= within);
     }
-    let longest = segments::stretches(&steady.iter().map(|s| f64::from(u8::from(*s))).collect::<Vec<_>>())
-        .into_iter()
-        .filter(|r| steady[r.start])
-        .max_by_key(Range::len)?;
+    let longest = segments::stretches(&steady).into_iter().filter(|r| steady[r.start]).max_by_key(Range::len)?;
     // What follows a ramp at once still remembers it.
     let skip = 2 + longest.len() / 20;
     let (start, end) = (longest.start + skip, longest.end.min(speed.len()));
