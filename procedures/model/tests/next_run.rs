@@ -3,10 +3,13 @@
 mod common;
 
 use common::bench::{Moment, Staircase};
-use jointbench_instrument::{Channel, RunTable, Trace};
+use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{
     Choice, Diagnosis, ModelSpec, Open, Options, Stretch, Verdict, diagnose, discover, fit, next_run,
 };
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 
 fn bench(seed: u64) -> Staircase {
     Staircase { noise_nm: 2e-3, scatter_nm: 2e-4, seed }
@@ -48,7 +51,7 @@ fn strokes(name: &str, speeds: &[f64], load_nm: f64, duration_s: f64) -> Choice 
             let from_rad = if velocity_rad_s > 0.0 { 0.0 } else { speed * duration_s };
             let start_s = stretches.len() as f64 * duration_s;
             let load_nm = load_nm * velocity_rad_s.signum();
-            stretches.push(Stretch { start_s, duration_s, velocity_rad_s, from_rad, load_nm });
+            stretches.push(Stretch { start_s, duration_s, velocity_rad_s, from_rad, load_nm, ..Stretch::default() });
         }
     }
     let duration_s = stretches.len() as f64 * duration_s;
@@ -114,6 +117,75 @@ fn runs_together_fit_as_one_and_repeat_each_other() {
     let found = discover(&both, &spec, &Options::default(), 6, |_| {}).unwrap();
     assert_eq!((found.verdict, found.steps.len()), (Verdict::Adequate, 1), "{}", found.summary);
     assert!(found.noise_floor_rms.is_some());
+}
+
+/// Legs of a second each, 100 samples a second, at the speeds and currents given, the whole four times.
+fn legs(kind: Kind, names: [&str; 4], legs: &[(f64, f64)], row: impl Fn(f64, f64, f64, f64) -> [f64; 3]) -> RunTable {
+    let mut trace =
+        Trace::new(["time_s", "segment", "repeat"].iter().chain(&names).copied().map(Channel::new).collect());
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let (mut angle, mut count) = (0.3, 0);
+    for (segment, (speed, current)) in legs.iter().cycle().take(4 * legs.len()).enumerate() {
+        for _ in 0..100 {
+            angle += 0.01 * speed;
+            let head = [0.01 * f64::from(count), segment as f64, (segment / legs.len()) as f64, *speed];
+            let noise: f64 = StandardNormal.sample(&mut random);
+            trace.push_row(&[head.as_slice(), &row(angle, *speed, *current, noise)].concat());
+            count += 1;
+        }
+    }
+    RunTable::new(Meta { kind: Some(kind), ..Meta::default() }, trace).unwrap()
+}
+
+fn diagnosed_with(run: &RunTable, model: &[&str]) -> Diagnosis {
+    diagnose(run, &ModelSpec::new(run.kind(), model.iter().copied()).unwrap(), &Options::default()).unwrap()
+}
+
+#[test]
+fn another_speed_tells_play_in_a_coupling_from_a_delay() {
+    let names = ["velocity_rad_s", "reference_position_rad", "test_position_rad", "temperature_c"];
+    let turned = |speeds: &[(f64, f64)]| {
+        legs(Kind::Encoder, names, speeds, |angle, speed, _, noise| {
+            [angle, angle + 4e-4 * speed.signum() + 2e-5 * noise, 25.0]
+        })
+    };
+    let run = turned(&[(20.0, 0.0), (-20.0, 0.0)]);
+    let found = diagnosed_with(&run, &["offset"]);
+    let first = &found.suggestions[0];
+    let tied: Vec<&String> = first.confounded_with.iter().chain([&first.effect]).collect();
+    assert!(tied.iter().any(|e| *e == "delay") && tied.iter().any(|e| *e == "direction_hysteresis"), "{tied:?}");
+    let menu = [strokes("same", &[20.0], 0.0, 1.0), strokes("other", &[5.0, 40.0], 0.0, 1.0)];
+    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap();
+    assert!(ask(&menu[..1]).is_none(), "the same speed tells nothing new");
+    let next = ask(&menu).unwrap();
+    assert_eq!(next.procedure, "other", "{}", next.why);
+    let both = run.clone().join(vec![turned(&[(5.0, 0.0), (-5.0, 0.0), (40.0, 0.0), (-40.0, 0.0)])]).unwrap();
+    let decided = diagnosed_with(&both, &["offset"]);
+    let named: Vec<_> = decided.suggestions.iter().map(|s| (s.effect.as_str(), s.confounded_with.len())).collect();
+    assert_eq!(named, [("direction_hysteresis", 0)], "{}", decided.summary);
+}
+
+#[test]
+fn a_brake_that_turned_at_one_speed_is_asked_for_others() {
+    let names = ["velocity_rad_s", "brake_current_a", "brake_torque_nm", "position_rad"];
+    let currents: Vec<(f64, f64)> = [0.2, 0.6, 1.0, 0.8, 0.4].map(|current| (6.0, current)).into();
+    let run = legs(Kind::Brake, names, &currents, |angle, _, current, noise| {
+        [current, 0.1 + 4.0 * current + 0.02 * noise, angle]
+    });
+    let found = diagnosed_with(&run, &["drag", "torque_per_current"]);
+    assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+    let at = |name: &str, speeds: &[f64]| {
+        let mut choice = strokes(name, speeds, 0.0, 1.0);
+        choice.stretches.iter_mut().for_each(|s| s.brake_current_a = 0.5);
+        choice
+    };
+    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap();
+    assert_eq!(ask(&[at("same", &[6.0])]).map(|next| next.separates), None);
+    let next = ask(&[at("same", &[6.0]), at("others", &[2.0, 6.0, 12.0])]).unwrap();
+    assert_eq!(
+        (next.procedure.as_str(), next.separates.as_slice()),
+        ("others", ["velocity_dependence".to_owned()].as_slice())
+    );
 }
 
 /// The Electro-Mechanical Positioning System: |v| against v² (a form of the quadratic effect) ties on its recording. A

@@ -92,23 +92,24 @@ impl<'a> Side<'a> {
         Self { model, gram: gram(&columns), columns, factors }
     }
 
-    /// Expected distance of the two models in standard deviations after the run, the mean of both ways of being wrong.
-    pub fn separation(&self, rival: &Side, run: &Problem, noise: &Noise) -> f64 {
+    /// Expected distance of the two models in standard deviations after the run, the mean of both ways of being wrong. `None`
+    /// where one of them has other parameters there, as one that has another for every power-up.
+    pub fn separation(&self, rival: &Side, run: &Problem, noise: &Noise) -> Option<f64> {
         let difference: Vec<f64> =
             predict(self.model, run).iter().zip(predict(rival.model, run)).map(|(a, b)| a - b).collect();
         let difference = noise.whiten(&difference, run);
         let one_way = |side: &Side| side.left_over(&difference, run, noise);
-        (0.5 * (one_way(self) + one_way(rival))).max(0.0).sqrt()
+        Some((0.5 * (one_way(self)? + one_way(rival)?)).max(0.0).sqrt())
     }
 
     /// Squared length of what is left of a white column at the run when the model follows it as far as the run at hand
     /// lets it.
-    fn left_over(&self, white: &[f64], run: &Problem, noise: &Noise) -> f64 {
-        let columns = self.at(run, noise);
+    fn left_over(&self, white: &[f64], run: &Problem, noise: &Noise) -> Option<f64> {
+        let columns = self.at(run, noise)?;
         let both: Vec<f64> = self.gram.iter().zip(gram(&columns)).map(|(a, b)| a + b).collect();
         let side: Vec<f64> = columns.iter().map(|c| dot(c, white)).collect();
         let followed = Spd::new(&both, columns.len(), 0.0).whiten(&side);
-        dot(white, white) - dot(&followed, &followed)
+        Some(dot(white, white) - dot(&followed, &followed))
     }
 
     /// What the run at hand, and that with one more run, say about the factor of a further white column: squared standard
@@ -128,9 +129,10 @@ impl<'a> Side<'a> {
         (before.max(0.0), after.max(0.0))
     }
 
-    /// White columns and slopes at another run.
-    pub fn at(&self, run: &Problem, noise: &Noise) -> Vec<Vec<f64>> {
-        tangent(&elsewhere(self.model, run), &self.factors, noise)
+    /// White columns and slopes at another run, where the model has the same parameters there.
+    pub fn at(&self, run: &Problem, noise: &Noise) -> Option<Vec<Vec<f64>>> {
+        let columns = tangent(&elsewhere(self.model, run), &self.factors, noise);
+        (columns.len() == self.columns.len()).then_some(columns)
     }
 }
 

@@ -1,84 +1,52 @@
 //! A run that has not been made, at the points at which it would be judged.
 
-use super::Choice;
 use super::design::predict;
+use super::{Choice, Stretch};
 use crate::assembly::Assembly;
-use crate::prepare::{Prepared, Problem, Reduce};
+use crate::prepare::{Prepared, Problem, Reduce, drive};
 use crate::view::{Signal, Signals, View};
+use jointbench_instrument::Kind;
 
-/// More points of one stretch say little more: what one stretch has in common is not averaged away.
-const MOST_POINTS: usize = 48;
+/// More points of one stretch say little more: what one stretch has in common is not averaged away. Waves over the turn of
+/// an encoder have to be followed.
+fn most_points(kind: Kind) -> usize {
+    if kind == Kind::Encoder { 400 } else { 48 }
+}
 
 /// The pause before the run [s].
 const PAUSE_S: f64 = 60.0;
 
+/// Samples of the run, as they come.
+#[derive(Default)]
+struct Laid {
+    time_s: Vec<f64>,
+    motor_rad: Vec<f64>,
+    stretch: Vec<usize>,
+    chunks: Vec<std::ops::Range<usize>>,
+    block: Vec<usize>,
+}
+
 /// Points are spaced as those of the run at hand, and so are the samples behind them: a periodic effect fades at speed as
-/// it would in the data. The joint is as warm as it was at the end of that run; it starts where that one started.
-pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly) -> Problem {
-    let about = &prepared.about;
-    let sample_s = 1.0 / about.sample_rate_hz;
-    // Neighbouring chunks of a long run were averaged.
-    let chunks = &prepared.main.view.chunks;
-    let averaged = chunks.iter().map(|c| c.len()).sum::<usize>() / chunks.len().max(1);
-    let each = if about.chunk_s.is_some() { averaged.max(1) } else { 1 };
-    let point_s = if about.chunk_s.is_some() { each } else { about.decimation } as f64 * sample_s;
-    let measured = &prepared.main.view.samples;
-    let at = |signal, first: bool| {
-        let values = measured.find(signal)?;
-        if first { values.first().copied() } else { values.last().copied() }
-    };
-    let (before_s, from_rad) = (at(Signal::Time, false).unwrap_or(0.0), at(Signal::Position, true).unwrap_or(0.0));
-    let link = at(Signal::Link, true).unwrap_or(0.0) - from_rad / prepared.load_scale;
-
-    let (mut time, mut position, mut velocity, mut load) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let (mut chunks, mut block) = (Vec::new(), Vec::new());
-    for (number, stretch) in choice.stretches.iter().enumerate() {
-        let fits = (stretch.duration_s / point_s) as usize;
-        let points = fits.clamp(1, MOST_POINTS);
-        let stride_s = stretch.duration_s / points as f64;
-        for point in 0..points {
-            chunks.push(time.len()..time.len() + each);
-            block.push(number);
-            for sample in 0..each {
-                let t_s = point as f64 * stride_s + (sample as f64 + 0.5) * sample_s;
-                time.push(before_s + PAUSE_S + stretch.start_s + t_s);
-                position.push(from_rad + stretch.from_rad + stretch.velocity_rad_s * t_s);
-                velocity.push(stretch.velocity_rad_s);
-                load.push(stretch.load_nm / prepared.load_scale);
-            }
-        }
-    }
-    let n = time.len();
-    let mut samples = Signals::new(n);
-    samples.set(Signal::Time, time);
-    samples.set(Signal::Direction, velocity.iter().map(|v: &f64| v.signum()).collect());
-    samples.set(Signal::Velocity, velocity);
-    samples.set(Signal::Acceleration, vec![0.0; n]);
-    samples.set(Signal::Jerk, vec![0.0; n]);
-    samples.set(Signal::Link, position.iter().map(|q| link + q / prepared.load_scale).collect());
-    samples.set(Signal::Position, position);
-    if measured.find(Signal::Load).is_some() {
-        samples.set(Signal::Load, load);
-    }
-    if let Some(temperature_c) = at(Signal::Temperature, false) {
-        samples.set(Signal::Temperature, vec![temperature_c; n]);
-    }
-
-    let mut points = Signals::new(chunks.len());
+/// it would in the data. The joint is as warm as it was at the end of that run, or warmer by what the choice says; it
+/// starts where that one started. `gear`: turns of the motor for each of the link.
+pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly, gear: f64) -> Problem {
+    let laid = lay_out(choice, prepared);
+    let samples = signals(&laid, &choice.stretches, prepared, gear);
+    let mut points = Signals::new(laid.chunks.len());
     for signal in Signal::ALL {
         let Some(values) = samples.find(signal) else { continue };
         let mean = |c: &std::ops::Range<usize>| values[c.clone()].iter().sum::<f64>() / c.len() as f64;
-        points.set(signal, chunks.iter().map(mean).collect());
+        points.set(signal, laid.chunks.iter().map(mean).collect());
     }
-    let rows = chunks.len();
-    let mut view = View::new(points, samples, chunks, vec![0], sample_s);
+    let rows = laid.chunks.len();
+    let mut view = View::new(points, samples, laid.chunks, vec![0], 1.0 / prepared.about.sample_rate_hz);
     view.constants = prepared.main.view.constants;
     let mut problem = Problem {
         view,
         target: vec![0.0; rows],
         reduce: Reduce::Same,
         blocks: choice.stretches.len(),
-        block,
+        block: laid.block,
         fold: vec![0; rows],
         folds: 1,
         twins: Vec::new(),
@@ -87,7 +55,88 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly) -> Proble
         repeat: vec![0; rows],
         settled: true,
     };
+    // What the drive is follows from the response, and a part of the response may follow from it.
+    problem.view.points.set(Signal::Drive, vec![0.0; rows]);
     problem.target = predict(&model.main, &problem);
-    problem.view.points.set(Signal::Drive, problem.target.clone());
+    let drive = if prepared.kind == Kind::Brake { drive(&problem) } else { problem.target.clone() };
+    problem.view.points.set(Signal::Drive, drive);
+    if prepared.kind == Kind::Brake {
+        problem.target = predict(&model.main, &problem);
+    }
     problem
+}
+
+fn lay_out(choice: &Choice, prepared: &Prepared) -> Laid {
+    let about = &prepared.about;
+    let sample_s = 1.0 / about.sample_rate_hz;
+    // Neighbouring chunks of a long run were averaged.
+    let chunks = &prepared.main.view.chunks;
+    let averaged = chunks.iter().map(|c| c.len()).sum::<usize>() / chunks.len().max(1);
+    let each = if about.chunk_s.is_some() { averaged.max(1) } else { 1 };
+    let point_s = if about.chunk_s.is_some() { each } else { about.decimation } as f64 * sample_s;
+    let mut laid = Laid::default();
+    for (number, stretch) in choice.stretches.iter().enumerate() {
+        let fits = (stretch.duration_s / point_s) as usize;
+        let points = fits.clamp(1, most_points(prepared.kind));
+        let stride_s = stretch.duration_s / points as f64;
+        for point in 0..points {
+            laid.chunks.push(laid.time_s.len()..laid.time_s.len() + each);
+            laid.block.push(number);
+            for sample in 0..each {
+                let t_s = point as f64 * stride_s + (sample as f64 + 0.5) * sample_s;
+                laid.time_s.push(stretch.start_s + t_s);
+                laid.motor_rad.push(stretch.from_rad + stretch.velocity_rad_s * t_s);
+                laid.stretch.push(number);
+            }
+        }
+    }
+    laid
+}
+
+/// What the models of the kind know of such a run.
+fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -> Signals {
+    let measured = &prepared.main.view.samples;
+    let at = |signal, first: bool| {
+        let values = measured.find(signal)?;
+        if first { values.first().copied() } else { values.last().copied() }
+    };
+    // Position and velocity of the shaft that the run tells of, for each of the motor.
+    let link = 1.0 / gear;
+    let [turned, turning] = match prepared.kind {
+        Kind::Friction | Kind::Encoder => [1.0, 1.0],
+        Kind::Stiffness => [1.0, link],
+        Kind::Brake => [link, link],
+    };
+    let each = |of: &dyn Fn(&Stretch) -> f64| -> Vec<f64> { laid.stretch.iter().map(|s| of(&stretches[*s])).collect() };
+    let mut signals = Signals::new(laid.time_s.len());
+    let before_s = at(Signal::Time, false).unwrap_or(0.0) + PAUSE_S;
+    signals.set(Signal::Time, laid.time_s.iter().map(|t| before_s + t).collect());
+    signals.set(Signal::Direction, each(&|s| s.velocity_rad_s.signum()));
+    if prepared.kind == Kind::Friction {
+        signals.set(Signal::Acceleration, each(&|_| 0.0));
+        signals.set(Signal::Jerk, each(&|_| 0.0));
+    }
+    if prepared.kind == Kind::Brake {
+        // Whether the current rises or falls.
+        let before = |s: usize| s.checked_sub(1).map_or(0.0, |s| stretches[s].brake_current_a);
+        let rises: Vec<f64> =
+            stretches.iter().enumerate().map(|(i, s)| (s.brake_current_a - before(i)).signum()).collect();
+        signals.set(Signal::Direction, laid.stretch.iter().map(|s| rises[*s]).collect());
+        signals.set(Signal::Current, each(&|s| s.brake_current_a));
+    }
+    let mut set = |signal: Signal, values: Vec<f64>| {
+        if measured.find(signal).is_some() {
+            signals.set(signal, values);
+        }
+    };
+    let from_rad = at(Signal::Position, true).unwrap_or(0.0);
+    let link_rad = at(Signal::Link, true).unwrap_or(0.0);
+    set(Signal::Link, laid.motor_rad.iter().map(|q| link_rad + link * q).collect());
+    set(Signal::Position, laid.motor_rad.iter().map(|q| from_rad + turned * q).collect());
+    set(Signal::Velocity, each(&|s| turning * s.velocity_rad_s));
+    set(Signal::Load, each(&|s| s.load_nm / prepared.load_scale));
+    let temperature_c = at(Signal::Temperature, false).unwrap_or(0.0);
+    set(Signal::Temperature, each(&|s| temperature_c + s.warmer_k));
+    set(Signal::Repeat, each(&|_| 0.0));
+    signals
 }

@@ -14,7 +14,7 @@ use crate::words::list;
 use crate::{ModelError, ModelSpec, Options, OwnEffect};
 use design::{Noise, Side};
 use imagine::imagine;
-use jointbench_instrument::{Kind, RunTable};
+use jointbench_instrument::{Motion, RunTable};
 use serde_json::{Map, Value};
 
 /// Rivals count as separated where their predictions are this many standard deviations apart.
@@ -30,18 +30,30 @@ pub struct Choice {
     pub stretches: Vec<Stretch>,
 }
 
+impl Choice {
+    /// What its expectation rests on beside the model, in words.
+    fn provided(&self) -> String {
+        let warmer_k = self.stretches.iter().map(|s| s.warmer_k).fold(0.0, f64::max);
+        if warmer_k > 0.0 { format!(", if it warms the joint by {warmer_k:.0} K") } else { String::new() }
+    }
+}
+
 /// Constant speed under constant load.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stretch {
     /// Since the run began.
     pub start_s: f64,
     pub duration_s: f64,
-    /// Motor side.
+    /// Motor side; on an encoder bench the shaft.
     pub velocity_rad_s: f64,
     /// Motor position at the beginning, from where the run starts.
     pub from_rad: f64,
     /// Link torque that the joint delivers.
     pub load_nm: f64,
+    /// Coil current of the brake.
+    pub brake_current_a: f64,
+    /// How much warmer the joint is than at the end of the run at hand, where the choice warms it [K].
+    pub warmer_k: f64,
 }
 
 /// What a diagnosis leaves open.
@@ -99,24 +111,32 @@ pub fn next_run(
     menu: &[Choice],
     options: &Options,
 ) -> Result<Option<Experiment>, ModelError> {
-    if run.kind() != Kind::Friction {
-        return Ok(menu.first().filter(|_| !open.has_noise_floor).map(again));
+    let mut next = choose(run, open, menu, options)?;
+    if let (Some(next), Motion::Linear) = (&mut next, run.meta().motion) {
+        next.why.push_str("; the axis slides: rad in the names of the parameters is m");
     }
+    Ok(next)
+}
+
+fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Option<Experiment>, ModelError> {
     let prepared = prepare(run, options)?;
     let spec = |effects: &[String]| ModelSpec::with_own(run.kind(), effects, open.own.clone());
     let with_all = spec(&open.model)?;
     let model = Assembly::new(&prepared, &with_all, options)?;
     let noise = Noise::of(&model.main);
-    let imagined: Vec<_> = menu.iter().map(|choice| imagine(choice, &prepared, &model)).collect();
-
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let side = Side::new(&model.main, &noise);
+    let known = menu.iter().filter(|choice| !choice.stretches.is_empty());
+    let imagined: Vec<_> = known.map(|choice| (choice, imagine(choice, &prepared, &model, gear))).collect();
+
     let decided = |others: &[ModelSpec]| -> Result<Option<Bid>, ModelError> {
         let others = others.iter().map(|s| Assembly::new(&prepared, s, options));
         let others: Vec<Assembly> = others.collect::<Result<_, _>>()?;
         let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
-        Ok(decide(menu.iter().zip(&imagined).map(|(choice, problem)| {
-            let apart: Vec<f64> = others.iter().map(|other| side.separation(other, problem, &noise)).collect();
-            Bid { choice, z: apart.iter().copied().fold(f64::INFINITY, f64::min) }
+        Ok(decide(imagined.iter().filter_map(|(choice, problem)| {
+            let apart = others.iter().map(|other| side.separation(other, problem, &noise));
+            let apart: Vec<f64> = apart.collect::<Option<_>>()?;
+            Some(Bid { choice, z: apart.into_iter().fold(f64::INFINITY, f64::min) })
         })))
     };
     for (effect, rivals) in &open.ties {
@@ -140,7 +160,7 @@ pub fn next_run(
     {
         return Ok(Some(again(choice)));
     }
-    Ok(if open.has_structure { None } else { unseen::unseen(&model, &noise, menu, &imagined) })
+    Ok(if open.has_structure { None } else { unseen::unseen(&model, &noise, &imagined) })
 }
 
 /// A choice with what is expected of it.
@@ -172,13 +192,19 @@ fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run tells {what}: the predictions are expected to lie {:.1} standard deviations apart{enough}",
-            bid.z,
+            "this run tells {what}: the predictions are expected to lie {} standard deviations apart{}{enough}",
+            in_words(bid.z),
+            bid.choice.provided(),
         ),
         expected_z: Some(bid.z),
         expected_duration_s: Some(bid.choice.duration_s),
         separates: separates.into_iter().cloned().collect(),
     }
+}
+
+/// Beyond a hundred nobody doubts.
+fn in_words(z: f64) -> String {
+    if z < 100.0 { format!("{z:.1}") } else { "more than 100".to_owned() }
 }
 
 /// The ordinary run, for its repeats.

@@ -3,26 +3,29 @@
 use super::design::{Noise, Side};
 use super::{Bid, Choice, SEPARATED_Z};
 use crate::assembly::Assembly;
-use crate::effect::Stage;
+use crate::effect::{Search, Stage};
 use crate::linear::dot;
 use crate::prepare::Problem;
 use crate::report::Experiment;
 use crate::terms::columns;
 use crate::words::list;
+use jointbench_instrument::Kind;
 
-/// An effect of this share of the torque is worth being seen.
+/// Friction of this share of the torque is worth being seen. Angles and brakes have no such measure: what is as large there
+/// as the scatter of one reading.
 const WORTH_SEEING: f64 = 0.05;
 
 /// Below this an effect is not found with any certainty: z₀.₉₇₅ + z₀.₈.
 const FOUND_Z: f64 = 2.8;
 
 /// The run that shows most effects that could not be seen so far, of those the shortest.
-pub fn unseen(model: &Assembly, noise: &Noise, menu: &[Choice], imagined: &[Problem]) -> Option<Experiment> {
+pub fn unseen(model: &Assembly, noise: &Noise, imagined: &[(&Choice, Problem)]) -> Option<Experiment> {
+    let is_friction = model.spec.kind == Kind::Friction;
     let side = Side::new(&model.main, noise);
     let mut best: Option<(Bid, Vec<&str>)> = None;
-    for (choice, run) in menu.iter().zip(imagined) {
+    for (choice, run) in imagined {
         let mut seen: Vec<(&str, f64)> = Vec::new();
-        let own = side.at(run, noise);
+        let Some(own) = side.at(run, noise) else { continue };
         for effect in model.spec.known() {
             let id = effect.info().id;
             let open = effect.stage() == Stage::Settled && !effect.is_given() && !model.main.contains(id);
@@ -31,6 +34,10 @@ pub fn unseen(model: &Assembly, noise: &Noise, menu: &[Choice], imagined: &[Prob
             }
             let forms = effect.forms(&run.view);
             let Some(form) = forms.first() else { continue };
+            // What happens at one moment is shown by the run in which it happens.
+            if form.shape.iter().any(|shape| shape.search == Search::Jump) {
+                continue;
+            }
             let shape = &form.grid[form.grid.len() / 2];
             let mut then = columns(effect, form.name, shape, run).swap_remove(0);
             let mut now = match effect.hidden(&model.main.problem.view) {
@@ -41,7 +48,11 @@ pub fn unseen(model: &Assembly, noise: &Noise, menu: &[Choice], imagined: &[Prob
             if size == 0.0 {
                 continue;
             }
-            let factor = WORTH_SEEING * dot(&run.target, &run.target).sqrt() / size;
+            let worth = match is_friction {
+                true => WORTH_SEEING * dot(&run.target, &run.target).sqrt(),
+                false => noise.row * (run.rows() as f64).sqrt(),
+            };
+            let factor = worth / size;
             now.iter_mut().chain(&mut then).for_each(|x| *x *= factor);
             let (now, then) = (noise.whiten(&now, model.main.problem), noise.whiten(&then, run));
             let (before, after) = side.information(&now, &then, &own);
@@ -58,15 +69,19 @@ pub fn unseen(model: &Assembly, noise: &Noise, menu: &[Choice], imagined: &[Prob
         }
     }
     let (bid, effects) = best?;
+    let worth = match is_friction {
+        true => format!("{} % of the torque there", 100.0 * WORTH_SEEING),
+        false => "what is as large as the scatter of one reading".to_owned(),
+    };
     Some(Experiment {
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run would show {}, which the data so far could not: {} % of the torque there would stand out by {:.1} \
-             standard deviations or more",
+            "this run would show {}, which the data so far could not: {worth} would stand out by {} standard deviations \
+             or more{}",
             list(&effects),
-            100.0 * WORTH_SEEING,
-            bid.z,
+            super::in_words(bid.z),
+            bid.choice.provided(),
         ),
         expected_z: Some(bid.z),
         expected_duration_s: Some(bid.choice.duration_s),

@@ -20,6 +20,7 @@ use crate::effect::Stage;
 use crate::report::{GivenConstant, Preparation};
 use crate::view::{Signal, View};
 use crate::{ModelError, Options, ResidualKind};
+pub use brake::drive;
 use filter::LowPass;
 use jointbench_instrument::{Kind, Motion, RunTable};
 pub use repeats::Unlike;

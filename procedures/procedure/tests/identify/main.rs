@@ -2,5 +2,6 @@
 
 mod diagnosed;
 mod mock;
+mod next;
 mod pauses;
 mod tables;

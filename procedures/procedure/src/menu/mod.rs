@@ -1,0 +1,152 @@
+//! What a bench could measure next, as the model sees it: plans that its limits allow, as settled stretches.
+
+mod friction;
+mod laid;
+mod shown;
+
+use crate::catalogue::procedure;
+use crate::plan::BenchFacts;
+use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::Choice;
+use laid::{choice, rounded};
+use serde_json::{Map, Value, json};
+
+/// Room to the limits.
+const SHARE_OF_LIMIT: f64 = 0.95;
+
+/// Runs that could be made next, the ordinary one first. `run`: the one at hand, which gives the sample rate; `parameters`:
+/// what it was made with, where it came from a procedure.
+pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>) -> Vec<Choice> {
+    let mut menu = Menu { bench, parameters, choices: Vec::new() };
+    match run.kind() {
+        Kind::Friction => friction::offer(&mut menu, run),
+        Kind::Encoder => encoder(&mut menu),
+        Kind::Stiffness => stiffness(&mut menu),
+        Kind::Brake => brake(&mut menu),
+    }
+    menu.choices
+}
+
+struct Menu<'m> {
+    bench: &'m BenchFacts,
+    parameters: &'m Map<String, Value>,
+    choices: Vec<Choice>,
+}
+
+impl Menu<'_> {
+    /// A run that the bench may make.
+    fn offer(&mut self, id: &str, parameters: Value) {
+        self.offer_warmed(id, parameters, &|_| 0.0);
+    }
+
+    /// The same for one that warms the joint: by so much after so many seconds.
+    fn offer_warmed(&mut self, id: &str, parameters: Value, warmer_k: &dyn Fn(f64) -> f64) {
+        let Some(parameters) = parameters.as_object() else { return };
+        if let Some(Ok(plan)) = procedure(id).map(|p| p.plan(parameters, self.bench))
+            && plan.preview(self.bench).is_allowed()
+        {
+            self.choices.push(choice(&plan, parameters, self.bench, warmer_k));
+        }
+    }
+
+    /// The ordinary run as it was made before, but for `changes`. Benches that only a run has shown may not be known well
+    /// enough to plan for: it is told all the same, for its repeats.
+    fn ordinary(&mut self, id: &str, changes: Value) {
+        let parameters = Value::Object(self.before(id, changes));
+        self.offer(id, parameters.clone());
+        if let (true, Value::Object(parameters)) = (self.choices.is_empty(), parameters) {
+            let procedure = id.to_owned();
+            self.choices.push(Choice { procedure, parameters, duration_s: f64::INFINITY, stretches: Vec::new() });
+        }
+    }
+
+    /// What the run at hand was made with, as far as this procedure knows of it, but for `changes`.
+    fn before(&self, id: &str, changes: Value) -> Map<String, Value> {
+        let mut parameters = self.parameters.clone();
+        parameters.retain(|name, _| procedure(id).is_some_and(|p| p.schema().iter().any(|s| s.name == name)));
+        parameters.extend(changes.as_object().cloned().unwrap_or_default());
+        parameters
+    }
+
+    /// Another order than last time, or what changed with time then would do so again.
+    fn next_seed(&self) -> f64 {
+        self.parameters.get("order_seed").and_then(Value::as_f64).unwrap_or(1.0) + 1.0
+    }
+
+    /// Highest speed that is asked for (motor).
+    fn top_rad_s(&self) -> f64 {
+        SHARE_OF_LIMIT * self.bench.limits.motor_velocity_rad_s
+    }
+}
+
+/// At several speeds both ways a delay, which grows with speed, shows apart from what only changes its sign.
+fn encoder(menu: &mut Menu) {
+    let top_rad_s = menu.top_rad_s();
+    let mut changes = json!({"repeats": 3});
+    if top_rad_s < 50.0 {
+        changes["fast_rad_s"] = json!(rounded(top_rad_s.max(1.0)));
+        changes["speed_rad_s"] = json!(rounded((top_rad_s / 8.0).max(0.5)));
+    }
+    menu.ordinary("encoder_linearity", changes);
+    for top_rad_s in [top_rad_s, top_rad_s / 4.0] {
+        menu.offer("encoder_delay", json!({"top_speed_rad_s": rounded(top_rad_s), "speeds": 4, "repeats": 2}));
+    }
+}
+
+/// Other speeds and loads than before.
+fn stiffness(menu: &mut Menu) {
+    menu.ordinary("stiffness", json!({"repeats": 3}));
+    let gear = menu.bench.constants.gear_ratio;
+    let room_rad = menu.bench.constants.link_range_rad.unwrap_or(f64::INFINITY);
+    for part in [1.0, 2.0, 4.0, 8.0] {
+        let speed_rad_s = rounded(menu.top_rad_s() / gear / part);
+        let dwell_s = rounded((0.5 * room_rad / speed_rad_s).min(1.5));
+        for top_load in [1.0, 0.5] {
+            menu.offer(
+                "stiffness",
+                json!({"speed_rad_s": speed_rad_s, "dwell_s": dwell_s, "top_load": top_load, "repeats": 2}),
+            );
+        }
+    }
+}
+
+/// The whole history of the current, or constant currents over speed.
+fn brake(menu: &mut Menu) {
+    // It has no repeats of its own: it is looked at together with the run at hand.
+    let seed = menu.next_seed();
+    menu.ordinary("brake_hysteresis", json!({"order_seed": seed}));
+    let top_rad_s = (menu.top_rad_s() / menu.bench.constants.gear_ratio).min(1.5);
+    menu.offer(
+        "brake_speed_independence",
+        json!({
+            "low_speed_rad_s": rounded((top_rad_s / 10.0).max(0.11)), "top_speed_rad_s": rounded(top_rad_s),
+            "order_seed": seed,
+        }),
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::Values;
+    use jointbench_instrument::{Channel, Meta, Trace};
+
+    #[test]
+    fn what_is_offered_for_any_kind_can_be_started() {
+        for kind in Kind::ALL {
+            let columns = kind.required_columns();
+            let mut trace = Trace::new(columns.iter().copied().map(Channel::new).collect());
+            for row in 0..100 {
+                trace.push_row(&vec![0.01 * f64::from(row); columns.len()]);
+            }
+            let run = RunTable::new(Meta { kind: Some(kind), ..Meta::default() }, trace).unwrap();
+            let offered = menu(&BenchFacts::shown_by(&run), &run, &Map::new());
+            assert!(kind == Kind::Friction || !offered.is_empty(), "{kind}");
+            for choice in offered {
+                let known = procedure(&choice.procedure).unwrap_or_else(|| panic!("{kind}: {}", choice.procedure));
+                assert_eq!(known.kind(), kind);
+                Values::parse(known.schema(), &choice.parameters).unwrap();
+            }
+        }
+    }
+}
