@@ -2,15 +2,16 @@
 
 mod common;
 
-use common::{read, shared};
-use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
-use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover, evaluate, fit};
+use common::recordings::{BAM, EMPS, KR300, ODRIVE, PLACID, WAVES, most, of_pulses, recording, waves};
+use common::shared;
+use jointbench_instrument::{RunTable, Trace};
+use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover, fit};
 
 /// Janot, Gautier, Brunot 2019: symmetric model of the electro-mechanical positioning system.
 #[test]
 fn emps_gives_the_published_parameters() {
     let Some(data) = shared("data") else { return };
-    let train = read(&data.join("emps-train"));
+    let train = recording(&data, EMPS);
     let spec = ModelSpec::baseline(&train).unwrap();
     let found = fit(&train, &spec, &Options::default()).unwrap();
     let check = |name: &str, published: f64, budget: f64| {
@@ -24,9 +25,8 @@ fn emps_gives_the_published_parameters() {
     assert!((0.040..0.042).contains(&found.relative_error), "train: {}", found.relative_error);
     assert_eq!(found.unit, "N");
 
-    let pulses = read(&data.join("emps-pulses"));
-    let unseen = evaluate(&found, &pulses).unwrap();
-    assert!((0.059..0.061).contains(&unseen.relative_error), "pulses: {}", unseen.relative_error);
+    let unseen = of_pulses(&data, &found);
+    assert!((0.059..0.061).contains(&unseen), "pulses: {unseen}");
 
     let diagnosis = diagnose(&train, &spec, &Options::default()).unwrap();
     assert_eq!(diagnosis.suggestions[0].effect, "viscous_asymmetry");
@@ -34,18 +34,18 @@ fn emps_gives_the_published_parameters() {
     // What discover ends with, diagnose says at once: all that can be named leaves something.
     assert!(diagnosis.summary.contains("structure remains"), "{}", diagnosis.summary);
     let asymmetric = fit(&train, &spec.with("viscous_asymmetry").unwrap(), &Options::default()).unwrap();
-    let unseen = evaluate(&asymmetric, &pulses).unwrap();
-    assert!(unseen.relative_error < 0.055, "pulses with asymmetry: {}", unseen.relative_error);
+    let unseen = of_pulses(&data, &asymmetric);
+    assert!(unseen < 0.055, "pulses with asymmetry: {unseen}");
 }
 
 #[test]
 fn emps_goes_on_to_the_flexibility() {
     let Some(data) = shared("data") else { return };
-    let train = read(&data.join("emps-train"));
+    let train = recording(&data, EMPS);
     let spec = ModelSpec::baseline(&train).unwrap();
-    let found = discover(&train, &spec, &Options::default(), 5, |_| {}).unwrap();
-    let unseen = evaluate(&found.fit, &read(&data.join("emps-pulses"))).unwrap();
-    assert!(unseen.relative_error < 0.028, "{:?}: {}", found.model, unseen.relative_error);
+    let found = discover(&train, &spec, &Options::default(), most(EMPS), |_| {}).unwrap();
+    let unseen = of_pulses(&data, &found.fit);
+    assert!(unseen < 0.028, "{:?}: {unseen}", found.model);
     assert_eq!(found.verdict, Verdict::UnexplainedStructure);
     assert!(found.not_visible.iter().any(|n| n.effect == "load_linear"), "the run has no load");
     // Dry friction below the 20 N of the symmetric model, whose rest comes with the first centimetre per second.
@@ -57,7 +57,7 @@ fn emps_goes_on_to_the_flexibility() {
 #[test]
 fn a_current_of_another_unit_or_sign_is_told_before_all_else() {
     let Some(data) = shared("data") else { return };
-    let run = read(&data.join("bam-xl330"));
+    let run = recording(&data, BAM);
     let diagnosed = |factor: f64| {
         let mut columns = run.trace().columns().to_vec();
         let place = run.trace().channels().iter().position(|channel| channel.name == "motor_current_a").unwrap();
@@ -80,7 +80,7 @@ fn a_current_of_another_unit_or_sign_is_told_before_all_else() {
 #[test]
 fn bam_has_friction_that_grows_with_the_load() {
     let Some(data) = shared("data") else { return };
-    let run = read(&data.join("bam-xl330"));
+    let run = recording(&data, BAM);
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     let first = &found.suggestions[0];
     assert_eq!(first.effect, "stribeck_load", "{}", found.summary);
@@ -93,17 +93,16 @@ fn bam_has_friction_that_grows_with_the_load() {
 fn odrive_shows_cogging_at_slots_and_poles() {
     let Some(data) = shared("data") else { return };
     // The second and the third begin with a leap back by a turn, which the controller then swings out of.
-    for folder in ["odrive-slow2-nocomp-0", "odrive-slow2-nocomp-1", "odrive-slow2-nocomp-2"] {
-        let run = read(&data.join(folder));
+    for folder in ODRIVE {
+        let run = recording(&data, folder);
         let spec = ModelSpec::baseline(&run).unwrap();
-        let found = discover(&run, &spec, &Options::default(), 3, |_| {}).unwrap();
+        let found = discover(&run, &spec, &Options::default(), most(folder), |_| {}).unwrap();
         let added: Vec<&str> = found.steps.iter().filter_map(|step| step.added.as_deref()).collect();
         assert_eq!(added[0], "cogging", "{folder}: {}", found.summary);
         assert!(!found.model.iter().any(|effect| effect == "direction_offset"), "{folder}: {}", found.summary);
         assert!(found.steps[1].validation_rms < 0.5 * found.steps[0].validation_rms, "{:?}", found.steps);
-        let parameters = found.fit.parameters.iter();
-        let orders: Vec<f64> = parameters.filter(|p| p.name.starts_with("harmonic")).map(|p| p.value).collect();
-        for known in [7.0, 12.0, 14.0, 36.0] {
+        let orders = waves(&found.fit);
+        for known in WAVES {
             assert!(orders.contains(&known), "{folder}: {known} is not among {orders:?}");
         }
         assert!(found.noise_floor_rms.is_none() && found.noise_floor.source.contains("no repeats"));
@@ -114,7 +113,7 @@ fn odrive_shows_cogging_at_slots_and_poles() {
 #[test]
 fn placid_starts_like_a_square_and_cannot_show_hysteresis() {
     let Some(data) = shared("data") else { return };
-    let run = read(&data.join("placid-b5zd-brake"));
+    let run = recording(&data, PLACID);
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     assert_eq!(found.suggestions[0].effect, "saturation", "{}", found.summary);
     assert!((found.fit.validation_rms - 3.09e-3).abs() < 3e-5, "a straight line: {}", found.fit.validation_rms);
@@ -124,37 +123,13 @@ fn placid_starts_like_a_square_and_cannot_show_hysteresis() {
     assert_eq!(hidden, ["hysteresis", "velocity_dependence", "cogging", "temperature_dependence"]);
 }
 
-/// Axis 1 of an industrial robot as a stiffness run: both encoders, and the motor's torque times the gear for the
-/// torque at the link. The encoders were set to zero before each repeat, so every repeat has its own zero.
-///
 /// Its authors went from 40 mdeg to 27 with a compliance and to 15 with terms of position. Their list had no delay: one
 /// of three quarters of a sample between the two encoders takes 99 % of the squared difference, of which torque, which
 /// follows speed here, had its part for want of a better name.
 #[test]
 fn kr300_has_a_late_encoder_where_its_authors_saw_compliance() {
     let Some(data) = shared("data") else { return };
-    let robot = read(&data.join("kr300-axis1"));
-    let gear = robot.meta().gear_ratio.unwrap();
-    let torque_constant = robot.meta().torque_constant_nm_per_a.unwrap();
-    let column = |name: &str| robot.column(name).unwrap().to_vec();
-    let (motor, repeat) = (column("motor_position_rad"), column("repeat"));
-    let mut link = column("link_position_rad");
-    for number in [0.0, 1.0, 2.0] {
-        let rows: Vec<usize> = (0..link.len()).filter(|i| repeat[*i] == number).collect();
-        let zero = rows.iter().map(|i| motor[*i] / gear - link[*i]).sum::<f64>() / rows.len() as f64;
-        rows.iter().for_each(|i| link[*i] += zero);
-    }
-    let torque = column("motor_current_a").iter().map(|i| torque_constant * gear * i).collect();
-    let names =
-        ["time_s", "motor_position_rad", "link_position_rad", "link_torque_nm", "link_velocity_rad_s", "repeat"];
-    let columns = vec![column("time_s"), motor, link, torque, column("link_velocity_rad_s"), repeat];
-    let meta = Meta {
-        kind: Some(Kind::Stiffness),
-        gear_ratio: Some(gear),
-        baseline: vec!["offset".into()],
-        ..Meta::default()
-    };
-    let run = RunTable::new(meta, Trace::from_columns(names.map(Channel::new).to_vec(), columns)).unwrap();
+    let run = recording(&data, KR300);
     let spec = ModelSpec::baseline(&run).unwrap();
     let mdeg = |effects: &[&str]| {
         let spec = effects.iter().fold(spec.clone(), |spec, effect| spec.with(effect).unwrap());
@@ -165,7 +140,7 @@ fn kr300_has_a_late_encoder_where_its_authors_saw_compliance() {
     assert!(published.iter().zip(bounds).all(|(e, (low, high))| (low..high).contains(e)), "{published:?} mdeg");
     let late = mdeg(&["delay"]);
     assert!(late < 0.11 * published[0], "{late} mdeg");
-    let found = discover(&run, &spec, &Options::default(), 3, |_| {}).unwrap();
+    let found = discover(&run, &spec, &Options::default(), most(KR300), |_| {}).unwrap();
     let added: Vec<&str> = found.steps.iter().filter_map(|s| s.added.as_deref()).collect();
     assert_eq!(added[..2], ["delay", "transmission_error"], "{:?}", found.steps);
     let delay_s = found.fit.parameters.iter().find(|p| p.name == "t_d").unwrap().value;

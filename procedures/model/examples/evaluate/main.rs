@@ -1,14 +1,15 @@
 //! Measures the diagnosis, as docs/diagnosis.md reports it:
 //!
-//! `cargo run --release -p jointbench-model --example evaluate -- [--part hidden,removed,practice,null,power,speed]
+//! `cargo run --release -p jointbench-model --example evaluate -- [--part hidden,removed,practice,measured,null,power,speed]
 //! [--rounds 3] [--count 400] [--first 0] [--family friction] [--only NAME] [--quiet]`, or a FOLDER that holds a run.
 //!
 //! hidden: machines with hidden effects, simulated here (`made`). removed: one effect taken out of their complete models. practice: measurements with a known answer from beside
-//! the repository. null: runs with nothing hidden. power: weak effects. speed: seconds and memory.
+//! the repository. measured: measurements made by others, beside what is asked of each. null: runs with nothing hidden. power: weak effects. speed: seconds and memory.
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
 mod made;
+mod measured;
 mod null;
 mod options;
 mod power;
@@ -46,6 +47,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             table.judge(&case)?;
         }
         table.print();
+    }
+    if asked.wants("measured")
+        && let Some(data) = common::shared("data")
+    {
+        measured::measure(&data, &asked)?;
     }
     if asked.wants("null") {
         null::measure(&asked)?;

@@ -17,7 +17,7 @@ pub struct Asked {
     pub folder: Option<PathBuf>,
 }
 
-const PARTS: [&str; 6] = ["hidden", "removed", "practice", "null", "power", "speed"];
+const PARTS: [&str; 7] = ["hidden", "removed", "practice", "measured", "null", "power", "speed"];
 
 impl Asked {
     pub fn parse(mut words: impl Iterator<Item = String>) -> Result<Self, String> {

@@ -19,6 +19,10 @@ impl Count {
         hit
     }
 
+    fn join(&mut self, more: Count) {
+        (self.0, self.1) = (self.0 + more.0, self.1 + more.1);
+    }
+
     pub fn show(self) -> String {
         let share = self.0 as f64 / self.1 as f64;
         if self.1 == 0 { "–".into() } else { format!("{share:.2} ({}/{})", self.0, self.1) }
@@ -27,11 +31,11 @@ impl Count {
 
 const FIGURES: [&str; 5] = ["top-1", "exact", "null", "unknown", "floor"];
 
-/// Figures of each family.
+/// Figures of each family, and in how many of the unknown cases an effect of the library is named beside the structure.
 pub struct Table {
     title: &'static str,
     quiet: bool,
-    rows: Vec<(&'static str, [Count; 5])>,
+    rows: Vec<(&'static str, [Count; 5], Count)>,
     slowest_s: f64,
 }
 
@@ -69,10 +73,14 @@ impl Table {
         let row = match self.rows.iter().position(|r| r.0 == *family) {
             Some(at) => at,
             None => {
-                self.rows.push((family, Default::default()));
+                self.rows.push((family, Default::default(), Count::default()));
                 self.rows.len() - 1
             }
         };
+        if answer.unknown {
+            let is_false = |id: &&str| !answer.optional.iter().any(|o| o == id);
+            self.rows[row].2.add(names.iter().chain(&added).any(is_false));
+        }
         for (figure, hit) in self.rows[row].1.iter_mut().zip(hits) {
             if let Some(hit) = hit {
                 figure.add(hit);
@@ -93,20 +101,23 @@ impl Table {
     }
 
     pub fn print(mut self) {
-        let mut all = [Count::default(); 5];
-        for (_, row) in &self.rows {
-            all.iter_mut().zip(row).for_each(|(a, c)| (a.0, a.1) = (a.0 + c.0, a.1 + c.1));
+        let (mut all, mut all_false) = ([Count::default(); 5], Count::default());
+        for (_, row, named) in &self.rows {
+            all.iter_mut()
+                .chain([&mut all_false])
+                .zip(row.iter().chain([named]))
+                .for_each(|(all, count)| all.join(*count));
         }
-        self.rows.push(("all", all));
+        self.rows.push(("all", all, all_false));
         println!(
-            "\n{} (slowest diagnosis {:.3} s)\n\n| family | {} |",
+            "\n{} (slowest diagnosis {:.3} s)\n\n| family | {} | false names in unknown |",
             self.title,
             self.slowest_s,
             FIGURES.join(" | ")
         );
-        println!("| --- |{}", " --- |".repeat(FIGURES.len()));
-        for (family, row) in &self.rows {
-            println!("| {family} | {} |", row.map(Count::show).join(" | "));
+        println!("| --- |{}", " --- |".repeat(FIGURES.len() + 1));
+        for (family, row, named) in &self.rows {
+            println!("| {family} | {} | {} |", row.map(Count::show).join(" | "), named.show());
         }
         println!();
     }

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 pub mod bench;
+pub mod recordings;
 pub mod tables;
 
 use jointbench_instrument::{Channel, Meta, RunTable, Trace};
