@@ -13,10 +13,13 @@ pub fn stop(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
     remember(x, starts, 0.0, |_, z, step| (z + step / reach).clamp(-1.0, 1.0))
 }
 
+/// Elements of a Maxwell slip.
+pub const MAXWELL_ELEMENTS: usize = 4;
+
 /// Generalised Maxwell slip with elements of equal strength whose reaches are spread evenly up to `reach`: a stop that
 /// yields little by little. One number more than that would be one more that reversals hardly decide.
 pub fn maxwell_slip(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
-    const ELEMENTS: usize = 4;
+    const ELEMENTS: usize = MAXWELL_ELEMENTS;
     let mut sum = vec![0.0; x.len()];
     for k in 1..=ELEMENTS {
         let element = stop(x, reach * k as f64 / ELEMENTS as f64, starts);

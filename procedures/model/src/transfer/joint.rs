@@ -22,7 +22,13 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
         return Err(ModelError::NoExport {
             kind: fit.kind,
             what: "joint attributes",
-            why: "only friction models have them",
+            why: match fit.kind {
+                Kind::Stiffness => {
+                    "the gear's compliance is a spring between motor and link, and a joint's stiffness one that pulls it to an \
+                     angle of rest; in a simulator make it a second hinge about the same axis, with 1/compliance as its stiffness"
+                }
+                _ => "only friction models have them",
+            },
         });
     }
     let scope = fit.scope.as_ref().ok_or(ModelError::NoScope)?;

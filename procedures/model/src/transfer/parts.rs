@@ -26,6 +26,8 @@ pub enum PartColumn {
     Memory {
         rule: Rule,
         signal: Signal,
+        reach: usize,
+        end: Expression,
         formula: Expression,
     },
     Band {
@@ -59,10 +61,8 @@ impl<'f> Parts<'f> {
                 continue;
             };
             match columns(fit, term)? {
-                Some(columns) => parts.parts.push(part(id, title, term, columns)?),
-                None => {
-                    parts.left_out.push((id, format!("its form {} is not written out for a controller", term.form)))
-                }
+                Ok(columns) => parts.parts.push(part(id, title, term, columns)?),
+                Err(why) => parts.left_out.push((id, why.into())),
             }
         }
         Ok(parts)
@@ -78,7 +78,9 @@ impl Part<'_> {
     pub fn uses(&self, signal: Signal) -> bool {
         self.columns.iter().any(|column| match column {
             PartColumn::Formula(formula) => formula.uses_signal(signal),
-            PartColumn::Memory { signal: of, formula, .. } => *of == signal || formula.uses_signal(signal),
+            PartColumn::Memory { signal: of, end, formula, .. } => {
+                *of == signal || end.uses_signal(signal) || formula.uses_signal(signal)
+            }
             PartColumn::Band { .. } => signal == Signal::Current,
         })
     }
@@ -95,21 +97,27 @@ fn part<'f>(effect: &'f str, title: &'f str, term: &'f Term, columns: Vec<PartCo
     Ok(Part { effect, title, columns, factors, shape })
 }
 
-fn columns(fit: &Fit, term: &Term) -> Result<Option<Vec<PartColumn>>, ModelError> {
+/// The columns, or why a controller cannot compute them.
+fn columns(fit: &Fit, term: &Term) -> Result<Result<Vec<PartColumn>, &'static str>, ModelError> {
     if let Some(own) = fit.own.iter().find(|own| own.id() == term.effect) {
         // Numbered among all parameters there, among the shape parameters here.
         let formula = own.formula();
         let number = |p: usize| formula.shape.iter().position(|s| *s == p).unwrap_or(usize::MAX);
-        return Ok(Some(formula.columns.iter().map(|(_, e)| PartColumn::Formula(e.renumbered(&number))).collect()));
+        return Ok(Ok(formula.columns.iter().map(|(_, e)| PartColumn::Formula(e.renumbered(&number))).collect()));
     }
-    let Some(columns) = written(fit.kind, term) else { return Ok(None) };
+    let columns = match written(fit.kind, term) {
+        Ok(columns) => columns,
+        Err(why) => return Ok(Err(why)),
+    };
     let names: Vec<&str> = term.names.iter().skip(term.linear.len()).map(String::as_str).collect();
     let with_state: Vec<&str> = names.iter().copied().chain(["z"]).collect();
     let resolved = columns.into_iter().map(|column| {
         Ok(match column {
             Column::Formula(text) => PartColumn::Formula(formula(fit, &text, &names)?),
-            Column::Memory { rule, signal, formula: text } => PartColumn::Memory {
+            Column::Memory { rule, signal, reach, end, formula: text } => PartColumn::Memory {
                 rule,
+                reach,
+                end: formula(fit, end, &names)?,
                 signal: crate::formula::signals(fit.kind)
                     .iter()
                     .find(|s| s.name == signal)
@@ -119,7 +127,7 @@ fn columns(fit: &Fit, term: &Term) -> Result<Option<Vec<PartColumn>>, ModelError
             Column::Band { stops, bands, band } => PartColumn::Band { stops, bands, band },
         })
     });
-    resolved.collect::<Result<_, ModelError>>().map(Some)
+    resolved.collect::<Result<_, ModelError>>().map(Ok)
 }
 
 fn formula(fit: &Fit, text: &str, names: &[&str]) -> Result<Expression, ModelError> {

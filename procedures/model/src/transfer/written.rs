@@ -10,10 +10,14 @@ use jointbench_instrument::Kind;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Column {
     Formula(String),
-    /// A formula in which `z` is a state that remembers a signal.
+    /// A formula in which `z` is a state that remembers a signal. All columns of an effect remember the same one.
     Memory {
         rule: Rule,
         signal: &'static str,
+        /// Number of the shape parameter that is its reach, or its time constant.
+        reach: usize,
+        /// What a Dahl state ends at; elsewhere it is not asked for.
+        end: &'static str,
         formula: &'static str,
     },
     /// Stops weighted by hats over their reach (Prandtl–Ishlinskii).
@@ -24,22 +28,29 @@ pub enum Column {
     },
 }
 
-/// How a state follows its signal. The shape parameter of the form is its reach, or its time constant.
+/// How a state follows its signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
     Dahl,
     Stop,
+    /// The mean of stops whose reaches are spread evenly up to the largest.
+    MaxwellSlip,
     Lag,
 }
 
-/// Columns of a term. `None` where a controller has not what the effect needs.
-pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
-    let formula = |text: &str| Some(vec![Column::Formula(text.to_owned())]);
-    let memory = |rule, signal, formula| Some(vec![Column::Memory { rule, signal, formula }]);
-    let rule = if term.form == "stop" { Rule::Stop } else { Rule::Dahl };
+const UNKNOWN: &str = "its form is not written out for a controller";
+
+/// Columns of a term, or why a controller cannot compute them.
+pub fn written(kind: Kind, term: &Term) -> Result<Vec<Column>, &'static str> {
+    let formula = |text: &str| Ok(vec![Column::Formula(text.to_owned())]);
+    let part = |reach, rule, signal, formula| Column::Memory { rule, signal, reach, end: "1", formula };
+    let memory = |rule, signal, formula| Ok(vec![part(0, rule, signal, formula)]);
+    let rule = match term.form.as_str() {
+        "stop" | "stops" => Rule::Stop,
+        "maxwell_slip" | "maxwell_slip_and_stops" => Rule::MaxwellSlip,
+        _ => Rule::Dahl,
+    };
     match (kind, term.effect.as_str(), term.form.as_str()) {
-        // States of several elements, or of two signals: more than one rule can follow.
-        (_, _, "maxwell_slip" | "lugre" | "stops" | "dahl_and_stops" | "maxwell_slip_and_stops") => None,
         (Kind::Friction, id, form) => match (id, form) {
             ("inertia", _) => formula("acceleration"),
             ("coulomb", _) => formula("direction"),
@@ -57,32 +68,41 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
             ("stribeck_load", _) => formula("exp(-(abs(velocity) / omega_s) ^ delta) * direction * abs(load)"),
             ("temperature_viscous", _) => formula("(temperature - 25) * velocity"),
             ("temperature_coulomb", _) => formula("(temperature - 25) * direction"),
-            ("gravity", _) => Some(waves("link_position", "", &["1".to_owned()])),
-            ("cogging", _) => Some(waves("position", "", &orders(term))),
+            ("gravity", _) => Ok(waves("link_position", "", &["1".to_owned()])),
+            ("cogging", _) => Ok(waves("position", "", &orders(term))),
             ("friction_ripple", "with_speed") => {
                 let mut columns = waves("link_position", " * direction", &orders(term));
                 columns.extend(waves("link_position", " * velocity", &orders(term)));
-                Some(columns)
+                Ok(columns)
             }
-            ("friction_ripple", _) => Some(waves("link_position", " * direction", &orders(term))),
+            ("friction_ripple", _) => Ok(waves("link_position", " * direction", &orders(term))),
             ("torque_constant_saturation", _) => formula("motor_torque * motor_torque * motor_torque"),
             ("drift", _) => formula("time"),
+            ("presliding", "lugre") => Ok(vec![Column::Memory {
+                rule,
+                signal: "position",
+                reach: 0,
+                end: "1 + rho * exp(-(velocity / omega_s) ^ 2)",
+                formula: "z - (1 + rho * exp(-(velocity / omega_s) ^ 2)) * direction",
+            }]),
             ("presliding", _) => memory(rule, "position", "z - direction"),
             ("signal_delay", _) => formula("jerk"),
-            _ => None,
+            _ => Err(UNKNOWN),
         },
         (Kind::Encoder, id, _) => match id {
             "offset" => formula("1"),
             "delay" => formula("-velocity"),
-            "harmonic_1" => Some(waves("position", "", &["1".to_owned()])),
-            "harmonic_2" => Some(waves("position", "", &["2".to_owned()])),
-            "harmonic_n" => Some(waves("position", "", &orders(term))),
-            "pole_period" => Some(waves("position", "", &["pole_pairs".to_owned(), "2 * pole_pairs".to_owned()])),
+            "harmonic_1" => Ok(waves("position", "", &["1".to_owned()])),
+            "harmonic_2" => Ok(waves("position", "", &["2".to_owned()])),
+            "harmonic_n" => Ok(waves("position", "", &orders(term))),
+            "pole_period" => Ok(waves("position", "", &["pole_pairs".to_owned(), "2 * pole_pairs".to_owned()])),
             "direction_hysteresis" => formula("direction"),
             "temperature_drift" => formula("temperature - 25"),
             "slip" => formula("max(sign(time - t_s), 0)"),
-            // A controller does not know which power-up of the recording it has.
-            _ => None,
+            "startup_offset" => {
+                Err("it has an offset for each power-up of the recording, and a controller's own is another")
+            }
+            _ => Err(UNKNOWN),
         },
         (Kind::Stiffness, id, form) => match (id, form) {
             ("offset", _) => formula("1"),
@@ -92,41 +112,46 @@ pub fn written(kind: Kind, term: &Term) -> Option<Vec<Column>> {
             ("hardening", "cubic") => formula("load * load * load"),
             ("hardening", "root") => formula("(sqrt(1 + abs(load) / tau_h) - 1) * sign(load)"),
             ("hardening", _) => formula("load / (tau_h^n + abs(load)^n)^(1 / n)"),
-            ("torsional_hysteresis", _) => memory(rule, "load", "z"),
-            ("transmission_error", _) => Some(waves("link_position", "", &orders(term))),
+            ("torsional_hysteresis", _) => {
+                let stops = (1..term.shape.len()).map(|k| part(k, Rule::Stop, "load", "z"));
+                Ok(std::iter::once(part(0, rule, "load", "z")).chain(stops).collect())
+            }
+            ("transmission_error", _) => Ok(waves("link_position", "", &orders(term))),
             ("temperature_compliance", _) => formula("(temperature - 25) * load"),
             ("creep", _) => memory(Rule::Lag, "load", "z - load"),
             ("delay", _) => formula("velocity"),
-            _ => None,
+            _ => Err(UNKNOWN),
         },
         (Kind::Brake, id, form) => match (id, form) {
             ("drag", _) => formula("1"),
             ("torque_per_current", _) => formula("current"),
             ("saturation", "polynomial") => {
-                Some(["current * current", "current * current * current"].map(|f| Column::Formula(f.into())).into())
+                Ok(["current * current", "current * current * current"].map(|f| Column::Formula(f.into())).into())
             }
             ("saturation", "quintic") => {
                 let power = |n: usize| Column::Formula(vec!["current"; n].join(" * "));
-                Some([2, 3, 4, 5].map(power).into())
+                Ok([2, 3, 4, 5].map(power).into())
             }
             ("saturation", "curve") => {
-                Some((2..).take(term.linear.len()).map(|n| Column::Formula(from_zero(n))).collect())
+                Ok((2..).take(term.linear.len()).map(|n| Column::Formula(from_zero(n))).collect())
             }
             ("saturation", "tanh") => formula("tanh(current / i_s)"),
             ("saturation", _) => formula("tanh((current - i_0) / i_s) + tanh(i_0 / i_s)"),
             ("hysteresis", "bands" | "bands_3" | "bands_5") => {
                 let bands = term.linear.len();
-                Some((0..bands).map(|band| Column::Band { stops: 6 * bands, bands, band }).collect())
+                Ok((0..bands).map(|band| Column::Band { stops: 6 * bands, bands, band }).collect())
             }
             ("hysteresis", _) => memory(rule, "current", "z + 1"),
             ("velocity_dependence", "plain") => formula("abs(velocity)"),
             ("velocity_dependence", "excited") => formula("abs(velocity) * current"),
-            ("cogging", "excited") => Some(waves("position", " * current", &orders(term))),
-            ("cogging", _) => Some(waves("position", "", &orders(term))),
+            ("cogging", "excited") => Ok(waves("position", " * current", &orders(term))),
+            ("cogging", _) => Ok(waves("position", "", &orders(term))),
             ("temperature_dependence", "plain") => formula("temperature - 25"),
             ("temperature_dependence", "excited") => formula("(temperature - 25) * current"),
-            // The torque that current and history explain is known for a recording only.
-            _ => None,
+            ("velocity_dependence" | "temperature_dependence", _) => {
+                Err("it grows with the torque that current and history explain, which is known for a recording only")
+            }
+            _ => Err(UNKNOWN),
         },
     }
 }

@@ -1,6 +1,7 @@
 //! One term after the other as statements, with the signals and states that they use.
 
 use super::expression::{c, number};
+use crate::effects::memory;
 use crate::formula::{NamedSignal, signals};
 use crate::report::Fit;
 use crate::transfer::parts::{Part, PartColumn, Parts};
@@ -36,8 +37,8 @@ impl Body {
                 .push(format!("/* {} */", suffix::ascii(if part.title.is_empty() { part.effect } else { part.title })));
             for (i, column) in part.columns.iter().enumerate() {
                 match part.factors.get(i) {
-                    Some((name, _)) => body.column(part, &format!("p->{}_{name}", part.effect), column),
-                    None if part.factors.is_empty() => body.column(part, "1.0", column),
+                    Some((name, _)) => body.column(part, i, &format!("p->{}_{name}", part.effect), column),
+                    None if part.factors.is_empty() => body.column(part, i, "1.0", column),
                     None => {}
                 }
             }
@@ -55,71 +56,81 @@ impl Body {
         named.map_or_else(String::new, |s| format!("u->{}", self.field(s)))
     }
 
-    fn column(&mut self, part: &Part, factor: &str, column: &PartColumn) {
-        let state = format!("s->{}_z", part.effect);
-        let parameter = |p: usize| match part.shape.get(p) {
-            Some((name, _)) => format!("p->{}_{name}", part.effect),
-            None => state.clone(),
-        };
-        let text = |body: &Self, formula| c(formula, &|signal| body.input(signal), &parameter);
+    fn column(&mut self, part: &Part, place: usize, factor: &str, column: &PartColumn) {
+        let effect = part.effect;
+        let parameter = |p: usize| part.shape.get(p).map(|(name, _)| format!("p->{effect}_{name}"));
+        let shape = |p: usize| parameter(p).unwrap_or_default();
         match column {
             PartColumn::Formula(formula) => {
-                let formula = text(self, formula);
+                let formula = c(formula, &|signal| self.input(signal), &shape);
                 self.statements.push(format!("sum += {factor} * {formula};"));
             }
-            PartColumn::Memory { rule, signal, formula } => {
-                self.remember(part, *rule, *signal, &state, &parameter(0));
-                let formula = text(self, formula);
+            PartColumn::Memory { rule, signal, reach, end, formula } => {
+                let state = if place == 0 { format!("{effect}_z") } else { format!("{effect}_z_{}", place + 1) };
+                if place == 0 && *rule != Rule::Lag {
+                    self.step(effect, *signal);
+                }
+                let end = c(end, &|signal| self.input(signal), &shape);
+                let z = self.remember(effect, *rule, *signal, &state, &shape(*reach), &end);
+                let of = |p: usize| parameter(p).unwrap_or_else(|| z.clone());
+                let formula = c(formula, &|signal| self.input(signal), &of);
                 self.statements.push(format!("sum += {factor} * {formula};"));
             }
             PartColumn::Band { stops, bands, band } => {
+                let state = format!("{effect}_z");
                 if *band == 0 {
-                    self.stops(part, *stops, &parameter(0));
+                    self.step(effect, Signal::Current);
+                    self.stops(effect, &state, *stops, &shape(0));
                 }
                 self.statements.push(format!("for (int k = 1; k <= {stops}; k++) {{"));
                 let place = format!("fabs(k * {} / {} - {})", number(*bands as f64), number(*stops as f64), band + 1);
                 self.statements
-                    .push(format!("    sum += {factor} * fmax(0.0, 1.0 - {place}) * ({state}[k - 1] + 1.0);"));
+                    .push(format!("    sum += {factor} * fmax(0.0, 1.0 - {place}) * (s->{state}[k - 1] + 1.0);"));
                 self.statements.push("}".into());
             }
         }
     }
 
-    /// The state follows its signal.
-    fn remember(&mut self, part: &Part, rule: Rule, signal: Signal, z: &str, reach: &str) {
-        let x = self.input(signal);
-        let effect = part.effect;
-        self.states.push(format!("double {effect}_z;"));
-        if rule == Rule::Lag {
-            self.uses_step = true;
-            self.statements.push(format!("{z} = s->started ? {x} + ({z} - {x}) * exp(-u->sample_s / {reach}) : {x};"));
-            return;
+    /// The state follows its signal. Returns what it is.
+    fn remember(&mut self, effect: &str, rule: Rule, signal: Signal, state: &str, reach: &str, end: &str) -> String {
+        if rule == Rule::MaxwellSlip {
+            const ELEMENTS: usize = memory::MAXWELL_ELEMENTS;
+            self.stops(effect, state, ELEMENTS, reach);
+            let each: Vec<String> = (0..ELEMENTS).map(|k| format!("s->{state}[{k}]")).collect();
+            return format!("(({}) / {})", each.join(" + "), number(ELEMENTS as f64));
         }
-        self.step(effect, &x);
-        self.statements.push(match rule {
-            Rule::Dahl => {
-                let end = format!("({effect}_step < 0.0 ? -1.0 : 1.0)");
-                format!("{z} = {end} + ({z} - {end}) * exp(-fabs({effect}_step) / {reach});")
+        let z = format!("s->{state}");
+        self.states.push(format!("double {state};"));
+        let next = match rule {
+            Rule::Lag => {
+                self.uses_step = true;
+                let x = self.input(signal);
+                format!("s->started ? {x} + ({z} - {x}) * exp(-u->sample_s / {reach}) : {x}")
             }
-            Rule::Stop | Rule::Lag => format!("{z} = fmin(1.0, fmax(-1.0, {z} + {effect}_step / {reach}));"),
-        });
+            Rule::Dahl => {
+                self.statements.push(format!("double {state}_end = {effect}_step < 0.0 ? -{end} : {end};"));
+                let share = format!("exp(-fabs({effect}_step) / ({reach} * fabs({state}_end)))");
+                format!("{state}_end + ({z} - {state}_end) * {share}")
+            }
+            Rule::Stop | Rule::MaxwellSlip => format!("fmin(1.0, fmax(-1.0, {z} + {effect}_step / {reach}))"),
+        };
+        self.statements.push(format!("{z} = {next};"));
+        z
     }
 
     /// Stops with reaches evenly up to the largest.
-    fn stops(&mut self, part: &Part, stops: usize, largest: &str) {
-        let effect = part.effect;
-        self.states.push(format!("double {effect}_z[{stops}];"));
-        let current = self.input(Signal::Current);
-        self.step(effect, &current);
+    fn stops(&mut self, effect: &str, state: &str, stops: usize, largest: &str) {
+        self.states.push(format!("double {state}[{stops}];"));
         let reach = format!("({largest} * k / {})", number(stops as f64));
-        let z = format!("s->{effect}_z[k - 1]");
+        let z = format!("s->{state}[k - 1]");
         self.statements.push(format!("for (int k = 1; k <= {stops}; k++) {{"));
         self.statements.push(format!("    {z} = fmin(1.0, fmax(-1.0, {z} + {effect}_step / {reach}));"));
         self.statements.push("}".into());
     }
 
     /// How far a signal has come since the last call.
-    fn step(&mut self, effect: &str, x: &str) {
+    fn step(&mut self, effect: &str, signal: Signal) {
+        let x = self.input(signal);
         self.states.push(format!("double {effect}_last;"));
         self.statements.push(format!("double {effect}_step = s->started ? {x} - s->{effect}_last : 0.0;"));
         self.statements.push(format!("s->{effect}_last = {x};"));
