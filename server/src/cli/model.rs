@@ -1,12 +1,15 @@
-//! `jointbench model`: exported models, without a daemon.
+//! `jointbench model`: exported models, on files, and into the store.
 
 use super::arguments::{Model, ModelCommand};
 use super::exit::{Done, Exit};
 use super::files::{self, write};
 use super::offline::{json_out, read};
 use super::print;
-use jointbench_model::Fit;
+use super::serve::runtime;
+use super::transfer::{self, Way};
+use crate::view;
 use jointbench_model::transfer::{Format, ModelFile, export};
+use jointbench_model::{Fit, words};
 use std::path::Path;
 
 pub fn model(arguments: &Model) -> Done {
@@ -20,6 +23,33 @@ pub fn model(arguments: &Model) -> Done {
                     Ok(())
                 }
             }
+        }
+        ModelCommand::Import { model, run, json, store } => {
+            let runtime = runtime()?;
+            let fit = open(model)?;
+            let file = reread(&ModelFile::new(fit.clone()))?;
+            let import = view::ModelImport { run: *run, model: file };
+            let refused = |exit: Exit| Exit { said: format!("{}: {}", model.display(), exit.said), ..exit };
+            let (version, page) = match transfer::open(&runtime, store, false)? {
+                Way::Folder(lab) => {
+                    (runtime.block_on(lab.import_model(import)).map_err(|fault| refused(fault.into()))?, None)
+                }
+                Way::Daemon(client) => {
+                    let version: view::Model = client.post("/models/import", &import).map_err(refused)?;
+                    let page = client.page(&format!("/workbench/{run}?model={}", version.id));
+                    (version, Some(page))
+                }
+            };
+            if *json {
+                return json_out(&version);
+            }
+            let figure = |rms: f64| words::figure(rms, &fit.unit);
+            println!("model {} of run {run}: {}", version.id, version.effects.join(" + "));
+            println!("error {} on this run; {} where it was fitted", figure(version.rms), figure(fit.validation_rms));
+            if let Some(page) = page {
+                println!("{page}");
+            }
+            Ok(())
         }
         ModelCommand::Evaluate { model, run, meta, columns, json } => {
             let (fit, table) = (open(model)?, read(run, meta.as_deref(), columns)?);
@@ -41,6 +71,11 @@ pub fn model(arguments: &Model) -> Done {
             Ok(())
         }
     }
+}
+
+fn reread<T: serde::de::DeserializeOwned>(value: &impl serde::Serialize) -> Result<T, Exit> {
+    let value = serde_json::to_value(value).and_then(serde_json::from_value);
+    value.map_err(|fault| Exit::failed(fault.to_string()))
 }
 
 /// Writes a fit as `fit --out` does.

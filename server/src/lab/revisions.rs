@@ -97,6 +97,15 @@ impl Lab {
             .map_err(|fault| LabError::Invalid(format!("this is no exported model: {fault}")))?;
         let fit = file.check()?;
         let table = self.measurement(import.run).await?;
+        if fit.kind != table.kind() {
+            return Err(LabError::Invalid(format!(
+                "this is a {} model, and run {} is of the kind {}: choose a run of the model's kind (`jointbench runs kind:{}`)",
+                fit.kind,
+                import.run,
+                table.kind(),
+                fit.kind
+            )));
+        }
         let (kept, held) = (fit.clone(), blocking(move || jointbench_model::evaluate(&fit, &table)).await?);
         if !held.rms.is_finite() {
             let why = "this model predicts numbers on the run that are not finite: check its parameters";

@@ -1,6 +1,6 @@
 //! Effects and models of one's own on the command line.
 
-use crate::program::{jointbench, stderr, stdout};
+use crate::program::{Daemon, jointbench, stderr, stdout};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Output;
@@ -125,4 +125,46 @@ fn a_model_goes_out_and_is_held_against_runs() {
     let output = run_in(folder.path(), &["model", "evaluate", "none.json", "run.csv"]);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains("none.json: this is no exported model"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_model_that_went_out_comes_into_the_store_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_run(folder.path());
+    let model = "load_transmission,coulomb,viscous,rub";
+    done(folder.path(), &["fit", "run.csv", "--own", RUB, "--model", model, "--out", "new.json"]);
+    let refused = |arguments: &[&str]| {
+        let output = run_in(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let said = refused(&["model", "import", "new.json", "--run", "1"]);
+    assert!(said.contains("no store is in jointbench-data: name its folder with --data"), "{said}");
+    done(folder.path(), &["import", "run.csv"]);
+    let said = refused(&["model", "import", "new.json", "--run", "7"]);
+    assert!(said.contains("new.json: there is no run 7: `jointbench runs` lists"), "{said}");
+    let told = done(folder.path(), &["model", "import", "new.json", "--run", "1"]);
+    assert!(told.starts_with("model 1 of run 1: load_transmission + coulomb + viscous + rub\nerror "), "{told}");
+    let kept: Value =
+        serde_json::from_str(&done(folder.path(), &["model", "import", "new.json", "--run", "1", "--json"]))
+            .expect("JSON");
+    let file: Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path().join("new.json")).expect("a model")).expect("JSON");
+    assert_eq!((&kept["id"], &kept["fit"]["terms"]), (&Value::from(2), &file["fit"]["terms"]), "unchanged");
+
+    let brake = "time_s,position_rad,brake_current_a,brake_torque_nm\n0,0,0,0\n0.1,0.1,0.1,0.2\n";
+    std::fs::create_dir(folder.path().join("brake")).expect("a folder");
+    std::fs::write(folder.path().join("brake/run.csv"), brake).expect("a table");
+    std::fs::write(folder.path().join("brake/meta.json"), r#"{"kind": "brake"}"#).expect("facts");
+    done(folder.path(), &["import", "brake/run.csv"]);
+    let said = refused(&["model", "import", "new.json", "--run", "2"]);
+    assert!(said.contains("this is a friction model, and run 2 is of the kind brake: choose a run"), "{said}");
+    std::fs::write(folder.path().join("joint.h"), "#ifndef JOINT_H").expect("a header");
+    let said = refused(&["model", "import", "joint.h", "--run", "1"]);
+    assert!(said.contains("only JSON is: what `jointbench fit --out`"), "{said}");
+
+    let daemon = Daemon::serve(&folder.path().join("jointbench-data"), Path::new("joint-b-mock"));
+    let told = done(folder.path(), &["model", "import", "new.json", "--run", "1", "--daemon", &daemon.base]);
+    assert!(told.contains("model 3 of run 1") && told.contains("/workbench/1?model=3"), "{told}");
+    assert_eq!(daemon.get("/models/3")["fit"]["terms"], file["fit"]["terms"]);
 }

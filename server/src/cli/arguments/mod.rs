@@ -79,7 +79,7 @@ pub enum Command {
     Discover(Discover),
     /// Fit a model to a measured run
     Fit(Fit),
-    /// Evaluate, compare and export models that `fit --out` has written
+    /// Evaluate, compare, export and import models that `fit --out` has written
     Model(Model),
     /// Take measured files into the store
     Import(Import),

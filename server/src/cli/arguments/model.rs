@@ -1,6 +1,6 @@
 //! `jointbench model`.
 
-use super::Columns;
+use super::{Columns, StorePlace};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -8,7 +8,8 @@ const MODEL_EXAMPLES: &str = "\
   jointbench fit RUN.csv --out model.json                   a model to keep
   jointbench model evaluate model.json OTHER.csv            its error on another run
   jointbench model compare old.json model.json RUN.csv      what has changed, and which is better there
-  jointbench model export model.json --format c -o joint.h  for a controller";
+  jointbench model export model.json --format c -o joint.h  for a controller
+  jointbench model import model.json --run 12               into the workbench, beside the models of run 12";
 
 #[derive(Debug, Args)]
 #[command(after_help = MODEL_EXAMPLES)]
@@ -29,6 +30,23 @@ pub enum ModelCommand {
         /// File to write [default: standard output]
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+    },
+    /// Keep a model as a version of a stored run, to see, compare and export it there and to go on from it
+    ///
+    /// Its parameters stay as they are, and effects that a user wrote come with it. Its error becomes that on the run. As with
+    /// `jointbench import` it goes to the daemon whose address is given, else to the folder, or to the daemon that has the folder.
+    Import {
+        /// What `fit --out` or an export as JSON has written
+        #[arg(value_name = "MODEL.JSON")]
+        model: PathBuf,
+        /// Number of the run that it is held against, of the model's kind: `jointbench runs` lists them
+        #[arg(long, value_name = "RUN")]
+        run: i64,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+        #[command(flatten)]
+        store: StorePlace,
     },
     /// Tell the error of a model on a run that took no part in its fit
     Evaluate {
