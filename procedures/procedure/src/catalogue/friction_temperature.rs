@@ -3,7 +3,7 @@
 //! The joint is worked until it is warm, then left to cool with a short bout of legs now and then. Up and down the same
 //! temperatures are passed at different times: what depends on temperature and what merely drifts with time show apart.
 
-use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
+use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::warm_up;
 use super::{Findable, Procedure, findable};
 use crate::findings::{Plateau, Unusable, interval_of, parameter, plateaus, quantity, scatter, settled, verdict};
@@ -70,6 +70,7 @@ impl Procedure for FrictionTemperature {
             legs.push("rest".into(), Profile::from(0.0).hold(values.number("rest_s")), Profile::constant(0.0));
             for speed_rad_s in [top_rad_s, warm_up::SLOW_SHARE * top_rad_s] {
                 let dwell_s = turn_s(0.5, speed_rad_s, bench, 1.0).min(2.0);
+                let dwell_s = within_range_s(dwell_s, speed_rad_s, legs.acceleration_rad_s2, bench);
                 legs.leg(speed_rad_s, dwell_s, 0.0);
                 legs.leg(-speed_rad_s, dwell_s, 0.0);
             }

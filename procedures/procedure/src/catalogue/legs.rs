@@ -11,6 +11,11 @@ use std::f64::consts::TAU;
 /// A leg that should cover a part of a link turn is cut off here: a very slow gear has to do with less.
 const LONGEST_LEG_S: f64 = 15.0;
 
+/// A shorter plateau holds no settled motion.
+const SHORTEST_LEG_S: f64 = 0.5;
+/// No leg takes more of the link's range.
+const RANGE_SHARE: f64 = 0.9;
+
 /// A rising brake current: the ramp, and the time that supply and coil lag behind (118 ms and 80 ms; bench-physics,
 /// section 2).
 const RAISE_S: f64 = 0.8;
@@ -167,6 +172,13 @@ pub(super) fn stroke(way_rad: f64, top_rad_s: f64, acceleration_rad_s2: f64) -> 
 /// How long a plateau has to be to cover a share of a link turn, and at least `least_s`.
 pub(super) fn turn_s(share: f64, speed_rad_s: f64, bench: &BenchFacts, least_s: f64) -> f64 {
     (share * TAU * bench.constants.gear_ratio / speed_rad_s.abs()).min(LONGEST_LEG_S).max(least_s)
+}
+
+/// A dwell, cut off where the leg would leave the link's range.
+pub(super) fn within_range_s(dwell_s: f64, speed_rad_s: f64, acceleration_rad_s2: f64, bench: &BenchFacts) -> f64 {
+    let range_rad = bench.constants.link_range_rad.unwrap_or(f64::INFINITY);
+    let room_rad = RANGE_SHARE * range_rad * bench.constants.gear_ratio;
+    dwell_s.min(room_rad / speed_rad_s - speed_rad_s / acceleration_rad_s2).max(SHORTEST_LEG_S)
 }
 
 /// The facts that a friction table needs, and the model to start from.

@@ -1,6 +1,6 @@
 //! Work the joint until temperature and friction are steady, or the time is up.
 
-use super::legs::{ACCELERATION, Legs, sample_rate, turn_s};
+use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::{Findable, Procedure, findable};
 use crate::findings::{Plateau, Unusable, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
@@ -160,6 +160,7 @@ pub(super) fn work(legs: &mut Legs, top_speed_rad_s: f64, longest_s: f64, bench:
         for (speed_rad_s, dwell_s) in
             [(top_speed_rad_s, turn_s(1.0, top_speed_rad_s, bench, 2.0)), (SLOW_SHARE * top_speed_rad_s, 2.0)]
         {
+            let dwell_s = within_range_s(dwell_s, speed_rad_s, legs.acceleration_rad_s2, bench);
             legs.leg(speed_rad_s, dwell_s, 0.0);
             legs.leg(-speed_rad_s, dwell_s, 0.0);
         }
@@ -172,7 +173,15 @@ pub(super) fn work(legs: &mut Legs, top_speed_rad_s: f64, longest_s: f64, bench:
 mod tests {
     use super::super::legs::testing::{joint_a, joint_b};
     use super::*;
-    use serde_json::json;
+    use serde_json::{Map, json};
+
+    #[test]
+    fn a_link_of_half_a_turn_is_warmed_within_it() {
+        let mut facts = joint_a();
+        facts.constants.link_range_rad = Some(3.0);
+        let plan = WarmUp.plan(&Map::new(), &facts).unwrap();
+        assert!(plan.preview(&facts).is_allowed(), "{:?}", plan.preview(&facts).checks);
+    }
 
     #[test]
     fn it_is_bounded_and_returns_to_where_it_began() {
