@@ -1,8 +1,8 @@
 //! The daemon: a lab behind a port.
 
-use crate::api::{self, Door};
+use crate::api;
 use crate::config::BenchDescription;
-use crate::lab::{Lab, LabError};
+use crate::lab::{Lab, LabError, Tokens};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use tokio::net::TcpListener;
@@ -29,11 +29,11 @@ pub struct Daemon {
 impl Daemon {
     /// Takes the port, opens the store, secures the benches, then answers. [`LabError::Setup`] says what is in the way.
     pub async fn start(settings: DaemonSettings) -> Result<Daemon, LabError> {
-        let door = door(&settings)?;
+        let tokens = tokens(&settings)?;
         let listener = TcpListener::bind(settings.listen).await.map_err(|fault| taken(settings.listen, &fault))?;
         let address = listener.local_addr().map_err(|fault| taken(settings.listen, &fault))?;
-        let lab = Lab::open(&settings.data, settings.benches).await?;
-        let router = api::router(lab.clone(), door);
+        let lab = Lab::open(&settings.data, settings.benches, tokens).await?;
+        let router = api::router(lab.clone());
         let server = tokio::spawn(async move {
             if let Err(fault) = axum::serve(listener, router).await {
                 tracing::error!(%fault, "the server has ended");
@@ -72,7 +72,7 @@ pub async fn asked_to_end() {
     drop(tokio::signal::ctrl_c().await);
 }
 
-fn door(settings: &DaemonSettings) -> Result<Door, LabError> {
+fn tokens(settings: &DaemonSettings) -> Result<Tokens, LabError> {
     let read_token = settings.read_token.as_deref().map(str::trim);
     let all = [settings.token.as_deref().map(str::trim), read_token];
     if all.into_iter().flatten().any(|token| token.len() < 8) {
@@ -86,8 +86,8 @@ fn door(settings: &DaemonSettings) -> Result<Door, LabError> {
         Some(token) if Some(token.trim()) == read_token => {
             Err(LabError::Setup("the token that only reads is the other one too: give two different ones".into()))
         }
-        Some(token) => Ok(Door::with_tokens(token.trim(), read_token)),
-        None if settings.listen.ip().is_loopback() => Ok(Door::local()),
+        Some(token) => Ok(Tokens::given(Some(token.trim()), read_token)),
+        None if settings.listen.ip().is_loopback() => Ok(Tokens::default()),
         None => Err(LabError::Setup(format!(
             "{} can be reached from other machines: give a token with --token or JOINTBENCH_TOKEN, or listen on 127.0.0.1",
             settings.listen

@@ -5,93 +5,53 @@
 //! request must be ours or absent (programs send none). Browsers differ in what they refuse by themselves.
 
 use super::problem::Problem;
+use crate::lab::{Caller, Lab, Tokens};
+use crate::view::Access;
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, Method, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use serde::{Deserialize, Serialize};
-use std::sync::Arc;
-use utoipa::ToSchema;
 
-/// What a caller may do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Access {
-    /// Everything: the daemon answers this computer only, and asks for no token.
-    Open,
-    /// Everything.
-    Full,
-    /// Look, and stop.
-    Read,
-}
-
-/// How the daemon's door is kept.
-#[derive(Clone, Default)]
-pub struct Door {
-    /// Needed for every call of the API where the daemon listens beyond loopback.
-    token: Option<Arc<str>>,
-    /// Whoever has this one looks, and can stop.
-    read_token: Option<Arc<str>>,
-}
-
-impl Door {
-    /// On loopback.
-    pub fn local() -> Self {
-        Self::default()
+fn check(tokens: &Tokens, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<Caller, Problem> {
+    let host = text(headers, header::HOST).or_else(|| uri.authority().map(|a| a.as_str()));
+    if !tokens.are_needed() && host.is_some_and(|host| !is_loopback(host)) {
+        let detail = "this daemon answers on loopback only; open it as http://127.0.0.1 or http://localhost";
+        return Err(Problem::forbidden(detail));
     }
-
-    pub fn with_tokens(token: &str, read_token: Option<&str>) -> Self {
-        Self { token: Some(token.into()), read_token: read_token.map(Into::into) }
+    let upgrades = headers.contains_key(header::UPGRADE);
+    if (upgrades || !method.is_safe())
+        && let Some(origin) = text_or_garbage(headers, header::ORIGIN)
+        && !same_origin(origin, host)
+    {
+        return Err(Problem::forbidden(format!(
+            "the page at {origin} may not steer this bench; open the dashboard of the daemon itself"
+        )));
     }
-
-    fn check(&self, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<(), Problem> {
-        let host = text(headers, header::HOST).or_else(|| uri.authority().map(|a| a.as_str()));
-        if self.token.is_none() && host.is_some_and(|host| !is_loopback(host)) {
-            let detail = "this daemon answers on loopback only; open it as http://127.0.0.1 or http://localhost";
-            return Err(Problem::forbidden(detail));
-        }
-        let upgrades = headers.contains_key(header::UPGRADE);
-        if (upgrades || !method.is_safe())
-            && let Some(origin) = text_or_garbage(headers, header::ORIGIN)
-            && !same_origin(origin, host)
-        {
-            return Err(Problem::forbidden(format!(
-                "the page at {origin} may not steer this bench; open the dashboard of the daemon itself"
-            )));
-        }
-        let Some(token) = self.token.as_deref().filter(|_| uri.path().starts_with("/api")) else { return Ok(()) };
-        if is_known(token, headers, uri) {
-            return Ok(());
-        }
-        match self.read_token.as_deref().is_some_and(|token| is_known(token, headers, uri)) {
-            true if method.is_safe() || changes_nothing(uri.path()) => Ok(()),
-            true => Err(Problem::forbidden("this token only reads: it looks and stops, and starts or changes nothing")),
-            false => Err(Problem::unauthorized()),
-        }
-    }
-
-    /// What the token of a request may do.
-    pub fn access(&self, headers: &HeaderMap, uri: &Uri) -> Access {
-        let reads = self.read_token.as_deref().is_some_and(|token| is_known(token, headers, uri));
-        match &self.token {
-            None => Access::Open,
-            Some(_) if reads => Access::Read,
-            Some(_) => Access::Full,
-        }
+    let caller = match secret(headers, uri).and_then(|secret| tokens.holder(secret)) {
+        Some(caller) => caller,
+        None if tokens.are_needed() && uri.path().starts_with("/api") => return Err(Problem::unauthorized()),
+        None => Caller::local(),
+    };
+    match caller.access {
+        Access::Read if !only_looks(method, uri.path()) => Err(Problem::forbidden(
+            "this token only reads: it looks and stops, starts or changes nothing, and is told of no other token",
+        )),
+        _ => Ok(caller),
     }
 }
 
-/// Stopping, which everybody may do, and questions that need a body.
-fn changes_nothing(path: &str) -> bool {
-    ["/stop", "/preview", "/effects/check", "/diagnoses", "/evaluate"].iter().any(|end| path.ends_with(end))
+/// What whoever only reads may do: look, but for who else may come in; stop; and ask what needs a body.
+fn only_looks(method: &Method, path: &str) -> bool {
+    let asks = ["/stop", "/preview", "/effects/check", "/diagnoses", "/evaluate"];
+    asks.iter().any(|end| path.ends_with(end)) || method.is_safe() && !path.starts_with("/api/v1/tokens")
 }
 
-/// Middleware: refuses before anything is read, and tells handlers what the caller may do.
-pub async fn guard(State(door): State<Door>, mut request: Request, next: Next) -> Response {
-    match door.check(request.method(), request.uri(), request.headers()) {
-        Ok(()) => {
-            let access = door.access(request.headers(), request.uri());
-            request.extensions_mut().insert(access);
+/// Middleware: refuses before anything is read, and tells handlers who calls.
+pub async fn guard(State(lab): State<Lab>, mut request: Request, next: Next) -> Response {
+    match check(lab.tokens(), request.method(), request.uri(), request.headers()) {
+        Ok(caller) => {
+            lab.came_in(&caller);
+            request.extensions_mut().insert(caller);
             next.run(request).await
         }
         Err(problem) => problem.into_response(),
@@ -122,33 +82,28 @@ fn same_origin(origin: &str, host: Option<&str>) -> bool {
 }
 
 /// `Authorization: Bearer`, or `?token=` where a browser opens the live stream and cannot set headers.
-fn is_known(token: &str, headers: &HeaderMap, uri: &Uri) -> bool {
+fn secret<'r>(headers: &'r HeaderMap, uri: &'r Uri) -> Option<&'r str> {
     let bearer = text(headers, header::AUTHORIZATION).and_then(|value| value.strip_prefix("Bearer "));
     let in_query = || uri.query()?.split('&').find_map(|pair| pair.strip_prefix("token="));
     let in_query = if headers.contains_key(header::UPGRADE) { in_query() } else { None };
-    bearer.or(in_query).is_some_and(|given| same_bytes(given.trim().as_bytes(), token.as_bytes()))
-}
-
-/// Takes the same time wherever the difference is.
-fn same_bytes(a: &[u8], b: &[u8]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).fold(0, |sum, (x, y)| sum | (x ^ y)) == 0
+    bearer.or(in_query).map(str::trim)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn check(door: &Door, method: Method, path: &str, headers: &[(&str, &str)]) -> Option<u16> {
+    fn refusal(tokens: &Tokens, method: Method, path: &str, headers: &[(&str, &str)]) -> Option<u16> {
         let mut map = HeaderMap::new();
         for (name, value) in headers {
             map.insert(header::HeaderName::from_bytes(name.as_bytes()).unwrap(), value.parse().unwrap());
         }
-        door.check(&method, &path.parse().unwrap(), &map).err().map(|problem| problem.status)
+        check(tokens, &method, &path.parse().unwrap(), &map).err().map(|problem| problem.status)
     }
 
     #[test]
     fn a_local_program_comes_in_and_a_foreign_page_does_not() {
-        let door = Door::local();
+        let door = Tokens::default();
         let host = ("host", "127.0.0.1:8080");
         for (method, headers, refused) in [
             (Method::GET, vec![host], None),
@@ -164,13 +119,13 @@ mod tests {
             // A foreign name that was made to point to loopback.
             (Method::GET, vec![("host", "evil.example:8080")], Some(403)),
         ] {
-            assert_eq!(check(&door, method.clone(), "/api/v1/bench", &headers), refused, "{method} {headers:?}");
+            assert_eq!(refusal(&door, method.clone(), "/api/v1/bench", &headers), refused, "{method} {headers:?}");
         }
     }
 
     #[test]
     fn beyond_loopback_a_token_is_needed() {
-        let door = Door::with_tokens("s3cret", None);
+        let door = Tokens::given(Some("s3cret"), None);
         let host = ("host", "bench.lab:8080");
         for (path, headers, refused) in [
             ("/api/v1/bench", vec![host], Some(401)),
@@ -180,16 +135,17 @@ mod tests {
             ("/api/v1/events?token=s3cret", vec![host, ("upgrade", "websocket")], None),
             ("/", vec![host], None),
         ] {
-            assert_eq!(check(&door, Method::GET, path, &headers), refused, "{path} {headers:?}");
+            assert_eq!(refusal(&door, Method::GET, path, &headers), refused, "{path} {headers:?}");
         }
     }
 
     #[test]
     fn a_token_that_reads_looks_and_stops() {
-        let door = Door::with_tokens("s3cret", Some("looker"));
+        let door = Tokens::given(Some("s3cret"), Some("looker"));
         let headers = [("host", "bench.lab:8080"), ("authorization", "Bearer looker")];
         for (method, path, refused) in [
             (Method::GET, "/api/v1/bench", None),
+            (Method::GET, "/api/v1/tokens", Some(403)),
             (Method::POST, "/api/v1/bench/a/stop", None),
             (Method::POST, "/api/v1/procedures/friction/preview", None),
             (Method::POST, "/api/v1/bench/a/acknowledge", Some(403)),
@@ -198,7 +154,7 @@ mod tests {
             (Method::POST, "/api/v1/runs/1/resume", Some(403)),
             (Method::DELETE, "/api/v1/effects/friction/rub", Some(403)),
         ] {
-            assert_eq!(check(&door, method.clone(), path, &headers), refused, "{method} {path}");
+            assert_eq!(refusal(&door, method.clone(), path, &headers), refused, "{method} {path}");
         }
     }
 }

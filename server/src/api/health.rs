@@ -1,8 +1,9 @@
 //! The daemon about itself.
 
-use super::door::Access;
 use super::extract::{Answer, Json};
 use super::problem::{Problem, Refusals};
+use crate::lab::Caller;
+use crate::view::Access;
 use axum::Extension;
 use axum::extract::Request;
 use serde::{Deserialize, Serialize};
@@ -22,13 +23,13 @@ pub struct Health {
 /// Whether the daemon is there
 #[utoipa::path(get, path = "/health", tag = "daemon",
     responses((status = 200, description = "It is", body = Health), Refusals))]
-pub async fn health(Extension(access): Extension<Access>) -> Answer<Health> {
+pub async fn health(Extension(caller): Extension<Caller>) -> Answer<Health> {
     let dashboard_missing = jointbench_ui::missing().map(str::to_owned);
     Ok(Json(Health {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         process: std::process::id(),
         dashboard_missing,
-        access,
+        access: caller.access,
     }))
 }
 

@@ -1,7 +1,8 @@
 //! The live stream: JSON text frames and binary sample frames on one WebSocket.
 
 use super::problem::Refusals;
-use crate::lab::Lab;
+use crate::lab::{Caller, Lab};
+use axum::Extension;
 use axum::extract::State;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::response::Response;
@@ -13,6 +14,15 @@ use axum::response::Response;
 /// relative to t0. At most 30 frames a second; a slow client gets larger frames, never older ones.
 #[utoipa::path(get, path = "/events", tag = "live",
     responses((status = 101, description = "The stream", body = crate::view::LiveMessage), Refusals))]
-pub async fn stream(State(lab): State<Lab>, upgrade: WebSocketUpgrade) -> Response {
-    upgrade.on_upgrade(move |socket| crate::live::serve(socket, lab))
+pub async fn stream(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    upgrade.on_upgrade(async move |socket| {
+        tokio::select! {
+            () = crate::live::serve(socket, lab.clone()) => {}
+            () = lab.shut_out(&caller) => {}
+        }
+    })
 }

@@ -18,9 +18,9 @@ mod runs;
 mod size;
 #[cfg(test)]
 mod specification;
+mod tokens;
 mod transfer;
 
-pub use door::{Access, Door};
 pub use health::Health;
 pub use problem::Problem;
 
@@ -69,7 +69,7 @@ impl Modify for Token {
     fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
         let scheme = HttpBuilder::new()
             .scheme(HttpAuthScheme::Bearer)
-            .description(Some("Needed where the daemon listens beyond loopback (`--token`)"))
+            .description(Some("Needed where the daemon was started with one (`--token`); more are made at `/tokens`"))
             .build();
         document.components.get_or_insert_default().add_security_scheme("token", SecurityScheme::Http(scheme));
     }
@@ -129,6 +129,8 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(autopilots::get))
         .routes(routes!(autopilots::stop))
         .routes(routes!(live::stream))
+        .routes(routes!(tokens::list, tokens::make))
+        .routes(routes!(tokens::revoke))
         .routes(routes!(health::health))
         .routes(routes!(health::specification))
         .layer(middleware::from_fn(size::guard))
@@ -142,14 +144,14 @@ pub fn specification() -> utoipa::openapi::OpenApi {
 }
 
 /// Everything that the daemon serves. `/api` never falls back to the dashboard.
-pub fn router(lab: Lab, door: Door) -> Router {
+pub fn router(lab: Lab) -> Router {
     let (rest, _) = operations().split_for_parts();
     rest.route("/api", get(health::no_such_route))
         .route("/api/{*rest}", any(health::no_such_route))
         .method_not_allowed_fallback(health::no_such_method)
         .fallback_service(any(dashboard::serve).layer(CompressionLayer::new().quality(CompressionLevel::Best)))
-        .with_state(lab)
-        .layer(middleware::from_fn_with_state(door, door::guard))
+        .with_state(lab.clone())
+        .layer(middleware::from_fn_with_state(lab, door::guard))
         .layer(middleware::from_fn(problem::name_instance))
         .layer(middleware::from_fn(dashboard::security_headers))
         .layer(TraceLayer::new_for_http())

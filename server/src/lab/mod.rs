@@ -18,12 +18,14 @@ mod report;
 mod revisions;
 mod runs;
 mod statistics;
+mod tokens;
 mod transfer;
 
 pub use convert::{bench_view, reread, run_event, safe_view, state_view};
 pub use error::LabError;
 pub use experiment::{Offer, next_run};
 pub use models::diagnose;
+pub use tokens::{Caller, Tokens};
 pub use transfer::{ATTENTION, COPY_OF, FileFormat, ImportRequest};
 
 use crate::bench::BenchHandle;
@@ -49,6 +51,7 @@ struct Inner {
     store: Store,
     hub: Hub,
     benches: Vec<BenchHandle>,
+    tokens: Tokens,
     flights: Flights,
     /// Whose turn it is to work out what effects are worth.
     worth: tokio::sync::Mutex<()>,
@@ -61,7 +64,7 @@ struct Inner {
 impl Lab {
     /// Opens the store, ends what another daemon has left open, and starts one thread for each bench, which secures it.
     /// Nothing that was interrupted starts again.
-    pub async fn open(data: &Path, descriptions: Vec<BenchDescription>) -> Answer<Lab> {
+    pub async fn open(data: &Path, descriptions: Vec<BenchDescription>, tokens: Tokens) -> Answer<Lab> {
         let store = Store::open(data).await?;
         interrupt_autopilots(&store).await?;
         let mut interrupted: BTreeMap<String, Vec<i64>> = BTreeMap::new();
@@ -90,12 +93,14 @@ impl Lab {
                 store,
                 hub,
                 benches,
+                tokens,
                 flights: Flights::default(),
                 worth: Default::default(),
                 earlier: Default::default(),
                 first: Default::default(),
             }),
         };
+        lab.open_tokens().await?;
         lab.wait_until_secured().await;
         Ok(lab)
     }
@@ -107,6 +112,7 @@ impl Lab {
                 store,
                 hub: Hub::new(),
                 benches: Vec::new(),
+                tokens: Tokens::default(),
                 flights: Flights::default(),
                 worth: Default::default(),
                 earlier: Default::default(),

@@ -23,13 +23,14 @@ mod samples;
 mod search;
 #[cfg(test)]
 mod tests;
+mod tokens;
 mod view;
 
 pub use error::StoreError;
 pub use kept::Subject;
 pub use records::{
     AutopilotRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord, OwnEffectRecord,
-    RunFilter, RunRecord, SafetyRecord, View, ViewColumn,
+    RunFilter, RunRecord, SafetyRecord, TokenRecord, View, ViewColumn,
 };
 pub use search::Search;
 

@@ -162,6 +162,19 @@ pub struct SafetyRecord {
     pub at: String,
 }
 
+/// A token that opens the door; of its secret there is only the hash.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TokenRecord {
+    pub id: i64,
+    pub name: String,
+    /// `full` or `read`.
+    pub access: String,
+    pub hash: Vec<u8>,
+    pub made_at: String,
+    pub made_by: String,
+    pub used_at: Option<String>,
+}
+
 /// Samples of a window, drawn at a width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {

@@ -12,6 +12,7 @@ mod model;
 mod own;
 mod procedure;
 mod run;
+mod token;
 
 pub use autopilot::*;
 pub use bench::*;
@@ -22,6 +23,7 @@ pub use model::*;
 pub use own::*;
 pub use procedure::*;
 pub use run::*;
+pub use token::*;
 
 /// `None` for NaN and infinity, which JSON cannot carry.
 pub fn finite(value: f64) -> Option<f64> {

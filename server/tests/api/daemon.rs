@@ -82,7 +82,15 @@ impl TestDaemon {
     }
 
     pub fn delete(&self, path: &str) -> (u16, Value) {
-        read(self.agent.delete(self.url(path)).call().unwrap())
+        self.delete_with(path, &[])
+    }
+
+    pub fn delete_with(&self, path: &str, headers: &[(&str, &str)]) -> (u16, Value) {
+        let mut request = self.agent.delete(self.url(path));
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        read(request.call().unwrap())
     }
 
     pub fn post(&self, path: &str, body: &str) -> (u16, Value) {

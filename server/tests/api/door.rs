@@ -1,6 +1,7 @@
 //! Who may come in.
 
-use crate::daemon::{BENCH, TestDaemon, refused, settings};
+use crate::daemon::{BENCH, SHORT_RUN, TestDaemon, refused, settings};
+use serde_json::Value;
 use tempfile::TempDir;
 
 #[test]
@@ -40,6 +41,92 @@ fn beyond_loopback_the_token_opens_the_api() {
         assert_eq!(daemon.post_with("/api/v1/runs/1/pause", b"", &bearer).0, changes, "{token}");
         assert_eq!(daemon.post_with(&format!("/api/v1/bench/{BENCH}/stop"), b"", &bearer).0, 200, "{token}");
     }
+}
+
+#[test]
+fn tokens_are_made_listed_and_revoked_by_whoever_may_do_everything_and_nobody_is_locked_out() {
+    let data = TempDir::new().unwrap();
+    let daemon = || {
+        TestDaemon::start_with(None, |settings| {
+            settings.data = data.path().to_owned();
+            settings.token = Some("correct horse".into());
+            settings.read_token = Some("looking horse".into());
+        })
+    };
+    let mut first = daemon();
+    let bearer = |secret: &str| format!("Bearer {secret}");
+    let make = |daemon: &TestDaemon, with: &str, body: &str| {
+        let headers = [("authorization", &*bearer(with)), ("content-type", "application/json")];
+        daemon.post_with("/api/v1/tokens", body.as_bytes(), &headers)
+    };
+    let list =
+        |daemon: &TestDaemon, with: &str| daemon.get_with("/api/v1/tokens", &[("authorization", &*bearer(with))]);
+    let revoke = |daemon: &TestDaemon, with: &str, id: &Value| {
+        daemon.delete_with(&format!("/api/v1/tokens/{id}"), &[("authorization", &*bearer(with))])
+    };
+    let (status, anna) = make(&first, "correct horse", r#"{"name": " Anna ", "access": "full"}"#);
+    assert_eq!((status, &anna["name"], &anna["made_by"]), (201, &"Anna".into(), &"operator".into()), "{anna}");
+    let anna_s = anna["secret"].as_str().unwrap().to_owned();
+    let (status, wall) = make(&first, &anna_s, r#"{"name": "wall screen", "access": "read"}"#);
+    assert_eq!((status, &wall["made_by"]), (201, &"Anna".into()), "{wall}");
+    let wall_s = wall["secret"].as_str().unwrap().to_owned();
+    for refused in [
+        r#"{"name": "ANNA", "access": "read"}"#,
+        r#"{"name": "local", "access": "read"}"#,
+        r#"{"name": " ", "access": "read"}"#,
+        r#"{"name": "nobody", "access": "open"}"#,
+    ] {
+        assert_eq!(make(&first, &anna_s, refused).0, 422, "{refused}");
+    }
+    assert_eq!(make(&first, &wall_s, r#"{"name": "Bert", "access": "full"}"#).0, 403);
+    assert_eq!(list(&first, &wall_s).0, 403);
+    let (_, tokens) = list(&first, &anna_s);
+    let told: Vec<_> =
+        tokens.as_array().unwrap().iter().map(|one| (one["name"].as_str().unwrap(), &one["yours"])).collect();
+    assert_eq!(
+        told,
+        [
+            ("operator", &false.into()),
+            ("observer", &false.into()),
+            ("Anna", &true.into()),
+            ("wall screen", &false.into())
+        ]
+    );
+    let text = tokens.to_string();
+    assert!(!text.contains(&anna_s) && !text.contains(&wall_s) && !text.contains("hash"), "{text}");
+    assert!(tokens[2]["used_at"].is_string() && tokens[0]["id"].is_null(), "{tokens}");
+    let kept = std::fs::read(data.path().join("jointbench.db-wal")).unwrap();
+    let holds = |secret: &str| kept.windows(secret.len()).any(|window| window == secret.as_bytes());
+    assert!(holds("wall screen") && !holds(&anna_s) && !holds(&wall_s), "the secret is on the disk");
+    first.stop();
+
+    let second = daemon();
+    assert_eq!(second.get_with("/api/v1/health", &[("authorization", &*bearer(&wall_s))]).1["access"], "read");
+    assert_eq!(revoke(&second, &anna_s, &anna["id"]).0, 409, "nobody locks themselves out");
+    assert_eq!(revoke(&second, &anna_s, &wall["id"]).0, 204);
+    assert_eq!(list(&second, &wall_s).0, 401);
+    assert_eq!(revoke(&second, "correct horse", &anna["id"]).0, 204);
+    assert_eq!(revoke(&second, "correct horse", &anna["id"]).0, 404);
+    assert_eq!(list(&second, &anna_s).0, 401);
+    assert_eq!(list(&second, "correct horse").1.as_array().unwrap().len(), 2);
+    assert_eq!(
+        make(&second, "correct horse", r#"{"name": "Anna", "access": "read"}"#).0,
+        201,
+        "the name is free again"
+    );
+}
+
+#[test]
+fn a_daemon_that_asks_for_no_token_lets_everybody_in_and_knows_who_gives_one() {
+    let daemon = TestDaemon::start();
+    let (_, made) = daemon.post("/api/v1/tokens", r#"{"name": "wall screen", "access": "read"}"#);
+    assert_eq!(made["made_by"], "local", "{made}");
+    let bearer = format!("Bearer {}", made["secret"].as_str().unwrap());
+    let access = |secret: &str| daemon.get_with("/api/v1/health", &[("authorization", secret)]).1["access"].clone();
+    assert_eq!((access(&bearer), access("Bearer of old")), ("read".into(), "open".into()));
+    assert_eq!(daemon.post_with("/api/v1/runs", SHORT_RUN.as_bytes(), &[("authorization", &bearer)]).0, 403);
+    assert_eq!(daemon.delete(&format!("/api/v1/tokens/{}", made["id"])).0, 204);
+    assert_eq!(access(&bearer), "open");
 }
 
 #[test]

@@ -65,3 +65,14 @@ fn a_new_effect_is_told_to_everybody() {
     };
     assert_eq!((&told["kind"], &told["effect"]), (&"friction".into(), &"rub".into()));
 }
+
+#[test]
+fn whoever_listens_with_a_token_is_cut_off_when_it_is_revoked() {
+    let daemon = TestDaemon::start();
+    let (_, made) = daemon.post("/api/v1/tokens", r#"{"name": "wall screen", "access": "read"}"#);
+    let address = format!("ws://{}/api/v1/events?token={}", daemon.address(), made["secret"].as_str().unwrap());
+    let (mut socket, _) = tungstenite::connect(address).unwrap();
+    socket.read().unwrap();
+    assert_eq!(daemon.delete(&format!("/api/v1/tokens/{}", made["id"])).0, 204);
+    while socket.read().is_ok() {}
+}

@@ -71,6 +71,10 @@ export const api = {
 	diagnose: (model: number, signal?: Signal) => ask('post', '/api/v1/diagnoses', { body: { model } }, signal),
 
 	autopilots: (signal?: Signal) => ask('get', '/api/v1/autopilots', {}, signal),
+	tokens: (signal?: Signal) => ask('get', '/api/v1/tokens', {}, signal),
+	makeToken: (name: string, access: 'full' | 'read') => ask('post', '/api/v1/tokens', { body: { name, access } }),
+	revokeToken: (id: number) => ask('delete', '/api/v1/tokens/{id}', { path: { id } }),
+
 	startAutopilot: (asked: NewAutopilot) => ask('post', '/api/v1/autopilots', { body: asked }),
 	stopAutopilot: (id: number) => ask('post', '/api/v1/autopilots/{id}/stop', { path: { id } }),
 	experiment: (diagnosis: number, bench: string) =>

@@ -127,7 +127,8 @@ pub struct Place {
     /// Address and port of API and dashboard; port 0 takes a free one
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080", value_parser = address)]
     pub listen: SocketAddr,
-    /// Needed to listen beyond loopback; callers send it as `Authorization: Bearer TOKEN`
+    /// Needed to listen beyond loopback; callers send it as `Authorization: Bearer TOKEN`. Whoever has it makes and
+    /// revokes further ones, a name for each, on the dashboard's page of settings
     #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
     pub token: Option<String>,
     /// A second token, for those who only look; it can press the software stop, too

@@ -1,0 +1,40 @@
+//! Tokens: who may come in, and under which name. Only for those who may do everything.
+
+use super::extract::{Created, Json, Path, created};
+use super::problem::{Problem, Refusals};
+use crate::lab::{Caller, Lab};
+use crate::view::{MadeToken, NewToken, Token};
+use axum::Extension;
+use axum::extract::State;
+use axum::http::StatusCode;
+
+/// Every token that opens the door, without its secret
+#[utoipa::path(get, path = "/tokens", operation_id = "list_tokens", tag = "daemon",
+    responses((status = 200, description = "The tokens", body = Vec<Token>), Refusals))]
+pub async fn list(State(lab): State<Lab>, Extension(caller): Extension<Caller>) -> Json<Vec<Token>> {
+    Json(lab.list_tokens(&caller))
+}
+
+/// Makes a token; its secret is told this once
+#[utoipa::path(post, path = "/tokens", operation_id = "make_token", tag = "daemon", request_body = NewToken,
+    responses((status = 201, description = "The token with its secret", body = MadeToken), Refusals))]
+pub async fn make(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Json(new): Json<NewToken>,
+) -> Created<MadeToken> {
+    created(lab.make_token(&new, &caller).await?)
+}
+
+/// Revokes a token; refused for the one that the request came with, and for those that the daemon was started with
+#[utoipa::path(delete, path = "/tokens/{id}", operation_id = "revoke_token", tag = "daemon",
+    params(("id" = i64, Path, description = "Token")),
+    responses((status = 204, description = "It opens nothing any more"), Refusals))]
+pub async fn revoke(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Path(id): Path<i64>,
+) -> Result<StatusCode, Problem> {
+    lab.revoke_token(id, &caller).await?;
+    Ok(StatusCode::NO_CONTENT)
+}

@@ -1,0 +1,215 @@
+//! Who calls. Those tokens that the daemon was started with decide whether one is needed at all, and are never revoked here:
+//! whoever can start the daemon can always come in.
+
+use super::{Answer, Lab, LabError, reread};
+use crate::store::TokenRecord;
+use crate::view::{Access, MadeToken, NewToken, Token, word};
+use jiff::{SignedDuration, Timestamp};
+use sha2::{Digest, Sha256};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use tokio::sync::watch;
+
+const LONGEST_NAME: usize = 40;
+/// So often it is kept that a token was used.
+const USED_EVERY: SignedDuration = SignedDuration::from_secs(60);
+/// Names of who comes without a token, and of those tokens that the daemon was started with.
+const LOCAL: &str = "local";
+const OPERATOR: &str = "operator";
+const OBSERVER: &str = "observer";
+
+/// Who sent a request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Caller {
+    pub access: Access,
+    /// The name of the token, or `local`.
+    pub name: Arc<str>,
+    token: Option<[u8; 32]>,
+}
+
+impl Caller {
+    /// Somebody on this computer, of whom no token is wanted.
+    pub fn local() -> Self {
+        Self { access: Access::Open, name: LOCAL.into(), token: None }
+    }
+}
+
+/// Every token that opens the door.
+#[derive(Debug)]
+pub struct Tokens {
+    all: RwLock<Vec<Known>>,
+    /// Raised when one is revoked.
+    revoked: watch::Sender<()>,
+}
+
+#[derive(Debug)]
+struct Known {
+    /// `None`: the daemon was started with it.
+    id: Option<i64>,
+    caller: Caller,
+    made: Option<(String, String)>,
+    used: Option<Timestamp>,
+}
+
+impl Default for Tokens {
+    fn default() -> Self {
+        Self { all: RwLock::default(), revoked: watch::Sender::new(()) }
+    }
+}
+
+impl Tokens {
+    /// Those that the daemon is started with.
+    pub fn given(token: Option<&str>, read_token: Option<&str>) -> Self {
+        let full = token.map(|secret| (OPERATOR, Access::Full, secret));
+        let read = read_token.map(|secret| (OBSERVER, Access::Read, secret));
+        let known = |(name, access, secret): (&str, Access, &str)| Known {
+            id: None,
+            caller: Caller { access, name: name.into(), token: Some(hash(secret)) },
+            made: None,
+            used: None,
+        };
+        Self { all: RwLock::new(full.into_iter().chain(read).map(known).collect()), ..Self::default() }
+    }
+
+    /// Whether nobody comes in without one.
+    pub fn are_needed(&self) -> bool {
+        self.read().iter().any(|known| known.id.is_none())
+    }
+
+    /// Whose secret this is.
+    pub fn holder(&self, secret: &str) -> Option<Caller> {
+        let token = Some(hash(secret));
+        self.read().iter().map(|known| &known.caller).find(|caller| caller.token == token).cloned()
+    }
+
+    fn add(&self, record: TokenRecord) -> Answer<()> {
+        let token = record.hash.try_into().map_err(|_| LabError::Internal("the hash of a token is damaged".into()))?;
+        self.write().push(Known {
+            id: Some(record.id),
+            caller: Caller { access: reread(&record.access)?, name: record.name.into(), token: Some(token) },
+            made: Some((record.made_at, record.made_by)),
+            used: record.used_at.and_then(|at| at.parse().ok()),
+        });
+        Ok(())
+    }
+
+    /// The token that came in, where that has to be kept.
+    fn note_use(&self, caller: &Caller) -> Option<i64> {
+        let now = Timestamp::now();
+        let lately = |used: Option<Timestamp>| used.is_some_and(|used| now.duration_since(used) < USED_EVERY);
+        let is_it = |known: &&Known| caller.token.is_some() && known.caller.token == caller.token;
+        if self.read().iter().find(is_it).is_none_or(|known| lately(known.used)) {
+            return None;
+        }
+        let mut all = self.write();
+        let known = all.iter_mut().find(|known| is_it(&&**known))?;
+        known.used = Some(now);
+        known.id
+    }
+
+    fn read(&self) -> RwLockReadGuard<'_, Vec<Known>> {
+        self.all.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn write(&self) -> RwLockWriteGuard<'_, Vec<Known>> {
+        self.all.write().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Known {
+    fn view(&self, to: &Caller) -> Token {
+        let (made_at, made_by) = self.made.clone().unzip();
+        Token {
+            id: self.id,
+            name: self.caller.name.to_string(),
+            access: self.caller.access,
+            made_at,
+            made_by,
+            used_at: self.used.map(|at| format!("{at:.0}")),
+            yours: self.caller.token == to.token,
+        }
+    }
+}
+
+impl Lab {
+    pub fn tokens(&self) -> &Tokens {
+        &self.inner.tokens
+    }
+
+    pub(super) async fn open_tokens(&self) -> Answer<()> {
+        for record in self.inner.store.tokens().await? {
+            self.tokens().add(record)?;
+        }
+        Ok(())
+    }
+
+    /// Keeps that somebody came in with a token, without keeping anybody waiting.
+    pub fn came_in(&self, caller: &Caller) {
+        let Some(id) = self.tokens().note_use(caller) else { return };
+        let store = self.inner.store.clone();
+        tokio::spawn(async move {
+            if let Err(fault) = store.token_used(id, &format!("{:.0}", Timestamp::now())).await {
+                tracing::warn!(%fault, "that a token was used could not be kept");
+            }
+        });
+    }
+
+    pub fn list_tokens(&self, to: &Caller) -> Vec<Token> {
+        self.tokens().read().iter().map(|known| known.view(to)).collect()
+    }
+
+    pub async fn make_token(&self, new: &NewToken, by: &Caller) -> Answer<MadeToken> {
+        let name = new.name.trim();
+        if name.is_empty() || name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
+            return Err(LabError::Invalid(format!("name: write 1 to {LONGEST_NAME} characters in one line")));
+        }
+        if new.access == Access::Open {
+            return Err(LabError::Invalid("access: choose full or read".into()));
+        }
+        let alike = |other: &str| other.to_lowercase() == name.to_lowercase();
+        let is_taken = [LOCAL, OPERATOR, OBSERVER].into_iter().any(alike)
+            || self.tokens().read().iter().any(|known| alike(&known.caller.name));
+        if is_taken {
+            return Err(LabError::Invalid(format!("name: {name} is taken, and who did what would not be clear")));
+        }
+        let secret = format!("jb_{:032x}{:08x}", rand::random::<u128>(), rand::random::<u32>());
+        let record = self.inner.store.save_token(name, &word(new.access), &hash(&secret), &by.name).await?;
+        let id = record.id;
+        self.tokens().add(record)?;
+        tracing::warn!(token = name, access = ?new.access, by = &*by.name, "token made");
+        let made = self.list_tokens(by).into_iter().find(|token| token.id == Some(id));
+        let token = made.ok_or_else(|| LabError::Conflict(format!("token {name} was revoked at once")))?;
+        Ok(MadeToken { token, secret })
+    }
+
+    /// It opens nothing from now on; what listens with it is cut off.
+    pub async fn revoke_token(&self, id: i64, by: &Caller) -> Answer<()> {
+        let missing = || LabError::NotFound(format!("there is no token {id} that could be revoked"));
+        let token = self.list_tokens(by).into_iter().find(|token| token.id == Some(id)).ok_or_else(missing)?;
+        if token.yours {
+            let why = "you came in with this token: revoke it with another one, so that nobody is locked out";
+            return Err(LabError::Conflict(why.into()));
+        }
+        self.inner.store.revoke_token(id, &by.name).await?;
+        self.tokens().write().retain(|known| known.id != Some(id));
+        self.tokens().revoked.send_replace(());
+        tracing::warn!(token = token.name, by = &*by.name, "token revoked");
+        Ok(())
+    }
+
+    /// Returns when the token of this caller opens nothing any more.
+    pub async fn shut_out(&self, caller: &Caller) {
+        let mut revoked = self.tokens().revoked.subscribe();
+        let is_known = || self.tokens().read().iter().any(|known| known.caller.token == caller.token);
+        while caller.token.is_none() || is_known() {
+            // An error says that the daemon ends.
+            if revoked.changed().await.is_err() {
+                return;
+            }
+        }
+    }
+}
+
+/// What is made here is long and random: nobody finds it by trying, and a plain hash keeps it.
+fn hash(secret: &str) -> [u8; 32] {
+    Sha256::digest(secret.as_bytes()).into()
+}

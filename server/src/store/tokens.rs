@@ -1,0 +1,56 @@
+//! Tokens that were made while the daemon ran. Of their secrets only hashes come here.
+
+use super::runs::now;
+use super::{Store, StoreError, TokenRecord};
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
+
+fn record(row: &SqliteRow) -> Result<TokenRecord, StoreError> {
+    Ok(TokenRecord {
+        id: row.try_get("id")?,
+        name: row.try_get("name")?,
+        access: row.try_get("access")?,
+        hash: row.try_get("hash")?,
+        made_at: row.try_get("made_at")?,
+        made_by: row.try_get("made_by")?,
+        used_at: row.try_get("used_at")?,
+    })
+}
+
+impl Store {
+    /// Those that open something, oldest first.
+    pub async fn tokens(&self) -> Result<Vec<TokenRecord>, StoreError> {
+        let rows =
+            sqlx::query("SELECT * FROM tokens WHERE revoked_at IS NULL ORDER BY id").fetch_all(&self.readers).await?;
+        rows.iter().map(record).collect()
+    }
+
+    pub async fn save_token(&self, name: &str, access: &str, hash: &[u8], by: &str) -> Result<TokenRecord, StoreError> {
+        let row =
+            sqlx::query("INSERT INTO tokens (name, access, hash, made_at, made_by) VALUES (?, ?, ?, ?, ?) RETURNING *")
+                .bind(name)
+                .bind(access)
+                .bind(hash)
+                .bind(now())
+                .bind(by)
+                .fetch_one(&self.writer)
+                .await?;
+        record(&row)
+    }
+
+    pub async fn token_used(&self, id: i64, at: &str) -> Result<(), StoreError> {
+        let query = "UPDATE tokens SET used_at = ? WHERE id = ? AND revoked_at IS NULL";
+        sqlx::query(query).bind(at).bind(id).execute(&self.writer).await?;
+        Ok(())
+    }
+
+    pub async fn revoke_token(&self, id: i64, by: &str) -> Result<(), StoreError> {
+        sqlx::query("UPDATE tokens SET revoked_at = ?, revoked_by = ? WHERE id = ?")
+            .bind(now())
+            .bind(by)
+            .bind(id)
+            .execute(&self.writer)
+            .await?;
+        Ok(())
+    }
+}

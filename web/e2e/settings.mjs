@@ -1,0 +1,30 @@
+// What a person sets: who may come in, and whose result the next runs use.
+import { audit } from './audit.mjs';
+import { expect } from './browser.mjs';
+
+const PATIENCE_MS = 30_000;
+
+/** Makes a token for a screen that only looks; a page that comes in with it starts nothing, and is cut off when it is revoked. */
+export async function makeAndRevoke(page, another, base) {
+	await page.goto(`${base}/settings`);
+	await page.getByLabel('Name of the token').fill('wall screen');
+	await page.getByRole('button', { name: 'Make a token' }).click();
+	const secret = await page.getByText('shown this once').locator('code').innerText({ timeout: PATIENCE_MS });
+	await audit(page, 'a token that was made');
+	const guest = await another();
+	await guest.addInitScript((secret) => sessionStorage.setItem('jointbench.token', secret), secret);
+	await guest.goto(`${base}/settings`);
+	await guest.getByText('your token only reads').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'a token that only reads is not told to its holder'));
+	expect((await guest.getByLabel('Name of the token').count()) === 0, 'whoever only reads is asked to make tokens');
+	await page.reload();
+	const row = page.locator('[data-token="wall screen"]');
+	await row.waitFor({ timeout: PATIENCE_MS });
+	const said = await row.innerText();
+	expect(/observer/.test(said) && !/never/.test(said), `the token that a page came in with is told so: ${said}`);
+	expect((await page.getByText(secret).count()) === 0, 'the secret of a token is shown again');
+	await row.getByRole('button', { name: 'Revoke wall screen' }).click();
+	await row.getByRole('button', { name: 'Revoke it' }).click();
+	await row.waitFor({ state: 'detached', timeout: PATIENCE_MS });
+	await guest.waitForFunction(() => !document.body.innerText.includes('your token only reads'), null, { timeout: PATIENCE_MS }).catch(() => expect(false, 'a page whose token was revoked goes on as if it had one'));
+	await guest.close();
+}
