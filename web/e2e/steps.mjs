@@ -272,7 +272,7 @@ export async function resetStopped(page, base) {
 		await held.waitFor({ state: 'detached', timeout: 30_000 });
 		await page.waitForFunction(() => document.querySelector('form button.primary:enabled'), null, { timeout: 30_000 });
 		await page.goto(`${base}/log`);
-		await page.getByText('walked past').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the log does not tell of the reset'));
+		await page.getByText('walked past (local)').first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the log does not tell of the reset, and by whom'));
 	}
 	return stopped.length;
 }

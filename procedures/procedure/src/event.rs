@@ -38,6 +38,19 @@ pub enum Control {
     Quit,
 }
 
+/// What a run is asked for, and by whom, where that is known.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Demand {
+    pub control: Control,
+    pub by: Option<String>,
+}
+
+impl From<Control> for Demand {
+    fn from(control: Control) -> Self {
+        Self { control, by: None }
+    }
+}
+
 /// One entry of the journal. The store adds the sequence number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
@@ -77,6 +90,8 @@ pub enum EventKind {
     },
     Control {
         control: Control,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        by: Option<String>,
     },
     Fault {
         fault: Fault,

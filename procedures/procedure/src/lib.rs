@@ -27,7 +27,7 @@ mod steady;
 
 pub use catalogue::{Procedure, catalogue, procedure};
 pub use engine::{RunEnd, Secured, run, secure};
-pub use event::{Control, Event, EventKind, Safe};
+pub use event::{Control, Demand, Event, EventKind, Safe};
 pub use identification::Identification;
 pub use menu::menu;
 pub use plan::{BenchFacts, Plan, PlanFault};

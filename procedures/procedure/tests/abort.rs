@@ -4,7 +4,7 @@ use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::Bench;
 use jointbench_instrument::units::{Amperes, RadPerSec};
 use jointbench_procedure::{
-    BenchFacts, Commit, Control, EventKind, Live, Recorder, RecorderFault, RunState, Safe, procedure, run,
+    BenchFacts, Commit, Control, Demand, EventKind, Live, Recorder, RecorderFault, RunState, Safe, procedure, run,
 };
 use serde_json::json;
 use std::f64::consts::TAU;
@@ -16,7 +16,7 @@ const AT_S: f64 = 91.7;
 const POLES: f64 = 21.0;
 
 struct Steered {
-    controls: Sender<Control>,
+    controls: Sender<Demand>,
     asks: Option<Control>,
     notes: Vec<String>,
 }
@@ -39,7 +39,7 @@ impl Recorder for Steered {
         if live.progress.elapsed_s >= AT_S
             && let Some(control) = self.asks.take()
         {
-            self.controls.send(control).unwrap();
+            self.controls.send(control.into()).unwrap();
         }
     }
 }

@@ -8,7 +8,7 @@ use jointbench_procedure::conduct::{ConductFault, conduct};
 use jointbench_procedure::identification::{Form, Identification, Verdict};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::{
-    BenchFacts, Commit, Control, EventKind, Live, Recorder, RecorderFault, RunState, Safe, procedure,
+    BenchFacts, Commit, Control, Demand, EventKind, Live, Recorder, RecorderFault, RunState, Safe, procedure,
 };
 use serde_json::{Value, json};
 use std::sync::mpsc::{Sender, channel};
@@ -43,7 +43,7 @@ fn check(found: &Identification, name: &str, truth: f64, reach: f64) {
 
 /// Pauses with every third commit of a running run, and resumes soon after.
 struct Pauser {
-    controls: Sender<Control>,
+    controls: Sender<Demand>,
     commits: u32,
     pauses: u32,
     shown: u32,
@@ -60,7 +60,7 @@ impl Recorder for Pauser {
             self.commits += 1;
             if self.commits.is_multiple_of(3) && self.pauses < 4 {
                 self.pauses += 1;
-                self.controls.send(Control::Pause).unwrap();
+                self.controls.send(Control::Pause.into()).unwrap();
             }
         }
         if !commit.rows.channels().is_empty() {
@@ -76,7 +76,7 @@ impl Recorder for Pauser {
         self.shown += u32::from(live.state == RunState::Paused);
         if self.shown == 10 {
             self.shown = 0;
-            self.controls.send(Control::Resume).unwrap();
+            self.controls.send(Control::Resume.into()).unwrap();
         }
     }
 }
@@ -102,7 +102,7 @@ fn a_hunt_that_is_paused_finds_the_same_edges() {
 
 /// Gives one control with the third commit of a running run.
 struct Interrupter {
-    controls: Sender<Control>,
+    controls: Sender<Demand>,
     control: Control,
     commits: u32,
     rows: u64,
@@ -116,7 +116,7 @@ impl Recorder for Interrupter {
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
         self.commits += u32::from(commit.state == RunState::Running);
         if self.commits == 3 {
-            self.controls.send(self.control).unwrap();
+            self.controls.send(self.control.into()).unwrap();
         }
         self.rows += commit.rows.len() as u64;
         Ok(())
@@ -202,7 +202,7 @@ fn every_power_up_moves_the_zero_and_the_bench_switches_by_itself() {
 /// Switches the encoder off and on whenever the run asks for it; the first time it only says so.
 struct Hand {
     mock: MockBench,
-    controls: Sender<Control>,
+    controls: Sender<Demand>,
     asked: usize,
     rows: Option<Trace>,
 }
@@ -220,7 +220,7 @@ impl Recorder for Hand {
                 self.mock.trouble(MockInstrument::CounterS2, Trouble::PowerCycled);
                 self.mock.trouble(MockInstrument::CounterS2, Trouble::None);
             }
-            self.controls.send(Control::Resume).unwrap();
+            self.controls.send(Control::Resume.into()).unwrap();
         }
         if !commit.rows.channels().is_empty() {
             match &mut self.rows {

@@ -2,16 +2,21 @@
 
 use super::extract::{Answer, Created, Json, Path, created};
 use super::problem::Refusals;
-use crate::lab::Lab;
+use crate::lab::{Caller, Lab};
 use crate::view::{Autopilot, NewAutopilot, NewExperiment};
+use axum::Extension;
 use axum::extract::State;
 
 /// Measures, diagnoses, adds what is missing or makes the run that would tell, again, until nothing is missing or the
 /// budget is spent
 #[utoipa::path(post, path = "/autopilots", operation_id = "start_autopilot", tag = "autopilots", request_body = NewAutopilot,
     responses((status = 201, description = "The autopilot, on its way", body = Autopilot), Refusals))]
-pub async fn start(State(lab): State<Lab>, Json(new): Json<NewAutopilot>) -> Created<Autopilot> {
-    created(lab.start_autopilot(&new).await?)
+pub async fn start(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Json(new): Json<NewAutopilot>,
+) -> Created<Autopilot> {
+    created(lab.start_autopilot(&new, &caller.name).await?)
 }
 
 /// Makes the run that a diagnosis asks for and diagnoses the same model again, with all its runs together
@@ -20,10 +25,11 @@ pub async fn start(State(lab): State<Lab>, Json(new): Json<NewAutopilot>) -> Cre
     responses((status = 201, description = "An autopilot that makes this one run", body = Autopilot), Refusals))]
 pub async fn experiment(
     State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
     Path(id): Path<i64>,
     Json(new): Json<NewExperiment>,
 ) -> Created<Autopilot> {
-    created(lab.start_experiment(id, &new).await?)
+    created(lab.start_experiment(id, &new, &caller.name).await?)
 }
 
 /// All autopilots, newest first
@@ -45,6 +51,10 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Autopilo
 #[utoipa::path(post, path = "/autopilots/{id}/stop", operation_id = "stop_autopilot", tag = "autopilots",
     params(("id" = i64, Path, description = "Autopilot")),
     responses((status = 200, description = "Taken; the autopilot as it is now", body = Autopilot), Refusals))]
-pub async fn stop(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Autopilot> {
-    Ok(Json(lab.stop_autopilot(id).await?))
+pub async fn stop(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Path(id): Path<i64>,
+) -> Answer<Autopilot> {
+    Ok(Json(lab.stop_autopilot(id, &caller.name).await?))
 }

@@ -2,8 +2,9 @@
 
 use super::extract::{Answer, Json, Path};
 use super::problem::{Problem, Refusals};
-use crate::lab::Lab;
+use crate::lab::{Caller, Lab};
 use crate::view::{Acknowledgement, Bench, Instrument, SafetyEntry};
+use axum::Extension;
 use axum::extract::State;
 
 /// All benches of this daemon
@@ -26,8 +27,12 @@ pub async fn get(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Be
 #[utoipa::path(post, path = "/bench/{bench}/stop", operation_id = "stop_bench", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
     responses((status = 200, description = "Taken; the bench as it is now", body = Bench), Refusals))]
-pub async fn stop(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Bench> {
-    Ok(Json(lab.emergency_stop(&bench).await?))
+pub async fn stop(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Path(bench): Path<String>,
+) -> Answer<Bench> {
+    Ok(Json(lab.emergency_stop(&bench, &caller.name).await?))
 }
 
 /// Resets the bench after a software stop, or after an end that could not be verified as safe
@@ -36,10 +41,11 @@ pub async fn stop(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<B
     responses((status = 200, description = "The bench, ready again", body = Bench), Refusals))]
 pub async fn acknowledge(
     State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
     Path(bench): Path<String>,
     Json(word): Json<Acknowledgement>,
 ) -> Answer<Bench> {
-    Ok(Json(lab.acknowledge(&bench, &word.reason).await?))
+    Ok(Json(lab.acknowledge(&bench, &word.reason, &caller.name).await?))
 }
 
 /// Tries the instruments again that are not ready

@@ -8,6 +8,7 @@ mod extract;
 mod health;
 mod identifications;
 mod live;
+mod log;
 mod models;
 mod notes;
 mod own_effects;
@@ -129,6 +130,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(autopilots::get))
         .routes(routes!(autopilots::stop))
         .routes(routes!(live::stream))
+        .routes(routes!(log::log))
         .routes(routes!(tokens::list, tokens::make))
         .routes(routes!(tokens::revoke))
         .routes(routes!(health::health))

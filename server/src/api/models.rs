@@ -2,8 +2,9 @@
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::{Problem, Refusals};
-use crate::lab::Lab;
+use crate::lab::{Caller, Lab};
 use crate::view::{Diagnosis, Effect, Fit, Model, NewDiagnosis, NewModel, ResidualSet};
+use axum::Extension;
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -28,8 +29,12 @@ pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -
 /// Fits a set of effects to a run and keeps it as a version
 #[utoipa::path(post, path = "/models", tag = "models", request_body = NewModel,
     responses((status = 201, description = "The version", body = Model), Refusals))]
-pub async fn create(State(lab): State<Lab>, Json(new): Json<NewModel>) -> Created<Model> {
-    created(lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude).await?)
+pub async fn create(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Json(new): Json<NewModel>,
+) -> Created<Model> {
+    created(lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude, &caller.name).await?)
 }
 
 #[derive(Debug, Clone, Deserialize, IntoParams)]

@@ -2,8 +2,9 @@
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::{Problem, Refusals};
-use crate::lab::Lab;
+use crate::lab::{Caller, Lab};
 use crate::view::{Comparison, Evaluation, Model, ModelImport, NewEvaluation, Worth};
+use axum::Extension;
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -115,6 +116,10 @@ pub async fn export(
 /// Keeps an exported model as a version of a run
 #[utoipa::path(post, path = "/models/import", operation_id = "import_model", tag = "models", request_body = ModelImport,
     responses((status = 201, description = "The version", body = Model), Refusals))]
-pub async fn import(State(lab): State<Lab>, Json(import): Json<ModelImport>) -> Created<Model> {
-    created(lab.import_model(import).await?)
+pub async fn import(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Json(import): Json<ModelImport>,
+) -> Created<Model> {
+    created(lab.import_model(import, &caller.name).await?)
 }

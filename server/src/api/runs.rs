@@ -2,8 +2,9 @@
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::Refusals;
-use crate::lab::Lab;
+use crate::lab::{Caller, Lab};
 use crate::view::{ChannelStatistics, NewRun, Run, RunEvent, RunList, Samples};
+use axum::Extension;
 use axum::extract::State;
 use jointbench_procedure::Control;
 use serde::Deserialize;
@@ -39,8 +40,12 @@ pub async fn list(State(lab): State<Lab>, Query(query): Query<RunQuery>) -> Answ
 /// Plans a procedure, checks it against the limits and starts it
 #[utoipa::path(post, path = "/runs", tag = "runs", request_body = NewRun,
     responses((status = 201, description = "The run, queued", body = Run), Refusals))]
-pub async fn start(State(lab): State<Lab>, Json(new): Json<NewRun>) -> Created<Run> {
-    created(lab.start_run(&new.bench, &new.procedure, &new.parameters).await?)
+pub async fn start(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Json(new): Json<NewRun>,
+) -> Created<Run> {
+    created(lab.start_run(&new.bench, &new.procedure, &new.parameters, &caller.name).await?)
 }
 
 /// One run
@@ -53,37 +58,37 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
 /// Brings the joint to rest between two steps and waits
 #[utoipa::path(post, path = "/runs/{id}/pause", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
-pub async fn pause(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
-    Ok(Json(lab.control(id, Control::Pause).await?))
+pub async fn pause(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.control(id, Control::Pause, &caller.name).await?))
 }
 
 /// Goes on after a pause
 #[utoipa::path(post, path = "/runs/{id}/resume", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
-pub async fn resume(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
-    Ok(Json(lab.control(id, Control::Resume).await?))
+pub async fn resume(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.control(id, Control::Resume, &caller.name).await?))
 }
 
 /// Makes the steps that a run has left, in a new run: the warm-up again, the brake demagnetised, then from the first step
 /// that was not finished. Both together are one measurement
 #[utoipa::path(post, path = "/runs/{id}/continue", operation_id = "continue_run", tag = "runs", params(("id" = i64, Path, description = "Run that did not come to its end")),
     responses((status = 201, description = "The new run, queued", body = Run), Refusals))]
-pub async fn go_on(State(lab): State<Lab>, Path(id): Path<i64>) -> Created<Run> {
-    created(lab.continue_run(id).await?)
+pub async fn go_on(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Created<Run> {
+    created(lab.continue_run(id, &caller.name).await?)
 }
 
 /// Ends the run after the step at hand; what was measured counts
 #[utoipa::path(post, path = "/runs/{id}/stop", operation_id = "stop_run", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
-pub async fn stop(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
-    Ok(Json(lab.control(id, Control::Stop).await?))
+pub async fn stop(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.control(id, Control::Stop, &caller.name).await?))
 }
 
 /// Ends the run now; the bench is secured
 #[utoipa::path(post, path = "/runs/{id}/abort", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
-pub async fn abort(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
-    Ok(Json(lab.control(id, Control::Abort).await?))
+pub async fn abort(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
+    Ok(Json(lab.control(id, Control::Abort, &caller.name).await?))
 }
 
 #[derive(Debug, Clone, Default, Deserialize, IntoParams)]

@@ -2,8 +2,9 @@
 
 use super::extract::{Created, Path, Query, created};
 use super::problem::{Problem, Refusals};
-use crate::lab::{FileFormat, ImportRequest, Lab};
+use crate::lab::{Caller, FileFormat, ImportRequest, Lab};
 use crate::view::Run;
+use axum::Extension;
 use axum::extract::State;
 use axum::extract::multipart::{Multipart, MultipartError};
 use axum::http::header;
@@ -77,9 +78,14 @@ pub struct ImportForm {
 #[utoipa::path(post, path = "/runs/import", tag = "runs", params(ImportQuery),
     request_body(content = ImportForm, content_type = "multipart/form-data"),
     responses((status = 201, description = "The run", body = Run), Refusals))]
-pub async fn import(State(lab): State<Lab>, Query(query): Query<ImportQuery>, form: Multipart) -> Created<Run> {
+pub async fn import(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Query(query): Query<ImportQuery>,
+    form: Multipart,
+) -> Created<Run> {
     let request = read_form(form, query.name).await?;
-    created(lab.import(request).await?)
+    created(lab.import(request, &caller.name).await?)
 }
 
 async fn read_form(mut form: Multipart, name: Option<String>) -> Result<ImportRequest, Problem> {

@@ -6,7 +6,7 @@ use crate::config::BenchDescription;
 use crate::lab::LabError;
 use crate::live::Hub;
 use crate::store::Store;
-use jointbench_procedure::{BenchFacts, Control, Plan, RunId};
+use jointbench_procedure::{BenchFacts, Control, Demand, Plan, RunId};
 use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -26,9 +26,9 @@ struct Shared {
 }
 
 /// The way to the run that is on. Taken before a run begins, given back by the thread at its end.
-pub(super) type Slot = Arc<Mutex<Option<Sender<Control>>>>;
+pub(super) type Slot = Arc<Mutex<Option<Sender<Demand>>>>;
 
-pub(super) fn lock(slot: &Slot) -> MutexGuard<'_, Option<Sender<Control>>> {
+pub(super) fn lock(slot: &Slot) -> MutexGuard<'_, Option<Sender<Demand>>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -106,13 +106,13 @@ impl BenchHandle {
     }
 
     /// Whether a run was there to hear it.
-    pub fn control(&self, control: Control) -> bool {
-        lock(&self.shared.slot).as_ref().is_some_and(|run| run.send(control).is_ok())
+    pub fn control(&self, demand: Demand) -> bool {
+        lock(&self.shared.slot).as_ref().is_some_and(|run| run.send(demand).is_ok())
     }
 
     /// Ends a run at once, or secures the bench where none is on. Returns when the thread has taken the command.
-    pub async fn stop(&self) -> Result<(), LabError> {
-        if self.control(Control::EStop) {
+    pub async fn stop(&self, by: &str) -> Result<(), LabError> {
+        if self.control(Demand { control: Control::EStop, by: Some(by.to_owned()) }) {
             return Ok(());
         }
         let (taken, wait) = oneshot::channel();
@@ -141,7 +141,7 @@ impl BenchHandle {
 
     /// Ends a run that is on, secures the bench and ends the thread. Blocks until then.
     pub fn shut_down(&self) {
-        self.control(Control::Quit);
+        self.control(Control::Quit.into());
         // An error says that the thread has ended already.
         let _ = self.shared.commands.send(Command::Quit);
         let thread = self.shared.thread.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -164,7 +164,7 @@ impl BenchHandle {
 /// A bench that is reserved for a run. Dropped without a start, it is free again.
 pub struct Claim {
     bench: BenchHandle,
-    controls: Option<mpsc::Receiver<Control>>,
+    controls: Option<mpsc::Receiver<Demand>>,
 }
 
 impl Claim {

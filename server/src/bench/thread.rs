@@ -10,7 +10,7 @@ use crate::live::Hub;
 use crate::store::Store;
 use crate::view::{BenchState, Blocked, LiveMessage};
 use jointbench_instrument::roles::Instrument;
-use jointbench_procedure::{Control, Plan, RunEnd, RunId, RunState, Safe};
+use jointbench_procedure::{Demand, Plan, RunEnd, RunId, RunState, Safe};
 use std::io;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::JoinHandle;
@@ -19,7 +19,7 @@ use tokio::runtime::Handle;
 use tokio::sync::{oneshot, watch};
 
 pub(super) enum Command {
-    Run { run: RunId, plan: Box<Plan>, controls: Receiver<Control> },
+    Run { run: RunId, plan: Box<Plan>, controls: Receiver<Demand> },
     Secure { taken: oneshot::Sender<()> },
     Open { done: oneshot::Sender<()> },
     Refresh { done: oneshot::Sender<()> },
@@ -204,7 +204,7 @@ impl Owner {
         all
     }
 
-    fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Control>) {
+    fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Demand>) {
         let Some(Opened { bench: Some(bench), mock, .. }) = self.opened.as_mut() else {
             // The lab opens a bench before it starts a run; a bench that went away in between has no instruments to move.
             tracing::error!(run.id = run, "run started on a bench that is not open");

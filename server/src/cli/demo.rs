@@ -8,7 +8,7 @@ use super::run::ending;
 use super::serve::{runtime, settings};
 use crate::config::BenchDescription;
 use crate::daemon::{Daemon, asked_to_end};
-use crate::lab::{Lab, reread};
+use crate::lab::{LOCAL, Lab, reread};
 use crate::view::{Model, Run, RunState, Suggestion};
 use jointbench_devices::sim::HIDDEN_EFFECTS;
 use jointbench_devices::{Joint, MockSettings};
@@ -109,7 +109,7 @@ async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
 }
 
 async fn measure(lab: &Lab) -> Result<Run, Exit> {
-    let run = lab.start_run(BENCH, PROCEDURE, &Map::new()).await?.summary.id;
+    let run = lab.start_run(BENCH, PROCEDURE, &Map::new(), LOCAL).await?.summary.id;
     let mut watch = lab.handle(BENCH)?.watch();
     let mut shown = RunProgress::begin();
     loop {
@@ -135,7 +135,7 @@ async fn measure(lab: &Lab) -> Result<Run, Exit> {
 /// Baseline, diagnosis, best effect, again: through the same calls as the dashboard.
 async fn improve(lab: &Lab, run: &Run) -> Result<Improved, Exit> {
     let meta: jointbench_instrument::Meta = reread(&run.meta)?;
-    let mut versions = vec![lab.create_model(&[run.summary.id], &meta.baseline, None, None).await?];
+    let mut versions = vec![lab.create_model(&[run.summary.id], &meta.baseline, None, None, LOCAL).await?];
     loop {
         let model = &versions[versions.len() - 1];
         let diagnosis = lab.diagnose(model.id).await?.finding;
@@ -154,7 +154,7 @@ async fn improve(lab: &Lab, run: &Run) -> Result<Improved, Exit> {
         println!();
         println!("   → add {} and fit again", best.effect);
         let effects: Vec<String> = model.effects.iter().cloned().chain([best.effect.clone()]).collect();
-        let next = lab.create_model(&[run.summary.id], &effects, Some(model.id), None).await?;
+        let next = lab.create_model(&[run.summary.id], &effects, Some(model.id), None, LOCAL).await?;
         versions.push(next);
     }
 }

@@ -6,7 +6,7 @@ use super::exit::{Done, Exit};
 use super::files::{self, table, write};
 use super::serve::runtime;
 use crate::api::Health;
-use crate::lab::{ATTENTION, COPY_OF, FileFormat, ImportRequest, Lab, LabError};
+use crate::lab::{ATTENTION, COPY_OF, FileFormat, ImportRequest, LOCAL, Lab, LabError};
 use crate::view::Run;
 use jointbench_files::meta_path_of;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub fn import(arguments: &Import) -> Done {
         let file = &table(file)?;
         let request = read(file, arguments.meta.as_deref(), &arguments.columns)?;
         let run = match &store {
-            Way::Folder(lab) => runtime.block_on(lab.import(request))?,
+            Way::Folder(lab) => runtime.block_on(lab.import(request, LOCAL))?,
             Way::Daemon(client) => upload(client, &request)?,
         };
         let summary = &run.summary;

@@ -14,7 +14,8 @@ use tokio::task::JoinHandle;
 /// One that is on.
 pub(super) struct Flight {
     bench: String,
-    stop: watch::Sender<bool>,
+    /// Who has asked it to end.
+    stop: watch::Sender<Option<String>>,
     task: JoinHandle<()>,
 }
 
@@ -36,7 +37,7 @@ impl Flights {
 pub(super) const INTERRUPTED: &str = "the daemon ended before the autopilot did; its runs and models are kept";
 
 impl Lab {
-    pub async fn start_autopilot(&self, new: &NewAutopilot) -> Answer<Autopilot> {
+    pub async fn start_autopilot(&self, new: &NewAutopilot, by: &str) -> Answer<Autopilot> {
         self.handle(&new.bench)?;
         if new.runs == 0 {
             return Err(LabError::Invalid("runs = 0: give 1 or more".into()));
@@ -51,7 +52,7 @@ impl Lab {
         if let Some(effects) = &new.effects {
             self.spec(kind, effects).await?;
         }
-        self.take_off(&new.bench, reread(new)?, Goal::Explain(new.clone())).await
+        self.take_off(&new.bench, reread(new)?, Goal::Explain(new.clone()), by).await
     }
 
     /// A first run that cannot be made is refused now, not later.
@@ -71,7 +72,7 @@ impl Lab {
     }
 
     /// Makes the run that a diagnosis asks for and diagnoses the same model again with it.
-    pub async fn start_experiment(&self, diagnosis: i64, new: &NewExperiment) -> Answer<Autopilot> {
+    pub async fn start_experiment(&self, diagnosis: i64, new: &NewExperiment, by: &str) -> Answer<Autopilot> {
         let (model, experiment) = self.asked_for(diagnosis, &new.bench).await?;
         let experiment = experiment.ok_or_else(|| {
             LabError::Invalid(format!(
@@ -82,25 +83,25 @@ impl Lab {
         let mut request: Map<String, Value> = reread(new)?;
         request.insert("diagnosis".into(), diagnosis.into());
         let goal = Goal::Decide { runs: model.runs(), model: model.id, effects: model.effects, experiment };
-        self.take_off(&new.bench, request, goal).await
+        self.take_off(&new.bench, request, goal, by).await
     }
 
-    async fn take_off(&self, bench: &str, request: Map<String, Value>, goal: Goal) -> Answer<Autopilot> {
+    async fn take_off(&self, bench: &str, request: Map<String, Value>, goal: Goal, by: &str) -> Answer<Autopilot> {
         self.check_is_free(bench)?;
         if let Some(block) = self.inner.store.bench_block(bench).await? {
             return Err(LabError::Conflict(format!("bench {bench} is blocked: {}", block.reason)));
         }
         let state: String = reread(&AutopilotState::Running)?;
         let id = self.inner.store.create_autopilot(bench, &request, &state).await?;
-        tracing::info!(autopilot.id = id, bench, "autopilot started");
-        self.send_off(id, bench, goal);
+        tracing::info!(autopilot.id = id, bench, by, "autopilot started");
+        self.send_off(id, bench, goal, format!("{by}, autopilot {id}"));
         self.autopilot(id).await
     }
 
-    fn send_off(&self, id: i64, bench: &str, goal: Goal) {
-        let (stop, stopped) = watch::channel(false);
+    fn send_off(&self, id: i64, bench: &str, goal: Goal, by: String) {
+        let (stop, stopped) = watch::channel(None);
         let (lab, bench) = (self.clone(), bench.to_owned());
-        let pilot = Pilot::new(lab.clone(), id, bench.clone(), stopped);
+        let pilot = Pilot::new(lab.clone(), id, bench.clone(), stopped, by);
         // The lock is held until the flight is entered, so that its end cannot come first.
         let mut flights = self.inner.flights.lock();
         let task = tokio::spawn(async move {
@@ -132,8 +133,9 @@ impl Lab {
     }
 
     /// Ends it after the step at hand; a run that is on ends as by `POST /runs/{id}/stop`.
-    pub async fn stop_autopilot(&self, id: i64) -> Answer<Autopilot> {
-        let told = self.inner.flights.lock().get(&id).is_some_and(|flight| flight.stop.send(true).is_ok());
+    pub async fn stop_autopilot(&self, id: i64, by: &str) -> Answer<Autopilot> {
+        let by = Some(by.to_owned());
+        let told = self.inner.flights.lock().get(&id).is_some_and(|flight| flight.stop.send(by).is_ok());
         let now = self.autopilot(id).await?;
         if !told {
             return Err(LabError::Over(format!("autopilot {id} is over: there is nothing to stop")));

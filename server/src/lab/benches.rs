@@ -31,13 +31,13 @@ impl Lab {
     }
 
     /// Ends a run on this bench at once, or secures the idle bench; nothing starts on it until somebody resets it.
-    pub async fn emergency_stop(&self, name: &str) -> Answer<Bench> {
-        tracing::warn!(bench = name, "software stop");
+    pub async fn emergency_stop(&self, name: &str, by: &str) -> Answer<Bench> {
+        tracing::warn!(bench = name, by, "software stop");
         let bench = self.handle(name)?;
         let run = bench.status().run;
-        bench.stop().await?;
+        bench.stop(by).await?;
         if self.inner.store.bench_block(name).await?.is_none() {
-            self.inner.store.stop_bench(name, run, "the software stop was pressed").await?;
+            self.inner.store.stop_bench(name, run, "the software stop was pressed", by).await?;
         }
         bench.refresh_later()?;
         self.bench(name)
@@ -57,7 +57,7 @@ impl Lab {
         Ok(entries.into_iter().map(safety_entry).collect())
     }
 
-    pub async fn acknowledge(&self, name: &str, reason: &str) -> Answer<Bench> {
+    pub async fn acknowledge(&self, name: &str, reason: &str, by: &str) -> Answer<Bench> {
         let bench = self.handle(name)?;
         if reason.trim().is_empty() {
             return Err(LabError::Invalid("give a reason: what was found and done at the bench".into()));
@@ -65,8 +65,8 @@ impl Lab {
         if self.inner.store.bench_block(name).await?.is_none() {
             return Err(LabError::Conflict(format!("bench {name} is not blocked: there is nothing to acknowledge")));
         }
-        self.inner.store.acknowledge_bench(name, reason.trim()).await?;
-        tracing::warn!(bench = name, reason, "block lifted by a person");
+        self.inner.store.acknowledge_bench(name, reason.trim(), by).await?;
+        tracing::warn!(bench = name, reason, by, "block lifted by a person");
         bench.refresh().await?;
         self.bench(name)
     }

@@ -10,7 +10,7 @@ use jointbench_procedure::{Plan, RunState};
 
 impl Lab {
     /// Starts a run that makes the steps that another one has left, behind what restores their history.
-    pub async fn continue_run(&self, id: i64) -> Answer<Run> {
+    pub async fn continue_run(&self, id: i64, by: &str) -> Answer<Run> {
         let record = self.inner.store.run(id).await?;
         let name = &record.procedure;
         match record.state {
@@ -47,7 +47,7 @@ impl Lab {
             }
             None => rest,
         };
-        self.launch(bench, rest).await
+        self.launch(bench, rest, by).await
     }
 
     /// A run behind those that it goes on with, the last first.

@@ -73,8 +73,8 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
 }
 
 pub(super) fn safety_entry(record: SafetyRecord) -> view::SafetyEntry {
-    let SafetyRecord { blocked, stopped, reason, run, at } = record;
-    view::SafetyEntry { blocked, stopped, reason, run, at }
+    let SafetyRecord { blocked, stopped, reason, run, by, at } = record;
+    view::SafetyEntry { blocked, stopped, reason, run, by, at }
 }
 
 pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
@@ -91,6 +91,7 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
         rows: record.rows,
         duration_s: record.duration_s.and_then(view::finite),
         simulated: record.simulated,
+        by: record.provenance.get("by").and_then(Value::as_str).map(str::to_owned),
         tags: record.tags.clone(),
         note: record.note.clone(),
         // Figures of a model that cannot be read any more are none.
@@ -133,11 +134,13 @@ fn sentence(kind: &EventKind) -> String {
         }
         EventKind::StepStarted { label, repeat, .. } => format!("{label} (repeat {})", repeat + 1),
         EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows", step + 1),
-        EventKind::Control { control: Control::Quit } => "the daemon was told to end".to_owned(),
-        EventKind::Control { control: Control::EStop } => "the software stop was pressed".to_owned(),
-        EventKind::Control { control } => {
-            let asked = serde_json::to_value(control).ok();
-            format!("a person asked: {}", asked.as_ref().and_then(Value::as_str).unwrap_or("control"))
+        EventKind::Control { control: Control::Quit, .. } => "the daemon was told to end".to_owned(),
+        EventKind::Control { control, by } => {
+            let asked = match control {
+                Control::EStop => "the software stop was pressed".to_owned(),
+                _ => format!("a person asked: {}", view::word(control)),
+            };
+            by.iter().fold(asked, |asked, by| format!("{asked} ({by})"))
         }
         EventKind::Fault { fault, recovered: true } => format!("{fault}; recovered"),
         EventKind::Fault { fault, recovered: false } => fault.to_string(),
@@ -163,6 +166,7 @@ pub(super) fn model(record: ModelRecord) -> Result<view::Model, LabError> {
         validation_rms: record.validation_rms,
         rms: record.rms,
         noise_floor_rms: record.noise_floor_rms,
+        by: record.by,
         created_at: record.created_at,
         options: record.options,
     })

@@ -10,6 +10,7 @@ mod error;
 mod excluding;
 mod experiment;
 mod identifications;
+mod log;
 mod models;
 mod notes;
 mod own_effects;
@@ -25,7 +26,7 @@ pub use convert::{bench_view, reread, run_event, safe_view, state_view};
 pub use error::LabError;
 pub use experiment::{Offer, next_run};
 pub use models::diagnose;
-pub use tokens::{Caller, Tokens};
+pub use tokens::{Caller, LOCAL, Tokens};
 pub use transfer::{ATTENTION, COPY_OF, FileFormat, ImportRequest};
 
 use crate::bench::BenchHandle;

@@ -19,6 +19,7 @@ impl Lab {
         effects: &[String],
         parent: Option<i64>,
         exclude: Option<Vec<Exclusion>>,
+        by: &str,
     ) -> Answer<Model> {
         let Some((&run, more_runs)) = runs.split_first() else {
             return Err(LabError::Invalid("name the run that the model is fitted to".into()));
@@ -74,6 +75,7 @@ impl Lab {
             noise_floor_rms,
             options: chosen,
             fit: reread(&fit)?,
+            by: by.to_owned(),
         };
         let record = self.inner.store.save_model(&new).await?;
         // Without them the version stands all the same; whoever asks for them is told why.

@@ -24,7 +24,9 @@ pub(super) struct Pilot {
     lab: Lab,
     id: i64,
     bench: String,
-    stop: watch::Receiver<bool>,
+    stop: watch::Receiver<Option<String>>,
+    /// What it does is kept under this name.
+    by: String,
     /// Runs that the models look at.
     runs: Vec<i64>,
     made: u32,
@@ -60,8 +62,8 @@ macro_rules! through {
 }
 
 impl Pilot {
-    pub fn new(lab: Lab, id: i64, bench: String, stop: watch::Receiver<bool>) -> Self {
-        Self { lab, id, bench, stop, runs: Vec::new(), made: 0, bench_time_s: 0.0 }
+    pub fn new(lab: Lab, id: i64, bench: String, stop: watch::Receiver<Option<String>>, by: String) -> Self {
+        Self { lab, id, bench, stop, by, runs: Vec::new(), made: 0, bench_time_s: 0.0 }
     }
 
     pub async fn fly(mut self, goal: Goal) {
@@ -169,7 +171,7 @@ impl Pilot {
             return Ok(Through::Cut(end));
         }
         let handle = self.lab.handle(&self.bench)?.clone();
-        let run = self.lab.start_run(&self.bench, &experiment.procedure, &experiment.parameters).await?;
+        let run = self.lab.start_run(&self.bench, &experiment.procedure, &experiment.parameters, &self.by).await?;
         let id = run.summary.id;
         self.made += 1;
         let step = AutopilotStep::new(
@@ -181,12 +183,12 @@ impl Pilot {
         let mut watch = handle.watch();
         let over = |_: &_| !handle.is_busy();
         let cut = tokio::select! {
-            _ = watch.wait_for(over) => false,
-            _ = self.stop.wait_for(|stop| *stop) => true,
+            _ = watch.wait_for(over) => None,
+            by = self.stop.wait_for(Option::is_some) => by.ok().and_then(|by| by.clone()),
         };
-        if cut {
+        if let Some(by) = cut {
             // It may have come to its end by itself in between.
-            let _ = self.lab.control(id, Control::Stop).await;
+            let _ = self.lab.control(id, Control::Stop, &by).await;
             // An error says that the thread has ended, and the run with it.
             let _ = watch.wait_for(over).await;
         }
@@ -222,7 +224,7 @@ impl Pilot {
             Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
             None => None,
         };
-        let model = self.lab.create_model(&self.runs, effects, parent, None).await?;
+        let model = self.lab.create_model(&self.runs, effects, parent, None, &self.by).await?;
         let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
         let found = self.diagnosed(&model, step).await?;
         Ok((model, found))
@@ -230,7 +232,7 @@ impl Pilot {
 
     async fn add(&mut self, before: &Model, best: &Suggestion) -> Answer<(Model, Finding)> {
         let effects: Vec<String> = before.effects.iter().cloned().chain([best.effect.clone()]).collect();
-        let model = self.lab.create_model(&self.runs, &effects, Some(before.id), None).await?;
+        let model = self.lab.create_model(&self.runs, &effects, Some(before.id), None, &self.by).await?;
         let tied = match best.confounded_with.as_slice() {
             [] => String::new(),
             rivals => format!(" (these runs cannot tell it from {})", rivals.join(", ")),
@@ -258,7 +260,8 @@ impl Pilot {
     }
 
     fn is_stopped(&self) -> Option<End> {
-        self.stop.borrow().then(|| End::new(AutopilotState::Stopped, "a person has ended it"))
+        let by = self.stop.borrow().clone()?;
+        Some(End::new(AutopilotState::Stopped, format!("a person has ended it ({by})")))
     }
 
     async fn keep(&self, step: AutopilotStep) -> Answer<()> {

@@ -92,7 +92,7 @@ impl Lab {
     }
 
     /// Keeps an exported model as a version of a run. Its numbers stay as they are; its errors are those on the run.
-    pub async fn import_model(&self, import: ModelImport) -> Answer<Model> {
+    pub async fn import_model(&self, import: ModelImport, by: &str) -> Answer<Model> {
         let file: ModelFile = serde_json::from_value(import.model.into())
             .map_err(|fault| LabError::Invalid(format!("this is no exported model: {fault}")))?;
         let fit = file.check()?;
@@ -124,6 +124,7 @@ impl Lab {
             noise_floor_rms: None,
             options: reread(&Options::default())?,
             fit: reread(&kept)?,
+            by: by.to_owned(),
         };
         let record = self.inner.store.save_model(&new).await?;
         tracing::info!(run.id = import.run, model.id = record.id, "model imported");

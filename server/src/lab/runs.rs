@@ -5,17 +5,23 @@ use crate::bench::BenchHandle;
 use crate::store::{NewRun, RunFilter, RunRecord, Search};
 use crate::view::{self, Run, RunEvent, RunList, Samples};
 use jointbench_instrument::{Meta, RunTable};
-use jointbench_procedure::{Control, Plan};
+use jointbench_procedure::{Control, Demand, Plan};
 use serde_json::{Map, Value, json};
 
 impl Lab {
     /// Plans, checks against the limits, and hands the plan to the thread of the bench.
-    pub async fn start_run(&self, bench: &str, procedure: &str, parameters: &Map<String, Value>) -> Answer<Run> {
+    pub async fn start_run(
+        &self,
+        bench: &str,
+        procedure: &str,
+        parameters: &Map<String, Value>,
+        by: &str,
+    ) -> Answer<Run> {
         let (bench, plan) = self.plan(bench, procedure, parameters).await?;
-        self.launch(bench, plan).await
+        self.launch(bench, plan, by).await
     }
 
-    pub(super) async fn launch(&self, bench: &BenchHandle, plan: Plan) -> Answer<Run> {
+    pub(super) async fn launch(&self, bench: &BenchHandle, plan: Plan, by: &str) -> Answer<Run> {
         let preview = plan.preview(&bench.facts());
         let failed: Vec<String> = preview
             .checks
@@ -45,9 +51,9 @@ impl Lab {
         if let Some(faults) = bench.status().faults() {
             return Err(LabError::Bench(format!("bench {} is not ready: {faults}", bench.name())));
         }
-        let run = self.inner.store.create_run(&new_run(bench, &plan)?).await?;
+        let run = self.inner.store.create_run(&new_run(bench, &plan, by)?).await?;
         let procedure = plan.procedure;
-        tracing::info!(run.id = run, bench = bench.name(), procedure, planned_s = plan.duration_s(), "run queued");
+        tracing::info!(run.id = run, bench = bench.name(), procedure, by, planned_s = plan.duration_s(), "run queued");
         claim.start(run, plan)?;
         self.run(run).await
     }
@@ -82,12 +88,14 @@ impl Lab {
         Ok(RunList { unclear: refused.map(|fault| fault.to_string()), ..found })
     }
 
-    pub async fn control(&self, id: i64, control: Control) -> Answer<Run> {
+    pub async fn control(&self, id: i64, control: Control, by: &str) -> Answer<Run> {
         let record = self.inner.store.run(id).await?;
         if record.state.is_final() {
             return Err(LabError::Over(format!("run {id} is over ({}): there is nothing to steer", record.state)));
         }
-        if !self.inner.benches.iter().any(|bench| bench.name() == record.bench && bench.control(control)) {
+        let demand = Demand { control, by: Some(by.to_owned()) };
+        let bench = self.inner.benches.iter().find(|bench| bench.name() == record.bench);
+        if !bench.is_some_and(|bench| bench.control(demand)) {
             return Err(LabError::Conflict(format!("run {id} is {}, and not to be steered now", record.state)));
         }
         self.run(id).await
@@ -155,11 +163,12 @@ impl Lab {
     }
 }
 
-fn new_run(bench: &BenchHandle, plan: &Plan) -> Answer<NewRun> {
+fn new_run(bench: &BenchHandle, plan: &Plan, by: &str) -> Answer<NewRun> {
     let description = bench.description();
     let status = bench.status();
     let provenance = json!({
         "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
+        "by": by,
         "bench_description": description.text,
         "limits": description.limits,
         "constants": description.constants,

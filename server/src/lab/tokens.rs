@@ -13,7 +13,7 @@ const LONGEST_NAME: usize = 40;
 /// So often it is kept that a token was used.
 const USED_EVERY: SignedDuration = SignedDuration::from_secs(60);
 /// Names of who comes without a token, and of those tokens that the daemon was started with.
-const LOCAL: &str = "local";
+pub const LOCAL: &str = "local";
 const OPERATOR: &str = "operator";
 const OBSERVER: &str = "observer";
 

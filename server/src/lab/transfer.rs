@@ -62,16 +62,16 @@ pub struct ImportRequest {
 
 impl Lab {
     /// Takes a file in as a run. It is read and checked whole before anything is kept, and kept in one transaction.
-    pub async fn import(&self, request: ImportRequest) -> Answer<Run> {
+    pub async fn import(&self, request: ImportRequest, by: &str) -> Answer<Run> {
         let name = request.name.clone().unwrap_or_else(|| request.file_name.clone());
         let source = json!({ "file": request.file_name, "map": request.map, "scale": request.scale });
         let table = tokio::task::spawn_blocking(move || read(&request))
             .await
             .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))??;
-        self.keep_table(&name, source, table).await
+        self.keep_table(&name, source, table, by).await
     }
 
-    async fn keep_table(&self, name: &str, mut source: serde_json::Value, table: RunTable) -> Answer<Run> {
+    async fn keep_table(&self, name: &str, mut source: serde_json::Value, table: RunTable, by: &str) -> Answer<Run> {
         let kind = table.kind().to_string();
         let attention = jointbench_model::prepare::attention(&table);
         if !attention.is_empty() {
@@ -87,6 +87,7 @@ impl Lab {
         }
         let provenance = json!({
             "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
+            "by": by,
             "imported": source,
         });
         let new = NewRun {

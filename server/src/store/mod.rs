@@ -30,7 +30,7 @@ pub use error::StoreError;
 pub use kept::Subject;
 pub use records::{
     AutopilotRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord, OwnEffectRecord,
-    RunFilter, RunRecord, SafetyRecord, TokenRecord, View, ViewColumn,
+    RunFilter, RunRecord, SafetyRecord, TokenRecord, VersionRecord, View, ViewColumn,
 };
 pub use search::Search;
 

@@ -1,7 +1,7 @@
 //! Model versions, a tree that only grows, and the diagnoses of its nodes.
 
 use super::runs::{exists, json, now};
-use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError};
+use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, VersionRecord};
 use jointbench_procedure::RunId;
 use serde_json::Value;
 use sqlx::Row;
@@ -24,6 +24,7 @@ fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
         validation_rms: row.try_get("validation_rms")?,
         noise_floor_rms: row.try_get("noise_floor_rms")?,
         options: json(row, "options")?,
+        by: row.try_get("who")?,
         created_at: row.try_get("created_at")?,
     })
 }
@@ -50,7 +51,7 @@ impl Store {
         };
         let row = sqlx::query(
             "INSERT INTO models (run, more_runs, excluded, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
-             noise_floor_rms, options, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
+             noise_floor_rms, options, who, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
         )
         .bind(new.run)
         .bind(serde_json::to_string(&new.more_runs)?)
@@ -66,6 +67,7 @@ impl Store {
         .bind(new.validation_rms)
         .bind(new.noise_floor_rms)
         .bind(serde_json::to_string(&new.options)?)
+        .bind(&new.by)
         .bind(now())
         .fetch_one(&self.writer)
         .await?;
@@ -91,6 +93,24 @@ impl Store {
         let rows =
             sqlx::query("SELECT * FROM models WHERE run = ? ORDER BY id").bind(run).fetch_all(&self.readers).await?;
         rows.iter().map(record).collect()
+    }
+
+    /// What was changed in the versions of a run, oldest first, without their fits.
+    pub async fn versions(&self, run: RunId) -> Result<Vec<VersionRecord>, StoreError> {
+        let query = "SELECT id, parent, added, removed, who, created_at FROM models WHERE run = ? ORDER BY id";
+        let rows = sqlx::query(query).bind(run).fetch_all(&self.readers).await?;
+        rows.iter()
+            .map(|row| {
+                Ok(VersionRecord {
+                    id: row.try_get("id")?,
+                    parent: row.try_get("parent")?,
+                    added: json(row, "added")?,
+                    removed: json(row, "removed")?,
+                    by: row.try_get("who")?,
+                    created_at: row.try_get("created_at")?,
+                })
+            })
+            .collect()
     }
 
     pub async fn save_diagnosis(&self, model: i64, diagnosis: &Value) -> Result<DiagnosisRecord, StoreError> {

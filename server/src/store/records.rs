@@ -107,6 +107,7 @@ pub struct NewModel {
     pub validation_rms: f64,
     pub noise_floor_rms: Option<f64>,
     pub options: Map<String, Value>,
+    pub by: String,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -127,6 +128,18 @@ pub struct ModelRecord {
     pub validation_rms: f64,
     pub noise_floor_rms: Option<f64>,
     pub options: Map<String, Value>,
+    pub by: Option<String>,
+    pub created_at: String,
+}
+
+/// What was changed in a model version, and by whom.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct VersionRecord {
+    pub id: i64,
+    pub parent: Option<i64>,
+    pub added: Vec<String>,
+    pub removed: Vec<String>,
+    pub by: Option<String>,
     pub created_at: String,
 }
 
@@ -159,6 +172,8 @@ pub struct SafetyRecord {
     pub stopped: bool,
     pub reason: String,
     pub run: Option<RunId>,
+    /// `None`: nobody, or nobody knows any more.
+    pub by: Option<String>,
     pub at: String,
 }
 

@@ -5,6 +5,8 @@ use super::{SafetyRecord, Store, StoreError};
 use jointbench_procedure::{RunId, Safe};
 use sqlx::SqliteConnection;
 
+type Row = (bool, bool, String, Option<RunId>, Option<String>, String);
+
 impl Store {
     /// Why the bench must not move, or `None`.
     pub async fn bench_block(&self, bench: &str) -> Result<Option<SafetyRecord>, StoreError> {
@@ -13,29 +15,29 @@ impl Store {
 
     /// The newest entries of a bench, newest first.
     pub async fn safety(&self, bench: &str, limit: u32) -> Result<Vec<SafetyRecord>, StoreError> {
-        let entries: Vec<(bool, bool, String, Option<RunId>, String)> = sqlx::query_as(
-            "SELECT blocked, stopped, reason, run, at FROM bench_safety WHERE bench = ? ORDER BY id DESC LIMIT ?",
+        let entries: Vec<Row> = sqlx::query_as(
+            "SELECT blocked, stopped, reason, run, who, at FROM bench_safety WHERE bench = ? ORDER BY id DESC LIMIT ?",
         )
         .bind(bench)
         .bind(limit)
         .fetch_all(&self.readers)
         .await?;
-        let record = |(blocked, stopped, reason, run, at)| SafetyRecord { blocked, stopped, reason, run, at };
+        let record = |(blocked, stopped, reason, run, by, at)| SafetyRecord { blocked, stopped, reason, run, by, at };
         Ok(entries.into_iter().map(record).collect())
     }
 
     pub async fn block_bench(&self, bench: &str, run: Option<RunId>, reason: &str) -> Result<(), StoreError> {
-        enter(&mut *self.writer.acquire().await?, bench, Word::Block, run, reason).await
+        enter(&mut *self.writer.acquire().await?, bench, Word::Block, run, reason, None).await
     }
 
     /// A person has pressed the software stop.
-    pub async fn stop_bench(&self, bench: &str, run: Option<RunId>, reason: &str) -> Result<(), StoreError> {
-        enter(&mut *self.writer.acquire().await?, bench, Word::Stop, run, reason).await
+    pub async fn stop_bench(&self, bench: &str, run: Option<RunId>, reason: &str, by: &str) -> Result<(), StoreError> {
+        enter(&mut *self.writer.acquire().await?, bench, Word::Stop, run, reason, Some(by)).await
     }
 
     /// A person has looked; `reason` is what they say about it.
-    pub async fn acknowledge_bench(&self, bench: &str, reason: &str) -> Result<(), StoreError> {
-        enter(&mut *self.writer.acquire().await?, bench, Word::Release, None, reason).await
+    pub async fn acknowledge_bench(&self, bench: &str, reason: &str, by: &str) -> Result<(), StoreError> {
+        enter(&mut *self.writer.acquire().await?, bench, Word::Release, None, reason, Some(by)).await
     }
 }
 
@@ -52,16 +54,20 @@ async fn enter(
     word: Word,
     run: Option<RunId>,
     reason: &str,
+    by: Option<&str>,
 ) -> Result<(), StoreError> {
-    sqlx::query("INSERT INTO bench_safety (bench, blocked, stopped, reason, run, at) VALUES (?, ?, ?, ?, ?, ?)")
-        .bind(bench)
-        .bind(word != Word::Release)
-        .bind(word == Word::Stop)
-        .bind(reason)
-        .bind(run)
-        .bind(now())
-        .execute(writer)
-        .await?;
+    sqlx::query(
+        "INSERT INTO bench_safety (bench, blocked, stopped, reason, run, who, at) VALUES (?, ?, ?, ?, ?, ?, ?)",
+    )
+    .bind(bench)
+    .bind(word != Word::Release)
+    .bind(word == Word::Stop)
+    .bind(reason)
+    .bind(run)
+    .bind(by)
+    .bind(now())
+    .execute(writer)
+    .await?;
     Ok(())
 }
 
@@ -75,7 +81,7 @@ pub(super) async fn keep_safe(writer: &mut SqliteConnection, run: RunId, safe: S
         .await?;
     if safe == Safe::UnsafeUnknown {
         let reason = format!("run {run} ended without the bench being known to be safe");
-        enter(writer, &bench, Word::Block, Some(run), &reason).await?;
+        enter(writer, &bench, Word::Block, Some(run), &reason, None).await?;
     }
     Ok(())
 }

@@ -25,6 +25,13 @@ impl Store {
         rows.iter().map(record).collect()
     }
 
+    /// Those that were made and revoked: when, what and by whom.
+    pub async fn told_of_tokens(&self) -> Result<Vec<(String, String, String)>, StoreError> {
+        let query = "SELECT made_at, 'token ' || name || ' made', made_by FROM tokens \
+            UNION ALL SELECT revoked_at, 'token ' || name || ' revoked', revoked_by FROM tokens WHERE revoked_at IS NOT NULL";
+        Ok(sqlx::query_as(query).fetch_all(&self.readers).await?)
+    }
+
     pub async fn save_token(&self, name: &str, access: &str, hash: &[u8], by: &str) -> Result<TokenRecord, StoreError> {
         let row =
             sqlx::query("INSERT INTO tokens (name, access, hash, made_at, made_by) VALUES (?, ?, ?, ?, ?) RETURNING *")

@@ -52,6 +52,8 @@ pub struct SafetyEntry {
     pub stopped: bool,
     pub reason: String,
     pub run: Option<i64>,
+    /// Name of the token, or `local`; `null` where no person did it, or it was kept by an older version.
+    pub by: Option<String>,
     #[schema(format = DateTime)]
     pub at: String,
 }

@@ -89,6 +89,8 @@ pub struct Model {
     pub validation_rms: f64,
     pub rms: f64,
     pub noise_floor_rms: Option<f64>,
+    /// Who made it: name of the token, or `local`.
+    pub by: Option<String>,
     #[schema(format = DateTime)]
     pub created_at: String,
     /// Filter and decimation settings of the fit.

@@ -52,6 +52,8 @@ pub struct RunSummary {
     pub rows: u64,
     pub duration_s: Option<f64>,
     pub simulated: bool,
+    /// Who started it or brought it in: name of the token, or `local`.
+    pub by: Option<String>,
     pub tags: Vec<String>,
     /// The last note.
     #[serde(default, skip_serializing_if = "Option::is_none")]

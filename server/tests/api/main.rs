@@ -6,6 +6,7 @@ mod disk;
 mod door;
 mod import;
 mod live;
+mod log;
 mod own_effects;
 mod problems;
 mod revisions;

@@ -13,7 +13,6 @@ export const api = {
 	acknowledge: (bench: string, reason: string) =>
 		ask('post', '/api/v1/bench/{bench}/acknowledge', { path: { bench }, body: { reason } }),
 	retry: (bench: string) => ask('post', '/api/v1/bench/{bench}/retry', { path: { bench } }),
-	safety: (bench: string, signal?: Signal) => ask('get', '/api/v1/bench/{bench}/safety', { path: { bench } }, signal),
 	stopBench: (bench: string, signal?: Signal) =>
 		ask('post', '/api/v1/bench/{bench}/stop', { path: { bench } }, signal),
 
@@ -22,6 +21,8 @@ export const api = {
 	preview: (id: string, bench: string, parameters: Values, signal?: Signal) =>
 		ask('post', '/api/v1/procedures/{id}/preview', { path: { id }, body: { bench, parameters } }, signal),
 
+	/** Newest first; of one run, where one is named. */
+	log: (run?: number, signal?: Signal) => ask('get', '/api/v1/log', { query: { run } }, signal),
 	runs: (query: { limit?: number; offset?: number; search?: string; typing?: boolean }, signal?: Signal) =>
 		ask('get', '/api/v1/runs', { query }, signal),
 	run: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}', { path: { id } }, signal),

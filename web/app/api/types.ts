@@ -19,6 +19,7 @@ export type Beside = Schemas['Beside'];
 export type Identification = Schemas['Identification'];
 export type IdentifiedQuantity = Schemas['Quantity'];
 export type LiveMessage = Schemas['LiveMessage'];
+export type LogEntry = Schemas['LogEntry'];
 export type Model = Schemas['Model'];
 export type NewAutopilot = Schemas['NewAutopilot'];
 export type Parameter = Schemas['FittedParameter'];

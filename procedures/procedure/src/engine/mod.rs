@@ -20,7 +20,7 @@ mod tick;
 mod torque;
 mod warmth;
 
-use crate::event::{Control, EventKind, Safe};
+use crate::event::{Demand, EventKind, Safe};
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::{RunState, Transition};
@@ -53,7 +53,7 @@ pub fn run(
     bench: &mut Bench,
     plan: &Plan,
     run: RunId,
-    controls: &Receiver<Control>,
+    controls: &Receiver<Demand>,
     recorder: &mut dyn Recorder,
 ) -> RunEnd {
     let mut session = Session::new(bench, plan, run, controls, recorder);

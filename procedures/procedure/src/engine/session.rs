@@ -10,7 +10,7 @@ use super::shaft::Shaft;
 use super::skew::Skews;
 use super::torque::Streaming;
 use crate::columns::Columns;
-use crate::event::{Control, EventKind};
+use crate::event::{Demand, EventKind};
 use crate::guard::Guard;
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
@@ -30,7 +30,7 @@ pub(super) struct Session<'a> {
     pub bench: &'a mut Bench,
     pub plan: &'a Plan,
     pub journal: Journal<'a>,
-    pub controls: &'a Receiver<Control>,
+    pub controls: &'a Receiver<Demand>,
     pub guard: Guard,
     pub pace: Pace,
     pub warm: Option<SteadyWatch>,
@@ -137,7 +137,7 @@ impl<'a> Session<'a> {
         bench: &'a mut Bench,
         plan: &'a Plan,
         run: RunId,
-        controls: &'a Receiver<Control>,
+        controls: &'a Receiver<Demand>,
         recorder: &'a mut dyn Recorder,
     ) -> Self {
         let now_s = bench.clock.now_s();

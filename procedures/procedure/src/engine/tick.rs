@@ -4,7 +4,7 @@ use super::arm::link_position_rad;
 use super::ending::Ending;
 use super::session::{Asked, FeltCurrent, RECOVERIES_PER_STEP, Session, Wish, reported};
 use crate::columns::{BrakeMoment, Moment, VELOCITY_STEP_RAD_S, to_time_step};
-use crate::event::{Control, EventKind};
+use crate::event::{Control, Demand, EventKind};
 use crate::guard::Sample;
 use crate::state::{RunState, Transition};
 use jointbench_instrument::FaultKind;
@@ -70,13 +70,13 @@ impl Session<'_> {
 
     pub(super) fn obey(&mut self, now_s: f64) -> Result<(), Ending> {
         loop {
-            let control = match self.controls.try_recv() {
-                Ok(control) => control,
+            let Demand { control, by } = match self.controls.try_recv() {
+                Ok(demand) => demand,
                 Err(TryRecvError::Empty) => return Ok(()),
                 Err(TryRecvError::Disconnected) if self.journal.state() == RunState::Securing => return Ok(()),
                 Err(TryRecvError::Disconnected) => return Err(Ending::Abandoned),
             };
-            self.journal.tell(now_s, EventKind::Control { control });
+            self.journal.tell(now_s, EventKind::Control { control, by });
             match control {
                 Control::EStop => return Err(Ending::EStopped),
                 Control::Abort => return Err(Ending::Aborted),

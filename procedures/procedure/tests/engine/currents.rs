@@ -65,7 +65,7 @@ fn a_ramp_is_made_again_from_its_rest_after_a_pause_and_left_by_an_abort() {
         let (fakes, mut bench) = Fakes::new(move |_, world| {
             while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
                 // A run that has ended listens no more.
-                let _ = sender.send(control);
+                let _ = sender.send(control.into());
             }
             Ok(())
         });

@@ -156,7 +156,7 @@ pub fn play_with(
     fakes: &Fakes,
     bench: &mut Bench,
     plan: &Plan,
-    controls: &Receiver<Control>,
+    controls: &Receiver<Demand>,
     prepare: impl FnOnce(&mut Ledger),
 ) -> Done {
     let mut ledger = Ledger::new(fakes);
@@ -171,14 +171,14 @@ pub fn play_controlled(controls: &[(f64, Control)]) -> Done {
 }
 
 pub fn play_controlled_at(rate_hz: f64, controls: &[(f64, Control)]) -> Done {
-    let (sender, receiver): (Sender<Control>, _) = channel();
+    let (sender, receiver): (Sender<Demand>, _) = channel();
     let mut due = controls.to_vec();
     due.sort_by(|a, b| a.0.total_cmp(&b.0));
     due.reverse();
     let (fakes, mut bench) = Fakes::new(move |_, world| {
         while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
             // A run that has ended listens no more.
-            let _ = sender.send(control);
+            let _ = sender.send(control.into());
         }
         Ok(())
     });

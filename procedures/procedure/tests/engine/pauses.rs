@@ -111,7 +111,7 @@ fn a_sweep_begins_again_with_a_demagnetised_brake() {
     let (fakes, mut bench) = Fakes::new(move |_, world| {
         while let Some((_, control)) = due.pop_if(|(at_s, _)| world.now_s >= 100.0 + *at_s) {
             // A run that has ended listens no more.
-            let _ = sender.send(control);
+            let _ = sender.send(control.into());
         }
         Ok(())
     });

@@ -22,7 +22,7 @@ type Acknowledged = (Option<Trace>, Done);
 
 /// Steers a run at some of its steps, and resumes it soon after it has paused.
 struct Steer {
-    controls: Sender<Control>,
+    controls: Sender<Demand>,
     due: Due,
     step: (usize, f64),
     waited: u32,
@@ -34,7 +34,7 @@ struct Steer {
 }
 
 impl Steer {
-    fn new(plan: &Plan, due: Due) -> (Self, Receiver<Control>, Receiver<Acknowledged>) {
+    fn new(plan: &Plan, due: Due) -> (Self, Receiver<Demand>, Receiver<Acknowledged>) {
         let ((controls, heard), (killed, left)) = (channel(), channel());
         let continues = Continues::of(&plan.meta);
         let done = Done { steps: continues.map_or(0, |continues| continues.from_step), ..Done::default() };
@@ -73,13 +73,13 @@ impl Recorder for Steer {
         if live.state == RunState::Paused {
             self.waited += 1;
             if self.waited.is_multiple_of(5) {
-                self.controls.send(Control::Resume).unwrap();
+                self.controls.send(Control::Resume.into()).unwrap();
             }
         } else if self.due.get(&step).is_some_and(|(after_s, _)| elapsed_s - self.step.1 >= *after_s)
             && let Some((_, control)) = self.due.remove(&step)
         {
             match control {
-                Some(control) => self.controls.send(control).unwrap(),
+                Some(control) => self.controls.send(control.into()).unwrap(),
                 None => {
                     self.killed.send((self.rows.take(), self.done.clone())).unwrap();
                     // Nothing is ever done again: no ramp, no securing.

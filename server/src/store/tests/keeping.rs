@@ -206,6 +206,7 @@ fn model(run: RunId, parent: Option<i64>, effects: &[&str]) -> NewModel {
         validation_rms: 0.0125,
         noise_floor_rms: None,
         options: json!({"decimation": 10}).as_object().unwrap().clone(),
+        by: "Anna".into(),
     }
 }
 
@@ -269,7 +270,7 @@ fn an_unsafe_end_blocks_the_bench_until_a_person_has_looked() {
         let block = store.bench_block("joint-a").await.unwrap().unwrap();
         assert_eq!(block.run, Some(run));
         assert_eq!(store.bench_block("joint-b").await.unwrap(), None);
-        store.acknowledge_bench("joint-a", "brake is off, shaft turns freely").await.unwrap();
+        store.acknowledge_bench("joint-a", "brake is off, shaft turns freely", "Anna").await.unwrap();
         assert_eq!(store.bench_block("joint-a").await.unwrap(), None);
         store.block_bench("joint-a", None, "cover open").await.unwrap();
         assert_eq!(store.bench_block("joint-a").await.unwrap().unwrap().reason, "cover open");

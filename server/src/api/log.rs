@@ -1,0 +1,24 @@
+//! What has happened.
+
+use super::extract::{Answer, Json, Query};
+use super::problem::Refusals;
+use crate::lab::Lab;
+use crate::view::LogEntry;
+use axum::extract::State;
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct LogQuery {
+    /// What is about this run alone; the benches and the newest runs where left out.
+    pub run: Option<i64>,
+}
+
+/// What has happened and who did it, newest first: safety records, journals of runs, versions of their models, tokens
+#[utoipa::path(get, path = "/log", operation_id = "log", tag = "daemon", params(LogQuery),
+    responses((status = 200, description = "The entries", body = Vec<LogEntry>), Refusals))]
+pub async fn log(State(lab): State<Lab>, Query(query): Query<LogQuery>) -> Answer<Vec<LogEntry>> {
+    Ok(Json(lab.log(query.run).await?))
+}

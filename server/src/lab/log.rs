@@ -1,0 +1,130 @@
+//! What has happened, in one list: the benches' safety records, the journals of runs, the versions of their models, and tokens.
+
+use super::convert::run_event;
+use super::{Answer, Lab, LabError};
+use crate::store::{RunFilter, RunRecord, SafetyRecord};
+use crate::view::{Effect, LogEntry};
+use jiff::{SignedDuration, Timestamp};
+
+/// So many of the newest runs are told of, and so much of each bench's safety record.
+const RUNS: u32 = 12;
+const SAFETY: u32 = 100;
+
+impl Lab {
+    /// Newest first: of one run, or of the benches and the newest runs.
+    pub async fn log(&self, run: Option<i64>) -> Answer<Vec<LogEntry>> {
+        let store = &self.inner.store;
+        let runs = match run {
+            Some(run) => vec![store.run(run).await?],
+            None => store.runs(&RunFilter { limit: RUNS, ..RunFilter::default() }).await?.1,
+        };
+        let mut log = Vec::new();
+        for bench in &self.inner.benches {
+            let record = store.safety(bench.name(), SAFETY).await?;
+            let told = record.into_iter().filter(|entry| run.is_none() || entry.run == run);
+            log.extend(told.map(|entry| of_bench(bench.name(), entry)));
+        }
+        if run.is_none() {
+            log.extend(self.token_log().await?);
+        }
+        let effects = self.effects(None).await?;
+        for run in &runs {
+            self.tell_run(run, &effects, &mut log).await?;
+        }
+        // What happened at once stays in its order.
+        log.sort_by(|a, b| a.at.cmp(&b.at));
+        log.reverse();
+        Ok(log)
+    }
+
+    async fn tell_run(&self, run: &RunRecord, effects: &[Effect], log: &mut Vec<LogEntry>) -> Answer<()> {
+        let of_run = LogEntry {
+            at: run.created_at.clone(),
+            bench: Some(run.bench.clone()),
+            run: Some(run.id),
+            procedure: Some(run.procedure.clone()),
+            ..LogEntry::default()
+        };
+        let (kind, text) = match run.procedure.as_str() {
+            "import" => ("imported", "brought in as a file"),
+            _ => ("started", "started"),
+        };
+        let by = run.provenance.get("by").and_then(|by| by.as_str()).map(str::to_owned);
+        log.push(LogEntry { kind: kind.into(), text: text.into(), by, ..of_run.clone() });
+        for record in self.inner.store.events(run.id, 0).await? {
+            let event = run_event(record);
+            log.push(LogEntry {
+                at: wall(run, event.at_s)?,
+                grave: matches!(event.kind.as_str(), "fault" | "breach"),
+                kind: event.kind,
+                text: event.text,
+                sequence: Some(event.sequence),
+                at_s: Some(event.at_s),
+                ..of_run.clone()
+            });
+        }
+        let title = |id: &String| effects.iter().find(|one| one.id == *id).map_or(id.clone(), |one| one.title.clone());
+        let titles = |ids: &[String]| ids.iter().map(title).collect::<Vec<_>>().join(", ");
+        for version in self.inner.store.versions(run.id).await? {
+            let mut changes = Vec::new();
+            for (what, effects) in [("added", &version.added), ("removed", &version.removed)] {
+                if !effects.is_empty() {
+                    changes.push(format!("{} {what}", titles(effects)));
+                }
+            }
+            let what = match (version.parent, changes.as_slice()) {
+                (None, _) => format!("fitted: {}", titles(&version.added)),
+                (Some(_), []) => "fitted again".to_owned(),
+                _ => changes.join("; "),
+            };
+            log.push(LogEntry {
+                at: version.created_at,
+                kind: "model".into(),
+                text: format!("model {}, {what}", version.id),
+                by: version.by,
+                model: Some(version.id),
+                ..of_run.clone()
+            });
+        }
+        Ok(())
+    }
+
+    async fn token_log(&self) -> Answer<Vec<LogEntry>> {
+        let told = |(at, text, by): (String, String, String)| LogEntry {
+            at,
+            kind: "token".into(),
+            text,
+            by: Some(by),
+            ..LogEntry::default()
+        };
+        Ok(self.inner.store.told_of_tokens().await?.into_iter().map(told).collect())
+    }
+}
+
+fn of_bench(bench: &str, entry: SafetyRecord) -> LogEntry {
+    let kind = match (entry.blocked, entry.stopped) {
+        (true, true) => "stopped",
+        (true, false) => "blocked",
+        (false, _) => "reset",
+    };
+    LogEntry {
+        at: entry.at,
+        kind: kind.into(),
+        text: format!("{kind}: {}", entry.reason),
+        by: entry.by,
+        bench: Some(bench.to_owned()),
+        run: entry.run,
+        grave: entry.blocked,
+        ..LogEntry::default()
+    }
+}
+
+/// When on the wall's clock something of a run happened.
+fn wall(run: &RunRecord, at_s: f64) -> Answer<String> {
+    let read = |text: &String| {
+        text.parse::<Timestamp>().map_err(|fault| LabError::Internal(format!("run {} at {text}: {fault}", run.id)))
+    };
+    let at = read(&run.created_at)? + SignedDuration::from_secs_f64(at_s);
+    let end = run.finished_at.as_ref().map(read).transpose()?;
+    Ok(format!("{:.3}", end.map_or(at, |end| at.min(end))))
+}

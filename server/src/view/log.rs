@@ -1,0 +1,31 @@
+//! What has happened.
+
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// One line of the log.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
+pub struct LogEntry {
+    /// A mock bench without a pace is ahead of the clock on the wall: what it does is told at the end of its run at the latest.
+    #[schema(format = DateTime)]
+    pub at: String,
+    /// `stopped`, `blocked` or `reset` of a bench; `started`, `imported` or `model` of a run; the kind of an entry of the run's
+    /// journal; `token`.
+    pub kind: String,
+    /// One plain sentence.
+    pub text: String,
+    /// Who did it: name of the token, or `local`.
+    pub by: Option<String>,
+    pub bench: Option<String>,
+    pub run: Option<i64>,
+    /// Of the run.
+    pub procedure: Option<String>,
+    /// The version that was made.
+    pub model: Option<i64>,
+    /// Number in the run's journal.
+    pub sequence: Option<u64>,
+    /// Since the start of the run, on the bench's clock.
+    pub at_s: Option<f64>,
+    /// A stop, a fault or a broken limit.
+    pub grave: bool,
+}

@@ -1,0 +1,56 @@
+//! What has happened, and who did it.
+
+use crate::daemon::{BENCH, SHORT_RUN, TestDaemon};
+use serde_json::{Value, json};
+
+fn told(log: &Value, kind: &str) -> Vec<(String, Option<String>)> {
+    let of_kind = log.as_array().unwrap().iter().filter(|entry| entry["kind"] == kind);
+    of_kind.map(|one| (one["text"].as_str().unwrap().to_owned(), one["by"].as_str().map(str::to_owned))).collect()
+}
+
+#[test]
+fn the_log_tells_who_did_what() {
+    let daemon = TestDaemon::start_with(Some(4.0), |_| {});
+    let (_, made) = daemon.post("/api/v1/tokens", r#"{"name": "Anna", "access": "full"}"#);
+    let bearer = format!("Bearer {}", made["secret"].as_str().unwrap());
+    let anna = |path: &str, body: &Value| {
+        let headers = [("authorization", &*bearer), ("content-type", "application/json")];
+        let (status, answer) = daemon.post_with(&format!("/api/v1{path}"), body.to_string().as_bytes(), &headers);
+        assert!(status < 300, "{path}: {answer}");
+        answer
+    };
+    let run = anna("/runs", &serde_json::from_str(SHORT_RUN).unwrap());
+    let (id, at) = (run["id"].as_i64().unwrap(), format!("/api/v1/runs/{}", run["id"]));
+    assert_eq!((&run["by"], &run["provenance"]["by"]), (&"Anna".into(), &"Anna".into()));
+    daemon.wait_for(&at, |run| run["state"] == "running");
+    assert_eq!(daemon.post(&format!("{at}/pause"), "").0, 200);
+    daemon.wait_for(&at, |run| run["state"] == "paused");
+    anna(&format!("/runs/{id}/resume"), &Value::Null);
+    assert_eq!(daemon.wait_for_end(id)["state"], "completed");
+    let first = anna("/models", &json!({"run": id, "effects": ["coulomb", "viscous", "direction_offset"]}));
+    let less = json!({"run": id, "effects": ["coulomb", "viscous"], "parent": first["id"]}).to_string();
+    let (status, less) = daemon.post("/api/v1/models", &less);
+    assert_eq!((status, &less["by"]), (201, &"local".into()), "{less}");
+    anna(&format!("/bench/{BENCH}/stop"), &Value::Null);
+    let reset = format!("/api/v1/bench/{BENCH}/acknowledge");
+    assert_eq!(daemon.post(&reset, r#"{"reason": "looked at it"}"#).0, 200);
+
+    let (_, log) = daemon.get("/api/v1/log");
+    let said = |text: &str, by: &str| (text.to_owned(), Some(by.to_owned()));
+    assert_eq!(told(&log, "started"), [said("started", "Anna")], "{log}");
+    assert_eq!(told(&log, "stopped"), [said("stopped: the software stop was pressed", "Anna")]);
+    assert_eq!(told(&log, "reset"), [said("reset: looked at it", "local")]);
+    assert_eq!(told(&log, "token"), [said("token Anna made", "local")]);
+    let models = told(&log, "model");
+    assert!(models[0].0.ends_with(" removed") && models[0].1.as_deref() == Some("local"), "{models:?}");
+    assert!(models[1].0.contains("fitted: Coulomb") && models[1].1.as_deref() == Some("Anna"), "{models:?}");
+    let asked: Vec<String> = told(&log, "control").into_iter().map(|(text, _)| text).collect();
+    assert_eq!(asked, ["a person asked: resume (Anna)", "a person asked: pause (local)"]);
+    let moments: Vec<&str> = log.as_array().unwrap().iter().map(|entry| entry["at"].as_str().unwrap()).collect();
+    assert!(moments.is_sorted_by(|a, b| a >= b), "newest first: {moments:?}");
+
+    let (_, of_run) = daemon.get(&format!("/api/v1/log?run={id}"));
+    let kinds = |kind: &str| told(&of_run, kind).len();
+    assert_eq!((kinds("started"), kinds("model"), kinds("token"), kinds("reset")), (1, 2, 0, 0), "{of_run}");
+    assert_eq!(daemon.get("/api/v1/log?run=77").0, 404);
+}
