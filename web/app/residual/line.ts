@@ -21,10 +21,11 @@ export function seen(points: readonly Point[], bins: Bins, scale: Place): (Point
 /** There are points enough for a mean. */
 export const says = (p: Point) => p.n >= ENOUGH && Number.isFinite(p.se);
 
-/** Half height of an axis that shows all these curves. */
+/** Half height of an axis that shows all these curves. How unsure a few means are does not make the others small. */
 export function reach(curves: readonly (readonly Point[])[]): number {
-	const sizes = curves.flatMap((points) => points.filter(says).map((p) => Math.abs(p.mean) + p.se));
-	return Math.max(1e-12, ...sizes) * 1.15;
+	const points = curves.flatMap((curve) => curve.filter(says));
+	const usual = points.map((p) => p.se).sort((a, b) => a - b)[points.length >> 1] ?? 0;
+	return Math.max(1e-12, ...points.map((p) => Math.abs(p.mean) + Math.min(2 * p.se, 2 * usual))) * 1.1;
 }
 
 /** Share of each bin's points that are chosen. */
