@@ -74,6 +74,7 @@ fn described(description: &BenchDescription, asked: &Asked) -> Instrument {
         identity: asked.identity.clone().ok().map(Into::into),
         fault: asked.identity.as_ref().err().map(ToString::to_string),
         since: asked.identity.is_err().then(|| Timestamp::now().to_string()),
+        faults: Vec::new(),
     }
 }
 
@@ -88,6 +89,7 @@ fn unreached(description: &BenchDescription, fault: String) -> Instrument {
         identity: None,
         fault: Some(fault),
         since: Some(Timestamp::now().to_string()),
+        faults: Vec::new(),
     }
 }
 

@@ -1,12 +1,12 @@
 //! Keeps what a run brings: durable in the store first, then shown to whoever watches.
 
-use super::status::{Status, readings};
+use super::status::{Met, Status, readings};
 use super::thread::Start;
 use crate::lab::{run_event, state_view};
 use crate::live::Rows;
 use crate::view::{BenchState, LiveMessage, Progress};
+use jiff::Timestamp;
 use jointbench_devices::MockBench;
-use jointbench_instrument::Fault;
 use jointbench_procedure::{Commit, EventKind, Live, Recorder, RecorderFault, RunId, RunState};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
@@ -26,8 +26,7 @@ pub(super) struct StoreRecorder<'a> {
     told_progress: Option<Instant>,
     began: Instant,
     state: RunState,
-    /// Of instruments that did not come back.
-    faults: Vec<Fault>,
+    faults: Vec<Met>,
 }
 
 impl<'a> StoreRecorder<'a> {
@@ -42,7 +41,7 @@ impl<'a> StoreRecorder<'a> {
         Self { start, status, runtime, mock, run, told_events, told_progress, began, state, faults: Vec::new() }
     }
 
-    pub fn into_faults(self) -> Vec<Fault> {
+    pub fn into_faults(self) -> Vec<Met> {
         self.faults
     }
 
@@ -99,7 +98,9 @@ impl Recorder for StoreRecorder<'_> {
         let Commit { run, state, events, rows } = commit;
         let store = &self.start.store;
         self.faults.extend(events.iter().filter_map(|event| match &event.kind {
-            EventKind::Fault { fault, recovered: false } => Some(fault.clone()),
+            EventKind::Fault { fault, recovered } => {
+                Some(Met { at: Timestamp::now(), fault: fault.clone(), recovered: *recovered })
+            }
             _ => None,
         }));
         if let Some(mock) = self.mock {

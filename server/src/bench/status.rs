@@ -1,9 +1,19 @@
 //! What a bench thread tells of itself.
 
-use crate::view::{BenchState, Blocked, Instrument, Progress};
+use crate::view::{BenchState, Blocked, Instrument, InstrumentFault, Progress};
 use jiff::Timestamp;
 use jointbench_instrument::limits::Limited;
 use jointbench_instrument::{Fault, Trace};
+
+/// So many of the last faults of an instrument are told.
+const FAULTS: usize = 5;
+
+/// A fault that a run has met.
+pub(super) struct Met {
+    pub at: Timestamp,
+    pub fault: Fault,
+    pub recovered: bool,
+}
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Status {
@@ -35,13 +45,32 @@ impl Status {
         self.readings.iter().find(|(limited, _)| *limited == quantity).map(|(_, value)| *value)
     }
 
-    /// A run has ended with a fault of an instrument, which is not ready until it was tried again.
-    pub(super) fn found_wanting(&mut self, fault: &Fault) {
+    /// A run has met a fault of an instrument, which is not ready until it was tried again where it did not come back.
+    pub(super) fn met(&mut self, Met { at, fault, recovered }: &Met) {
         if let Some(instrument) = self.instruments.iter_mut().find(|one| one.name == fault.instrument) {
-            instrument.ready = false;
-            instrument.fault = Some(fault.to_string());
-            instrument.since.get_or_insert_with(|| Timestamp::now().to_string());
+            keep(instrument, *at, fault.to_string());
+            if !recovered {
+                instrument.ready = false;
+                instrument.fault = Some(fault.to_string());
+                instrument.since.get_or_insert_with(|| at.to_string());
+            }
         }
+    }
+
+    /// The instruments as they were found by asking them. What was wrong before stays known.
+    pub(super) fn found(&mut self, mut instruments: Vec<Instrument>) {
+        for instrument in &mut instruments {
+            let before = self.instruments.iter().find(|before| before.role == instrument.role);
+            instrument.faults = before.map(|before| before.faults.clone()).unwrap_or_default();
+            let Some(fault) = instrument.fault.clone() else { continue };
+            if let Some(since) = before.and_then(|before| before.since.clone()) {
+                instrument.since = Some(since);
+            }
+            if before.is_none_or(|before| before.fault.as_ref() != Some(&fault)) {
+                keep(instrument, Timestamp::now(), fault);
+            }
+        }
+        self.instruments = instruments;
     }
 
     /// The faults of the instruments, in one sentence.
@@ -49,6 +78,11 @@ impl Status {
         let faults: Vec<&str> = self.instruments.iter().filter_map(|i| i.fault.as_deref()).collect();
         (!faults.is_empty()).then(|| faults.join("; "))
     }
+}
+
+fn keep(instrument: &mut Instrument, at: Timestamp, text: String) {
+    instrument.faults.insert(0, InstrumentFault { at: format!("{at:.3}"), text });
+    instrument.faults.truncate(FAULTS);
 }
 
 /// The last row, as the limits see it.

@@ -173,15 +173,9 @@ impl Owner {
                 Some(fault) => tracing::warn!(bench = self.name(), name, port, fault, "instrument not ready"),
             }
         }
-        let mut instruments = opened.instruments.clone();
+        let instruments = opened.instruments.clone();
         self.opened = Some(opened);
-        self.change(|status| {
-            for instrument in instruments.iter_mut().filter(|instrument| !instrument.ready) {
-                let before = status.instruments.iter().find(|before| before.role == instrument.role);
-                instrument.since = before.and_then(|before| before.since.clone()).or(instrument.since.take());
-            }
-            status.instruments = instruments;
-        });
+        self.change(|status| status.found(instruments));
         self.is_open()
     }
 
@@ -200,7 +194,7 @@ impl Owner {
             }
         }
         let all = instruments.iter().all(|instrument| instrument.ready);
-        self.change(|status| status.instruments = instruments);
+        self.change(|status| status.found(instruments));
         all
     }
 
@@ -217,7 +211,7 @@ impl Owner {
         self.unkept.push((run, end.clone()));
         self.keep_ends();
         self.block_unless_safe(end.safe, end.reason.as_deref(), Some(run));
-        self.change(|status| faults.iter().for_each(|fault| status.found_wanting(fault)));
+        self.change(|status| faults.iter().for_each(|met| status.met(met)));
         // Free before it is told: whoever hears of the end may start the next run.
         lock(&self.start.slot).take();
         self.rest();

@@ -73,6 +73,16 @@ pub struct Instrument {
     /// Since when it is not ready.
     #[schema(format = DateTime)]
     pub since: Option<String>,
+    /// The last of what was wrong since the daemon was started, newest first, what came back by itself too.
+    pub faults: Vec<InstrumentFault>,
+}
+
+/// What was wrong with an instrument.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct InstrumentFault {
+    #[schema(format = DateTime)]
+    pub at: String,
+    pub text: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

@@ -99,5 +99,7 @@ fn an_instrument_that_was_lost_in_a_run_is_not_ready_until_a_retry_finds_it() {
         std::thread::sleep(Duration::from_millis(100));
     };
     assert_eq!((&bench["state"], &lost(&bench)["fault"]), (&"idle".into(), &Value::Null), "{bench}");
+    let known = lost(&bench)["faults"].to_string();
+    assert!(known.contains("port lost") && known.contains("cannot be opened"), "what was wrong stays known: {known}");
     assert_eq!(daemon.post("/api/v1/runs", SHORT_RUN).0, 201);
 }
