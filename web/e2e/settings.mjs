@@ -28,3 +28,22 @@ export async function makeAndRevoke(page, another, base) {
 	await guest.waitForFunction(() => !document.body.innerText.includes('your token only reads'), null, { timeout: PATIENCE_MS }).catch(() => expect(false, 'a page whose token was revoked goes on as if it had one'));
 	await guest.close();
 }
+
+/** Applies a run's brake to its bench, sees there and in the log who did it, and leaves it to the last complete run again. */
+export async function applyAndGoBack(page, base, run) {
+	await page.goto(`${base}/runs/${run}`);
+	await page.getByText('Apply to bench …').click({ timeout: PATIENCE_MS });
+	expect((await page.getByRole('table', { name: 'What changes on the bench' }).locator('tbody tr').count()) > 2, 'what is applied is not shown before');
+	await page.getByRole('button', { name: /^Apply to / }).click();
+	await page.getByRole('button', { name: 'The next runs use it' }).click();
+	await page.locator(`[data-applied="${run}"]`).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the run does not say that it is applied'));
+	await page.goto(`${base}/settings`);
+	const row = page.locator(`[data-calibration="${run}"]`);
+	await row.getByText('holds').waitFor({ timeout: PATIENCE_MS });
+	await audit(page, 'settings with a calibration');
+	await page.getByRole('button', { name: 'Use the last complete run' }).click();
+	await page.getByRole('button', { name: 'Use it', exact: true }).click();
+	await row.getByRole('button', { name: `Go back to run ${run}` }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'there is no way back to what was applied'));
+	await page.goto(`${base}/log`);
+	await page.getByText(`brake_hysteresis of run ${run} applied`).filter({ hasText: '(local)' }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the log does not tell who applied what'));
+}

@@ -2,6 +2,7 @@
 
 mod autopilots;
 mod bench;
+mod calibrations;
 mod dashboard;
 mod door;
 mod extract;
@@ -87,6 +88,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(bench::retry))
         .routes(routes!(bench::description))
         .routes(routes!(bench::safety))
+        .routes(routes!(calibrations::list, calibrations::apply))
         .routes(routes!(bench::instruments))
         .routes(routes!(procedures::list))
         .routes(routes!(procedures::preview))

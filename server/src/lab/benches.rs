@@ -1,5 +1,6 @@
 //! Benches and what they can be asked to do.
 
+use super::calibrations::BRAKE_MODEL;
 use super::convert::{bench_view, safety_entry};
 use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
@@ -100,37 +101,43 @@ impl Lab {
         })?;
         let mut facts = bench.facts();
         let values = Values::parse(procedure.schema(), parameters).map_err(PlanFault::from)?;
+        let mut source = None;
         if let Some(run) = procedure.brake_model(&values) {
-            facts.brake_model = self.brake_model(bench.name(), i64::from(run)).await?;
+            (source, facts.brake_model) = self.brake_model(bench.name(), i64::from(run)).await?.unzip();
         }
-        Ok((bench, procedure.plan(parameters, &facts)?))
+        let mut plan = procedure.plan(parameters, &facts)?;
+        if let Some(run) = source {
+            plan.meta.other.insert("brake_model_of_run".into(), run.into());
+        }
+        Ok((bench, plan))
     }
 
-    /// What a run of `brake_hysteresis` has found of this bench's brake; run 0 is the last one that was completed. `None`
-    /// where there is none yet.
-    async fn brake_model(&self, bench: &str, run: i64) -> Answer<Option<BrakeModel>> {
-        const SOURCE: &str = "brake_hysteresis";
-        let record = match run {
-            0 => {
-                let search = Some(format!("procedure:{SOURCE} state:completed"));
+    /// What a run of `brake_hysteresis` has found of this bench's brake; run 0 is the one that is applied to the bench, or the
+    /// last one that was completed. `None` where there is none yet.
+    async fn brake_model(&self, bench: &str, run: i64) -> Answer<Option<(i64, BrakeModel)>> {
+        let applied = self.inner.store.calibration(bench, BRAKE_MODEL).await?;
+        let record = match (run, applied) {
+            (0, Some(run)) => Some(self.inner.store.run(run).await?),
+            (0, None) => {
+                let search = Some(format!("procedure:{BRAKE_MODEL} state:completed"));
                 let (_, runs) = self.inner.store.runs(&RunFilter { limit: RECENT, offset: 0, search }).await?;
                 runs.into_iter().find(|run| run.bench == bench)
             }
-            id => Some(self.inner.store.run(id).await?),
+            (id, _) => Some(self.inner.store.run(id).await?),
         };
         let Some(record) = record else { return Ok(None) };
         let id = record.id;
-        if record.bench != bench || record.procedure != SOURCE {
+        if record.bench != bench || record.procedure != BRAKE_MODEL {
             return Err(LabError::Invalid(format!(
-                "run {id} is no {SOURCE} of bench {bench}: name one, or 0 for the last"
+                "run {id} is no {BRAKE_MODEL} of bench {bench}: name one, or 0 for the last"
             )));
         }
         let table = self.measurement(id).await?;
         let model = tokio::task::spawn_blocking(move || brake_model(&table))
             .await
             .map_err(|fault| LabError::Internal(format!("the brake model of run {id} failed: {fault}")))?;
-        let missing = || LabError::Invalid(format!("run {id} ended before it had a model: make {SOURCE} again"));
-        model.map(Some).ok_or_else(missing)
+        let missing = || LabError::Invalid(format!("run {id} ended before it had a model: make {BRAKE_MODEL} again"));
+        model.map(|model| Some((id, model))).ok_or_else(missing)
     }
 
     pub(super) async fn wait_until_secured(&self) {

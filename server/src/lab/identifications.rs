@@ -14,12 +14,13 @@ impl Lab {
     /// What earlier runs have found with which this one can be compared, newest first. A run of which this version makes
     /// nothing is left out.
     pub async fn earlier(&self, id: i64) -> Answer<Vec<Earlier>> {
-        self.inner.store.run(id).await?;
+        let record = self.inner.store.run(id).await?;
+        let applied = self.inner.store.calibration(&record.bench, &record.procedure).await?;
         let _turn = self.inner.earlier.lock().await;
         let mut told = Vec::new();
-        for (run, created_at) in self.inner.store.earlier(id, EARLIER).await? {
+        for (run, created_at) in self.inner.store.earlier(id, applied, EARLIER).await? {
             match self.quantities(run).await {
-                Ok(quantities) => told.push(Earlier { run, created_at, quantities }),
+                Ok(quantities) => told.push(Earlier { run, created_at, holds: applied == Some(run), quantities }),
                 Err(LabError::NotFound(_) | LabError::Invalid(_)) => {}
                 Err(fault) => return Err(fault),
             }

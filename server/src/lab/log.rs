@@ -2,7 +2,7 @@
 
 use super::convert::run_event;
 use super::{Answer, Lab, LabError};
-use crate::store::{RunFilter, RunRecord, SafetyRecord};
+use crate::store::{CalibrationRecord, RunFilter, RunRecord, SafetyRecord};
 use crate::view::{Effect, LogEntry};
 use jiff::{SignedDuration, Timestamp};
 
@@ -23,6 +23,9 @@ impl Lab {
             let record = store.safety(bench.name(), SAFETY).await?;
             let told = record.into_iter().filter(|entry| run.is_none() || entry.run == run);
             log.extend(told.map(|entry| of_bench(bench.name(), entry)));
+            let applied = store.calibrations(bench.name(), SAFETY).await?;
+            let told = applied.into_iter().filter(|entry| run.is_none() || entry.run == run);
+            log.extend(told.map(|entry| applied_to(bench.name(), entry)));
         }
         if run.is_none() {
             log.extend(self.token_log().await?);
@@ -115,6 +118,19 @@ fn of_bench(bench: &str, entry: SafetyRecord) -> LogEntry {
         bench: Some(bench.to_owned()),
         run: entry.run,
         grave: entry.blocked,
+        ..LogEntry::default()
+    }
+}
+
+fn applied_to(bench: &str, entry: CalibrationRecord) -> LogEntry {
+    let whose = entry.run.map_or("the last complete run".to_owned(), |run| format!("run {run}"));
+    LogEntry {
+        at: entry.at,
+        kind: "calibration".into(),
+        text: format!("{} of {whose} applied to {bench}", entry.procedure),
+        by: Some(entry.by),
+        bench: Some(bench.to_owned()),
+        run: entry.run,
         ..LogEntry::default()
     }
 }

@@ -4,6 +4,7 @@
 mod autopilot;
 mod benches;
 mod beside;
+mod calibrations;
 mod continuing;
 mod convert;
 mod error;

@@ -5,6 +5,7 @@
 //! rows of each commit lie in the `tail` as they came. What was measured never changes: the schema's triggers refuse it.
 
 mod autopilots;
+mod calibrations;
 pub mod codec;
 mod commit;
 mod error;
@@ -29,8 +30,8 @@ mod view;
 pub use error::StoreError;
 pub use kept::Subject;
 pub use records::{
-    AutopilotRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord, OwnEffectRecord,
-    RunFilter, RunRecord, SafetyRecord, TokenRecord, VersionRecord, View, ViewColumn,
+    AutopilotRecord, CalibrationRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord,
+    OwnEffectRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, VersionRecord, View, ViewColumn,
 };
 pub use search::Search;
 

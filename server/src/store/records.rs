@@ -177,6 +177,16 @@ pub struct SafetyRecord {
     pub at: String,
 }
 
+/// Whose result the next runs of a bench use.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CalibrationRecord {
+    pub id: i64,
+    pub procedure: String,
+    pub run: Option<RunId>,
+    pub by: String,
+    pub at: String,
+}
+
 /// A token that opens the door; of its secret there is only the hash.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TokenRecord {

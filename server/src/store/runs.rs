@@ -91,12 +91,20 @@ impl Store {
     }
 
     /// Complete runs of the same bench and procedure before this one, newest first. A mock bench and a real one of the same
-    /// name are two.
-    pub async fn earlier(&self, run: RunId, limit: u32) -> Result<Vec<(RunId, String)>, StoreError> {
+    /// name are two. One that has to be `among` them is, however old it is.
+    pub async fn earlier(
+        &self,
+        run: RunId,
+        among: Option<RunId>,
+        limit: u32,
+    ) -> Result<Vec<(RunId, String)>, StoreError> {
         let query = "SELECT r.id, r.created_at FROM runs AS r JOIN runs AS this ON this.id = ? \
             WHERE r.bench = this.bench AND r.procedure = this.procedure AND r.simulated = this.simulated \
-            AND r.id < this.id AND r.state = 'completed' ORDER BY r.id DESC LIMIT ?";
-        Ok(sqlx::query_as(query).bind(run).bind(limit).fetch_all(&self.readers).await?)
+            AND r.id < this.id AND r.state = 'completed' ORDER BY r.id IS ? DESC, r.id DESC LIMIT ?";
+        let mut found: Vec<(RunId, String)> =
+            sqlx::query_as(query).bind(run).bind(among).bind(limit).fetch_all(&self.readers).await?;
+        found.sort_by_key(|(run, _)| std::cmp::Reverse(*run));
+        Ok(found)
     }
 
     /// The last run that went on with this one.

@@ -54,6 +54,8 @@ pub struct Shown {
 pub struct Earlier {
     pub run: i64,
     pub created_at: String,
+    /// It is applied to the bench: changes are told against it.
+    pub holds: bool,
     pub quantities: Vec<Quantity>,
 }
 

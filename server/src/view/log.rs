@@ -9,7 +9,7 @@ pub struct LogEntry {
     /// A mock bench without a pace is ahead of the clock on the wall: what it does is told at the end of its run at the latest.
     #[schema(format = DateTime)]
     pub at: String,
-    /// `stopped`, `blocked` or `reset` of a bench; `started`, `imported` or `model` of a run; the kind of an entry of the run's
+    /// `stopped`, `blocked`, `reset` or `calibration` of a bench; `started`, `imported` or `model` of a run; the kind of an entry of the run's
     /// journal; `token`.
     pub kind: String,
     /// One plain sentence.

@@ -5,6 +5,7 @@
 
 mod autopilot;
 mod bench;
+mod calibration;
 mod diagnosis;
 mod identification;
 mod live;
@@ -17,6 +18,7 @@ mod token;
 
 pub use autopilot::*;
 pub use bench::*;
+pub use calibration::*;
 pub use diagnosis::*;
 pub use identification::*;
 pub use live::*;

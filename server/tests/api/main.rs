@@ -1,6 +1,7 @@
 //! The daemon on a real loopback port, as its callers meet it.
 
 mod autopilots;
+mod calibrations;
 mod daemon;
 mod disk;
 mod door;

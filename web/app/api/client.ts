@@ -13,6 +13,10 @@ export const api = {
 	acknowledge: (bench: string, reason: string) =>
 		ask('post', '/api/v1/bench/{bench}/acknowledge', { path: { bench }, body: { reason } }),
 	retry: (bench: string) => ask('post', '/api/v1/bench/{bench}/retry', { path: { bench } }),
+	calibrations: (bench: string, signal?: Signal) => ask('get', '/api/v1/bench/{bench}/calibrations', { path: { bench } }, signal),
+	/** The next runs of the bench use the result of the run; `null`: of the last complete one. */
+	calibrate: (bench: string, procedure: string, run: number | null) =>
+		ask('post', '/api/v1/bench/{bench}/calibrations', { path: { bench }, body: { procedure, run } }),
 	stopBench: (bench: string, signal?: Signal) =>
 		ask('post', '/api/v1/bench/{bench}/stop', { path: { bench } }, signal),
 

@@ -6,9 +6,9 @@ const plain = (unit: string) => ({ factor: 1, unit });
 
 it('sets a figure behind those of earlier runs, and says whether it differs from the last of them', () => {
 	const earlier = [
-		{ run: 4, created_at: '2026-11-20T16:31:00', quantities: [figure(0.03, 0.001)] },
-		{ run: 3, created_at: '2026-11-19T16:31:00', quantities: [] },
-		{ run: 2, created_at: '2026-11-18T16:31:00', quantities: [figure(0.028, 0.002)] },
+		{ run: 4, created_at: '2026-11-20T16:31:00', holds: false, quantities: [figure(0.03, 0.001)] },
+		{ run: 3, created_at: '2026-11-19T16:31:00', holds: false, quantities: [] },
+		{ run: 2, created_at: '2026-11-18T16:31:00', holds: false, quantities: [figure(0.028, 0.002)] },
 	];
 	const [found, ...others] = trends(5, [figure(0.035, 0.001), { ...figure(1, 1), name: 'new' }], earlier, plain);
 	expect(others).toEqual([]);
@@ -21,6 +21,12 @@ it('sets a figure behind those of earlier runs, and says whether it differs from
 });
 
 it('says nothing of a change where the run before has no such figure', () => {
-	const [found] = trends(5, [figure(0.035, 0.001)], [{ run: 4, created_at: '', quantities: [] }, { run: 3, created_at: '', quantities: [figure(0.03, 0.001)] }], plain);
+	const [found] = trends(5, [figure(0.035, 0.001)], [{ run: 4, created_at: '', holds: false, quantities: [] }, { run: 3, created_at: '', holds: false, quantities: [figure(0.03, 0.001)] }], plain);
 	expect([found!.change, found!.apart, found!.dots.length]).toEqual(['', null, 2]);
+});
+
+it('tells changes against the run that is applied to the bench', () => {
+	const of = (run: number, value: number, holds: boolean) => ({ run, created_at: '', holds, quantities: [figure(value, 0.001)] });
+	const [found] = trends(5, [figure(0.035, 0.001)], [of(4, 0.0349, false), of(3, 0.03, true)], plain);
+	expect([found!.change, found!.apart]).toEqual(['+5.0 mNm', true]);
 });

@@ -10,10 +10,13 @@ export interface Trend {
 	dots: { run: number; at: number; ends: readonly [number, number] }[];
 	/** Every dot in words. */
 	said: string;
-	/** Against the run before, where that has the figure too. */
+	/** Against the run that is applied to the bench, else the run before, where that has the figure too. */
 	change: string;
 	apart: boolean | null;
 }
+
+/** What changes are told against. */
+export const against = (earlier: readonly Earlier[]): Earlier | undefined => earlier.find(({ holds }) => holds) ?? earlier[0];
 
 export function trends(run: number, quantities: readonly IdentifiedQuantity[], earlier: readonly Earlier[], scale: (unit: string) => Scale): Trend[] {
 	return quantities.flatMap((of) => {
@@ -30,7 +33,7 @@ export function trends(run: number, quantities: readonly IdentifiedQuantity[], e
 			const { value, interval, unit } = sayQuantity(quantity, shown);
 			return `#${run} ${created_at && moment(created_at)} ${value} ${interval} ${unit}`.replace(/ +/g, ' ').trim();
 		});
-		const before = earlier[0]!.quantities.find(named);
+		const before = against(earlier)!.quantities.find(named);
 		const dots = all.map(({ run, quantity: { value, ci95 } }) => ({ run, at: height(value), ends: [height(ci95?.[0] ?? value), height(ci95?.[1] ?? value)] as const }));
 		const change = before ? of.value - before.value : 0;
 		return [{ of, dots, said: said.join('\n'), change: before ? `${change < 0 ? '' : '+'}${sized(change * shown.factor, shown.unit, 2)}` : '', apart: before ? differ([before, of]) : null }];

@@ -21,7 +21,12 @@ use serde_json::{Value, json};
 pub(super) struct BrakeTorque;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::count("model_run", "Run of brake_hysteresis with the model, 0: the last one", 0, [0, 2_000_000_000]),
+    Parameter::count(
+        "model_run",
+        "Run of brake_hysteresis with the model, 0: the applied one, or the last",
+        0,
+        [0, 2_000_000_000],
+    ),
     Parameter::count("histories", "Random histories", 12, [1, 100]),
     Parameter::count("torques", "Torques of each", 20, [2, 200]),
     Parameter::number("dwell_s", "Time at each torque", "s", 0.9, [0.5, 20.0]),
