@@ -7,6 +7,7 @@ use super::offline::{json_out, read};
 use super::print;
 use super::serve::runtime;
 use super::transfer::{self, Way};
+use crate::lab::LOCAL;
 use crate::view;
 use jointbench_model::transfer::{Format, ModelFile, export};
 use jointbench_model::{Fit, words};
@@ -32,7 +33,7 @@ pub fn model(arguments: &Model) -> Done {
             let refused = |exit: Exit| Exit { said: format!("{}: {}", model.display(), exit.said), ..exit };
             let (version, page) = match transfer::open(&runtime, store, false)? {
                 Way::Folder(lab) => {
-                    (runtime.block_on(lab.import_model(import)).map_err(|fault| refused(fault.into()))?, None)
+                    (runtime.block_on(lab.import_model(import, LOCAL)).map_err(|fault| refused(fault.into()))?, None)
                 }
                 Way::Daemon(client) => {
                     let version: view::Model = client.post("/models/import", &import).map_err(refused)?;
