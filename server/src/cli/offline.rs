@@ -9,17 +9,24 @@ use jointbench_files::{ReadOptions, parse_map, parse_scale};
 use jointbench_instrument::RunTable;
 use jointbench_model::{ModelSpec, Open, Options};
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
 pub fn diagnose(arguments: &Diagnose) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
     let about = |fault| Exit::of(&arguments.run.files, fault);
     let diagnosis = crate::lab::diagnose(&run, &spec, &options, &Offer::shown_by(&run)).map_err(about)?;
+    let drawn = arguments.maps.then(|| jointbench_model::maps(&run, &diagnosis.fit, &options));
+    let drawn = drawn.transpose().map_err(about)?;
     if arguments.run.json {
-        json_out(&diagnosis)?;
+        let mut object: Map<String, Value> = reread(&diagnosis)?;
+        if let Some(drawn) = &drawn {
+            object.insert("maps".to_owned(), reread(drawn)?);
+        }
+        json_out(&object)?;
     } else {
         print::diagnosis(&diagnosis);
+        drawn.iter().for_each(print::maps);
     }
     decided(diagnosis.undecided.as_ref())
 }

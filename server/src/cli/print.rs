@@ -1,5 +1,6 @@
 //! Results as a person reads them.
 
+mod maps;
 mod others;
 
 use jointbench_instrument::Motion;
@@ -8,6 +9,7 @@ use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Parameter, ParameterPair,
     ParameterState, Region, ResidualKind, Suggestion, Verdict, formula, words,
 };
+pub use maps::print as maps;
 use std::path::Path;
 
 const BAR_WIDTH: f64 = 40.0;

@@ -320,6 +320,9 @@ pub struct Preparation {
 pub struct Diagnose {
     #[command(flatten)]
     pub run: Measured,
+    /// Draw what the model leaves over each quantity, too; with --json over chosen pairs as well
+    #[arg(long)]
+    pub maps: bool,
 }
 
 #[derive(Debug, Args)]
