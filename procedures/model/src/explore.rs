@@ -17,6 +17,7 @@ use crate::report::{Imitated, Invisible, LeftOut, NoiseFloor, Parameter, Paramet
 use crate::select::{Library, Move, Rival, Search, held_out, moved};
 use crate::terms::{Term, Terms};
 use crate::{ModelError, ModelSpec, Options, floor};
+use jointbench_instrument::Kind;
 use others::Others;
 
 /// What was added or removed, and the model after it.
@@ -48,6 +49,10 @@ const REPEATABLE_SHARE: f64 = 0.6;
 
 /// Held-out error beyond this multiple of the noise floor is not noise.
 const FAR_FROM_FLOOR: f64 = 1.5;
+
+/// No formula of friction, of a spring or of a magnet is nature to this share of what was measured, in RMS: what is left
+/// below it is nothing that anybody misses. Encoders err by waves, steps and slopes, whose formulas are no approximations.
+const FORM_ACCURACY: f64 = 0.002;
 
 /// An effect that the run does not decide stays where held-out squared error without it is larger by this share.
 const CLEARLY_NEEDED: f64 = 0.1;
@@ -175,7 +180,7 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        if outside::structured(&self.maps).is_some() || self.repeats_itself() {
+        if (outside::structured(&self.maps).is_some() || self.repeats_itself()) && !self.is_negligible() {
             Verdict::UnexplainedStructure
         } else {
             Verdict::Adequate
@@ -188,6 +193,15 @@ impl<'p> Exploration<'p> {
         let held_out = self.end_held_out_rms();
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
             || self.floor.rms.is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
+    }
+
+    /// What is left is small beside what was measured, however much of it repeats.
+    fn is_negligible(&self) -> bool {
+        let main = &self.end().main;
+        let response = main.response();
+        let mean = response.iter().sum::<f64>() / response.len() as f64;
+        let spread = (response.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / response.len() as f64).sqrt();
+        self.start.prepared.kind != Kind::Encoder && self.end_held_out_rms() < FORM_ACCURACY * spread
     }
 
     /// Added effects that are still there, the most important first: by what the last model loses without them, so

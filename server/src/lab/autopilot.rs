@@ -156,7 +156,7 @@ fn autopilot(record: AutopilotRecord) -> Answer<Autopilot> {
         reason: record.reason,
         request: record.request,
         runs,
-        bench_time_s: steps.iter().filter_map(|step| step.bench_time_s).sum(),
+        bench_time_s: steps.iter().filter_map(|step| step.bench_time_s).fold(0.0, |sum, time_s| sum + time_s),
         model: newest(|step| step.model),
         verdict: steps.iter().rev().find_map(|step| step.verdict),
         steps,

@@ -101,10 +101,13 @@ fn stiffness(menu: &mut Menu) {
     for part in [1.0, 2.0, 4.0, 8.0] {
         let speed_rad_s = rounded(menu.top_rad_s() / gear / part);
         let dwell_s = rounded((0.5 * room_rad / speed_rad_s).min(1.5));
-        for top_load in [1.0, 0.5] {
+        for (load_levels, top_load) in [(3, 1.0), (8, 1.0), (8, 0.5)] {
             menu.offer(
                 "stiffness",
-                json!({"speed_rad_s": speed_rad_s, "dwell_s": dwell_s, "top_load": top_load, "repeats": 2}),
+                json!({
+                    "speed_rad_s": speed_rad_s, "dwell_s": dwell_s, "load_levels": load_levels, "top_load": top_load,
+                    "repeats": 2,
+                }),
             );
         }
     }

@@ -58,5 +58,6 @@ fn another_speed_tells_a_flank_from_a_delay() {
     let decided = bench.diagnosis();
     let named: Vec<_> = decided.suggestions.iter().map(|s| (s.effect.as_str(), s.confounded_with.len())).collect();
     assert_eq!(named, [("directional_offset", 0)], "{}", decided.summary);
+    assert!(!decided.structure_remains, "{}", decided.summary);
     assert_eq!(bench.asked().map(|asked| asked.separates), None, "nothing is left open");
 }
