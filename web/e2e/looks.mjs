@@ -192,3 +192,16 @@ async function readCampaign(page, base, runs) {
 	await lines.nth(1).locator('[data-quantity]').first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, `the address forgets which part is open: ${page.url()}`));
 	await page.unroute('**/identification');
 }
+
+/** Opens what is folded below the residual curves, and folds it again; how many axes are shown before and then. */
+export async function unfoldAxes(page) {
+	const curves = page.getByTitle("Show on the map's x axis");
+	const before = await curves.count();
+	const fold = page.getByText(/^(One axis|\d+ axes) without structure/);
+	await fold.click({ timeout: PATIENCE_MS });
+	await page.waitForURL(/flat=1/);
+	const then = await curves.count();
+	await fold.click();
+	await page.waitForFunction(() => !location.search.includes('flat='));
+	return { before, then };
+}

@@ -1,6 +1,7 @@
 // Every screen, light and dark, for the documentation:
 //   node web/e2e/screenshots.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Writes into docs/screens of the repository, or into $JB_SCREENS.
+// Writes into docs/screens of the repository, or into $JB_SCREENS. The README shows `workbench-missing-light.png` as docs/workbench.png,
+// of the bench joint-a-mock with effects = ["load_linear"].
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, open, settings, tell } from './browser.mjs';
@@ -12,6 +13,8 @@ mkdirSync(folder, { recursive: true });
 
 const NARROW = { width: 768, height: 1024 };
 const WIDE = { width: 1440, height: 900 };
+/** With the map of the residual on it. */
+const TALL = { width: 1440, height: 1240 };
 
 /** Results that look unlike each other, each from a run that is short and still says something. */
 const GALLERY = {
@@ -55,7 +58,9 @@ await tell(`screens in ${folder}`, async () => {
 
 	await toWorkbench.click();
 	const first = await readVersion(page);
+	await page.setViewportSize(TALL);
 	await shoot(page, 'workbench-missing');
+	await page.setViewportSize(WIDE);
 	if (first.verdict === 'missing_effect') {
 		await page.locator('a.region').first().click();
 		await shoot(page, 'workbench-region');

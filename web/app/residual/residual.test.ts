@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import { binOf, binsFor } from './bins';
 import { curve, explainedShare } from './curve';
 import { residualMap } from './map';
+import { reach } from './line';
 import { middle, place } from './place';
 import { inOneTurn } from './points';
 import { half, quantile, score, Sums } from './tally';
@@ -142,4 +143,11 @@ it('frames whole cells: those whose middle lies in the stretch, or the one that 
 	expect(wholeBins(bins, [2.9, 9])).toEqual([2, 3]);
 	expect(wholeBins({ ...bins, levels: [0.1, 1, 2.9] }, [0, 0.2])).toEqual([0, 1]);
 	expect(wholeBins(bins, null)).toBeNull();
+});
+
+it('lets a mean of which little is known make no curve small', () => {
+	const point = (mean: number, se: number) => ({ mean, se, n: 50, pieces: 5, from: 0, to: 1 });
+	const known = [1, -2, 3].map((mean) => point(mean, 0.1));
+	expect(reach([[...known, point(1, 40)]])).toBeCloseTo(reach([known]), 9);
+	expect(reach([[...known, point(5, 40)]])).toBeGreaterThan(5);
 });
