@@ -11,7 +11,7 @@ mod fit;
 mod floor;
 pub mod formula;
 mod intervals;
-mod linear;
+pub mod linear;
 mod maps;
 mod memory;
 mod own;

@@ -1,5 +1,7 @@
 //! Gram matrices of blocks: cross-validation, jackknife and sign flips are functions of these alone.
 
+use super::beside::Beside;
+
 /// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
 #[derive(Debug, Clone)]
 pub struct Spd {
@@ -82,44 +84,20 @@ impl Spd {
 pub struct BlockGrams {
     pub columns: usize,
     pub groups: usize,
-    xx: Vec<f64>,
-    xy: Vec<f64>,
-    yy: Vec<f64>,
+    pub(super) xx: Vec<f64>,
+    pub(super) xy: Vec<f64>,
+    pub(super) yy: Vec<f64>,
     pub rows: Vec<usize>,
 }
 
 impl BlockGrams {
     /// One pass over the rows.
     pub fn new(columns: &[&[f64]], y: &[f64], group: &[usize], groups: usize) -> Self {
-        let p = columns.len();
-        let mut grams = Self {
-            columns: p,
-            groups,
-            xx: vec![0.0; groups * p * p],
-            xy: vec![0.0; groups * p],
-            yy: vec![0.0; groups],
-            rows: vec![0; groups],
-        };
-        let mut row = vec![0.0; p];
-        for (i, g) in group.iter().enumerate() {
-            row.iter_mut().zip(columns).for_each(|(r, c)| *r = c[i]);
-            let xx = &mut grams.xx[g * p * p..(g + 1) * p * p];
-            for a in 0..p {
-                let (x, line) = (row[a], &mut xx[a * p..a * p + a + 1]);
-                line.iter_mut().zip(&row).for_each(|(s, r)| *s += x * r);
-            }
-            grams.xy[g * p..(g + 1) * p].iter_mut().zip(&row).for_each(|(s, r)| *s += r * y[i]);
-            grams.yy[*g] += y[i] * y[i];
-            grams.rows[*g] += 1;
-        }
-        for xx in grams.xx.chunks_exact_mut((p * p).max(1)) {
-            for a in 0..p {
-                for b in a + 1..p {
-                    xx[a * p + b] = xx[b * p + a];
-                }
-            }
-        }
-        grams
+        Beside::new(columns, [[].as_slice()], y, group, groups).grams(0)
+    }
+
+    pub(super) fn empty(columns: usize, rows: Vec<usize>) -> Self {
+        Self { columns, groups: rows.len(), xx: Vec::new(), xy: Vec::new(), yy: Vec::new(), rows }
     }
 
     pub fn xx(&self, group: usize) -> &[f64] {
@@ -131,15 +109,20 @@ impl BlockGrams {
         &self.xy[group * self.columns..(group + 1) * self.columns]
     }
 
-    pub fn total(&self) -> (Vec<f64>, Vec<f64>) {
+    /// Σ xxᵀ and Σ xy over some groups; one may come several times.
+    pub fn sum(&self, groups: impl IntoIterator<Item = usize>) -> (Vec<f64>, Vec<f64>) {
         let p = self.columns;
         let mut xx = vec![0.0; p * p];
         let mut xy = vec![0.0; p];
-        for g in 0..self.groups {
+        for g in groups {
             xx.iter_mut().zip(self.xx(g)).for_each(|(s, v)| *s += v);
             xy.iter_mut().zip(self.xy(g)).for_each(|(s, v)| *s += v);
         }
         (xx, xy)
+    }
+
+    pub fn total(&self) -> (Vec<f64>, Vec<f64>) {
+        self.sum(0..self.groups)
     }
 
     /// Squared error of each group when it is predicted from all others.

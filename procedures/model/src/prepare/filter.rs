@@ -142,8 +142,12 @@ pub fn by_recording(
     starts: &[usize],
     f: impl Fn(std::ops::Range<usize>, &[f64]) -> Vec<f64>,
 ) -> Vec<f64> {
+    let mut joined = Vec::with_capacity(values.len());
     let ends = starts.iter().skip(1).copied().chain([values.len()]);
-    starts.iter().zip(ends).flat_map(|(s, e)| f(*s..e, &values[*s..e])).collect()
+    for (start, end) in starts.iter().zip(ends) {
+        joined.append(&mut f(*start..end, &values[*start..end]));
+    }
+    joined
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 use super::flips::{Null, Score};
 use super::ground::{Ground, Own};
 use super::library::Library;
-use super::search::losses;
 use crate::Options;
 use crate::effect::Stage;
+use crate::linear::Beside;
 use crate::terms::{Term, Terms, polish};
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
@@ -120,9 +120,8 @@ pub fn step<'p>(
         return None;
     }
 
-    let present: f64 = losses(&now.columns(), residual, problem).iter().sum();
     let least_share = bar.least_share(now, energy);
-    let mut rivals: Vec<Rival> = best
+    let worth_it: Vec<(Term, f64)> = best
         .par_iter()
         .map(|b| {
             let mut term = [library.candidates[open[*b]].term(problem)];
@@ -130,12 +129,21 @@ pub fn step<'p>(
             let [term] = term;
             let possible = term.allows(&ground.own(&term.columns).factors()) && bar.leaves_possible(now, &term);
             let sse = if possible { sse } else { energy };
-            let mut columns = now.columns();
-            columns.extend(term.columns.iter().map(Vec::as_slice));
-            let losses = losses(&columns, residual, problem);
-            Rival { share: 1.0 - sse / energy, held_out: losses.iter().sum(), p_value: 1.0, losses, term }
+            (term, 1.0 - sse / energy)
         })
-        .filter(|r| r.share >= least_share && r.held_out < present)
+        .filter(|(_, share)| *share >= least_share)
+        .collect();
+    let sets = std::iter::once([].as_slice()).chain(worth_it.iter().map(|(term, _)| term.columns.as_slice()));
+    let beside = Beside::new(&now.columns(), sets, residual, &problem.fold, problem.folds);
+    let present: f64 = beside.grams(0).held_out().iter().sum();
+    let mut rivals: Vec<Rival> = worth_it
+        .par_iter()
+        .enumerate()
+        .map(|(k, (term, share))| {
+            let losses = beside.grams(1 + k).held_out();
+            Rival { term: term.clone(), share: *share, held_out: losses.iter().sum(), p_value: 1.0, losses }
+        })
+        .filter(|r| r.held_out < present)
         .collect();
     rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
     // The forms of one effect are one group: the best of them speaks for it.

@@ -6,7 +6,6 @@ use super::library::{Candidate, Library};
 use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, is_tie, left_by_memory, step};
 use crate::Options;
 use crate::linear::{BlockGrams, dot};
-use crate::prepare::Problem;
 use crate::terms::{Term, Terms};
 use rayon::prelude::*;
 
@@ -28,11 +27,8 @@ pub struct Silence<'p> {
 /// Held-out squared error of each fold.
 pub fn held_out(terms: &Terms) -> Vec<f64> {
     let linear = terms.linear();
-    losses(&terms.columns(), &linear.residual, terms.problem)
-}
-
-pub(super) fn losses(columns: &[&[f64]], residual: &[f64], problem: &Problem) -> Vec<f64> {
-    BlockGrams::new(columns, residual, &problem.fold, problem.folds).held_out()
+    let problem = terms.problem;
+    BlockGrams::new(&terms.columns(), &linear.residual, &problem.fold, problem.folds).held_out()
 }
 
 /// Effects that are exchanged for others at most.

@@ -61,65 +61,79 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
         |values: &[f64]| filter::by_recording(values, &starts, |range, v| filter::derivative(&time_s[range], v));
 
     let measured = run.column("motor_velocity_rad_s");
-    let (velocity, smooth_velocity, lag_s) = match measured {
-        Some(v) if wanted == Velocity::Aligned => {
-            let torque = smoothed(column("motor_current_a"));
-            let load = run.column("link_torque_nm").map(&smoothed);
-            // A current is mostly of the moments of the position. Where it clearly is of those of the velocity, that stays.
-            let left = |v: &[f64]| lag::left(&torque, v, &slope(v), load.as_deref());
-            let measured = smoothed(v);
-            let lag_s = lag::of(&time_s, &measured, &slope(&smoothed(position)), &starts, cutoff_hz);
-            let moved = lag_s.map(|lag_s| (lag::moved(&time_s, v, &starts, lag_s), lag_s));
-            let moved = moved.map(|(v, lag_s)| (smoothed(&v), v, lag_s));
-            let at_most = (1.0 + options.practical_share) * left(&measured);
-            match moved.filter(|(smooth, _, _)| left(smooth) < at_most) {
-                Some((smooth, v, lag_s)) => (v, smooth, Some(lag_s)),
-                None => (v.to_vec(), measured, None),
+    let motion = || {
+        let (velocity, smooth_velocity, lag_s) = match measured {
+            Some(v) if wanted == Velocity::Aligned => {
+                let torque = smoothed(column("motor_current_a"));
+                let load = run.column("link_torque_nm").map(&smoothed);
+                // A current is mostly of the moments of the position. Where it clearly is of those of the velocity, that stays.
+                let left = |v: &[f64]| lag::left(&torque, v, &slope(v), load.as_deref());
+                let measured = smoothed(v);
+                let lag_s = lag::of(&time_s, &measured, &slope(&smoothed(position)), &starts, cutoff_hz);
+                let moved = lag_s.map(|lag_s| (lag::moved(&time_s, v, &starts, lag_s), lag_s));
+                let moved = moved.map(|(v, lag_s)| (smoothed(&v), v, lag_s));
+                let at_most = (1.0 + options.practical_share) * left(&measured);
+                match moved.filter(|(smooth, _, _)| left(smooth) < at_most) {
+                    Some((smooth, v, lag_s)) => (v, smooth, Some(lag_s)),
+                    None => (v.to_vec(), measured, None),
+                }
             }
-        }
-        Some(v) => (v.to_vec(), smoothed(v), None),
-        None => {
-            let v = slope(&smoothed(position));
-            (v.clone(), v, None)
-        }
+            Some(v) => (v.to_vec(), smoothed(v), None),
+            None => {
+                let v = slope(&smoothed(position));
+                (v.clone(), v, None)
+            }
+        };
+        let slopes = || {
+            let acceleration = slope(&smooth_velocity);
+            (slope(&acceleration), acceleration)
+        };
+        let ways = || {
+            let noise = median(velocity.iter().zip(&smooth_velocity).map(|(a, b)| (a - b).abs()));
+            let fastest = smooth_velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+            let direction = segments::direction(&smooth_velocity, (2.0 * noise).min(0.02 * fastest));
+            segments::without_swings(direction, position, &starts)
+        };
+        let ((jerk, acceleration), direction) = rayon::join(slopes, ways);
+        let signals = [
+            (Signal::Velocity, velocity),
+            (Signal::Acceleration, acceleration),
+            (Signal::Jerk, jerk),
+            (Signal::Direction, direction),
+        ];
+        (signals, lag_s)
     };
-    let acceleration = slope(&smooth_velocity);
-    let jerk = slope(&acceleration);
-    let noise = median(velocity.iter().zip(&smooth_velocity).map(|(a, b)| (a - b).abs()));
-    let fastest = smooth_velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let direction = segments::direction(&smooth_velocity, (2.0 * noise).min(0.02 * fastest));
-    let direction = segments::without_swings(direction, position, &starts);
-
-    let gear = run.meta().gear_ratio.unwrap_or(1.0);
-    let mut signals = Signals::new(run.len());
-    let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
-    signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
-    signals.set(Signal::Position, position.to_vec());
-    signals.set(Signal::Velocity, velocity);
-    signals.set(Signal::Acceleration, acceleration);
-    signals.set(Signal::Jerk, jerk);
-    signals.set(Signal::Direction, direction);
-    let link = match run.column("link_position_rad") {
-        Some(link) => link.to_vec(),
-        None => position.iter().map(|q| q / gear).collect(),
+    let beside = || {
+        let gear = run.meta().gear_ratio.unwrap_or(1.0);
+        let mut signals = Signals::new(run.len());
+        signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
+        signals.set(Signal::Position, position.to_vec());
+        let link = match run.column("link_position_rad") {
+            Some(link) => link.to_vec(),
+            None => position.iter().map(|q| q / gear).collect(),
+        };
+        signals.set(Signal::Link, link);
+        if let Some(load) = run.column("link_torque_nm") {
+            signals.set(Signal::Load, load.iter().map(|t| t / gear).collect());
+        }
+        if let Some(temperature) = run.column("temperature_c") {
+            signals.set(Signal::Temperature, temperature.to_vec());
+        }
+        super::unknown::keep(&mut signals, run);
+        let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
+        (signals, torque_nm, segments::numbered(run), segments::integers(run, "repeat"))
     };
-    signals.set(Signal::Link, link);
-    if let Some(load) = run.column("link_torque_nm") {
-        signals.set(Signal::Load, load.iter().map(|t| t / gear).collect());
-    }
-    if let Some(temperature) = run.column("temperature_c") {
-        signals.set(Signal::Temperature, temperature.to_vec());
-    }
-    super::unknown::keep(&mut signals, run);
+    let ((of_motion, lag_s), (mut signals, target, segment, repeat)) = rayon::join(motion, beside);
+    of_motion.into_iter().for_each(|(signal, values)| signals.set(signal, values));
     let source = Source {
         signals,
-        target: torque_nm,
+        target,
         step_s,
         starts,
         runs: segments::runs(run),
         cutoff_hz,
-        segment: segments::numbered(run),
-        repeat: segments::integers(run, "repeat"),
+        segment,
+        repeat,
         derived_velocity: measured.is_none(),
         constants: Constants { slides: run.meta().motion == Motion::Linear, ..Constants::default() },
         time_s,

@@ -10,6 +10,7 @@ use crate::report::Preparation;
 use crate::view::Signal;
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
+use rayon::prelude::*;
 use std::ops::Range;
 
 const CHUNK_S: f64 = 0.04;
@@ -32,7 +33,7 @@ pub fn find(samples: &Source, options: &Options) -> Vec<Range<usize>> {
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let load = samples.signals.find(Signal::Load);
     let heaviest = load.map_or(0.0, |l| l.iter().fold(0.0f64, |m, v| m.max(v.abs())));
-    samples.legs().into_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, n)).collect()
+    samples.legs().into_par_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, n)).collect()
 }
 
 fn settled(leg: Range<usize>, velocity: &[f64], load: Option<&[f64]>, heaviest: f64, n: usize) -> Option<Range<usize>> {
@@ -97,15 +98,20 @@ pub fn prepare(
     let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
     let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
     let layout = Layout { chunks, group, condition, phase: Some(phase), settled: true, inputs: &[] };
-    let mut main = problem(&samples, layout);
-    let drive = super::drive(&main.view.points, &main.target);
-    main.view.points.set(Signal::Drive, drive);
     let speed = |p: &Range<usize>| {
         median(samples.signals.find(Signal::Velocity).unwrap_or_default()[p.clone()].iter().map(|v| v.abs()))
     };
     let slowest = plateaus.iter().map(speed).fold(f64::INFINITY, f64::min);
-    let moving = apart(&samples, &plateaus, f64::INFINITY);
-    let memory = apart(&samples, &plateaus, slowest);
+    let settled = || {
+        let mut main = problem(&samples, layout);
+        let drive = super::drive(&main.view.points, &main.target);
+        main.view.points.set(Signal::Drive, drive);
+        main
+    };
+    let apart = |fastest| apart(&samples, &plateaus, fastest);
+    let told = || (super::super::clash::clashes(run), super::super::doubts::doubts(run));
+    let ((main, (clashes, doubts)), (moving, memory)) =
+        rayon::join(|| rayon::join(settled, told), || rayon::join(|| apart(f64::INFINITY), || apart(slowest)));
     let repeats = main.repeat.iter().max().copied().unwrap_or(0) > main.repeat.iter().min().copied().unwrap_or(0);
     let about = Preparation {
         residual: ResidualKind::PlateauMean,
@@ -126,8 +132,8 @@ pub fn prepare(
         baseline: run.meta().baseline.clone(),
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
         constants: super::super::constants(run),
-        clashes: super::super::clash::clashes(run),
-        doubts: super::super::doubts::doubts(run),
+        clashes,
+        doubts,
         main,
         moving,
         memory,
