@@ -7,7 +7,7 @@ use super::status::Status;
 use crate::config::BenchDescription;
 use crate::lab::{safe_view, state_view};
 use crate::live::Hub;
-use crate::store::Store;
+use crate::store::{SafetyRecord, Store};
 use crate::view::{BenchState, Blocked, LiveMessage};
 use jointbench_instrument::roles::Instrument;
 use jointbench_procedure::{Demand, Plan, RunEnd, RunId, RunState, Safe};
@@ -250,7 +250,9 @@ impl Owner {
     /// The state of a bench on which nothing is on: what the store says of it, and its instruments.
     fn rest(&self) {
         let blocked = match self.runtime.block_on(self.start.store.bench_block(self.name())) {
-            Ok(block) => block.map(|block| Blocked { stopped: block.stopped, reason: block.reason, since: block.at }),
+            Ok(block) => {
+                block.map(|SafetyRecord { stopped, reason, by, at, .. }| Blocked { stopped, reason, by, since: at })
+            }
             Err(fault) => {
                 tracing::error!(bench = self.name(), %fault, "the state of the bench cannot be read");
                 self.status.borrow().blocked.clone()

@@ -39,6 +39,8 @@ pub struct Blocked {
     /// By the software stop; otherwise it is not known whether the bench is safe.
     pub stopped: bool,
     pub reason: String,
+    /// Who pressed the stop: name of the token, or `local`.
+    pub by: Option<String>,
     #[schema(format = DateTime)]
     pub since: String,
 }

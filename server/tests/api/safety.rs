@@ -32,7 +32,7 @@ fn the_software_stop_holds_until_somebody_resets_it_with_a_reason_through_a_rest
     }
     assert_eq!(first.wait_for_end(id)["state"], "aborted");
     let bench = first.wait_for(&path(), |bench| bench["run"].is_null() && bench["state"] == "stopped");
-    assert_eq!(bench["blocked"]["stopped"], true, "{bench}");
+    assert_eq!((&bench["blocked"]["stopped"], &bench["blocked"]["by"]), (&true.into(), &"local".into()), "{bench}");
     first.stop();
 
     let second = daemon();
