@@ -162,6 +162,11 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Its factors are those of this run's repeats: another run has others, of the same size.
+    fn is_of_each_run(&self) -> bool {
+        false
+    }
+
     /// The effect enters with a factor of one and nothing to fit.
     fn is_given(&self) -> bool {
         false

@@ -166,6 +166,33 @@ fn another_speed_tells_play_in_a_coupling_from_a_delay() {
 }
 
 #[test]
+fn more_power_ups_tell_a_zero_that_each_of_them_moves_from_a_slip() {
+    let names = ["velocity_rad_s", "reference_position_rad", "test_position_rad", "temperature_c"];
+    let out_and_back = [(20.0, 0.0), (-20.0, 0.0)];
+    // The second half of the time lies 0.5 mrad elsewhere: a slip, or the second of two power-ups.
+    let run = {
+        let whole = legs(Kind::Encoder, names, &out_and_back, |angle, _, _, noise| [angle, angle + 2e-5 * noise, 25.0]);
+        let mut columns = whole.trace().columns().to_vec();
+        let half = columns[0].len() / 2;
+        let at = |name: &str| whole.trace().channels().iter().position(|c| c.name == name).unwrap();
+        columns[at("test_position_rad")][half..].iter_mut().for_each(|q| *q += 5e-4);
+        columns[at("repeat")] = (0..2 * half).map(|i| f64::from(u8::from(i >= half))).collect();
+        RunTable::new(whole.meta().clone(), Trace::from_columns(whole.trace().channels().to_vec(), columns)).unwrap()
+    };
+    let found = diagnosed_with(&run, &["offset"]);
+    let first = &found.suggestions[0];
+    let tied: Vec<&String> = first.confounded_with.iter().chain([&first.effect]).collect();
+    assert!(tied.iter().any(|e| *e == "slip") && tied.iter().any(|e| *e == "startup_offset"), "{tied:?}");
+    let mut powered = strokes("powered", &[20.0], 0.0, 1.0);
+    powered.stretches.iter_mut().enumerate().for_each(|(i, s)| s.power_ups = 1 + i as u32 / 2);
+    let menu = [strokes("again", &[20.0, 40.0], 0.0, 1.0), powered];
+    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap();
+    let next = ask(&menu).unwrap();
+    assert_eq!(next.procedure, "powered", "{}", next.why);
+    assert!(next.expected_z.unwrap() > 4.0 && next.separates.iter().any(|e| e == "slip"), "{}", next.why);
+}
+
+#[test]
 fn a_brake_that_turned_at_one_speed_is_asked_for_others() {
     let names = ["velocity_rad_s", "brake_current_a", "brake_torque_nm", "position_rad"];
     let currents: Vec<(f64, f64)> = [0.2, 0.6, 1.0, 0.8, 0.4].map(|current| (6.0, current)).into();

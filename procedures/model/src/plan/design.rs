@@ -92,47 +92,92 @@ impl<'a> Side<'a> {
         Self { model, gram: gram(&columns), columns, factors }
     }
 
-    /// Expected distance of the two models in standard deviations after the run, the mean of both ways of being wrong. `None`
-    /// where one of them has other parameters there, as one that has another for every power-up.
-    pub fn separation(&self, rival: &Side, run: &Problem, noise: &Noise) -> Option<f64> {
+    /// A part of the model is another in each run.
+    pub fn changes_by_run(&self) -> bool {
+        self.model.terms.iter().any(|term| term.effect.is_of_each_run())
+    }
+
+    /// Expected distance of the two models in standard deviations after the run, the mean of both ways of being wrong.
+    pub fn separation(&self, rival: &Side, run: &Problem, noise: &Noise) -> f64 {
         let difference: Vec<f64> =
             predict(self.model, run).iter().zip(predict(rival.model, run)).map(|(a, b)| a - b).collect();
         let difference = noise.whiten(&difference, run);
-        let one_way = |side: &Side| side.left_over(&difference, run, noise);
-        Some((0.5 * (one_way(self)? + one_way(rival)?)).max(0.0).sqrt())
+        let (own, other) = (self.at(run, noise), rival.at(run, noise));
+        let one_way = |side: &Side, at: &There, wrong: &There| {
+            // What the other model expects to be new there this one cannot follow, unless it expects the same.
+            let new = if at.new.is_empty() { wrong.new.as_slice() } else { &[] };
+            std::iter::once(&difference).chain(new).map(|white| side.left_over(white, at)).sum::<f64>()
+        };
+        (0.5 * (one_way(self, &own, &other) + one_way(rival, &other, &own))).max(0.0).sqrt()
     }
 
     /// Squared length of what is left of a white column at the run when the model follows it as far as the run at hand
     /// lets it.
-    fn left_over(&self, white: &[f64], run: &Problem, noise: &Noise) -> Option<f64> {
-        let columns = self.at(run, noise)?;
-        let both: Vec<f64> = self.gram.iter().zip(gram(&columns)).map(|(a, b)| a + b).collect();
-        let side: Vec<f64> = columns.iter().map(|c| dot(c, white)).collect();
-        let followed = Spd::new(&both, columns.len(), 0.0).whiten(&side);
-        Some(dot(white, white) - dot(&followed, &followed))
+    fn left_over(&self, white: &[f64], there: &There) -> f64 {
+        let side: Vec<f64> = there.columns().map(|c| dot(c, white)).collect();
+        let followed = Spd::new(&self.known_then(there), side.len(), 0.0).whiten(&side);
+        dot(white, white) - dot(&followed, &followed)
     }
 
     /// What the run at hand, and that with one more run, say about the factor of a further white column: squared standard
     /// deviations of a factor of one.
-    ///
-    /// `new`: the columns of this side at that run.
-    pub fn information(&self, now: &[f64], then: &[f64], new: &[Vec<f64>]) -> (f64, f64) {
+    pub fn information(&self, now: &[f64], then: &[f64], there: &There) -> (f64, f64) {
         let alone: Vec<f64> = self.columns.iter().map(|c| dot(c, now)).collect();
-        let both: Vec<f64> = alone.iter().zip(new).map(|(a, c)| a + dot(c, then)).collect();
-        let grams: Vec<f64> = self.gram.iter().zip(gram(new)).map(|(a, b)| a + b).collect();
+        let begun = alone.iter().copied().chain(std::iter::repeat(0.0));
+        let both: Vec<f64> = begun.zip(there.columns()).map(|(a, c)| a + dot(c, then)).collect();
         let known = |gram: &[f64], side: &[f64]| {
             let white = Spd::new(gram, side.len(), 0.0).whiten(side);
             dot(&white, &white)
         };
         let before = dot(now, now) - known(&self.gram, &alone);
-        let after = dot(now, now) + dot(then, then) - known(&grams, &both);
+        let after = dot(now, now) + dot(then, then) - known(&self.known_then(there), &both);
         (before.max(0.0), after.max(0.0))
     }
 
-    /// White columns and slopes at another run, where the model has the same parameters there.
-    pub fn at(&self, run: &Problem, noise: &Noise) -> Option<Vec<Vec<f64>>> {
-        let columns = tangent(&elsewhere(self.model, run), &self.factors, noise);
-        (columns.len() == self.columns.len()).then_some(columns)
+    /// Information about all parameters after both runs.
+    fn known_then(&self, there: &There) -> Vec<f64> {
+        let (before, all) = (self.columns.len(), there.columns().count());
+        let mut both = gram(&there.columns().collect::<Vec<_>>());
+        for a in 0..all {
+            if a < before {
+                (0..before).for_each(|b| both[a * all + b] += self.gram[a * before + b]);
+            } else {
+                both[a * all + a] += 1.0;
+            }
+        }
+        both
+    }
+
+    /// The model at another run.
+    pub fn at(&self, run: &Problem, noise: &Noise) -> There {
+        let there = elsewhere(self.model, run);
+        let (mut known, mut new) = (Vec::new(), Vec::new());
+        for (term, factors) in there.terms.iter().zip(&self.factors) {
+            if !term.effect.is_of_each_run() {
+                known.extend(term.columns.iter().map(|c| noise.whiten(c, run)));
+                continue;
+            }
+            known.extend(factors.iter().map(|_| vec![0.0; run.rows()]));
+            let size = (dot(factors, factors) / factors.len().max(1) as f64).sqrt();
+            let sized = |column: &Vec<f64>| column.iter().map(|x| size * x).collect::<Vec<f64>>();
+            new.extend(term.columns.iter().map(|c| noise.whiten(&sized(c), run)));
+        }
+        known.extend(there.slopes(&self.factors).into_iter().map(|(_, _, slope)| noise.whiten(&slope, run)));
+        There { known, new }
+    }
+}
+
+/// White columns of a model at another run.
+pub struct There {
+    /// Of the parameters that it has at the run at hand.
+    known: Vec<Vec<f64>>,
+    /// Of those that only the other run brings, times the size that they are expected to have.
+    new: Vec<Vec<f64>>,
+}
+
+impl There {
+    fn columns(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.known.iter().chain(&self.new)
     }
 }
 
@@ -143,8 +188,8 @@ fn tangent(model: &Terms, factors: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> 
     own.chain(slopes).collect()
 }
 
-fn gram(columns: &[Vec<f64>]) -> Vec<f64> {
-    columns.iter().flat_map(|a| columns.iter().map(|b| dot(a, b))).collect()
+fn gram<C: AsRef<[f64]>>(columns: &[C]) -> Vec<f64> {
+    columns.iter().flat_map(|a| columns.iter().map(|b| dot(a.as_ref(), b.as_ref()))).collect()
 }
 
 /// The same terms at the points of another problem.
@@ -154,11 +199,12 @@ fn elsewhere<'a>(model: &Terms<'a>, problem: &'a Problem) -> Terms<'a> {
     there
 }
 
-/// What a model that was fitted elsewhere predicts, without what enters with a factor of one.
+/// What a model that was fitted elsewhere predicts, without what enters with a factor of one and what is another in each run.
 pub fn predict(model: &Terms, problem: &Problem) -> Vec<f64> {
     let there = elsewhere(model, problem);
     let mut sum = vec![0.0; problem.rows()];
-    for (term, factors) in there.terms.iter().zip(model.linear().factors) {
+    let terms = there.terms.iter().zip(model.linear().factors);
+    for (term, factors) in terms.filter(|(term, _)| !term.effect.is_of_each_run()) {
         for (column, factor) in term.columns.iter().zip(factors) {
             sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
         }

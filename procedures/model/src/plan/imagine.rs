@@ -137,6 +137,6 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
     set(Signal::Load, each(&|s| s.load_nm / prepared.load_scale));
     let temperature_c = at(Signal::Temperature, false).unwrap_or(0.0);
     set(Signal::Temperature, each(&|s| temperature_c + s.warmer_k));
-    set(Signal::Repeat, each(&|_| 0.0));
+    set(Signal::Repeat, each(&|s| f64::from(s.power_ups)));
     signals
 }

@@ -31,6 +31,10 @@ pub struct Choice {
 }
 
 impl Choice {
+    fn powers_anew(&self) -> bool {
+        self.stretches.iter().any(|stretch| stretch.power_ups > 0)
+    }
+
     /// What its expectation rests on beside the model, in words.
     fn provided(&self) -> String {
         let warmer_k = self.stretches.iter().map(|s| s.warmer_k).fold(0.0, f64::max);
@@ -52,6 +56,8 @@ pub struct Stretch {
     pub load_nm: f64,
     /// Coil current of the brake.
     pub brake_current_a: f64,
+    /// How often the encoder under test was powered anew before it; 0 where it never was.
+    pub power_ups: u32,
     /// How much warmer the joint is than at the end of the run at hand, where the choice warms it [K].
     pub warmer_k: f64,
 }
@@ -127,16 +133,18 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let side = Side::new(&model.main, &noise);
     let known = menu.iter().filter(|choice| !choice.stretches.is_empty());
-    let imagined: Vec<_> = known.map(|choice| (choice, imagine(choice, &prepared, &model, gear))).collect();
+    let mut imagined: Vec<_> = known.map(|choice| (choice, imagine(choice, &prepared, &model, gear))).collect();
 
     let decided = |others: &[ModelSpec]| -> Result<Option<Bid>, ModelError> {
         let others = others.iter().map(|s| Assembly::new(&prepared, s, options));
         let others: Vec<Assembly> = others.collect::<Result<_, _>>()?;
         let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
-        Ok(decide(imagined.iter().filter_map(|(choice, problem)| {
+        // Nobody switches an encoder off and on for another question.
+        let asks_for_power_ups = side.changes_by_run() || others.iter().any(Side::changes_by_run);
+        let useful = imagined.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
+        Ok(decide(useful.map(|(choice, problem)| {
             let apart = others.iter().map(|other| side.separation(other, problem, &noise));
-            let apart: Vec<f64> = apart.collect::<Option<_>>()?;
-            Some(Bid { choice, z: apart.into_iter().fold(f64::INFINITY, f64::min) })
+            Bid { choice, z: apart.fold(f64::INFINITY, f64::min) }
         })))
     };
     for (effect, rivals) in &open.ties {
@@ -160,6 +168,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     {
         return Ok(Some(again(choice)));
     }
+    imagined.retain(|(choice, _)| !choice.powers_anew());
     Ok(if open.has_structure { None } else { unseen::unseen(&model, &noise, &imagined) })
 }
 

@@ -25,7 +25,7 @@ pub fn unseen(model: &Assembly, noise: &Noise, imagined: &[(&Choice, Problem)]) 
     let mut best: Option<(Bid, Vec<&str>)> = None;
     for (choice, run) in imagined {
         let mut seen: Vec<(&str, f64)> = Vec::new();
-        let Some(own) = side.at(run, noise) else { continue };
+        let own = side.at(run, noise);
         for effect in model.spec.known() {
             let id = effect.info().id;
             let open = effect.stage() == Stage::Settled && !effect.is_given() && !model.main.contains(id);

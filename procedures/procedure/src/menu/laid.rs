@@ -1,6 +1,6 @@
 //! A plan laid out as the model sees it.
 
-use crate::plan::{BenchFacts, Phase, Plan, Step};
+use crate::plan::{Before, BenchFacts, Phase, Plan, Step};
 use jointbench_instrument::Kind;
 use jointbench_model::{Choice, Stretch};
 use serde_json::{Map, Value};
@@ -15,9 +15,10 @@ pub fn choice(
     warmer_k: &dyn Fn(f64) -> f64,
 ) -> Choice {
     let constants = &bench.constants;
-    let (mut start_s, mut at_rad) = (0.0, 0.0);
+    let (mut start_s, mut at_rad, mut power_ups) = (0.0, 0.0, 0);
     let mut stretches = Vec::new();
     for step in &plan.steps {
+        power_ups += u32::from(step.before == Before::PoweredAnew);
         let way = step.velocity.integral();
         for (pair, from_rad) in step.velocity.knots().windows(2).zip(&way) {
             let [(held_s, velocity_rad_s), (to_s, end_rad_s)] = [pair[0], pair[1]];
@@ -34,6 +35,7 @@ pub fn choice(
                     from_rad: at_rad + from_rad + velocity_rad_s * (from_s - held_s),
                     load_nm: brake_nm * velocity_rad_s.signum(),
                     brake_current_a,
+                    power_ups,
                     warmer_k: warmer_k(start_s + from_s),
                 });
             }

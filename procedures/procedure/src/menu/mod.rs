@@ -91,6 +91,10 @@ fn encoder(menu: &mut Menu) {
     for top_rad_s in [top_rad_s, top_rad_s / 4.0] {
         menu.offer("encoder_delay", json!({"top_speed_rad_s": rounded(top_rad_s), "speeds": 4, "repeats": 2}));
     }
+    // A zero that is another at each power-up is no slip, which comes once.
+    for power_ups in [6, 12] {
+        menu.offer("encoder_startup", json!({"power_ups": power_ups, "speed_rad_s": rounded(top_rad_s.min(4.0))}));
+    }
 }
 
 /// Other speeds and loads than before.

@@ -37,6 +37,10 @@ impl Effect for StartupOffset {
         }
     }
 
+    fn is_of_each_run(&self) -> bool {
+        true
+    }
+
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         let is = |k: f64| view.map(Signal::Repeat, |r| f64::from(u8::from(r == k)));
         restarts(view).into_iter().map(is).collect()
