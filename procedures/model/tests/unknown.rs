@@ -16,9 +16,14 @@ fn pressure_pa(time_s: f64) -> f64 {
 
 /// A staircase with a column beside it, and `nm` more torque in the middle of what that tells.
 fn run(column: &str, nm: f64) -> RunTable {
+    run_with(column, |_| nm)
+}
+
+/// The same with a torque that the sign of the motion may turn.
+fn run_with(column: &str, nm: impl Fn(f64) -> f64) -> RunTable {
     let steps = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 3 }.run(|m| {
         let middle = (1.5e5..1.9e5).contains(&pressure_pa(m.time));
-        (0.03 + 2e-4 * m.velocity.abs()) * m.velocity.signum() + if middle { nm } else { 0.0 }
+        (0.03 + 2e-4 * m.velocity.abs()) * m.velocity.signum() + if middle { nm(m.velocity.signum()) } else { 0.0 }
     });
     let (meta, trace) = steps.into_parts();
     let names = trace.channels().iter().map(|c| c.name.clone()).chain([column.to_owned()]);
@@ -49,6 +54,14 @@ fn structure_over_an_unknown_column_is_told_over_it() {
     let set = residuals(&run, &fitted, &Options::default()).unwrap();
     let axis = set.axes.iter().find(|axis| axis.name == COLUMN).unwrap();
     assert_eq!((axis.values.len(), axis.unit.as_str()), (set.error.len(), "Pa"));
+}
+
+#[test]
+fn friction_that_grows_with_an_unknown_column_is_told_too() {
+    // Over the column alone both directions cancel, and as no two repeats have the same pressure it would count as noise.
+    let found = diagnosed(&run_with(COLUMN, |sign| 6e-3 * sign));
+    assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
+    assert!(found.summary.contains("oil pressure and direction"), "{}", found.summary);
 }
 
 #[test]

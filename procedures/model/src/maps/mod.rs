@@ -20,7 +20,8 @@ use scale::{Scale, scales};
 pub struct Maps {
     scales: Vec<Scale>,
     axes: Vec<Map>,
-    /// Position and load by direction: what a direction hides from the other is seen here.
+    /// Position, load, temperature and what no effect knows by direction: friction changes its sign with the motion, and what a
+    /// direction hides from the other is seen here.
     by_direction: Vec<Map>,
     piece: Vec<usize>,
     residual: Vec<f64>,
@@ -42,7 +43,9 @@ impl Maps {
         let scales = scales(prepared);
         let map = |x: &Scale, y: Option<&Scale>| Map::new(x.clone(), y.cloned(), problem, &piece, &residual);
         let axes: Vec<Map> = scales.iter().map(|s| map(s, None)).collect();
-        let sides = |name: &str| name.contains("position_rad") || name == "link_torque_nm" || name == "brake_current_a";
+        let known = ["link_torque_nm", "brake_current_a", "temperature_c"];
+        let unknown: Vec<&str> = problem.view.points.unknown().map(|(column, _)| column).collect();
+        let sides = |name: &str| name.contains("position_rad") || known.contains(&name) || unknown.contains(&name);
         let by_direction: Vec<Map> = match scales.iter().find(|s| s.name == "direction") {
             Some(direction) => scales.iter().filter(|s| sides(&s.name)).map(|s| map(s, Some(direction))).collect(),
             None => Vec::new(),

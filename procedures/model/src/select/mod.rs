@@ -7,6 +7,7 @@ mod imitated;
 mod layout;
 mod library;
 mod rivals;
+mod scatter;
 mod search;
 
 pub use ground::Ground;

@@ -3,6 +3,7 @@
 use super::flips::{Null, Score};
 use super::ground::{Ground, Own};
 use super::library::Library;
+use super::scatter;
 use crate::Options;
 use crate::effect::Stage;
 use crate::linear::Beside;
@@ -128,6 +129,7 @@ pub fn step<'p>(
             let sse = polish(&mut term, basis, residual, problem);
             let [term] = term;
             let possible = term.allows(&ground.own(&term.columns).factors()) && bar.leaves_possible(now, &term);
+            let possible = possible && !scatter::could_be(&term, now, &ground, bar.kind, options.alpha);
             let sse = if possible { sse } else { energy };
             (term, 1.0 - sse / energy)
         })

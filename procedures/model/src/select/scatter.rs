@@ -1,0 +1,69 @@
+//! Whether an effect that differs from leg to leg is more than the legs scatter by.
+//!
+//! The blocks that are turned over are parts of long legs. What a whole leg has in common (where an encoder came to rest in
+//! its coupling, where a gear rests) is in all of them, and few legs in a row lie apart like a step in time.
+
+use super::ground::Ground;
+use crate::effect::Search;
+use crate::linear::{Basis, dot};
+use crate::prepare::Problem;
+use crate::terms::{Term, Terms};
+use jointbench_instrument::Kind;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+/// From this share of a column on, it differs from leg to leg and hardly within one.
+const BETWEEN: f64 = 0.9;
+
+/// So many times the scatter of the readings is a step that nobody doubts.
+const READINGS: f64 = 2.0;
+
+/// F-test of the means of legs, for what the columns of an effect have of their own beside the model. A step may lie between
+/// any two legs, and one within a leg moves its mean too.
+pub fn could_be(term: &Term, now: &Terms, ground: &Ground, kind: Kind, alpha: f64) -> bool {
+    if !matches!(kind, Kind::Encoder | Kind::Stiffness) {
+        return false;
+    }
+    let legs = legs(now.problem);
+    let steps = term.form.shape.iter().any(|shape| shape.search == Search::Jump);
+    let own: Vec<Vec<f64>> = term.columns.iter().map(|column| ground.basis.rest(column)).collect();
+    // The model has taken its own share of what the legs scatter by.
+    let taken = now.columns().into_iter().filter(|column| is_between(column, &legs)).count() as f64;
+    let explained = own.len() as f64;
+    let free = legs.len() as f64 - taken - explained;
+    if free < 1.0 {
+        return steps && own.iter().all(|column| is_small(column, &ground.residual));
+    }
+    if !steps && !own.iter().all(|column| is_between(column, &legs)) {
+        return false;
+    }
+    let plain = means(&ground.residual, &legs);
+    let left = Basis::of(&own.iter().map(|column| means(column, &legs)).collect::<Vec<_>>()).rest(&plain);
+    let (before, after) = (dot(&plain, &plain), dot(&left, &left));
+    let f = (before - after) / explained / (after / free).max(f64::MIN_POSITIVE);
+    let places = if steps { legs.len() as f64 - 1.0 } else { 1.0 };
+    FisherSnedecor::new(explained, free).is_ok_and(|law| places * (1.0 - law.cdf(f)) > alpha)
+}
+
+/// Legs too few to tell their scatter: a step is one where it is larger than what the readings scatter by.
+fn is_small(column: &[f64], residual: &[f64]) -> bool {
+    let (square, along) = (dot(column, column), dot(column, residual));
+    let left = (dot(residual, residual) - along * along / square).max(0.0) / residual.len() as f64;
+    (along / square).abs() < READINGS * left.sqrt()
+}
+
+/// Rows of each leg: consecutive, of one segment and repeat.
+fn legs(problem: &Problem) -> Vec<std::ops::Range<usize>> {
+    let same = |i: usize| problem.segment[i] == problem.segment[i - 1] && problem.repeat[i] == problem.repeat[i - 1];
+    let rows = problem.rows();
+    let starts: Vec<usize> = (0..rows).filter(|i| *i == 0 || !same(*i)).chain([rows]).collect();
+    starts.windows(2).map(|pair| pair[0]..pair[1]).collect()
+}
+
+fn means(values: &[f64], legs: &[std::ops::Range<usize>]) -> Vec<f64> {
+    legs.iter().map(|leg| values[leg.clone()].iter().sum::<f64>() / leg.len() as f64).collect()
+}
+
+fn is_between(column: &[f64], legs: &[std::ops::Range<usize>]) -> bool {
+    let of_legs = means(column, legs).into_iter().zip(legs);
+    of_legs.map(|(mean, leg)| leg.len() as f64 * mean * mean).sum::<f64>() > BETWEEN * dot(column, column)
+}
