@@ -12,6 +12,7 @@ mod mat_out;
 mod options;
 mod parquet_out;
 mod raw;
+mod table_out;
 
 pub use csv_out::write_csv;
 pub use error::{FileError, FileFault, Place, Wrong};
@@ -19,6 +20,7 @@ pub use facts::{meta_json, meta_path_of, parse_meta};
 pub use mat_out::write_mat;
 pub use options::{OptionFault, ReadOptions, parse_map, parse_scale};
 pub use parquet_out::write_parquet;
+pub use table_out::{TableColumn, write_table_csv, write_table_parquet};
 
 use jointbench_instrument::{Meta, RunTable, Trace};
 use std::fs;

@@ -1,5 +1,6 @@
 //! Which effect is missing, and what is left when all that can be named is in the model.
 
+mod evidence;
 mod reversals;
 mod summary;
 
@@ -159,7 +160,17 @@ fn suggestions(
         let tie = if confounded_with.is_empty() {
             String::new()
         } else {
-            format!(" This run cannot tell it from {}, in its place.", list(&confounded_with))
+            let mut alike = Vec::new();
+            for rival in &confounded_with {
+                let other = spec.with(rival)?;
+                let other = Assembly::new(found.start.prepared, &other, options)?;
+                alike.push(format!("{:.2}", evidence::correlation(&found.start.main, &alone.main, &other.main)));
+            }
+            format!(
+                " This run cannot tell it from {}, in its place: what they take off the error is {} correlated.",
+                list(&confounded_with),
+                list(&alike)
+            )
         };
         let evidence = if apart {
             format!("Around reversals it takes {} off the squared error.", percent(rival.share))
@@ -177,6 +188,8 @@ fn suggestions(
             effect: id.into(),
             validation_rms: with.validation_rms,
             error_reduction: reduction,
+            error_reduction_ci95: (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten(),
+            bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
             p_value: rival.p_value,
             p_at_most: rival.p_value * (options.flips + 1) as f64 <= 1.001,
             error_reduction_together: found.lost_without(rival.term.id()),

@@ -2,6 +2,7 @@
 
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
+use jointbench_instrument::spelling::nearest;
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -174,7 +175,7 @@ pub trait Effect: Sync {
 
     /// The first column without which the effect cannot be computed here.
     fn missing(&self, view: &View) -> Option<&'static str> {
-        let absent = |need: &&&str| Signal::of_column(need).is_some_and(|s| view.find(s).is_none());
+        let absent = |need: &&&str| view.find(Signal::named(need)).is_none();
         self.info().needs.iter().find(absent).copied()
     }
 
@@ -187,9 +188,14 @@ pub trait Effect: Sync {
     fn hidden(&self, view: &View) -> Option<String> {
         let info = self.info();
         if let Some(need) = self.missing(view) {
-            return Some(format!("the run has no column {need}"));
+            let others = view.points.iter().filter_map(|(signal, _)| match signal {
+                Signal::Column(column) => Some(column),
+                _ => None,
+            });
+            let meant = nearest(need, others).map(|near| format!("; did you mean {near}?"));
+            return Some(format!("the run has no column {need}{}", meant.unwrap_or_default()));
         }
-        let still = |need: &&&str| Signal::of_column(need).and_then(|s| view.find(s)).is_some_and(is_constant);
+        let still = |need: &&&str| view.find(Signal::named(need)).is_some_and(is_constant);
         if let Some(need) = info.needs.iter().find(still) {
             return Some(format!("{need} never changes"));
         }

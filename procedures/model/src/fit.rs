@@ -1,5 +1,6 @@
 //! Fitting a model to a run, and holding a fit against another run.
 
+use crate::OwnEffect;
 use crate::assembly::Assembly;
 use crate::intervals::intervals;
 use crate::linear::{condition, dot};
@@ -76,10 +77,13 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
                     as well";
         notes.push(note.into());
     }
+    let own: Vec<OwnEffect> =
+        assembly.spec.own.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect();
+    let scope = Scope::of(prepared, &own);
     Ok(Fit {
         kind: prepared.kind,
         effects: assembly.effects.clone(),
-        own: assembly.spec.own.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect(),
+        own,
         rms: (linear.sse / n).sqrt(),
         validation_rms: (held_out(main).iter().sum::<f64>() / n).sqrt(),
         unit: prepared.unit(),
@@ -91,7 +95,7 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         notes,
         preparation: prepared.about.clone(),
         terms,
-        scope: Some(Scope::of(prepared)),
+        scope: Some(scope),
     })
 }
 

@@ -70,7 +70,10 @@ fn unknown(prepared: &Prepared) -> String {
         );
     }
     let source = match problem.repeat.iter().any(|r| *r != problem.repeat[0]) {
-        true => "no noise floor: the repeats have no moments of the same condition and phase in common",
+        true => {
+            "no noise floor: the repeats have no moments of the same condition and phase in common; make every repeat of the \
+             same steps, in whatever order"
+        }
         false => "no noise floor: the run has no repeats of the same profile",
     };
     source.to_owned()

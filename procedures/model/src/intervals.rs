@@ -1,6 +1,7 @@
 //! Parameters with intervals that survive autocorrelation and segment scatter: a jackknife over independent pieces.
 
 mod jumps;
+mod orders;
 mod words;
 
 pub use words::IMPOSSIBLE;
@@ -76,6 +77,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
         });
     }
     parameters.extend(found(terms, &linear.residual, motion));
+    orders::open(terms, &linear.residual, &mut parameters);
     let mut trade_offs = Vec::new();
     for a in 0..p {
         for b in 0..a {

@@ -10,13 +10,18 @@ const FEWEST: usize = 8;
 /// Whole segments, because an offset or a tilt that differs from segment to segment is shared by all rows of one, and
 /// half a segment is no new evidence. Blocks where there are not enough segments for `columns` parameters.
 pub fn pieces(problem: &Problem, columns: usize) -> (Vec<usize>, usize) {
-    let mut piece = Vec::with_capacity(problem.rows());
-    let mut next = 0;
-    for i in 0..problem.rows() {
-        let same = i > 0 && problem.segment[i] == problem.segment[i - 1] && problem.repeat[i] == problem.repeat[i - 1];
-        next += usize::from(i > 0 && !same);
-        piece.push(next);
-    }
-    let count = next + 1;
+    let piece = legs(problem);
+    let count = piece.last().map_or(0, |last| last + 1);
     if count >= FEWEST.max(2 * columns) { (piece, count) } else { (problem.block.clone(), problem.blocks) }
+}
+
+/// The leg of every row: consecutive rows of one segment and repeat.
+pub fn legs(problem: &Problem) -> Vec<usize> {
+    let same = |i: usize| problem.segment[i] == problem.segment[i - 1] && problem.repeat[i] == problem.repeat[i - 1];
+    let begins = |i: usize| usize::from(i > 0 && !same(i));
+    let numbers = (0..problem.rows()).scan(0, |leg, i| {
+        *leg += begins(i);
+        Some(*leg)
+    });
+    numbers.collect()
 }

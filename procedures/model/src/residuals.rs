@@ -36,9 +36,7 @@ pub fn residuals(run: &RunTable, fit: &Fit, options: &Options) -> Result<Residua
 
 fn axes(prepared: &Prepared) -> Vec<Axis> {
     let axis = |name: &str, unit| Axis { name: name.into(), unit, values: Vec::new() };
-    let known = shown(prepared).map(|s| axis(prepared.column_name(s), prepared.column_unit(s)));
-    let unknown = prepared.main.view.points.unknown().map(|(column, _)| axis(column, prepared.unknown_unit(column)));
-    known.chain(unknown).collect()
+    shown(prepared).map(|s| axis(prepared.column_name(s), prepared.column_unit(s))).collect()
 }
 
 /// Signals that the run has, those that people look at first.
@@ -57,6 +55,7 @@ fn shown(prepared: &Prepared) -> impl Iterator<Item = Signal> {
     ]
     .into_iter()
     .filter(|s| prepared.main.view.find(*s).is_some())
+    .chain(prepared.main.view.points.unknown())
 }
 
 fn append(
@@ -67,9 +66,8 @@ fn append(
     held_out: bool,
 ) -> Result<(), ModelError> {
     let predicted = predict(fit, problem)?;
-    let known = shown(prepared).map(|signal| (problem.view.get(signal), prepared.column_scale(signal)));
-    let unknown = problem.view.points.unknown().map(|(_, values)| (values, 1.0));
-    for (axis, (values, scale)) in set.axes.iter_mut().zip(known.chain(unknown)) {
+    for (axis, signal) in set.axes.iter_mut().zip(shown(prepared)) {
+        let (values, scale) = (problem.view.get(signal), prepared.column_scale(signal));
         let values = problem.reduce.apply(values.to_vec());
         axis.values.extend(values.into_iter().map(|v| v * scale));
     }

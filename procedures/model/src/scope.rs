@@ -1,7 +1,8 @@
 //! Where a fit holds, and what lies beyond.
 
 use crate::effects::find_with_own;
-use crate::formula::{NamedSignal, signals};
+use crate::formula::NamedSignal;
+use crate::own::{OwnEffect, signals_with};
 use crate::prepare::Prepared;
 use crate::report::{Fit, GivenConstant, Scope, SignalRange};
 use crate::view::Signal;
@@ -14,7 +15,7 @@ const MARGIN: f64 = 0.02;
 const WORTH_A_WORD: f64 = 0.01;
 
 impl Scope {
-    pub(crate) fn of(prepared: &Prepared) -> Self {
+    pub(crate) fn of(prepared: &Prepared, own: &[OwnEffect]) -> Self {
         let view = &prepared.main.view;
         let range = |s: &NamedSignal| {
             // Settled motion has no acceleration: what needs one was fitted to the ramps.
@@ -28,7 +29,7 @@ impl Scope {
             motion: prepared.motion,
             load_scale: prepared.load_scale,
             sample_s: view.sample_s,
-            signals: signals(prepared.kind).iter().filter_map(range).collect(),
+            signals: signals_with(prepared.kind, own).iter().filter_map(range).collect(),
             constants: prepared.constants.clone(),
         }
     }
@@ -36,7 +37,7 @@ impl Scope {
     /// What the error of a fit on another run does not say by itself, in sentences.
     pub(crate) fn notes(&self, fit: &Fit, prepared: &Prepared) -> Vec<String> {
         let effects = fit.effects.iter().filter_map(|id| self.other_columns(fit, id, prepared));
-        effects.chain(self.other_constants(prepared)).chain(self.left_by(prepared)).collect()
+        effects.chain(self.other_constants(prepared)).chain(self.left_by(prepared, &fit.own)).collect()
     }
 
     /// An effect that this run cannot show though the fitted one could, or the other way round.
@@ -47,7 +48,7 @@ impl Scope {
             return (!is_fitted).then(|| format!("{id} counts as zero: the run that was fitted could not show it"));
         }
         let column = effect.info().needs.first()?;
-        let signal = signals(fit.kind).iter().find(|s| s.column == *column)?;
+        let signal = signals_with(fit.kind, &fit.own).into_iter().find(|s| s.column == *column)?;
         let was_there = self.signals.iter().any(|s| s.name == signal.name);
         match (was_there, effect.missing(&prepared.main.view)) {
             (true, Some(column)) => Some(format!(
@@ -83,9 +84,10 @@ impl Scope {
     }
 
     /// The signals of another run that leave the ranges of this fit, in sentences: there the model is an extrapolation.
-    fn left_by(&self, prepared: &Prepared) -> Vec<String> {
+    fn left_by(&self, prepared: &Prepared, own: &[OwnEffect]) -> Vec<String> {
+        let named = signals_with(prepared.kind, own);
         let say = |range: &SignalRange| {
-            let signal = signals(prepared.kind).iter().find(|s| s.name == range.name)?.signal;
+            let signal = named.iter().find(|s| s.name == range.name)?.signal;
             // Every run has its own moments, an angle goes round, and the torque of the drive is what is predicted.
             let other = [Signal::Time, Signal::Repeat, Signal::Position, Signal::Link, Signal::Drive].contains(&signal);
             let values = prepared.main.view.find(signal).filter(|_| !other)?;

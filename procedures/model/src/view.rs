@@ -3,10 +3,11 @@
 //! A point is a chunk of settled motion or a filtered sample. Memory effects are simulated on the samples behind the
 //! points and averaged over them.
 
+use crate::prepare::may_cause;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a signal means to the models, whatever its column is called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -33,11 +34,13 @@ pub enum Signal {
     Drive,
     /// Number of the repeat, from 0.
     Repeat,
+    /// A column that no effect of the library knows, by its name.
+    Column(&'static str),
 }
 
 impl Signal {
-    pub const COUNT: usize = 12;
-    pub const ALL: [Signal; Signal::COUNT] = [
+    /// Those that the library knows.
+    pub const ALL: [Signal; 12] = [
         Signal::Time,
         Signal::Position,
         Signal::Velocity,
@@ -52,7 +55,21 @@ impl Signal {
         Signal::Repeat,
     ];
 
-    /// The signal that a column of the run table becomes.
+    /// A column of a run that may be none that the library knows. Its name is kept for good, once: there are as many as
+    /// people give to their columns.
+    pub fn named(column: &str) -> Signal {
+        static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+        if let Some(known) = Signal::of_column(column) {
+            return known;
+        }
+        let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = names.get(column).copied();
+        let name = known.unwrap_or_else(|| Box::leak(column.to_owned().into_boxed_str()));
+        names.insert(name);
+        Signal::Column(name)
+    }
+
+    /// The signal that a column of the run table becomes, where the library knows it.
     pub fn of_column(column: &str) -> Option<Signal> {
         Some(match column {
             "time_s" => Signal::Time,
@@ -68,18 +85,16 @@ impl Signal {
     }
 }
 
-/// Signals of equal length. Absent ones are `None`. A copy shares them.
+/// Signals of equal length. A copy shares them.
 #[derive(Debug, Clone, Default)]
 pub struct Signals {
-    columns: [Option<Arc<Vec<f64>>>; Signal::COUNT],
-    /// Columns that no effect knows, by name: what is left may depend on them.
-    unknown: Vec<(Arc<str>, Arc<Vec<f64>>)>,
+    columns: Vec<(Signal, Arc<Vec<f64>>)>,
     len: usize,
 }
 
 impl Signals {
     pub fn new(len: usize) -> Self {
-        Self { columns: Default::default(), unknown: Vec::new(), len }
+        Self { columns: Vec::new(), len }
     }
 
     pub fn len(&self) -> usize {
@@ -92,21 +107,21 @@ impl Signals {
 
     pub fn set(&mut self, signal: Signal, values: Vec<f64>) {
         debug_assert_eq!(values.len(), self.len);
-        self.columns[signal as usize] = Some(Arc::new(values));
-    }
-
-    pub fn add_unknown(&mut self, column: &str, values: Vec<f64>) {
-        debug_assert_eq!(values.len(), self.len);
-        self.unknown.push((column.into(), Arc::new(values)));
-    }
-
-    /// Columns that no effect knows.
-    pub fn unknown(&self) -> impl Iterator<Item = (&str, &[f64])> {
-        self.unknown.iter().map(|(column, values)| (&**column, values.as_slice()))
+        self.columns.retain(|(known, _)| *known != signal);
+        self.columns.push((signal, Arc::new(values)));
     }
 
     pub fn find(&self, signal: Signal) -> Option<&[f64]> {
-        self.columns[signal as usize].as_ref().map(|c| c.as_slice())
+        self.iter().find(|(known, _)| *known == signal).map(|(_, values)| values)
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = (Signal, &[f64])> {
+        self.columns.iter().map(|(signal, values)| (*signal, values.as_slice()))
+    }
+
+    /// Columns that no effect knows, and on which what is left may depend.
+    pub fn unknown(&self) -> impl Iterator<Item = Signal> {
+        self.iter().map(|(signal, _)| signal).filter(|s| matches!(s, Signal::Column(column) if may_cause(column)))
     }
 }
 
@@ -119,6 +134,21 @@ pub struct Constants {
     pub slides: bool,
 }
 
+/// The first sample of a recording, and what a memory brings along from before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    pub at: usize,
+    /// Where the signal that is remembered went last before it came back to where the recording begins. `None`: the memory
+    /// is empty.
+    pub past: Option<f64>,
+}
+
+impl From<usize> for Start {
+    fn from(at: usize) -> Self {
+        Self { at, past: None }
+    }
+}
+
 /// Signals at the points, and the samples behind them.
 #[derive(Debug, Clone, Default)]
 pub struct View {
@@ -126,8 +156,8 @@ pub struct View {
     pub samples: Signals,
     /// The samples of each point. Empty where points are samples.
     pub chunks: Vec<Range<usize>>,
-    /// Samples at which the past is forgotten: first ones of recordings.
-    pub starts: Vec<usize>,
+    /// First samples of recordings, at which what came before is not in the run.
+    pub starts: Vec<Start>,
     pub sample_s: f64,
     pub constants: Constants,
     zeros: Vec<f64>,
@@ -142,6 +172,7 @@ impl View {
         sample_s: f64,
     ) -> Self {
         let zeros = vec![0.0; points.len()];
+        let starts = starts.into_iter().map(Start::from).collect();
         Self { points, samples, chunks, starts, sample_s, constants: Constants::default(), zeros }
     }
 
@@ -178,6 +209,12 @@ impl View {
         load.iter().filter(|load| load.abs() > least).count() as f64 > NOW_AND_THEN * load.len() as f64
     }
 
+    /// Turns between the ends of an angle.
+    pub fn turns(&self, angle: Signal) -> f64 {
+        let ends = self.get(angle).iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+        (ends.1 - ends.0) / TAU
+    }
+
     /// Share of a turn that an angle was at.
     pub fn turned(&self, angle: Signal) -> f64 {
         const PARTS: f64 = 72.0;
@@ -188,12 +225,7 @@ impl View {
 
     /// The link turns as the motor does: there is no gear between their angles.
     pub fn is_direct(&self) -> bool {
-        let (motor, link) = (self.get(Signal::Position), self.get(Signal::Link));
-        let span = |angle: &[f64]| {
-            let ends = angle.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
-            ends.1 - ends.0
-        };
-        (span(motor) / span(link) - 1.0).abs() < 0.01
+        (self.turns(Signal::Position) / self.turns(Signal::Link) - 1.0).abs() < 0.01
     }
 
     /// One column from one signal.

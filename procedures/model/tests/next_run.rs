@@ -70,10 +70,20 @@ fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
     assert!(names.contains(&"load_linear") && names.contains(&"load_quadratic"), "{names:?}");
     assert!(names.iter().all(|name| before.summary.contains(name)), "one of a tie alone is told: {}", before.summary);
 
+    let why = &before.suggestions[0].why;
+    let alike = why.split("take off the error is ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    assert!(alike.parse::<f64>().is_ok_and(|r| r > 0.9), "{why}");
     let ask = |menu: &[Choice]| next_run(&first, &open, menu, &Options::default()).unwrap();
     let same = strokes("same", &SPEEDS, 8.0, 1.0);
     let other = strokes("other", &SPEEDS, 12.0, 1.5);
     assert_eq!(ask(std::slice::from_ref(&same)).map(|e| e.expected_z), None, "nothing new is measured there");
+    let without_floor = Open { has_noise_floor: false, ..open.clone() };
+    let repeats = next_run(&first, &without_floor, std::slice::from_ref(&same), &Options::default()).unwrap().unwrap();
+    assert!(
+        repeats.why.starts_with("no run within what this bench may do is expected to tell load_"),
+        "{}",
+        repeats.why
+    );
     let next = ask(&[same, other]).unwrap();
     assert_eq!(next.procedure, "other", "{}", next.why);
     assert!(next.expected_z.unwrap() > 4.0 && next.separates.iter().any(|e| e == "load_quadratic"), "{}", next.why);

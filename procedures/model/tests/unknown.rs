@@ -3,8 +3,11 @@
 mod common;
 
 use common::bench::Staircase;
-use jointbench_instrument::{Channel, RunTable, Trace};
-use jointbench_model::{Diagnosis, ModelSpec, Options, Verdict, diagnose, fit, maps, residuals};
+use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use jointbench_model::transfer::{Alongside, Format, export};
+use jointbench_model::{
+    Diagnosis, Fit, ModelSpec, Options, OwnEffect, Verdict, diagnose, evaluate, fit, maps, residuals,
+};
 
 const COLUMN: &str = "oil_pressure_pa";
 
@@ -78,4 +81,43 @@ fn what_the_drive_tells_of_its_own_effort_is_no_axis() {
         let drawn = maps(&run, &fitted, &Options::default()).unwrap();
         assert!(drawn.axes.iter().all(|map| map.axis != column), "{column}");
     }
+}
+
+/// Torque in the middle of the pressures only, in the words of a user.
+const MIDDLE: &str = "middle: tau = a * direction * max(0, sign(2e4 - abs(column(oil_pressure_pa) - 1.7e5))); a [Nm]";
+
+#[test]
+fn a_formula_over_the_column_takes_it_off() {
+    let (run, other) = (run_with(COLUMN, |sign| 6e-3 * sign), run_with("spare_v", |_| 0.0));
+    let own = vec![OwnEffect::inline(Kind::Friction, MIDDLE).unwrap()];
+    let baseline = run.meta().baseline.clone();
+    let spec = ModelSpec::with_own(Kind::Friction, baseline.iter().cloned(), own.clone()).unwrap();
+    let found = diagnose(&run, &spec, &Options::default()).unwrap();
+    assert_eq!(found.suggestions.first().map(|s| s.effect.as_str()), Some("middle"), "{}", found.summary);
+
+    let effects = baseline.into_iter().chain(["middle".to_owned()]);
+    let spec = ModelSpec::with_own(Kind::Friction, effects, own).unwrap();
+    let fitted = fit(&run, &spec, &Options::default()).unwrap();
+    let a = fitted.parameters.iter().find(|p| p.name == "a").unwrap();
+    assert!((a.value - 6e-3).abs() < 6e-4 && a.unit == "Nm", "{a:?}");
+    let range = fitted.scope.as_ref().unwrap().signals.iter().find(|s| s.name == COLUMN).unwrap();
+    assert_eq!((range.min, range.max, range.unit.as_str()), (1e5, 2.4e5, "Pa"));
+
+    let again: Fit = serde_json::from_str(&serde_json::to_string(&fitted).unwrap()).unwrap();
+    assert!((evaluate(&again, &run).unwrap().rms / fitted.rms - 1.0).abs() < 1e-6);
+    assert!(export(&fitted, Format::C).unwrap().contains("double oil_pressure_pa;"));
+    let table = export(&fitted, Format::Table).unwrap();
+    assert!(table.contains("oil_pressure_pa = 170000 Pa"), "{table}");
+
+    // Beside a run that is on, the column is read as it comes; without it the model says nothing.
+    let (kt, gear) = (run.meta().torque_constant_nm_per_a.unwrap(), run.meta().gear_ratio.unwrap());
+    let live = || Alongside::new(fitted.clone(), kt, gear).unwrap();
+    let [measured, model] = live().tell(run.trace()).unwrap();
+    let left = measured.iter().zip(&model).map(|(m, p)| (m - p).powi(2)).sum::<f64>() / measured.len() as f64;
+    assert!(left.sqrt() < 4e-3, "{}", left.sqrt());
+    assert!(live().tell(other.trace()).is_none());
+
+    let without = fit(&other, &spec, &Options::default()).unwrap();
+    let said = "middle is not visible in this data: the run has no column oil_pressure_pa";
+    assert!(without.notes.iter().any(|note| note == said), "{:?}", without.notes);
 }

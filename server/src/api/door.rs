@@ -42,7 +42,7 @@ fn check(tokens: &Tokens, method: &Method, uri: &Uri, headers: &HeaderMap) -> Re
 
 /// What whoever only reads may do: look, but for who else may come in; stop; and ask what needs a body.
 fn only_looks(method: &Method, path: &str) -> bool {
-    let asks = ["/stop", "/preview", "/effects/check", "/diagnoses", "/evaluate"];
+    let asks = ["/stop", "/preview", "/effects/check", "/diagnoses", "/evaluate", "/tables"];
     asks.iter().any(|end| path.ends_with(end)) || method.is_safe() && !path.starts_with("/api/v1/tokens")
 }
 

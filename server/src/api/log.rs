@@ -14,11 +14,13 @@ use utoipa::IntoParams;
 pub struct LogQuery {
     /// What is about this run alone; the benches and the newest runs where left out.
     pub run: Option<i64>,
+    /// What was earlier: the runs before this one, and the benches meanwhile. Of an answer that is the run with the smallest number.
+    pub before: Option<i64>,
 }
 
 /// What has happened and who did it, newest first: safety records, journals of runs, versions of their models, tokens
 #[utoipa::path(get, path = "/log", operation_id = "log", tag = "daemon", params(LogQuery),
     responses((status = 200, description = "The entries", body = Vec<LogEntry>), Refusals))]
 pub async fn log(State(lab): State<Lab>, Query(query): Query<LogQuery>) -> Answer<Vec<LogEntry>> {
-    Ok(Json(lab.log(query.run).await?))
+    Ok(Json(lab.log(query.run, query.before).await?))
 }

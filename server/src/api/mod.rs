@@ -20,6 +20,7 @@ mod runs;
 mod size;
 #[cfg(test)]
 mod specification;
+mod tables;
 mod tokens;
 mod transfer;
 
@@ -78,8 +79,10 @@ impl Modify for Token {
 }
 
 fn operations() -> OpenApiRouter<Lab> {
-    let uploads =
-        OpenApiRouter::new().routes(routes!(transfer::import)).layer(DefaultBodyLimit::max(size::UPLOAD_LIMIT_BYTES));
+    let uploads = OpenApiRouter::new()
+        .routes(routes!(transfer::import))
+        .routes(routes!(tables::write))
+        .layer(DefaultBodyLimit::max(size::UPLOAD_LIMIT_BYTES));
     let rest = OpenApiRouter::new()
         .routes(routes!(bench::list))
         .routes(routes!(bench::get))

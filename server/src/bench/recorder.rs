@@ -7,6 +7,8 @@ use crate::live::Rows;
 use crate::view::{BenchState, LiveMessage, Progress};
 use jiff::Timestamp;
 use jointbench_devices::MockBench;
+use jointbench_instrument::{Channel, Trace};
+use jointbench_model::transfer::Alongside;
 use jointbench_procedure::{Commit, EventKind, Live, Recorder, RecorderFault, RunId, RunState};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
@@ -22,6 +24,8 @@ pub(super) struct StoreRecorder<'a> {
     /// Its disk may have a bad day, which is the store's.
     mock: Option<&'a MockBench>,
     run: RunId,
+    /// The last model of the bench, beside what is measured. `None` from where it cannot tell.
+    model: Option<Alongside>,
     told_events: u64,
     told_progress: Option<Instant>,
     began: Instant,
@@ -36,9 +40,10 @@ impl<'a> StoreRecorder<'a> {
         runtime: &'a Handle,
         mock: Option<&'a MockBench>,
         run: RunId,
+        model: Option<Alongside>,
     ) -> Self {
         let (told_events, told_progress, began, state) = (0, None, Instant::now(), RunState::Queued);
-        Self { start, status, runtime, mock, run, told_events, told_progress, began, state, faults: Vec::new() }
+        Self { start, status, runtime, mock, run, model, told_events, told_progress, began, state, faults: Vec::new() }
     }
 
     pub fn into_faults(self) -> Vec<Met> {
@@ -77,6 +82,18 @@ impl<'a> StoreRecorder<'a> {
         self.start.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
     }
 
+    /// The rows with the torque of the motor, as measured and as the model has it.
+    fn beside_model(&mut self, rows: Trace) -> Trace {
+        let Some([measured, predicted]) = self.model.as_mut().and_then(|model| model.tell(&rows)) else {
+            self.model = None;
+            return rows;
+        };
+        let (mut channels, mut columns) = rows.into_parts();
+        channels.extend(["motor_torque_nm", "model_torque_nm"].map(Channel::new));
+        columns.extend([measured, predicted]);
+        Trace::from_columns(channels, columns)
+    }
+
     /// Tells the journal's new lines with the numbers that the store gave them.
     fn tell_events(&mut self) {
         let events = self.runtime.block_on(self.start.store.events(self.run, self.told_events));
@@ -113,8 +130,8 @@ impl Recorder for StoreRecorder<'_> {
     }
 
     fn live(&mut self, live: Live<'_>) {
-        let rows = Rows { bench: self.bench().to_owned(), run: live.run, rows: live.rows.clone() };
-        self.start.hub.show(rows);
+        let rows = self.beside_model(live.rows.clone());
+        self.start.hub.show(Rows { bench: self.bench().to_owned(), run: live.run, rows });
         if self.told_progress.is_some_and(|told| told.elapsed() < PROGRESS_EVERY) {
             return;
         }

@@ -6,13 +6,19 @@ use jointbench_instrument::limits::Limited;
 use jointbench_instrument::{Fault, Trace};
 
 /// So many of the last faults of an instrument are told.
-const FAULTS: usize = 5;
+pub(super) const FAULTS: usize = 5;
 
 /// A fault that a run has met.
 pub(super) struct Met {
     pub at: Timestamp,
     pub fault: Fault,
     pub recovered: bool,
+}
+
+/// A fault that nobody knew of yet.
+pub(super) struct New {
+    pub instrument: String,
+    pub fault: InstrumentFault,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -46,31 +52,34 @@ impl Status {
     }
 
     /// A run has met a fault of an instrument, which is not ready until it was tried again where it did not come back.
-    pub(super) fn met(&mut self, Met { at, fault, recovered }: &Met) {
-        if let Some(instrument) = self.instruments.iter_mut().find(|one| one.name == fault.instrument) {
-            keep(instrument, *at, fault.to_string());
-            if !recovered {
-                instrument.ready = false;
-                instrument.fault = Some(fault.to_string());
-                instrument.since.get_or_insert_with(|| at.to_string());
-            }
+    pub(super) fn met(&mut self, Met { at, fault, recovered }: &Met) -> Option<New> {
+        let instrument = self.instruments.iter_mut().find(|one| one.name == fault.instrument)?;
+        if !recovered {
+            instrument.ready = false;
+            instrument.fault = Some(fault.to_string());
+            instrument.since.get_or_insert_with(|| at.to_string());
         }
+        Some(enter(instrument, *at, fault.to_string()))
     }
 
-    /// The instruments as they were found by asking them. What was wrong before stays known.
-    pub(super) fn found(&mut self, mut instruments: Vec<Instrument>) {
+    /// The instruments as they were found by asking them. What was wrong before stays known; what is new is told.
+    pub(super) fn found(&mut self, mut instruments: Vec<Instrument>) -> Vec<New> {
+        let mut new = Vec::new();
         for instrument in &mut instruments {
             let before = self.instruments.iter().find(|before| before.role == instrument.role);
-            instrument.faults = before.map(|before| before.faults.clone()).unwrap_or_default();
+            if let Some(before) = before {
+                instrument.faults = before.faults.clone();
+            }
             let Some(fault) = instrument.fault.clone() else { continue };
             if let Some(since) = before.and_then(|before| before.since.clone()) {
                 instrument.since = Some(since);
             }
             if before.is_none_or(|before| before.fault.as_ref() != Some(&fault)) {
-                keep(instrument, Timestamp::now(), fault);
+                new.push(enter(instrument, Timestamp::now(), fault));
             }
         }
         self.instruments = instruments;
+        new
     }
 
     /// The faults of the instruments, in one sentence.
@@ -80,9 +89,11 @@ impl Status {
     }
 }
 
-fn keep(instrument: &mut Instrument, at: Timestamp, text: String) {
-    instrument.faults.insert(0, InstrumentFault { at: format!("{at:.3}"), text });
+fn enter(instrument: &mut Instrument, at: Timestamp, text: String) -> New {
+    let fault = InstrumentFault { at: format!("{at:.3}"), text };
+    instrument.faults.insert(0, fault.clone());
     instrument.faults.truncate(FAULTS);
+    New { instrument: instrument.name.clone(), fault }
 }
 
 /// The last row, as the limits see it.

@@ -3,13 +3,14 @@
 use super::handle::{Slot, lock};
 use super::instruments::{Opened, open};
 use super::recorder::StoreRecorder;
-use super::status::Status;
+use super::status::{FAULTS, New, Status};
 use crate::config::BenchDescription;
 use crate::lab::{safe_view, state_view};
 use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
-use crate::view::{BenchState, Blocked, LiveMessage};
+use crate::view::{BenchState, Blocked, InstrumentFault, LiveMessage};
 use jointbench_instrument::roles::Instrument;
+use jointbench_model::transfer::Alongside;
 use jointbench_procedure::{Demand, Plan, RunEnd, RunId, RunState, Safe};
 use std::io;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -33,6 +34,17 @@ pub(super) struct Start {
     pub slot: Slot,
     /// Runs that another daemon left open on this bench.
     pub interrupted: Vec<RunId>,
+}
+
+impl Start {
+    /// The last model that the bench has of such a run, where it can tell row by row.
+    async fn alongside(&self, run: RunId, plan: &Plan) -> Option<Alongside> {
+        let last = self.store.last_model(&self.description.name, &plan.kind.to_string(), run).await;
+        let model = last.inspect_err(|fault| tracing::error!(run.id = run, %fault, "the last model cannot be read"));
+        let fit = serde_json::from_value(model.ok()??.fit).ok()?;
+        let constants = &self.description.constants;
+        Alongside::new(fit, constants.torque_constant_nm_per_a, constants.gear_ratio)
+    }
 }
 
 const INTERRUPTED: &str = "the daemon ended before the run did; all committed samples are kept";
@@ -173,9 +185,13 @@ impl Owner {
                 Some(fault) => tracing::warn!(bench = self.name(), name, port, fault, "instrument not ready"),
             }
         }
-        let instruments = opened.instruments.clone();
+        let mut instruments = opened.instruments.clone();
+        for instrument in &mut instruments {
+            instrument.faults = self.known_faults(&instrument.name);
+        }
         self.opened = Some(opened);
-        self.change(|status| status.found(instruments));
+        let new = self.change(|status| status.found(instruments));
+        self.keep_faults(new);
         self.is_open()
     }
 
@@ -194,8 +210,25 @@ impl Owner {
             }
         }
         let all = instruments.iter().all(|instrument| instrument.ready);
-        self.change(|status| status.found(instruments));
+        let new = self.change(|status| status.found(instruments));
+        self.keep_faults(new);
         all
+    }
+
+    /// What was wrong with an instrument before the daemon was started.
+    fn known_faults(&self, instrument: &str) -> Vec<InstrumentFault> {
+        let known = self.runtime.block_on(self.start.store.faults(self.name(), instrument, FAULTS as u32));
+        let known = known.inspect_err(|fault| tracing::error!(instrument, %fault, "earlier faults cannot be read"));
+        known.unwrap_or_default().into_iter().map(|(at, text)| InstrumentFault { at, text }).collect()
+    }
+
+    fn keep_faults(&self, new: Vec<New>) {
+        for New { instrument, fault: InstrumentFault { at, text } } in new {
+            let kept = self.runtime.block_on(self.start.store.keep_fault(self.name(), &instrument, &at, &text));
+            if let Err(fault) = kept {
+                tracing::error!(instrument, text, %fault, "what was wrong with an instrument could not be kept");
+            }
+        }
     }
 
     fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Demand>) {
@@ -205,13 +238,15 @@ impl Owner {
             lock(&self.start.slot).take();
             return;
         };
-        let mut recorder = StoreRecorder::new(&self.start, &self.status, &self.runtime, mock.as_ref(), run);
+        let model = self.runtime.block_on(self.start.alongside(run, plan));
+        let mut recorder = StoreRecorder::new(&self.start, &self.status, &self.runtime, mock.as_ref(), run, model);
         let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
         let faults = recorder.into_faults();
         self.unkept.push((run, end.clone()));
         self.keep_ends();
         self.block_unless_safe(end.safe, end.reason.as_deref(), Some(run));
-        self.change(|status| faults.iter().for_each(|met| status.met(met)));
+        let new = self.change(|status| faults.iter().filter_map(|met| status.met(met)).collect());
+        self.keep_faults(new);
         // Free before it is told: whoever hears of the end may start the next run.
         lock(&self.start.slot).take();
         self.rest();
@@ -274,9 +309,11 @@ impl Owner {
         });
     }
 
-    fn change(&self, change: impl FnOnce(&mut Status)) {
-        self.status.send_modify(change);
+    fn change<T: Default>(&self, change: impl FnOnce(&mut Status) -> T) -> T {
+        let mut told = T::default();
+        self.status.send_modify(|status| told = change(status));
         let bench = crate::lab::bench_view(&self.start.description, &self.status.borrow());
         self.start.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
+        told
     }
 }

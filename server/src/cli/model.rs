@@ -7,7 +7,7 @@ use super::offline::{json_out, read};
 use super::print;
 use super::serve::runtime;
 use super::transfer::{self, Way};
-use crate::lab::LOCAL;
+use crate::lab::{LOCAL, reread};
 use crate::view;
 use jointbench_model::transfer::{Format, ModelFile, export};
 use jointbench_model::{Fit, words};
@@ -72,11 +72,6 @@ pub fn model(arguments: &Model) -> Done {
             Ok(())
         }
     }
-}
-
-fn reread<T: serde::de::DeserializeOwned>(value: &impl serde::Serialize) -> Result<T, Exit> {
-    let value = serde_json::to_value(value).and_then(serde_json::from_value);
-    value.map_err(|fault| Exit::failed(fault.to_string()))
 }
 
 /// Writes a fit as `fit --out` does.

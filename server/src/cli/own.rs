@@ -13,9 +13,10 @@ use std::path::{Path, PathBuf};
 )]
 pub struct OwnEffects {
     /// An effect in one line: "ID: tau = FORMULA; PARAMETER [UNIT] MIN..MAX; …". Unit and range may be left out, and
-    /// `start LOW..HIGH` and `whole` may follow; a name that is not known is answered with the signals that are, units
-    /// that contradict each other are told, and wrap(angle) folds an angle into one turn. May be given again. Example: "rub: tau = a * tanh(velocity / w0) *
-    /// abs(load); a [1] 0..1; w0 [rad/s] 0.1..10"
+    /// `start LOW..HIGH` and `whole` may follow. A name that is not known is answered with the signals that are;
+    /// column(NAME) is any other column of the run, and wrap(angle) folds an angle into one turn. Units that
+    /// contradict each other are told. May be given again. Example: "rub: tau = a * tanh(velocity / w0) * abs(load);
+    /// a [1] 0..1; w0 [rad/s] 0.1..10"
     #[arg(long, value_name = "EFFECT")]
     pub own: Vec<String>,
     /// TOML file with effects: [[effect]] with id, formula, parameters = [{ name, unit, min, max, start, whole }],

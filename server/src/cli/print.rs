@@ -4,7 +4,6 @@ mod maps;
 mod others;
 
 use jointbench_instrument::Motion;
-use jointbench_instrument::units::quantity_of;
 use jointbench_model::{
     Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Parameter, ParameterPair,
     ParameterState, Region, ResidualKind, Suggestion, Verdict, formula, words,
@@ -150,20 +149,14 @@ pub fn discovery(discovery: &Discovery) {
 
 /// What the library lacks, the user may know: over the axes that the summary has named.
 fn own_formula(columns: &[String], fit: &Fit) {
-    // A formula can name no column that is an axis only.
-    let is_signal = |column: &&String| {
-        let quantity = quantity_of(column).unwrap_or(column);
-        formula::signals(fit.kind).iter().any(|s| s.column == column.as_str() || s.name == quantity)
-    };
-    let columns: Vec<&String> = columns.iter().filter(is_signal).collect();
-    if columns.is_empty() {
+    let named: Vec<String> = columns.iter().filter_map(|column| formula::in_formula(fit.kind, column)).collect();
+    if named.is_empty() {
         return;
     }
-    let axes: Vec<String> = columns.iter().map(|column| words::spoken(column)).collect();
     println!();
     println!(
         "what you can do: write what you suspect as a formula of {} with --own (see --help), and see whether the error falls",
-        words::list(&axes)
+        words::list(&named)
     );
     let turns = fit.scope.as_ref().is_none_or(|scope| scope.motion != Motion::Linear);
     let angle = formula::signals(fit.kind)
@@ -246,7 +239,11 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         let elsewhere = (1.0 - rms / present_rms - share).abs() > 0.01;
         let gain = match elsewhere {
             true => format!("error {:+.1} % where it acts, settled motion stays as it is", -100.0 * share),
-            false => format!("error {:+.1} % to {}", -100.0 * share, words::figure(rms, unit)),
+            false => {
+                let ci95 = suggestion.error_reduction_ci95;
+                let ci95 = ci95.map(|[low, high]| format!(" [{:+.1} … {:+.1}]", -100.0 * high, -100.0 * low));
+                format!("error {:+.1} %{} to {}", -100.0 * share, ci95.unwrap_or_default(), words::figure(rms, unit))
+            }
         };
         let together = match several {
             true => format!(" alone, {:+.1} % beside the others", -100.0 * suggestion.error_reduction_together),
@@ -264,7 +261,9 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
 }
 
 fn chance(suggestion: &Suggestion) -> String {
-    format!("p {} {:.3}", if suggestion.p_at_most { '≤' } else { '=' }, suggestion.p_value)
+    let bic = suggestion.bic_change.map(|change| format!(", ΔBIC {change:+.0}"));
+    let sign = if suggestion.p_at_most { '≤' } else { '=' };
+    format!("p {sign} {:.3}{}", suggestion.p_value, bic.unwrap_or_default())
 }
 
 /// A whole number that was chosen has no width, and neither has what the run cannot show.

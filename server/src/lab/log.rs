@@ -6,30 +6,38 @@ use crate::store::{CalibrationRecord, RunFilter, RunRecord, SafetyRecord};
 use crate::view::{Effect, LogEntry};
 use jiff::{SignedDuration, Timestamp};
 
-/// So many of the newest runs are told of, and so much of each bench's safety record.
+/// So many runs are told of at a time.
 const RUNS: u32 = 12;
-const SAFETY: u32 = 100;
 
 impl Lab {
-    /// Newest first: of one run, or of the benches and the newest runs.
-    pub async fn log(&self, run: Option<i64>) -> Answer<Vec<LogEntry>> {
+    /// Newest first: of one run, or of the newest runs, or those `before` one, and of the benches and tokens in their time.
+    pub async fn log(&self, run: Option<i64>, before: Option<i64>) -> Answer<Vec<LogEntry>> {
         let store = &self.inner.store;
         let runs = match run {
             Some(run) => vec![store.run(run).await?],
-            None => store.runs(&RunFilter { limit: RUNS, ..RunFilter::default() }).await?.1,
+            None => {
+                let search = before.map(|before| format!("id<{before}"));
+                store.runs(&RunFilter { limit: RUNS, offset: 0, search }).await?.1
+            }
+        };
+        let end = match before {
+            Some(before) => Some(store.run(before).await?.created_at),
+            None => None,
+        };
+        let begin = runs.last().filter(|oldest| oldest.id > 1).map(|oldest| &oldest.created_at);
+        let meanwhile = |entry: &LogEntry| match run {
+            Some(_) => entry.run == run,
+            None => end.as_ref().is_none_or(|end| entry.at < *end) && begin.is_none_or(|begin| entry.at >= *begin),
         };
         let mut log = Vec::new();
         for bench in &self.inner.benches {
-            let record = store.safety(bench.name(), SAFETY).await?;
-            let told = record.into_iter().filter(|entry| run.is_none() || entry.run == run);
-            log.extend(told.map(|entry| of_bench(bench.name(), entry)));
-            let applied = store.calibrations(bench.name(), SAFETY).await?;
-            let told = applied.into_iter().filter(|entry| run.is_none() || entry.run == run);
-            log.extend(told.map(|entry| applied_to(bench.name(), entry)));
+            let record = store.safety(bench.name(), u32::MAX).await?;
+            log.extend(record.into_iter().map(|entry| of_bench(bench.name(), entry)));
+            let applied = store.calibrations(bench.name(), u32::MAX).await?;
+            log.extend(applied.into_iter().map(|entry| applied_to(bench.name(), entry)));
         }
-        if run.is_none() {
-            log.extend(self.token_log().await?);
-        }
+        log.extend(self.token_log().await?);
+        log.retain(meanwhile);
         let effects = self.effects(None).await?;
         for run in &runs {
             self.tell_run(run, &effects, &mut log).await?;

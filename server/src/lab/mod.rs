@@ -20,6 +20,7 @@ mod report;
 mod revisions;
 mod runs;
 mod statistics;
+mod tables;
 mod tokens;
 mod transfer;
 
@@ -27,6 +28,7 @@ pub use convert::{bench_view, reread, run_event, safe_view, state_view};
 pub use error::LabError;
 pub use experiment::{Offer, next_run};
 pub use models::diagnose;
+pub use tables::TableFormat;
 pub use tokens::{Caller, LOCAL, Tokens};
 pub use transfer::{ATTENTION, COPY_OF, FileFormat, ImportRequest};
 

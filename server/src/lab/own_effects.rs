@@ -87,10 +87,15 @@ impl Lab {
             unit: s.unit.to_owned(),
             meaning: s.meaning.to_owned(),
         };
+        let other = FormulaSignal {
+            name: "column(…)".into(),
+            unit: "1".into(),
+            meaning: "any other column of the run, in its own unit, such as column(oil_pressure_pa)".into(),
+        };
         Ok(FormulaLanguage {
             kind: kind.to_string(),
             left_hand_side: formula::left_hand_side(kind).to_owned(),
-            signals: formula::signals(kind).iter().map(signal).collect(),
+            signals: formula::signals(kind).iter().map(signal).chain([other]).collect(),
             functions: Function::ALL.iter().map(|f| f.name().to_owned()).collect(),
             operators: ["+", "-", "*", "/", "^"].map(str::to_owned).into(),
         })

@@ -9,6 +9,7 @@ mod calibrations;
 pub mod codec;
 mod commit;
 mod error;
+mod faults;
 mod full_disk;
 mod kept;
 mod migrations;

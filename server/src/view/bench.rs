@@ -75,7 +75,7 @@ pub struct Instrument {
     /// Since when it is not ready.
     #[schema(format = DateTime)]
     pub since: Option<String>,
-    /// The last of what was wrong since the daemon was started, newest first, what came back by itself too.
+    /// The last of what was wrong, newest first, what came back by itself too.
     pub faults: Vec<InstrumentFault>,
 }
 

@@ -108,6 +108,13 @@ pub struct Suggestion {
     pub validation_rms: f64,
     /// Share of the validation error that goes away with this effect alone.
     pub error_reduction: f64,
+    /// From the scatter over what was held out; absent for an effect that is judged elsewhere than where the RMS looks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
+    pub error_reduction_ci95: Option<[f64; 2]>,
+    /// Change of the Bayesian information criterion over independent pieces; below 0 it speaks for the effect.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bic_change: Option<f64>,
     /// Share of the validation error that it takes away beside all other suggestions.
     #[serde(default)]
     pub error_reduction_together: f64,

@@ -14,6 +14,7 @@ mod model;
 mod own;
 mod procedure;
 mod run;
+mod table;
 mod token;
 
 pub use autopilot::*;
@@ -27,6 +28,7 @@ pub use model::*;
 pub use own::*;
 pub use procedure::*;
 pub use run::*;
+pub use table::*;
 pub use token::*;
 
 /// `None` for NaN and infinity, which JSON cannot carry.

@@ -98,11 +98,15 @@ impl TestDaemon {
     }
 
     pub fn post_with(&self, path: &str, body: &[u8], headers: &[(&str, &str)]) -> (u16, Value) {
+        read(self.post_raw(path, body, headers))
+    }
+
+    pub fn post_raw(&self, path: &str, body: &[u8], headers: &[(&str, &str)]) -> ureq::http::Response<ureq::Body> {
         let mut request = self.agent.post(self.url(path));
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
-        read(request.send(body).unwrap())
+        request.send(body).unwrap()
     }
 
     /// Waits until the run is over and how the bench was secured is known.

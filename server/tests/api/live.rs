@@ -76,3 +76,43 @@ fn whoever_listens_with_a_token_is_cut_off_when_it_is_revoked() {
     assert_eq!(daemon.delete(&format!("/api/v1/tokens/{}", made["id"])).0, 204);
     while socket.read().is_ok() {}
 }
+
+#[test]
+fn the_last_model_of_the_bench_goes_along_with_a_run() {
+    let daemon = TestDaemon::start();
+    let (_, first) = daemon.post("/api/v1/runs", SHORT_RUN);
+    daemon.wait_for_end(first["id"].as_i64().unwrap());
+    let fit = serde_json::json!({"run": first["id"], "effects": ["inertia", "coulomb", "viscous", "load_linear"]});
+    let (status, model) = daemon.post("/api/v1/models", &fit.to_string());
+    assert_eq!(status, 201, "{model}");
+    let (mut socket, _) = tungstenite::connect(format!("ws://{}/api/v1/events", daemon.address())).unwrap();
+    assert_eq!(daemon.post("/api/v1/runs", SHORT_RUN).0, 201);
+    let (mut names, mut squares, mut left) = (Vec::new(), 0.0, 0.0);
+    loop {
+        match socket.read().unwrap() {
+            Message::Text(text) => {
+                let message: Value = serde_json::from_str(&text).unwrap();
+                if message["type"] == "channels" {
+                    let channels = message["channels"].as_array().unwrap();
+                    names = channels.iter().map(|one| one["name"].as_str().unwrap().to_owned()).collect();
+                }
+                if message["type"] == "state" && !message["safe"].is_null() {
+                    break;
+                }
+            }
+            Message::Binary(frame) => {
+                let values: Vec<f32> =
+                    frame[24..].chunks(4).map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap())).collect();
+                let rows = values.len() / names.len();
+                let column = |name: &str| &values[names.iter().position(|one| one == name).unwrap() * rows..][..rows];
+                for (measured, predicted) in column("motor_torque_nm").iter().zip(column("model_torque_nm")) {
+                    squares += measured * measured;
+                    left += (measured - predicted).powi(2);
+                }
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    let share = (left / squares).sqrt();
+    assert!(share < 0.25, "the model leaves {share} of the torque");
+}

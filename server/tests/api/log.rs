@@ -10,7 +10,7 @@ fn told(log: &Value, kind: &str) -> Vec<(String, Option<String>)> {
 
 #[test]
 fn the_log_tells_who_did_what() {
-    let daemon = TestDaemon::start_with(Some(4.0), |_| {});
+    let daemon = TestDaemon::start_with(Some(20.0), |_| {});
     let (_, made) = daemon.post("/api/v1/tokens", r#"{"name": "Anna", "access": "full"}"#);
     let bearer = format!("Bearer {}", made["secret"].as_str().unwrap());
     let anna = |path: &str, body: &Value| {
@@ -53,4 +53,25 @@ fn the_log_tells_who_did_what() {
     let kinds = |kind: &str| told(&of_run, kind).len();
     assert_eq!((kinds("started"), kinds("model"), kinds("token"), kinds("reset")), (1, 2, 0, 0), "{of_run}");
     assert_eq!(daemon.get("/api/v1/log?run=77").0, 404);
+}
+
+#[test]
+fn what_was_earlier_is_told_from_any_run_on() {
+    let daemon = TestDaemon::start();
+    let short = format!(r#"{{"bench": "{BENCH}", "procedure": "friction", "parameters": {{"load_levels": 1}}}}"#);
+    for _ in 0..13 {
+        let (status, run) = daemon.post("/api/v1/runs", &short);
+        assert_eq!(status, 201, "{run}");
+        let id = run["id"].as_i64().unwrap();
+        daemon.post(&format!("/api/v1/runs/{id}/abort"), "");
+        daemon.wait_for_end(id);
+    }
+    let started = |path: &str| -> Vec<i64> {
+        let (_, log) = daemon.get(path);
+        let of_kind = log.as_array().unwrap().iter().filter(|entry| entry["kind"] == "started");
+        of_kind.map(|entry| entry["run"].as_i64().unwrap()).collect()
+    };
+    assert_eq!(started("/api/v1/log"), (2..=13).rev().collect::<Vec<i64>>());
+    assert_eq!(started("/api/v1/log?before=2"), [1]);
+    assert_eq!(daemon.get("/api/v1/log?before=77").0, 404);
 }

@@ -13,3 +13,4 @@ mod problems;
 mod revisions;
 mod runs;
 mod safety;
+mod tables;

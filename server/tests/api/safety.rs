@@ -68,7 +68,11 @@ fn an_instrument_that_was_lost_in_a_run_is_not_ready_until_a_retry_finds_it() {
         until_s: Some(BACK_S),
     };
     let mock = MockSettings { troubles: vec![pulled], pace: Some(4.0), ..MockSettings::new(Joint::JointA, 7) };
-    let daemon = TestDaemon::start_with(None, |settings| settings.benches = vec![BenchDescription::mock(BENCH, mock)]);
+    let data = tempfile::tempdir().unwrap();
+    let mut daemon = TestDaemon::start_with(None, |settings| {
+        settings.data = data.path().into();
+        settings.benches = vec![BenchDescription::mock(BENCH, mock)];
+    });
     let (status, run) = daemon.post("/api/v1/runs", SHORT_RUN);
     assert_eq!(status, 201, "{run}");
     let run = daemon.wait_for_end(run["id"].as_i64().unwrap());
@@ -101,5 +105,9 @@ fn an_instrument_that_was_lost_in_a_run_is_not_ready_until_a_retry_finds_it() {
     assert_eq!((&bench["state"], &lost(&bench)["fault"]), (&"idle".into(), &Value::Null), "{bench}");
     let known = lost(&bench)["faults"].to_string();
     assert!(known.contains("port lost") && known.contains("cannot be opened"), "what was wrong stays known: {known}");
+    daemon.stop();
+    let daemon = TestDaemon::start_with(None, |settings| settings.data = data.path().into());
+    let again = lost(&daemon.get(&path()).1);
+    assert_eq!((again["faults"].to_string(), &again["ready"]), (known, &true.into()), "through a restart, too");
     assert_eq!(daemon.post("/api/v1/runs", SHORT_RUN).0, 201);
 }

@@ -97,6 +97,11 @@ fn runs_are_listed_and_ended_from_the_command_line() {
 
     let id = start(&daemon, "friction");
     daemon.wait_for(&format!("/runs/{id}"), Duration::from_secs(60), |run| rows(run) > 100);
+    for (how, state) in [("pause", "paused"), ("resume", "running")] {
+        let steered = said(&[how]);
+        assert!(steered.status.success(), "{how}: {}", stderr(&steered));
+        assert_eq!(daemon.get(&format!("/runs/{id}"))["state"], state, "`{how}` returns when the run is {state}");
+    }
     let stopped = said(&["stop"]);
     assert!(stopped.status.success(), "{}", stderr(&stopped));
     assert!(stdout(&stopped).contains(&format!("run {id} stopped")), "{}", stdout(&stopped));

@@ -1,10 +1,6 @@
 //! Measures the diagnosis, as docs/diagnosis.md reports it:
 //!
-//! `cargo run --release -p jointbench-model --example evaluate -- [--part hidden,removed,practice,measured,null,power,speed]
-//! [--rounds 3] [--count 400] [--first 0] [--family friction] [--only NAME] [--quiet]`, or a FOLDER that holds a run.
-//!
-//! hidden: machines with hidden effects, simulated here (`made`). removed: one effect taken out of their complete models. practice: measurements with a known answer from beside
-//! the repository. measured: measurements made by others, beside what is asked of each. null: runs with nothing hidden. power: weak effects. speed: seconds and memory.
+//! `cargo run --release -p jointbench-model --example evaluate -- --help`.
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
@@ -18,12 +14,13 @@ mod score;
 mod show;
 mod speed;
 
+use clap::Parser;
 use options::Asked;
 use score::Table;
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let asked = Asked::parse(std::env::args().skip(1))?;
+    let asked = Asked::parse();
     if let Some(folder) = &asked.folder {
         return show::show(folder);
     }

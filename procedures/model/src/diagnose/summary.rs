@@ -122,7 +122,8 @@ fn floor(found: &Exploration, end: &Fit) -> String {
             found.floor.source.strip_prefix("no noise floor").filter(|_| found.start.prepared.main.unlike.is_some());
         return format!("how well the run repeats itself is not known{}", why.unwrap_or_default());
     };
-    let below = match end.validation_rms < floor {
+    // An error within the floor's own interval needs no excuse.
+    let below = match end.validation_rms < found.floor.ci95.map_or(floor, |[low, _]| low) {
         true => {
             " (counted only at moments that come again in another repeat; the error over all moments may be smaller)"
         }

@@ -1,16 +1,18 @@
 //! States that remember: exact for a signal that moves in straight steps, so they are stable at any step.
 
-/// Dahl: dz = (1 − z·sgn dx)·dx/reach, from 0 at every start. What is left to ±1 shrinks exponentially.
-pub fn dahl(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
-    remember(x, starts, 0.0, |_, z, step| {
+use crate::view::Start;
+
+/// Dahl: dz = (1 − z·sgn dx)·dx/reach, from its past at every start. What is left to ±1 shrinks exponentially.
+pub fn dahl(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
+    remember(x, starts, |_, z, step| {
         let end = if step < 0.0 { -1.0 } else { 1.0 };
         end + (z - end) * (-step.abs() / reach).exp()
     })
 }
 
-/// An elastic element that slips at ±1: dz = dx/reach within ±1, from 0 at every start.
-pub fn stop(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
-    remember(x, starts, 0.0, |_, z, step| (z + step / reach).clamp(-1.0, 1.0))
+/// An elastic element that slips at ±1: dz = dx/reach within ±1, from its past at every start.
+pub fn stop(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
+    remember(x, starts, |_, z, step| (z + step / reach).clamp(-1.0, 1.0))
 }
 
 /// Elements of a Maxwell slip.
@@ -18,7 +20,7 @@ pub const MAXWELL_ELEMENTS: usize = 4;
 
 /// Generalised Maxwell slip with elements of equal strength whose reaches are spread evenly up to `reach`: a stop that
 /// yields little by little. One number more than that would be one more that reversals hardly decide.
-pub fn maxwell_slip(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
+pub fn maxwell_slip(x: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
     const ELEMENTS: usize = MAXWELL_ELEMENTS;
     let mut sum = vec![0.0; x.len()];
     for k in 1..=ELEMENTS {
@@ -32,21 +34,21 @@ pub fn maxwell_slip(x: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
 ///
 /// dz = (1 − z·sgn dx/strength)·dx/reach with the strength of each sample. The damping of the bristles acts for the
 /// blink of a reversal only, where delays of the instruments look the same.
-pub fn lugre(x: &[f64], strength: &[f64], reach: f64, starts: &[usize]) -> Vec<f64> {
-    remember(x, starts, 0.0, |i, z, step| {
+pub fn lugre(x: &[f64], strength: &[f64], reach: f64, starts: &[Start]) -> Vec<f64> {
+    remember(x, starts, |i, z, step| {
         let end = if step < 0.0 { -strength[i] } else { strength[i] };
         end + (z - end) * (-step.abs() / (reach * strength[i])).exp()
     })
 }
 
 /// First-order lag; `share` is the sample step by the time constant. Starts settled.
-pub fn lag(x: &[f64], share: f64, starts: &[usize]) -> Vec<f64> {
+pub fn lag(x: &[f64], share: f64, starts: &[Start]) -> Vec<f64> {
     let keep = (-share).exp();
     let mut state = 0.0;
     x.iter()
         .enumerate()
         .map(|(i, x)| {
-            state = if starts.contains(&i) { *x } else { x + (state - x) * keep };
+            state = if starts.iter().any(|s| s.at == i) { *x } else { x + (state - x) * keep };
             state
         })
         .collect()
@@ -71,14 +73,19 @@ pub fn turns(x: &[f64], depth: f64) -> bool {
     fell && rose
 }
 
-fn remember(x: &[f64], starts: &[usize], rest: f64, next: impl Fn(usize, f64, f64) -> f64) -> Vec<f64> {
-    let mut state = rest;
+/// From rest at every start, or from where the way through its past has led.
+fn remember(x: &[f64], starts: &[Start], next: impl Fn(usize, f64, f64) -> f64) -> Vec<f64> {
+    let mut state = 0.0;
     let mut last = x.first().copied().unwrap_or_default();
     let mut starts = starts.iter().peekable();
     x.iter()
         .enumerate()
         .map(|(i, x)| {
-            state = if starts.next_if(|s| **s == i).is_some() { rest } else { next(i, state, x - last) };
+            state = match starts.next_if(|s| s.at == i) {
+                Some(Start { past: Some(past), .. }) => next(i, next(i, 0.0, *past), x - past),
+                Some(_) => 0.0,
+                None => next(i, state, x - last),
+            };
             last = *x;
             state
         })
@@ -91,23 +98,23 @@ mod tests {
 
     #[test]
     fn a_dahl_step_does_not_depend_on_its_cutting() {
-        let coarse = dahl(&[0.0, 1.0, -1.0], 0.5, &[0]);
+        let coarse = dahl(&[0.0, 1.0, -1.0], 0.5, &[0.into()]);
         let fine: Vec<f64> =
             (0..=100).map(|i| f64::from(i) / 100.0).chain((0..200).map(|i| 0.99 - f64::from(i) / 100.0)).collect();
-        assert!((dahl(&fine, 0.5, &[0])[300] - coarse[2]).abs() < 1e-12);
+        assert!((dahl(&fine, 0.5, &[0.into()])[300] - coarse[2]).abs() < 1e-12);
     }
 
     #[test]
     fn lugre_is_dahl_at_one_strength_and_ends_at_its_own_elsewhere() {
         let x: Vec<f64> = (0..400).map(|i| (f64::from(i) * 0.05).sin()).collect();
-        assert_eq!(lugre(&x, &[1.0; 400], 0.2, &[0, 150]), dahl(&x, 0.2, &[0, 150]));
+        assert_eq!(lugre(&x, &[1.0; 400], 0.2, &[0.into(), 150.into()]), dahl(&x, 0.2, &[0.into(), 150.into()]));
         let far: Vec<f64> = (0..50).map(f64::from).collect();
-        assert!((lugre(&far, &[1.5; 50], 0.2, &[0])[49] - 1.5).abs() < 1e-9);
+        assert!((lugre(&far, &[1.5; 50], 0.2, &[0.into()])[49] - 1.5).abs() < 1e-9);
     }
 
     #[test]
     fn maxwell_slip_yields_little_by_little_and_closes_its_loop() {
-        let z = maxwell_slip(&[0.0, 0.5, 1.0, 2.0, -2.0, 2.0], 1.0, &[0]);
+        let z = maxwell_slip(&[0.0, 0.5, 1.0, 2.0, -2.0, 2.0], 1.0, &[0.into()]);
         assert!(z[1] < z[2] && z[1] > 0.5, "softer than its first part, stiffer than its last: {z:?}");
         let ends = [z[3] - 1.0, z[4] + 1.0, z[5] - 1.0];
         assert!(ends.iter().all(|e| e.abs() < 1e-12), "{z:?}");
@@ -115,7 +122,16 @@ mod tests {
 
     #[test]
     fn a_stop_slips_and_comes_back_at_once() {
-        assert_eq!(stop(&[0.0, 3.0, 2.5, 0.0], 1.0, &[0]), [0.0, 1.0, 0.5, -1.0]);
+        assert_eq!(stop(&[0.0, 3.0, 2.5, 0.0], 1.0, &[0.into()]), [0.0, 1.0, 0.5, -1.0]);
+    }
+
+    #[test]
+    fn what_came_before_is_remembered_until_it_is_passed() {
+        let x = [0.0, 0.5, 1.5, 2.0];
+        let after = |past| stop(&x, 1.0, &[Start { at: 0, past: Some(past) }]);
+        assert_eq!(after(0.4)[1..], stop(&x, 1.0, &[0.into()])[1..]);
+        assert_eq!(after(1.5), [-0.5, 0.0, 1.0, 1.0]);
+        assert_eq!(after(9.0), [-1.0, -0.5, 0.5, 1.0]);
     }
 
     #[test]

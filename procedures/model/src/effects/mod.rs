@@ -112,9 +112,7 @@ fn whole_orders(
 /// The same of an axis that may turn only a part of a turn: an order counts where the angle went all the way round, or
 /// its wave was there twice. Less of it is a curve over the angle, and under gravity that is a curve over the load.
 fn repeated_harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form<'static>> {
-    let angles = view.find(angle).unwrap_or_default();
-    let (low, high) = angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
-    let turns = (high - low) / std::f64::consts::TAU;
+    let turns = view.turns(angle);
     let twice = if turns >= 1.0 { 1 } else { (2.0 / turns).ceil() as u32 };
     harmonic_form(view, angle, twice.max(*orders.start())..=*orders.end())
 }

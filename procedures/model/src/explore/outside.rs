@@ -5,7 +5,7 @@ use crate::Options;
 use crate::effect::Stage;
 use crate::linear::dot;
 use crate::maps::Maps;
-use crate::prepare::Prepared;
+use crate::prepare::{Prepared, Problem};
 use crate::select::{Ground, Search, alone};
 use crate::terms::Term;
 
@@ -15,6 +15,10 @@ const STRUCTURE_SHARE: f64 = 0.15;
 
 /// An effect that takes less than this share of what any function of its own axis would take is not what is missing.
 const WHOLE_EXPLANATION: f64 = 0.7;
+
+/// A wave that was not there this often is a curve over the angle with three numbers, which follows many others.
+const PERIODS: f64 = 2.0;
+const WHOLE_CURVE: f64 = 0.95;
 
 /// Columns of which less than this share is left beside an axis are a function of it.
 const FUNCTION: f64 = 0.1;
@@ -40,12 +44,21 @@ fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, 
         let own = 1.0 - full / dot(&residual, &residual);
         let any =
             Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;
-        Some((term.id(), own / any))
+        Some((term.id(), own / any / least_share(term, now.problem)))
     };
     // What depends on the past is a function of no axis, even where a repeated motion makes it look like one.
     let of_axes = search.added().filter(|term| term.effect.stage() != Stage::Memory);
     let least = of_axes.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (least.1 < WHOLE_EXPLANATION).then_some(least.0)
+    (least.1 < 1.0).then_some(least.0)
+}
+
+/// Share of what any function of its own axis would take that an effect has to take.
+fn least_share(term: &Term, problem: &Problem) -> f64 {
+    let wave = term.effect.wave().zip(term.shape.first());
+    match wave.is_some_and(|(angle, order)| order * problem.view.turns(angle) < PERIODS) {
+        true => WHOLE_CURVE,
+        false => WHOLE_EXPLANATION,
+    }
 }
 
 /// An added effect that is taken back where structure remains over an axis.

@@ -2,7 +2,7 @@
 
 use super::fault::Mistake;
 use super::function::Function;
-use super::names::Names;
+use super::names::{COLUMN, Names};
 use super::syntax::{Node, Operator, Syntax};
 use crate::view::{Signal, Signals};
 use jointbench_instrument::Kind;
@@ -44,6 +44,7 @@ impl Expression {
             Syntax::Name(name) => names.meaning(&name, &at),
             Syntax::Negate(a) => What::Negate(inner(a)),
             Syntax::Binary(operator, a, b) => What::Binary(operator, inner(a), inner(b)),
+            Syntax::Call(name, arguments) if name == COLUMN => names.column(&arguments, &at),
             Syntax::Call(name, arguments) => {
                 let given = arguments.len();
                 let function = names.function(&name, given, &at);

@@ -16,10 +16,12 @@ pub use expression::{Expression, What};
 pub(crate) use fault::Mistake;
 pub use fault::{Also, FormulaFault};
 pub use function::Function;
-pub use signals::{NamedSignal, left_hand_side, signals};
+pub use signals::{NamedSignal, in_formula, left_hand_side, signals};
 pub use syntax::Operator;
 
+use crate::view::Signal;
 use jointbench_instrument::Kind;
+use std::collections::BTreeSet;
 
 /// A formula that makes sense for a kind of run.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,8 +30,8 @@ pub struct Formula {
     pub columns: Vec<(usize, Expression)>,
     /// The other parameters.
     pub shape: Vec<usize>,
-    /// Signals that it names, in the order of the kind's table.
-    pub signals: Vec<&'static NamedSignal>,
+    /// Signals that it names, in the order of the kind's table, and columns that are none of these.
+    pub signals: Vec<NamedSignal>,
     /// A mean over an interval is far from the value at its middle: a sine or cosine of a signal.
     pub is_periodic: bool,
     /// Units that contradict each other. They change no figure, so that the formula is used all the same.
@@ -55,9 +57,15 @@ impl Formula {
         }
         let linear = |p: &usize| factors.columns.iter().any(|(q, _)| q == p);
         let periodic = |what: &What| matches!(what, What::Call(f, a) if f.is_periodic() && a.iter().any(has_signal));
+        let mut columns = BTreeSet::new();
+        whole.any(&mut |what| {
+            columns.extend(if let What::Signal(Signal::Column(column)) = what { Some(*column) } else { None });
+            false
+        });
+        let columns = columns.into_iter().map(NamedSignal::of_column);
         Ok(Self {
             shape: (0..parameters.len()).filter(|p| !linear(p) && whole.uses(*p)).collect(),
-            signals: signals(kind).iter().filter(|s| whole.uses_signal(s.signal)).collect(),
+            signals: signals(kind).iter().copied().filter(|s| whole.uses_signal(s.signal)).chain(columns).collect(),
             is_periodic: whole.any(&mut |what| periodic(what)),
             doubt: units::check(kind, text, &whole, units).err(),
             columns: factors.columns,

@@ -4,9 +4,15 @@ use super::expression::What;
 use super::fault::Mistake;
 use super::function::Function;
 use super::signals::{NamedSignal, signals};
+use super::syntax::{Node, Syntax};
+use crate::view::Signal;
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::{instead, nearest};
+use jointbench_instrument::units::unit_of;
 use std::ops::Range;
+
+/// What names a column of the run that is no signal.
+pub const COLUMN: &str = "column";
 
 pub struct Names<'n> {
     kind: Kind,
@@ -47,11 +53,47 @@ impl<'n> Names<'n> {
         } else {
             let declare = format!("declare it as a parameter with its unit and range, such as `{name} [Nm] 0..1`");
             let signals: Vec<&str> = known().collect();
-            match self.unknown.is_empty() {
-                true => format!("{declare}, or use a signal of {} runs: {}", self.kind, signals.join(", ")),
-                false => declare,
+            match (unit_of(name), self.unknown.is_empty()) {
+                (Some(_), _) => format!("write {COLUMN}({name}) if it is a column of the run, or {declare}"),
+                (None, true) => format!(
+                    "{declare}, or use a signal of {} runs: {}; another column of the run is {COLUMN}(its name)",
+                    self.kind,
+                    signals.join(", ")
+                ),
+                (None, false) => declare,
             }
         }
+    }
+
+    /// `column(oil_pressure_pa)`.
+    pub fn column(&mut self, arguments: &[Node], at: &Range<usize>) -> What {
+        let refused = match arguments {
+            [Node { what: Syntax::Name(column), at }] => match self.column_signal(column) {
+                Ok(signal) => return What::Signal(signal),
+                Err(message) => Mistake::new(at.clone(), message),
+            },
+            _ => {
+                let message =
+                    format!("{COLUMN} takes the name of a column of the run, such as {COLUMN}(oil_pressure_pa)");
+                Mistake::new(at.clone(), message)
+            }
+        };
+        self.mistakes.push(refused);
+        What::Number(0.0)
+    }
+
+    fn column_signal(&self, column: &str) -> Result<Signal, String> {
+        if let Some(signal) = signals(self.kind).iter().find(|s| s.column == column) {
+            return Ok(signal.signal);
+        }
+        if self.parameters.contains(&column) || signal_or_constant(column, self.kind).is_some() {
+            return Err(format!("{column} is no column: write it without {COLUMN}( )"));
+        }
+        let known = self.kind.required_columns().iter().chain(self.kind.optional_columns());
+        if known.into_iter().any(|known| *known == column) {
+            return Err(format!("{column} is what the model is to predict, or counts its parts: it explains nothing"));
+        }
+        Ok(Signal::named(column))
     }
 
     /// `None` where there is no such function.
@@ -79,6 +121,6 @@ fn signal_or_constant(name: &str, kind: Kind) -> Option<What> {
 
 fn no_function(name: &str, start: usize) -> Mistake {
     let at = start..start + name.len();
-    let names: Vec<&str> = Function::ALL.iter().map(|f| f.name()).collect();
+    let names: Vec<&str> = Function::ALL.iter().map(|f| f.name()).chain([COLUMN]).collect();
     Mistake::new(at, format!("there is no function {name}; {}", instead(name, &names)))
 }

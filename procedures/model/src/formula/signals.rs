@@ -1,7 +1,10 @@
 //! The signals of each kind of run under the names that a formula uses.
 
+use super::names::COLUMN;
+use crate::prepare::may_cause;
 use crate::view::Signal;
 use jointbench_instrument::Kind;
+use jointbench_instrument::units::{quantity_of, unit_of};
 
 /// A signal as a formula sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +25,13 @@ const fn named(
     meaning: &'static str,
 ) -> NamedSignal {
     NamedSignal { name, signal, unit, column, meaning }
+}
+
+impl NamedSignal {
+    /// A column that is none of the kind's signals, by its own name and in its own unit.
+    pub(super) fn of_column(column: &'static str) -> Self {
+        named(column, Signal::Column(column), unit_of(column).unwrap_or("1"), column, "a column of the run")
+    }
 }
 
 const TIME: NamedSignal = named("time", Signal::Time, "s", "time_s", "time since the first sample");
@@ -79,6 +89,13 @@ pub fn signals(kind: Kind) -> &'static [NamedSignal] {
         Kind::Stiffness => STIFFNESS,
         Kind::Brake => BRAKE,
     }
+}
+
+/// How a formula names a column, or an axis on which errors show. `None` for what it cannot name.
+pub fn in_formula(kind: Kind, column: &str) -> Option<String> {
+    let quantity = quantity_of(column).unwrap_or(column);
+    let signal = signals(kind).iter().find(|s| s.column == column || s.name == quantity);
+    signal.map(|s| s.name.to_owned()).or_else(|| may_cause(column).then(|| format!("{COLUMN}({column})")))
 }
 
 /// What stands left of the equals sign: the quantity that models of the kind predict.

@@ -19,6 +19,12 @@ fn every_mistake_stands_at_its_character() {
     check_mistake("tau = a * tanh(§velocty / w0)", p, "did you mean velocity");
     check_mistake("tau = a * tanh(§motor_velocity_rad_s)", p, "write velocity");
     check_mistake("tau = a * §w1", p, "load");
+    check_mistake("tau = a * §oil_pressure_pa", p, "write column(oil_pressure_pa)");
+    check_mistake("tau = a * §column(2 * load)", p, "column takes the name");
+    check_mistake("tau = a * §column(x, y)", p, "such as column(oil_pressure_pa)");
+    check_mistake("tau = a * column(§velocity)", p, "velocity is no column");
+    check_mistake("tau = a * column(§w0)", p, "w0 is no column");
+    check_mistake("tau = a * column(§motor_current_a)", p, "explains nothing");
     check_mistake("tau = a * §thanh(load)", p, "did you mean tanh");
     check_mistake("tau = a * §sinc(load)", p, "did you mean sin?");
     check_mistake("tau = a * §bessel(load)", p, "there are abs, sign");
@@ -41,6 +47,18 @@ fn every_mistake_stands_at_its_character() {
     check_mistake("tau = a * §temperatur", p, "did you mean temperature");
     assert_eq!(parse("tau = a * ω", &["a"]).unwrap_err().at, 10..12, "bytes, not characters");
     assert_eq!(parse(&format!("tau = {}", "1".repeat(900)), &[]).unwrap_err().at.start, 400);
+}
+
+#[test]
+fn a_column_of_the_run_stands_in_a_formula() {
+    let formula = parse("tau = a * column(oil_pressure_pa) * column(temperature_c)", &["a"]).unwrap();
+    let named: Vec<_> = formula.signals.iter().map(|s| (s.name, s.unit, s.signal)).collect();
+    let (oil, known) = (Signal::Column("oil_pressure_pa"), Signal::Temperature);
+    assert_eq!(named, [("temperature", "°C", known), ("oil_pressure_pa", "Pa", oil)]);
+    let doubt = |units: &[&str]| {
+        Formula::parse(Kind::Friction, "tau = a * column(oil_pressure_pa)", &["a"], units).unwrap().doubt
+    };
+    assert!(doubt(&["Nm/Pa"]).is_none() && doubt(&["Nm"]).is_some_and(|d| d.message.contains("tau is in Nm")));
 }
 
 #[test]

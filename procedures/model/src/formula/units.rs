@@ -9,7 +9,9 @@ use super::function::Function;
 use super::left_hand_side;
 use super::signals::signals;
 use super::syntax::{self, Node, Operator, Syntax};
+use crate::view::Signal;
 use jointbench_instrument::Kind;
+use jointbench_instrument::units::unit_of;
 
 /// Exponents of kg, m, s, A and K.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +30,7 @@ const KNOWN: &[(&str, Unit)] = &[
     ("°C", Unit([0.0, 0.0, 0.0, 0.0, 1.0])),
     ("N", Unit([1.0, 1.0, -2.0, 0.0, 0.0])),
     ("Nm", Unit([1.0, 2.0, -2.0, 0.0, 0.0])),
+    ("Pa", Unit([1.0, -1.0, -2.0, 0.0, 0.0])),
     ("W", Unit([1.0, 2.0, -3.0, 0.0, 0.0])),
     ("V", Unit([1.0, 2.0, -3.0, -1.0, 0.0])),
 ];
@@ -36,7 +39,10 @@ const KNOWN: &[(&str, Unit)] = &[
 ///
 /// `whole` is what stands right of the equals sign of `text`, `units` those of the parameters.
 pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> Result<(), Mistake> {
-    if let Some(foreign) = units.iter().find(|unit| unit.trim() != "1" && read(unit).is_none()) {
+    // A column that only its owner knows has whatever unit it has.
+    let names_other = whole.any(&mut |what| matches!(what, What::Signal(Signal::Column(_))));
+    let is_foreign = |unit: &&&str| unit.trim() != "1" && read(unit).is_none() && !names_other;
+    if let Some(foreign) = units.iter().find(is_foreign) {
         let message = format!("a formula counts in SI units, and [{foreign}] is none: what is fitted is not converted");
         return Err(Mistake::new(0..0, message));
     }
@@ -140,6 +146,9 @@ impl Check<'_> {
             What::Number(_) => Ok(None),
             What::Parameter(p) => Ok(self.units[*p]),
             What::Signal(signal) => {
+                if let Signal::Column(column) = signal {
+                    return Ok(unit_of(column).and_then(read));
+                }
                 let named = signals(self.kind).iter().find(|s| s.signal == *signal);
                 // One that is a plain number by its nature is none that somebody forgot.
                 Ok(named.and_then(|s| if s.unit == "1" { Some(PLAIN) } else { self.signal(s.unit) }))

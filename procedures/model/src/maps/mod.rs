@@ -44,7 +44,7 @@ impl Maps {
         let map = |x: &Scale, y: Option<&Scale>| Map::new(x.clone(), y.cloned(), problem, &piece, &residual);
         let axes: Vec<Map> = scales.iter().map(|s| map(s, None)).collect();
         let known = ["link_torque_nm", "brake_current_a", "temperature_c"];
-        let unknown: Vec<&str> = problem.view.points.unknown().map(|(column, _)| column).collect();
+        let unknown: Vec<&str> = problem.view.points.unknown().map(|s| prepared.column_name(s)).collect();
         let sides = |name: &str| name.contains("position_rad") || known.contains(&name) || unknown.contains(&name);
         let by_direction: Vec<Map> = match scales.iter().find(|s| s.name == "direction") {
             Some(direction) => scales.iter().filter(|s| sides(&s.name)).map(|s| map(s, Some(direction))).collect(),

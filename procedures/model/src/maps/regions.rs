@@ -182,16 +182,18 @@ impl Stretch<'_> {
             return if from == to { format!("in repeat {from}") } else { format!("in repeats {from} to {to}") };
         }
         let say = |value: f64| figure(value, &x.unit);
-        let what = spoken_axis(&x.name, kind);
+        let quantity = spoken_axis(&x.name, kind);
+        let article = if quantity.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" };
+        let one = format!("{article} {quantity}");
         let end = x.bins.len() - 1;
         if self.first == self.last && (say(from) == say(to) || (to - from).abs() < 0.03 * (to + from).abs() / 2.0) {
-            return format!("at a {what} of about {}", say(x.bins[self.first].centre));
+            return format!("at {one} of about {}", say(x.bins[self.first].centre));
         }
         match (self.first == 0, self.last == end) {
-            (true, true) => format!("at every {what}"),
-            (true, false) => format!("at a {what} below {}", say(to)),
-            (false, true) => format!("at a {what} above {}", say(from)),
-            (false, false) => format!("at a {what} between {} and {}", say(from), say(to)),
+            (true, true) => format!("at every {quantity}"),
+            (true, false) => format!("at {one} below {}", say(to)),
+            (false, true) => format!("at {one} above {}", say(from)),
+            (false, false) => format!("at {one} between {} and {}", say(from), say(to)),
         }
     }
 }

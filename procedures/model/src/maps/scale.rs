@@ -75,9 +75,9 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
             scales.push(scale);
         }
     }
-    for (column, values) in problem.view.points.unknown() {
-        let values = problem.reduce.apply(values.to_vec());
-        let unit = prepared.unknown_unit(column);
+    for signal in problem.view.points.unknown() {
+        let values = problem.reduce.apply(problem.view.get(signal).to_vec());
+        let (column, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
         let as_read = Scale::new(column, unit.clone(), quantiles(&values, BINS), values);
         // A sensor that nobody knows may hold the noise of the response: only its mean over a piece says where that was.
         let held = piece_means(&as_read.values, problem);

@@ -8,7 +8,7 @@ pub use definition::{Definition, OwnParameter};
 
 use crate::ModelError;
 use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Shape, Stage};
-use crate::formula::{Formula, FormulaFault};
+use crate::formula::{Formula, FormulaFault, NamedSignal, signals};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
@@ -150,13 +150,26 @@ impl Effect for OwnEffect {
     }
 }
 
+/// The signals of a kind, and the columns that these effects name besides.
+pub fn signals_with(kind: Kind, own: &[OwnEffect]) -> Vec<NamedSignal> {
+    let mut all = signals(kind).to_vec();
+    for other in own.iter().flat_map(|own| &own.formula.signals) {
+        if !all.contains(other) {
+            all.push(*other);
+        }
+    }
+    all
+}
+
 impl TryFrom<Definition> for OwnEffect {
     type Error = FormulaFault;
 
     fn try_from(definition: Definition) -> Result<Self, FormulaFault> {
         let formula = definition.check()?;
         let parameters = definition.parameters.iter().map(OwnParameter::info).collect();
-        let optional = |s: &&&crate::formula::NamedSignal| definition.kind.optional_columns().contains(&s.column);
+        let optional = |s: &&NamedSignal| {
+            definition.kind.optional_columns().contains(&s.column) || matches!(s.signal, Signal::Column(_))
+        };
         let needs = formula.signals.iter().filter(optional).map(|s| s.column).collect();
         let sentence = match definition.sentence.trim() {
             "" => format!("What a user suspects: {}.", definition.formula.trim()),

@@ -33,8 +33,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly, gear: f64
     let laid = lay_out(choice, prepared);
     let samples = signals(&laid, &choice.stretches, prepared, gear);
     let mut points = Signals::new(laid.chunks.len());
-    for signal in Signal::ALL {
-        let Some(values) = samples.find(signal) else { continue };
+    for (signal, values) in samples.iter() {
         let mean = |c: &std::ops::Range<usize>| values[c.clone()].iter().sum::<f64>() / c.len() as f64;
         points.set(signal, laid.chunks.iter().map(mean).collect());
     }
@@ -138,5 +137,9 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
     let temperature_c = at(Signal::Temperature, false).unwrap_or(0.0);
     set(Signal::Temperature, each(&|s| temperature_c + s.warmer_k));
     set(Signal::Repeat, each(&|s| f64::from(s.power_ups)));
+    // What nobody steers stays as it was.
+    for (signal, values) in measured.iter().filter(|(signal, _)| matches!(signal, Signal::Column(_))) {
+        signals.set(signal, vec![values.last().copied().unwrap_or(0.0); laid.time_s.len()]);
+    }
     signals
 }

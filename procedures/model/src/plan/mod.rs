@@ -147,6 +147,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
             Bid { choice, z: apart.fold(f64::INFINITY, f64::min) }
         })))
     };
+    let mut in_vain = Vec::new();
     for (effect, rivals) in &open.ties {
         let mut specs = Vec::new();
         for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
@@ -157,19 +158,34 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
             let tells = format!("{effect} from {}", list(rivals));
             return Ok(Some(told(bid, &tells, std::iter::once(effect).chain(rivals))));
         }
+        in_vain.push(format!("{effect} from {}", list(rivals)));
     }
-    if let Some(effect) = &open.imitated
+    let next = if let Some(effect) = &open.imitated
         && let Some(bid) = decided(&[with_all.with(effect)?])?
     {
-        return Ok(Some(told(bid, &format!("whether {effect} is there as well"), [effect])));
-    }
-    if !open.has_noise_floor
+        Some(told(bid, &format!("whether {effect} is there as well"), [effect]))
+    } else if !open.has_noise_floor
         && let Some(choice) = menu.first()
     {
-        return Ok(Some(again(choice)));
+        Some(again(choice))
+    } else if open.has_structure {
+        None
+    } else {
+        imagined.retain(|(choice, _)| !choice.powers_anew());
+        unseen::unseen(&model, &noise, &imagined)
+    };
+    Ok(next.map(|next| Experiment { why: format!("{}{}", said_of(&in_vain), next.why), ..next }))
+}
+
+/// Ties that stay, before what else a run can tell.
+fn said_of(in_vain: &[String]) -> String {
+    match in_vain {
+        [] => String::new(),
+        ties => format!(
+            "no run within what this bench may do is expected to tell {}: that takes another speed, load or temperature; but ",
+            list(ties)
+        ),
     }
-    imagined.retain(|(choice, _)| !choice.powers_anew());
-    Ok(if open.has_structure { None } else { unseen::unseen(&model, &noise, &imagined) })
 }
 
 /// A choice with what is expected of it.

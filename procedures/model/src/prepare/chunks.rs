@@ -85,12 +85,7 @@ impl Source {
         let gather = |values: &[f64]| -> Vec<f64> { rows.iter().map(|i| values[*i]).collect() };
         let whole = |values: &Option<Vec<i64>>| values.as_ref().map(|v| rows.iter().map(|i| v[*i]).collect());
         let mut signals = Signals::new(rows.len());
-        for signal in Signal::ALL {
-            if let Some(values) = self.signals.find(signal) {
-                signals.set(signal, gather(values));
-            }
-        }
-        self.signals.unknown().for_each(|(column, values)| signals.add_unknown(column, gather(values)));
+        self.signals.iter().for_each(|(signal, values)| signals.set(signal, gather(values)));
         let moved = chunks.iter().map(|c| at(&c.start)..at(&c.start) + c.len()).collect();
         let source = Source {
             signals,
@@ -120,12 +115,10 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         chunks.iter().map(|c| values[c.clone()].iter().sum::<f64>() / c.len() as f64).collect()
     };
     let mut points = Signals::new(chunks.len());
-    for signal in Signal::ALL {
-        let Some(values) = samples.signals.find(signal) else { continue };
+    for (signal, values) in samples.signals.iter() {
         let still = settled && matches!(signal, Signal::Acceleration | Signal::Jerk);
         points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
     }
-    samples.signals.unknown().for_each(|(column, values)| points.add_unknown(column, mean(values)));
     if settled && let Some(position) = samples.signals.find(Signal::Position) {
         let wavering = wavering::accelerations(&samples.time_s, position, samples.step_s, &chunks, &group);
         points.set(Signal::Acceleration, wavering);
@@ -209,7 +202,7 @@ mod tests {
         assert!(thin.time_s.len() < 30 && thin.starts == [0], "{:?}", thin.time_s);
         let few = thin.signals.find(Signal::Position).unwrap_or_default();
         for state in [memory::dahl, memory::stop, memory::maxwell_slip] {
-            let (whole, part) = (state(&position, 5.0, &[0]), state(few, 5.0, &[0]));
+            let (whole, part) = (state(&position, 5.0, &[0.into()]), state(few, 5.0, &[0.into()]));
             for (c, m) in chunks.iter().zip(&moved) {
                 for (a, b) in whole[c.clone()].iter().zip(&part[m.clone()]) {
                     assert!((a - b).abs() < 1e-12, "{a} {b}");

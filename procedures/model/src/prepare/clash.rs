@@ -37,7 +37,7 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
     };
     let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
     let torques = (run.kind() == Kind::Friction).then(|| torque_clash(run)).flatten();
-    motions.chain(torques).chain(dead_load(run)).collect()
+    motions.chain(torques).chain(dead_load(run)).chain(noise(run)).chain(beyond_rating(run)).collect()
 }
 
 /// Pieces of the run that do not reach over the end of a recording, with the time that passes in each.
@@ -155,6 +155,51 @@ fn dead_load(run: &RunTable) -> Option<String> {
     })
 }
 
+/// A current of which neither a sample nor a piece of the run tells anything of the next: an open input. Where it holds still
+/// and only its noise is left, it has a mean.
+fn noise(run: &RunTable) -> Option<String> {
+    const LEAST_PIECES: usize = 40;
+    /// Noise comes this near to the noise before it, in standard deviations.
+    const LIKE_CHANCE: f64 = 3.0;
+    let column = match run.kind() {
+        Kind::Friction => "motor_current_a",
+        Kind::Brake => "brake_current_a",
+        Kind::Encoder | Kind::Stiffness => return None,
+    };
+    let (time_s, current) = (run.column("time_s")?, run.column(column)?);
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let variance = |values: &[f64]| {
+        let middle = mean(values);
+        values.iter().map(|i| (i - middle).powi(2)).sum::<f64>() / values.len() as f64
+    };
+    let is_white = |values: &[f64]| {
+        let middle = mean(values);
+        let next: f64 = values.windows(2).map(|i| (i[0] - middle) * (i[1] - middle)).sum();
+        next.abs() < LIKE_CHANCE * variance(values) * (values.len() as f64).sqrt()
+    };
+    let means: Vec<f64> = pieces(time_s).map(|(piece, _)| mean(&current[piece])).collect();
+    let swings = variance(current) > mean(current).powi(2);
+    (means.len() >= LEAST_PIECES && swings && is_white(current) && is_white(&means)).then(|| {
+        format!(
+            "{column} is noise: neither a sample nor {PIECE_S} s of it tell anything of what follows; it was not connected, or \
+             is another signal"
+        )
+    })
+}
+
+/// A brake takes no more than a few times what it is rated for.
+fn beyond_rating(run: &RunTable) -> Option<String> {
+    const TIMES: f64 = 20.0;
+    let rated_a = run.meta().rated_current_a?;
+    let current = run.column("brake_current_a").filter(|_| run.kind() == Kind::Brake)?;
+    let largest = current.iter().fold(0.0f64, |most, i| most.max(i.abs()));
+    (largest > TIMES * rated_a).then(|| {
+        format!(
+            "brake_current_a reaches {largest:.0} A, and the brake is rated for {rated_a} A: one of them has another unit (mA?)"
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -236,6 +281,53 @@ mod tests {
         let held = |way: f64| told(Kind::Stiffness, stiffness, &|t| [way * t.sin(), 0.7, (3.0 * t).sin()]);
         assert_eq!(held(0.2), Vec::<String>::new(), "the link was held fast, and the joint gives way");
         assert!(held(30.0)[0].starts_with("link_position_rad never changes"), "{:?}", held(30.0));
+    }
+
+    #[test]
+    fn a_current_that_is_noise_is_told() {
+        // Uniform scatter in ±0.5 (SplitMix64).
+        let scatter = |i: u64| {
+            let z = (i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let told = |friction_a: f64, gravity_a: f64, held_a: f64| {
+            let names = ["time_s", "motor_position_rad", "motor_current_a"];
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            for i in 0..20_000u64 {
+                let t = 0.004 * i as f64;
+                let (q, v) = (30.0 * (0.5 * t).sin(), (0.5 * t).cos());
+                trace.push_row(&[t, q, friction_a * v.signum() + gravity_a * q.cos() + held_a + scatter(i)]);
+            }
+            let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(1.0), ..Meta::default() };
+            clashes(&RunTable::new(meta, trace).unwrap())
+        };
+        let found = told(0.0, 0.0, 0.0);
+        assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is noise")), "{found:?}");
+        assert_eq!(told(0.03, 0.0, 0.0), Vec::<String>::new(), "friction of a tenth of the noise");
+        assert_eq!(told(0.0, 0.2, 0.0), Vec::<String>::new(), "a wave that comes and goes");
+        assert_eq!(told(0.0, 0.0, 0.4), Vec::<String>::new(), "a current that is held");
+    }
+
+    #[test]
+    fn a_brake_current_in_milliamperes_is_told() {
+        let told = |unit: f64, rated_current_a: Option<f64>| {
+            let names = ["time_s", "position_rad", "brake_current_a", "brake_torque_nm"];
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            (0..400)
+                .map(|i| 0.01 * f64::from(i))
+                .for_each(|t| trace.push_row(&[t, t, unit * 0.6 * t.sin().abs(), t.sin().abs()]));
+            let meta = Meta { kind: Some(Kind::Brake), rated_current_a, ..Meta::default() };
+            clashes(&RunTable::new(meta, trace).unwrap())
+        };
+        assert_eq!(told(1.0, Some(0.5)), Vec::<String>::new());
+        assert!(
+            told(1000.0, Some(0.5))[0].starts_with("brake_current_a reaches 600 A"),
+            "{:?}",
+            told(1000.0, Some(0.5))
+        );
+        assert_eq!(told(1000.0, None), Vec::<String>::new(), "no limit is known");
     }
 
     #[test]

@@ -9,6 +9,7 @@ pub mod filter;
 mod friction;
 mod holds;
 mod layout;
+mod past;
 mod repeats;
 mod segments;
 mod stiffness;
@@ -25,6 +26,7 @@ use filter::LowPass;
 use jointbench_instrument::{Kind, Motion, RunTable};
 pub use repeats::Unlike;
 pub use segments::stretches;
+pub use unknown::may_cause;
 
 /// What a model is judged on: the response at points with the signals that may explain it.
 #[derive(Debug, Clone)]
@@ -151,6 +153,7 @@ impl Prepared {
             (Signal::Drive, Kind::Brake) => "brake_torque_nm",
             (Signal::Drive, _) => "motor_torque_nm",
             (Signal::Repeat, _) => "repeat",
+            (Signal::Column(column), _) => column,
         }
     }
 
@@ -167,11 +170,6 @@ impl Prepared {
             _ => jointbench_instrument::units::unit_of(self.column_name(signal)).unwrap_or("1"),
         };
         self.motion.label(unit)
-    }
-
-    /// Unit of a column that the models do not know.
-    pub fn unknown_unit(&self, column: &str) -> String {
-        self.motion.label(jointbench_instrument::units::unit_of(column).unwrap_or("1"))
     }
 
     pub fn unit(&self) -> String {

@@ -2,7 +2,7 @@
 
 use super::chunks::{Layout, Source, problem};
 use super::repeats::Same;
-use super::{Prepared, holds, layout};
+use super::{Prepared, Problem, holds, layout, past};
 use crate::report::Preparation;
 use crate::view::Signal;
 use crate::{ModelError, Options, ResidualKind};
@@ -50,6 +50,8 @@ pub fn prepare(
     }
     let layout = Layout { chunks, group, condition, phase: Some(phase), settled: false, inputs };
     let mut main = problem(&samples, layout);
+    let mut doubts = super::doubts::doubts(run);
+    doubts.extend(past(&mut main, run.kind()));
     if run.kind() == Kind::Brake {
         let drive = super::brake::drive(&main);
         main.view.points.set(Signal::Drive, drive);
@@ -82,9 +84,27 @@ pub fn prepare(
         load_scale: 1.0,
         constants: super::constants(run),
         clashes: super::clash::clashes(run),
-        doubts: super::doubts::doubts(run),
+        doubts,
         about,
     })
+}
+
+/// What is remembered of the time before the run, in a sentence.
+fn past(main: &mut Problem, kind: Kind) -> Option<String> {
+    let (signal, told) = match kind {
+        Kind::Brake => (
+            Signal::Current,
+            "the brake still remembered an earlier current when the run began, which is taken into account; demagnetise it \
+             before a run, by loops that become smaller and smaller while it turns",
+        ),
+        Kind::Stiffness => (
+            Signal::Load,
+            "the joint still remembered an earlier torque when the run began, which is taken into account; load it once to \
+             both sides before a run, or let the torque die down in swings that become smaller and smaller",
+        ),
+        Kind::Friction | Kind::Encoder => return None,
+    };
+    past::find(main, signal).then(|| told.into())
 }
 
 /// Legs that start and end alike are repeats of one condition.

@@ -1,6 +1,6 @@
-//! Columns that the models do not know: axes over which what they leave may show.
+//! Columns that the models do not know: axes over which what they leave may show, and signals of users' formulas.
 
-use crate::view::Signals;
+use crate::view::{Signal, Signals};
 use jointbench_instrument::RunTable;
 use jointbench_instrument::units::unit_of;
 
@@ -8,17 +8,21 @@ use jointbench_instrument::units::unit_of;
 /// clock. Over the drive's own effort every scatter of the torque shows.
 const NO_CAUSE: [&str; 9] = ["Nm", "A", "V", "W", "rad", "rad/s", "rad/s²", "s", "ms"];
 
-/// Keeps the columns of a run that nobody knows and that may be a cause. Not those without a unit: one of them may be the
-/// response under another name.
+/// What is left may depend on a column of this name. Not on one without a unit: it may be the response under another
+/// name.
+pub fn may_cause(column: &str) -> bool {
+    unit_of(column).is_some_and(|unit| !NO_CAUSE.contains(&unit))
+}
+
+/// Keeps the columns of a run that nobody knows.
 pub fn keep(signals: &mut Signals, run: &RunTable) {
     let kind = run.kind();
     let is_known =
         |name: &str| kind.required_columns().iter().chain(kind.optional_columns()).any(|known| *known == name);
     for channel in run.trace().channels().iter().filter(|channel| !is_known(&channel.name)) {
-        let may_cause = |unit| !NO_CAUSE.contains(&unit);
         let values = run.column(&channel.name).filter(|values| values.iter().all(|v| v.is_finite()));
-        if let Some(values) = values.filter(|_| unit_of(&channel.name).is_some_and(may_cause)) {
-            signals.add_unknown(&channel.name, values.to_vec());
+        if let Some(values) = values {
+            signals.set(Signal::named(&channel.name), values.to_vec());
         }
     }
 }

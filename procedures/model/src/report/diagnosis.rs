@@ -100,6 +100,12 @@ pub struct Suggestion {
     pub validation_rms: f64,
     /// 1 − validation_rms / validation_rms of the present model.
     pub error_reduction: f64,
+    /// From the scatter over what was held out. `None` for an effect that is judged elsewhere than where the RMS looks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_reduction_ci95: Option<[f64; 2]>,
+    /// Change of the Bayesian information criterion over independent pieces; below 0 it speaks for the effect.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bic_change: Option<f64>,
     /// Share of the held-out error that the effect takes away beside all other suggestions: what the complete model is
     /// better by than the complete model without it. Effects that mask each other show little alone.
     #[serde(default)]

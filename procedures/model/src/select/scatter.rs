@@ -6,10 +6,12 @@
 use super::ground::Ground;
 use crate::effect::Search;
 use crate::linear::{Basis, dot};
-use crate::prepare::Problem;
+use crate::pieces::legs;
+use crate::prepare::stretches;
 use crate::terms::{Term, Terms};
 use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+use std::ops::Range;
 
 /// From this share of a column on, it differs from leg to leg and hardly within one.
 const BETWEEN: f64 = 0.9;
@@ -23,7 +25,7 @@ pub fn could_be(term: &Term, now: &Terms, ground: &Ground, kind: Kind, alpha: f6
     if !matches!(kind, Kind::Encoder | Kind::Stiffness) {
         return false;
     }
-    let legs = legs(now.problem);
+    let legs = stretches(&legs(now.problem));
     let steps = term.form.shape.iter().any(|shape| shape.search == Search::Jump);
     let own: Vec<Vec<f64>> = term.columns.iter().map(|column| ground.basis.rest(column)).collect();
     // The model has taken its own share of what the legs scatter by.
@@ -51,19 +53,11 @@ fn is_small(column: &[f64], residual: &[f64]) -> bool {
     (along / square).abs() < READINGS * left.sqrt()
 }
 
-/// Rows of each leg: consecutive, of one segment and repeat.
-fn legs(problem: &Problem) -> Vec<std::ops::Range<usize>> {
-    let same = |i: usize| problem.segment[i] == problem.segment[i - 1] && problem.repeat[i] == problem.repeat[i - 1];
-    let rows = problem.rows();
-    let starts: Vec<usize> = (0..rows).filter(|i| *i == 0 || !same(*i)).chain([rows]).collect();
-    starts.windows(2).map(|pair| pair[0]..pair[1]).collect()
-}
-
-fn means(values: &[f64], legs: &[std::ops::Range<usize>]) -> Vec<f64> {
+fn means(values: &[f64], legs: &[Range<usize>]) -> Vec<f64> {
     legs.iter().map(|leg| values[leg.clone()].iter().sum::<f64>() / leg.len() as f64).collect()
 }
 
-fn is_between(column: &[f64], legs: &[std::ops::Range<usize>]) -> bool {
+fn is_between(column: &[f64], legs: &[Range<usize>]) -> bool {
     let of_legs = means(column, legs).into_iter().zip(legs);
     of_legs.map(|(mean, leg)| leg.len() as f64 * mean * mean).sum::<f64>() > BETWEEN * dot(column, column)
 }

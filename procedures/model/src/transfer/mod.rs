@@ -1,5 +1,6 @@
 //! Fitted models out of the program and in again: JSON, C for a controller, tables, attributes of simulators.
 
+mod alongside;
 mod c;
 mod file;
 mod joint;
@@ -10,11 +11,12 @@ mod table;
 mod terms;
 mod written;
 
+pub use alongside::Alongside;
 pub use file::ModelFile;
 pub use predict::{Moments, predict};
 
 use crate::ModelError;
-use crate::formula::signals;
+use crate::own::signals_with;
 use crate::report::{Fit, SignalRange};
 use crate::view::Signal;
 use jointbench_instrument::Kind;
@@ -98,8 +100,9 @@ fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)]) -> Vec<String> {
         format!("Effects: {}", fit.effects.join(", ")),
         format!("Error: {:.4e} {} rms on data that took no part in the fit", fit.validation_rms, fit.unit),
     ];
+    let named = signals_with(fit.kind, &fit.own);
     let is_input = |range: &&SignalRange| {
-        let signal = signals(fit.kind).iter().find(|s| s.name == range.name);
+        let signal = named.iter().find(|s| s.name == range.name);
         signal.is_some_and(|s| s.signal != Signal::Direction && parts.uses(s.signal))
     };
     for signal in fit.scope.iter().flat_map(|s| &s.signals).filter(is_input) {

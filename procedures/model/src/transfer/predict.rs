@@ -2,7 +2,7 @@
 
 use crate::ModelError;
 use crate::fit::predict_on;
-use crate::formula::signals;
+use crate::own::signals_with;
 use crate::report::Fit;
 use crate::view::{Signals, View};
 
@@ -14,9 +14,10 @@ pub type Moments<'m> = [(&'m str, Vec<f64>)];
 pub fn predict(fit: &Fit, moments: &Moments, sample_s: f64) -> Result<Vec<f64>, ModelError> {
     let rows = moments.first().map_or(0, |(_, values)| values.len());
     let mut given = Signals::new(rows);
+    let signals = signals_with(fit.kind, &fit.own);
     for (name, values) in moments {
-        let Some(signal) = signals(fit.kind).iter().find(|s| s.name == *name) else {
-            let known: Vec<&str> = signals(fit.kind).iter().map(|s| s.name).collect();
+        let Some(signal) = signals.iter().find(|s| s.name == *name) else {
+            let known: Vec<&str> = signals.iter().map(|s| s.name).collect();
             return Err(ModelError::BadSignal {
                 signal: (*name).to_owned(),
                 why: format!("signals of {} models are {}", fit.kind, known.join(", ")),

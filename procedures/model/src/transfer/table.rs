@@ -3,7 +3,8 @@
 use super::parts::{Part, PartColumn, Parts};
 use super::{about, predict, suffix};
 use crate::ModelError;
-use crate::formula::{NamedSignal, signals};
+use crate::formula::NamedSignal;
+use crate::own::signals_with;
 use crate::report::{Fit, Scope, SignalRange};
 use crate::view::Signal;
 use jointbench_instrument::Kind;
@@ -27,7 +28,8 @@ pub fn table(fit: &Fit) -> Result<String, ModelError> {
     let (states, settled): (Vec<_>, Vec<_>) = parts.parts.drain(..).partition(|p| p.columns.iter().any(remembers));
     parts.left_out.extend(states.iter().map(|p| (p.effect, "it remembers; the table holds the settled value".into())));
     parts.parts = settled;
-    let axes = axes(fit.kind, scope, &parts);
+    let signals = signals_with(fit.kind, &fit.own);
+    let axes = axes(fit.kind, &signals, scope, &parts);
     // No angle stands for all of a wave: at rest it would be whatever it is at 0.
     let has_axis = |signal: Signal| axes.iter().any(|(axis, _)| axis.signal == signal);
     let waves = |p: &Part| ANGLES.into_iter().any(|angle| p.uses(angle) && !has_axis(angle));
@@ -51,18 +53,20 @@ pub fn table(fit: &Fit) -> Result<String, ModelError> {
             Some(axis) => grid.iter().map(|row| row[axis].signum()).collect(),
             None => vec![1.0; grid.len()],
         },
-        None if signal.signal == Signal::Temperature => vec![REFERENCE_C; grid.len()],
-        None => vec![0.0; grid.len()],
+        None => vec![rest(signal, scope); grid.len()],
     };
-    let moments: Vec<(&str, Vec<f64>)> = signals(fit.kind).iter().map(|s| (s.name, column(s))).collect();
+    let moments: Vec<(&str, Vec<f64>)> = signals.iter().map(|s| (s.name, column(s))).collect();
     let values = predict(&still, &moments, scope.sample_s)?;
 
     let mut text = String::new();
     about(fit, &parts, &parts.left_out).iter().for_each(|words| {
         let _ = writeln!(text, "# {words}");
     });
-    let resting = signals(fit.kind).iter().filter(|s| parts.uses(s.signal) && !axes.iter().any(|(a, _)| a == s));
-    let resting: Vec<String> = resting.filter_map(rest).collect();
+    // The direction follows the velocity.
+    let rests =
+        |s: &&NamedSignal| s.signal != Signal::Direction && parts.uses(s.signal) && !axes.iter().any(|(a, _)| a == s);
+    let resting: Vec<String> =
+        signals.iter().filter(rests).map(|s| format!("{} = {} {}", s.name, rest(s, scope), s.unit)).collect();
     if !resting.is_empty() {
         let _ = writeln!(text, "# At rest: {}", resting.join(", "));
     }
@@ -76,17 +80,24 @@ pub fn table(fit: &Fit) -> Result<String, ModelError> {
     Ok(text)
 }
 
-/// What a signal is held at; the direction follows the velocity.
-fn rest(signal: &NamedSignal) -> Option<String> {
-    match signal.signal {
-        Signal::Direction => None,
-        Signal::Temperature => Some(format!("{} = {REFERENCE_C} {}", signal.name, signal.unit)),
-        _ => Some(format!("{} = 0 {}", signal.name, signal.unit)),
+/// To four digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// What a signal is held at.
+fn rest(signal: &NamedSignal, scope: &Scope) -> f64 {
+    let range = scope.signals.iter().find(|r| r.name == signal.name);
+    match (signal.signal, range) {
+        (Signal::Temperature, _) => REFERENCE_C,
+        // Nobody knows what is usual but the data.
+        (Signal::Column(_), Some(range)) => rounded(0.5 * (range.min + range.max)),
+        _ => 0.0,
     }
 }
 
 /// The first two signals in the order in which a controller needs them, with their points.
-fn axes(kind: Kind, scope: &Scope, parts: &Parts) -> Vec<(&'static NamedSignal, Vec<f64>)> {
+fn axes<'s>(kind: Kind, signals: &'s [NamedSignal], scope: &Scope, parts: &Parts) -> Vec<(&'s NamedSignal, Vec<f64>)> {
     let order: &[Signal] = match kind {
         Kind::Friction => &[Signal::Velocity, Signal::Load, Signal::Temperature, Signal::Link, Signal::Position],
         Kind::Encoder => &[Signal::Position, Signal::Velocity, Signal::Direction, Signal::Temperature],
@@ -96,7 +107,9 @@ fn axes(kind: Kind, scope: &Scope, parts: &Parts) -> Vec<(&'static NamedSignal, 
     let used = |signal: Signal| {
         parts.uses(signal) || kind == Kind::Friction && signal == Signal::Velocity && parts.uses(Signal::Direction)
     };
-    let named = |signal: &Signal| signals(kind).iter().find(|s| s.signal == *signal);
+    let named = |signal: &Signal| signals.iter().find(|s| s.signal == *signal);
+    let others = signals.iter().map(|s| s.signal).filter(|s| matches!(s, Signal::Column(_)));
+    let order: Vec<Signal> = order.iter().copied().chain(others).collect();
     let mut axes: Vec<_> = order
         .iter()
         .filter(|s| used(**s))

@@ -101,7 +101,7 @@ fn shown(repeats: usize) -> View {
         (0..rows).map(|i| (TAU * waves * i as f64 / ROWS as f64 + phase).sin()).collect::<Vec<f64>>()
     };
     let mut signals = Signals::new(rows);
-    for signal in Signal::ALL {
+    for (place, signal) in Signal::ALL.into_iter().enumerate() {
         let values = match signal {
             Signal::Time => (0..rows).map(|i| i as f64).collect(),
             Signal::Repeat => (0..rows).map(|i| (i * repeats / rows) as f64).collect(),
@@ -109,7 +109,7 @@ fn shown(repeats: usize) -> View {
             Signal::Link => wave(1.0, 0.2).iter().map(|x| 6.5 * x).collect(),
             Signal::Velocity => wave(1.0, TAU / 4.0),
             Signal::Direction => wave(1.0, TAU / 4.0).iter().map(|x| x.signum()).collect(),
-            other => wave(1.0 + other as usize as f64, 0.1),
+            _ => wave(1.0 + place as f64, 0.1),
         };
         signals.set(signal, values);
     }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::formula::signals;
 use crate::report::{Preparation, ResidualKind, Scope, Term};
 use crate::view::{Signals, View};
 use crate::{OwnEffect, effects};
@@ -11,16 +12,16 @@ const STEP_S: f64 = 0.004;
 /// Signals that move, turn and cross zero.
 fn moments(kind: Kind) -> Vec<(&'static str, Vec<f64>)> {
     let wave = |rate: f64, size: f64| (0..ROWS).map(|i| size * (rate * i as f64 + 0.3).sin()).collect::<Vec<f64>>();
-    let values = |signal: Signal| match signal {
+    let values = |place: usize, signal: Signal| match signal {
         Signal::Time => (0..ROWS).map(|i| STEP_S * i as f64).collect(),
         Signal::Velocity => wave(0.05, 30.0),
         Signal::Direction => wave(0.05, 30.0).iter().map(|v| v.signum()).collect(),
         Signal::Temperature => wave(0.01, 10.0).iter().map(|t| t + 30.0).collect(),
         Signal::Load => wave(0.013, 2.0),
         Signal::Current => wave(0.031, 0.8),
-        other => wave(0.02 + 0.001 * other as usize as f64, 1.5),
+        _ => wave(0.02 + 0.001 * place as f64, 1.5),
     };
-    signals(kind).iter().map(|s| (s.name, values(s.signal))).collect()
+    signals(kind).iter().enumerate().map(|(place, s)| (s.name, values(place, s.signal))).collect()
 }
 
 fn view(kind: Kind) -> View {

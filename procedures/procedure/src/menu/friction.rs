@@ -1,7 +1,6 @@
 //! Friction: the ordinary run, short strokes at speeds and loads of their own, and a warm-up.
 
-use super::Menu;
-use super::laid::rounded;
+use super::{Menu, rounded};
 use jointbench_instrument::RunTable;
 use serde_json::{Value, json};
 

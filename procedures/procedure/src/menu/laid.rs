@@ -62,11 +62,3 @@ fn constant_current(step: &Step, from_s: f64, to_s: f64, kind: Kind) -> Vec<(f64
     let still: Vec<_> = pieces.filter(still).collect();
     if kind != Kind::Brake && edges.len() > 2 { Vec::new() } else { still }
 }
-
-/// Two digits, downwards: what a person would type, and never beyond a limit.
-pub fn rounded(value: f64) -> f64 {
-    let unit = 10f64.powf(value.log10().floor() - 1.0);
-    let whole = (value / unit * (1.0 + 1e-9)).floor();
-    // Dividing by a whole power gives 0.12 where multiplying by 0.01 gives 0.12000000000000001.
-    if unit < 1.0 { whole / unit.recip().round() } else { whole * unit }
-}

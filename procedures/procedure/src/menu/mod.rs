@@ -8,7 +8,7 @@ use crate::catalogue::procedure;
 use crate::plan::BenchFacts;
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::Choice;
-use laid::{choice, rounded};
+use laid::choice;
 use serde_json::{Map, Value, json};
 
 /// Room to the limits.
@@ -130,6 +130,14 @@ fn brake(menu: &mut Menu) {
             "order_seed": seed,
         }),
     );
+}
+
+/// Two digits, downwards: what a person would type, and never beyond a limit.
+fn rounded(value: f64) -> f64 {
+    let unit = 10f64.powf(value.log10().floor() - 1.0);
+    let whole = (value / unit * (1.0 + 1e-9)).floor();
+    // Dividing by a whole power gives 0.12 where multiplying by 0.01 gives 0.12000000000000001.
+    if unit < 1.0 { whole / unit.recip().round() } else { whole * unit }
 }
 
 #[cfg(test)]

@@ -31,6 +31,10 @@ impl Effect for TransmissionError {
         crate::effects::harmonic_form(view, Signal::Link, 1..=60)
     }
 
+    fn wave(&self) -> Option<Signal> {
+        Some(Signal::Link)
+    }
+
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         view.harmonic(Signal::Link, shape[0]).into()
     }

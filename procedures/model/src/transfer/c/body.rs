@@ -2,19 +2,19 @@
 
 use super::expression::{c, number};
 use crate::effects::memory;
-use crate::formula::{NamedSignal, signals};
+use crate::formula::NamedSignal;
+use crate::own::signals_with;
 use crate::report::Fit;
 use crate::transfer::parts::{Part, PartColumn, Parts};
 use crate::transfer::suffix;
 use crate::transfer::written::Rule;
 use crate::view::Signal;
-use jointbench_instrument::{Kind, Motion};
+use jointbench_instrument::Motion;
 
 #[derive(Debug)]
 pub struct Body {
-    kind: Kind,
     motion: Motion,
-    pub inputs: Vec<&'static NamedSignal>,
+    pub inputs: Vec<NamedSignal>,
     /// Declarations of the states.
     pub states: Vec<String>,
     pub statements: Vec<String>,
@@ -24,14 +24,15 @@ pub struct Body {
 
 impl Body {
     pub fn new(fit: &Fit, parts: &Parts) -> Self {
-        let mut inputs: Vec<_> = signals(fit.kind).iter().filter(|s| parts.uses(s.signal)).collect();
+        let mut inputs = signals_with(fit.kind, &fit.own);
+        let first = inputs.first().copied();
+        inputs.retain(|s| parts.uses(s.signal));
         if inputs.is_empty() {
             // A struct must not be empty.
-            inputs.extend(signals(fit.kind).first());
+            inputs.extend(first);
         }
         let motion = fit.scope.as_ref().map_or(Motion::default(), |s| s.motion);
-        let mut body =
-            Self { kind: fit.kind, motion, inputs, states: Vec::new(), statements: Vec::new(), uses_step: false };
+        let mut body = Self { motion, inputs, states: Vec::new(), statements: Vec::new(), uses_step: false };
         for part in &parts.parts {
             body.statements
                 .push(format!("/* {} */", suffix::ascii(if part.title.is_empty() { part.effect } else { part.title })));
@@ -48,11 +49,15 @@ impl Body {
 
     /// The input's field.
     pub fn field(&self, signal: &NamedSignal) -> String {
-        suffix::named(signal.name, &self.motion.label(signal.unit))
+        match signal.signal {
+            // It carries its unit already, and characters that C may not know.
+            Signal::Column(column) => suffix::of(column),
+            _ => suffix::named(signal.name, &self.motion.label(signal.unit)),
+        }
     }
 
     fn input(&self, signal: Signal) -> String {
-        let named = signals(self.kind).iter().find(|s| s.signal == signal);
+        let named = self.inputs.iter().find(|s| s.signal == signal);
         named.map_or_else(String::new, |s| format!("u->{}", self.field(s)))
     }
 

@@ -1,0 +1,61 @@
+//! A stiffness run over an eighth of a turn: what lies over the link's angle there is not known over the rest of the turn.
+
+mod common;
+
+use common::tables::{meta, scatter, stiffness};
+use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::{Discovery, ModelSpec, Options, ParameterState, Verdict, discover};
+
+const STEP_S: f64 = 0.01;
+const GEAR: f64 = 50.0;
+const SPEED: f64 = 0.5;
+
+/// Strokes to and fro under a torque that rises from leg to leg; `error` is the twist that the teeth add.
+fn run(error: impl Fn(f64) -> f64) -> RunTable {
+    let mut trace = stiffness();
+    let mut link = 0.2;
+    for i in 0..4800 {
+        let leg = i / 150;
+        let side = if leg % 2 == 0 { 1.0 } else { -1.0 };
+        link += side * SPEED * STEP_S;
+        let torque = side * [0.0, 2.0, 4.0, 7.0, 10.0, 15.0, 20.0, 30.0][leg / 2 % 8];
+        let twist = 1e-3 + torque / 9000.0 + error(link) + 7e-5 * scatter(i, 1);
+        let (time, leg, repeat) = (i as f64 * STEP_S, leg as f64, (leg / 16) as f64);
+        trace.push_row(&[time, GEAR * (link + twist), link, side * SPEED, torque + 0.03 * scatter(i, 2), leg, repeat]);
+    }
+    RunTable::new(meta(Kind::Stiffness), trace).unwrap()
+}
+
+fn end(run: &RunTable) -> Discovery {
+    discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), 4, |_| {}).unwrap()
+}
+
+#[test]
+fn a_bump_is_no_wave_over_the_turn() {
+    for (middle, width) in [(0.5, 0.1), (0.6, 0.08), (0.4, 0.12)] {
+        let found = end(&run(|link: f64| 5e-4 * (-((link - middle) / width).powi(2)).exp()));
+        assert_eq!(found.model, ["offset", "compliance"], "{}", found.summary);
+        assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
+        assert!(found.summary.contains("link position"), "{}", found.summary);
+    }
+}
+
+/// A quarter of a period that a slower and a faster wave follow as well, and one and a half that none does.
+#[test]
+fn a_number_of_waves_that_the_run_does_not_tell_stays_open() {
+    for (waves, size, is_open) in [(2.0, 3e-4, true), (12.0, 3e-4, false)] {
+        let found = end(&run(|link: f64| size * (waves * link + 0.3).sin()));
+        assert_eq!(found.model.last().map(String::as_str), Some("transmission_error"), "{}", found.summary);
+        let number = found.fit.parameters.iter().find(|p| p.name == "harmonic").unwrap();
+        assert!((number.ci95[0]..=number.ci95[1]).contains(&waves), "{number:?}");
+        assert_eq!(number.state != ParameterState::Ok, is_open, "{number:?}");
+        assert_eq!(number.note.as_ref().is_some_and(|n| n.contains("over more of the turn")), is_open, "{number:?}");
+        let of_truth = |name: &str, value: f64| {
+            let factor = found.fit.parameters.iter().find(|p| p.effect == "transmission_error" && p.name == name);
+            let [low, high] = factor.unwrap().ci95;
+            assert!(low <= value && value <= high, "{name}: {low} to {high} around {value}");
+        };
+        of_truth("a", size * 0.3f64.sin());
+        of_truth("b", size * 0.3f64.cos());
+    }
+}

@@ -1,0 +1,34 @@
+//! What a page shows, as a file.
+
+use super::extract::{Json, Query};
+use super::problem::{Problem, Refusals};
+use crate::lab::{Lab, TableFormat};
+use crate::view::Table;
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+#[derive(Debug, Clone, Copy, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct TableQuery {
+    /// Kind of file.
+    #[param(inline)]
+    pub format: TableFormat,
+}
+
+/// Any table as a file: what a picture shows, with the digits that it has. Nothing is kept
+#[utoipa::path(post, path = "/tables", operation_id = "write_table", tag = "daemon", params(TableQuery),
+    responses(
+        (status = 200, description = "The file", body = Vec<u8>, content_type = "application/octet-stream"),
+        Refusals))]
+pub async fn write(
+    State(lab): State<Lab>,
+    Query(query): Query<TableQuery>,
+    Json(table): Json<Table>,
+) -> Result<Response, Problem> {
+    let bytes = lab.write_table(table, query.format).await?;
+    Ok(([(header::CONTENT_TYPE, query.format.media_type())], bytes).into_response())
+}
