@@ -85,6 +85,27 @@ export async function takeAway(page, base, run) {
 	return { name: file.suggestedFilename(), table, report: said };
 }
 
+/** The residual map as a file: its name, and how it begins. */
+export async function takeMap(page) {
+	await page.getByLabel('Menu of the residual map').click();
+	const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Parquet' }).click()]);
+	return { name: file.suggestedFilename(), begins: readFileSync(await file.path(), 'latin1').slice(0, 4) };
+}
+
+/** Goes back in the log until it tells of the first run. */
+export async function showEarlier(page, base) {
+	await page.goto(`${base}/log`);
+	await page.locator('main tbody tr').first().waitFor({ timeout: PATIENCE_MS });
+	const first = page.getByRole('cell', { name: '#1', exact: true }).first();
+	expect(!(await first.isVisible()), 'the log begins with more than the newest runs');
+	for (let pages = 0; pages < 3 && !(await first.isVisible()); pages++) {
+		await page.getByRole('button', { name: 'Show earlier' }).click({ timeout: 5000 });
+		await first.waitFor({ timeout: 3000 }).catch(() => {});
+	}
+	expect(await first.isVisible(), 'the log does not go back to the first run');
+	await audit(page, 'the log of earlier runs');
+}
+
 /** Brings a run's own export in again, beside it the same with its current in milliampere and a file without a line; what the page says. */
 export async function bringBack(page, base, run, table) {
 	const meta = await (await fetch(`${base}/api/v1/runs/${run}/meta`)).text();

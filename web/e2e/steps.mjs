@@ -76,6 +76,8 @@ export async function zoomAlone(page) {
 	await page.mouse.wheel(0, -300);
 	await page.waitForURL(/own=[^&]*:[\d.]+:[\d.]+/, { timeout: 10_000 }).catch(() => expect(false, `the wheel does not zoom the plot: ${page.url()}`));
 	expect(!/view=/.test(page.url()), `the other plots are zoomed with it: ${page.url()}`);
+	await plot.locator('.u-over').dblclick();
+	await page.waitForURL(/own=[^&]*:all/, { timeout: 10_000 }).catch(() => expect(false, `a double click does not step back: ${page.url()}`));
 }
 
 /** Reads the result on a run's page, by keyboard alone: its first figure as a table, and back. Says the verdict and how many numbers the table has. */

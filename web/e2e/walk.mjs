@@ -1,12 +1,12 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
-// both, by keyboard too, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; a token made, used and revoked; an observer in a second browser; the software stop by key, and its reset; a search that is still being typed; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; a brake applied to its bench and gone back on;
+// both, by keyboard too, take its map away as a file, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; a token made, used and revoked; an observer in a second browser; the software stop by key, and its reset; a search that is still being typed; a foreign table dropped on the page; three runs compared, with their dashes; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; a brake applied to its bench and gone back on; the log back to its first run;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { askForNone, bringBack, byKeyboard, dashesOf, manyRuns, readResults, takeAway, unfoldAxes, zoomWhileFollowing } from './looks.mjs';
+import { askForNone, bringBack, byKeyboard, dashesOf, manyRuns, readResults, showEarlier, takeAway, takeMap, unfoldAxes, zoomWhileFollowing } from './looks.mjs';
 import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, FOREIGN, importForeign, loseAndFind, makeRun, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 import { applyAndGoBack, makeAndRevoke } from './settings.mjs';
 
@@ -75,6 +75,8 @@ await tell('walk', async () => {
 	const cell = await byKeyboard(page);
 	expect(/standard errors|too few|never visited/.test(cell), `the map does not say what its cell is: ${cell}`);
 	await brush(page);
+	const map = await takeMap(page);
+	expect(/-map\.parquet$/.test(map.name) && map.begins === 'PAR1', `the map leaves as ${JSON.stringify(map)}`);
 	const excluded = await excludeAndUndo(page, 'walked over the cable');
 	expect(/without .* s: walked over the cable/.test(excluded), `the page does not say what is excluded: ${excluded}`);
 
@@ -186,6 +188,8 @@ await tell('walk', async () => {
 	const shown = await readResults(page, where.base, RESULTS);
 	console.log(`results read: ${shown.join(', ')}`);
 	await applyAndGoBack(page, where.base, await makeRun(where.base, 'brake_hysteresis', {}));
+
+	await showEarlier(page, where.base);
 
 	expect(faults.length === 0, `the page is not clean:\n  ${faults.join('\n  ')}`);
 	await browser.close();

@@ -25,8 +25,8 @@ export const api = {
 	preview: (id: string, bench: string, parameters: Values, signal?: Signal) =>
 		ask('post', '/api/v1/procedures/{id}/preview', { path: { id }, body: { bench, parameters } }, signal),
 
-	/** Newest first; of one run, where one is named. */
-	log: (run?: number, signal?: Signal) => ask('get', '/api/v1/log', { query: { run } }, signal),
+	/** Newest first; of one run, or of the runs before one, where it is named. */
+	log: (query: { run?: number; before?: number }, signal?: Signal) => ask('get', '/api/v1/log', { query }, signal),
 	runs: (query: { limit?: number; offset?: number; search?: string; typing?: boolean }, signal?: Signal) =>
 		ask('get', '/api/v1/runs', { query }, signal),
 	run: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}', { path: { id } }, signal),

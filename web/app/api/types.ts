@@ -38,5 +38,6 @@ export type RunSummary = Schemas['RunSummary'];
 export type RunState = Schemas['RunState'];
 export type Samples = Schemas['Samples'];
 export type Suggestion = Schemas['Suggestion'];
+export type Table = Schemas['Table'];
 export type TradeOff = Schemas['TradeOff'];
 export type Worth = Schemas['Worth'];

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { cartesian } from './cartesian';
-import { type Figure, type Series, csvOf, inUnits, reachOf, styles } from './figure';
+import { type Figure, type Series, inUnits, reachOf, styles, tableOf } from './figure';
 import { glyphs, line, ribbon } from './ink';
 import { flow } from './legend';
 import { polar } from './polar';
@@ -85,7 +85,7 @@ it('keeps the centre free where a polar figure has two signs, and starts there w
 
 it('gives exactly what is drawn, with all digits and names', () => {
 	const drawn = figure({ x: { label: 'of what', unit: '', names: ['eccentricity, first'] }, series: [series('a', 'bars', [0], [0.0311234567], [[0.03, 0.032]])] });
-	expect(csvOf(drawn)).toBe('series,of what,torque [Nm],"torque [Nm], lower","torque [Nm], upper"\na,"eccentricity, first",0.0311234567,0.03,0.032\n');
+	expect(tableOf(drawn)).toEqual({ head: ['series', 'of what', 'torque [Nm]', 'torque [Nm], lower', 'torque [Nm], upper'], rows: [['a', 'eccentricity, first', 0.0311234567, 0.03, 0.032]] });
 });
 
 it('is shown in the units that a person reads', () => {

@@ -1,3 +1,5 @@
+import type { Table } from '../api/types';
+
 /** A plot as the daemon describes it, in SI units: what it holds, and how it is told apart. Where it lies on paper is `cartesian` and `polar`. */
 export interface Axis {
 	label: string;
@@ -119,12 +121,12 @@ export function rowsOf(figure: Figure): Row[] {
 const titled = (label: string, unit: string) => (unit ? `${label} [${unit}]` : label);
 export const axisName = (axis: Axis) => titled(axis.label, axis.unit);
 
-export function csvOf(figure: Figure): string {
+export function tableOf(figure: Figure): Table {
 	const y = axisName(figure.y);
-	return csv(
-		['series', axisName(figure.x), y, `${y}, lower`, `${y}, upper`],
-		rowsOf(figure).map((row) => [row.series, row.x, row.y, row.low, row.high]),
-	);
+	return {
+		head: ['series', axisName(figure.x), y, `${y}, lower`, `${y}, upper`],
+		rows: rowsOf(figure).map((row) => [row.series, row.x, row.y, row.low, row.high]),
+	};
 }
 
 /** Numbers with all their digits; texts quoted where they must be (RFC 4180). */

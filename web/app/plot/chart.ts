@@ -31,6 +31,8 @@ export interface Frame {
 	bareX?: boolean;
 	/** The cursors of the plots above are the same. */
 	cursorsAbove?: boolean;
+	/** There is a band about zero: it is in view however far the curves are from it. */
+	banded?: boolean;
 }
 
 /** Behind the curves: stretches of x, and a band of y about zero. */
@@ -70,7 +72,10 @@ export function makeChart(
 			height: frame.height,
 			legend: { show: false },
 			padding: [8, 10, 0, 0],
-			scales: { x: { time: false, range: (_u, low, high) => view ?? padded(low, high) } },
+			scales: {
+				x: { time: false, range: (_u, low, high) => view ?? padded(low, high) },
+				y: frame.banded ? { range: (_u, low, high) => withBand(low, high, backdrop.band ?? 0) } : {},
+			},
 			axes: [axis(frame.bareX ? '' : frame.xTitle, frame.bareX), axis(frame.yTitle, false, 58)],
 			series: [{}, ...frame.curves.map((curve) => series(curve, () => backdrop))],
 			cursor: {
@@ -109,6 +114,11 @@ const shown = (scale: uPlot.Scale | undefined): View => [scale?.min ?? 0, scale?
 function padded(low: number, high: number): View {
 	if (low == null || high == null) return [0, 1];
 	return low === high ? [low - 0.5, high + 0.5] : [low, high];
+}
+
+function withBand(low: number | null, high: number | null, band: number): View {
+	const [from, to] = [Math.min(low ?? 0, -band), Math.max(high ?? 0, band)];
+	return padded(from - 0.1 * (to - from), to + 0.1 * (to - from));
 }
 
 function axis(title: string, bare = false, size?: number): uPlot.Axis {

@@ -15,8 +15,9 @@ it('finds pauses, also between steps of unlike length', () => {
 
 it('puts what the store has before what was heard, and nothing twice', () => {
 	const both = follow([[0, 1, 2], [5, null, 7]], [Float64Array.of(2, 3), Float32Array.of(8, 9)]);
-	expect(both.map((column) => [...column])).toEqual([
+	expect(both.map((column) => Array.from(column))).toEqual([
 		[0, 1, 2, 3],
 		[5, Number.NaN, 8, 9],
 	]);
+	expect(follow([[0, 1, 2], []], [Float64Array.of(2, 3), Float32Array.of(8, 9)])[1]).toEqual([null, null, 8, 9]);
 });

@@ -26,10 +26,12 @@ export function findGaps(time_s: readonly number[]): [number, number][] {
 }
 
 /** Columns, and behind them those that follow: what overlaps is taken from the latter. */
-export function follow(early: readonly (readonly (number | null)[])[], late: readonly ArrayLike<number | null>[]): Float64Array[] {
+export function follow(early: readonly (readonly (number | null)[])[], late: readonly ArrayLike<number | null>[]): ArrayLike<number | null>[] {
 	const begins = late[0]?.[0] ?? Infinity;
 	const count = early[0]!.filter((at) => at! < begins).length;
 	return late.map((column, c) => {
+		// What nobody kept begins with nothing: a scale cannot begin with NaN.
+		if (!early[c]?.length) return [...Array<null>(count).fill(null), ...Array.from(column)];
 		const both = new Float64Array(count + column.length).fill(Number.NaN);
 		for (let i = 0; i < count; i++) both[i] = early[c]?.[i] ?? Number.NaN;
 		both.set(column as ArrayLike<number>, count);

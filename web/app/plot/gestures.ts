@@ -3,11 +3,11 @@ import { touch } from './touch';
 
 export type View = [from: number, to: number];
 /** How a view was asked for: a live plot goes on following after a zoom, but not after the others. */
-export type Hand = 'zoom' | 'box' | 'pan' | 'all';
+export type Hand = 'zoom' | 'box' | 'pan' | 'all' | 'back';
 export type Asked = (view: View | null, hand: Hand) => void;
 
 /**
- * The hands on a plot: wheel zooms about the pointer, drag chooses a stretch, shift-drag moves, double click shows all.
+ * The hands on a plot: wheel zooms about the pointer, drag chooses a stretch, shift-drag moves, double click goes back.
  * The chart keeps no zoom of its own; it says which view was asked for.
  */
 export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> {
@@ -21,7 +21,7 @@ export function gestures(asked: Asked): Pick<uPlot.Options, 'cursor' | 'hooks'> 
 					return null;
 				},
 				dblclick: () => () => {
-					asked(null, 'all');
+					asked(null, 'back');
 					return null;
 				},
 			},

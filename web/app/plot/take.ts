@@ -1,5 +1,4 @@
 /** A plot on a canvas, to take away: its picture, and the numbers that it shows. */
-import { csv } from '../figure/figure';
 import type { Curve } from './chart';
 import { colour } from './colour';
 import type { View } from './gestures';
@@ -51,8 +50,5 @@ export function rowsIn(view: View | null, curves: readonly Curve[], data: readon
 }
 
 export const headOf = (xTitle: string, curves: readonly Curve[]): string[] => [xTitle, ...curves.map(({ label, unit }) => (unit ? `${label} [${unit}]` : label))];
-
-export const numbers = (xTitle: string, curves: readonly Curve[], data: readonly ArrayLike<number | null>[], view: View | null): string =>
-	csv(headOf(xTitle, curves), rowsIn(view, curves, data));
 
 const finite = (value: number | null | undefined) => (value == null || Number.isNaN(value) ? null : value);

@@ -1,8 +1,10 @@
 import { describe, expect, it } from 'vitest';
+import { agreeing } from './agreeing';
 import { binOf, binsFor } from './bins';
 import { curve, explainedShare } from './curve';
 import { residualMap } from './map';
 import { reach } from './line';
+import { neverVisited } from './never';
 import { middle, place } from './place';
 import { inOneTurn } from './points';
 import { half, quantile, score, Sums } from './tally';
@@ -150,4 +152,22 @@ it('lets a mean of which little is known make no curve small', () => {
 	const known = [1, -2, 3].map((mean) => point(mean, 0.1));
 	expect(reach([[...known, point(1, 40)]])).toBeCloseTo(reach([known]), 9);
 	expect(reach([[...known, point(5, 40)]])).toBeGreaterThan(5);
+});
+
+it('counts the repeats that an effect helps', () => {
+	const error = [1, 1, 1, -1, 1, 9];
+	const set = { error, repeat: [0, 0, 1, 1, 2, 2], held_out: [false, false, false, false, false, true] };
+	expect(agreeing(set, [1, 1, 1, 1, 1, 1])).toEqual({ yes: 2, of: 3 });
+	expect(agreeing({ ...set, repeat: [0, 0, 0, 0, 0, 0] }, error)).toBeNull();
+});
+
+it('names the conditions that were never visited', () => {
+	const cell = (n: number) => ({ n, mean: 0, se: 1, pieces: n });
+	const x = { edges: [0, 1, 2, 3], levels: [0.5, 1.5, 2.5] };
+	const map = { x, y: { edges: [0, 10, 20], levels: null, factor: 2 }, cells: [0, 0, 4, 0, 4, 0].map(cell) };
+	expect(neverVisited(map)).toEqual([
+		{ y: [0, 20], x: [0.5, 1.5] },
+		{ y: [20, 40], x: [0.5, 0.5] },
+		{ y: [20, 40], x: [2.5, 2.5] },
+	]);
 });

@@ -13,9 +13,13 @@ export interface Group {
 }
 
 export const COUNTERS = new Set(['time_s', 'segment', 'repeat']);
+/** What the daemon tells beside a run that is on: the torque of the motor, measured and as the bench's last model has it. Small beside what the link carries, so a plot of its own. */
+export const MODEL = 'model';
+const TOLD = ['motor_torque_nm', 'model_torque_nm'];
 /** What a unit measures, in the order in which people look at it. */
 const QUANTITIES = new Map([
 	['rad/s', 'velocity'],
+	[MODEL, 'motor torque'],
 	['Nm', 'torque'],
 	['A', 'current'],
 	['°C', 'temperature'],
@@ -23,22 +27,22 @@ const QUANTITIES = new Map([
 ]);
 const ORDER = [...QUANTITIES.keys()];
 
-/** `rpm`: what is read in rad/s is shown in rpm; the group keeps the unit of its channels. */
-export function groupsOf(channels: readonly Channel[], rpm = false): Group[] {
+/** `rpm`: what is read in rad/s is shown in rpm; the group keeps the unit of its channels. `model`: what the model is called. */
+export function groupsOf(channels: readonly Channel[], rpm = false, model = MODEL): Group[] {
 	const byUnit = new Map<string, string[]>();
 	for (const channel of channels) {
 		if (COUNTERS.has(channel.name)) continue;
-		const { unit } = label(channel.name, channel.unit);
+		const unit = TOLD.includes(channel.name) ? MODEL : label(channel.name, channel.unit).unit;
 		byUnit.set(unit, [...(byUnit.get(unit) ?? []), channel.name]);
 	}
 	const place = (unit: string) => (ORDER.includes(unit) ? ORDER.indexOf(unit) : ORDER.length);
-	return [...byUnit].map(([unit, names]) => makeGroup(unit, names, rpm)).sort((a, b) => place(a.unit) - place(b.unit));
+	return [...byUnit].map(([unit, names]) => makeGroup(unit, names, rpm, model)).sort((a, b) => place(a.unit) - place(b.unit));
 }
 
-function makeGroup(unit: string, names: string[], rpm: boolean): Group {
-	const titles = names.map((name) => label(name).title);
+function makeGroup(unit: string, names: string[], rpm: boolean, model: string): Group {
+	const titles = unit === MODEL ? ['measured', model] : names.map((name) => label(name).title);
 	const title = QUANTITIES.get(unit) ?? titles.join(', ');
-	const shown = speedScale(unit, rpm).unit;
+	const shown = unit === MODEL ? 'Nm' : speedScale(unit, rpm).unit;
 	const curves = titles.map((title, i) => ({ label: title, unit: shown, mark: 'line' as const, ...curveStyle(i) }));
 	return { unit, title: unit ? `${title} [${shown}]` : title, names, curves };
 }

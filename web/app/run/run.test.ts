@@ -41,6 +41,14 @@ it('draws channels of one unit together', () => {
 	expect(groups[0]!.curves[0]!.dash).not.toEqual(groups[0]!.curves[1]!.dash);
 });
 
+it('draws the model of a run that is on beside what was measured, apart from the load', () => {
+	const names = ['link_torque_nm', 'motor_torque_nm', 'model_torque_nm'];
+	const [torque, load] = groupsOf(names.map((name) => ({ name })), false, 'model 12');
+	expect([torque!.title, ...torque!.curves.map((curve) => curve.label)]).toEqual(['motor torque [Nm]', 'measured', 'model 12']);
+	expect(torque!.curves[1]!.dash).not.toEqual([]);
+	expect(load!.names).toEqual(['link_torque_nm']);
+});
+
 it('counts the step that is on, and stays on the last', () => {
 	const at = (step: number) => stepOn({ step, steps: 3, label: '', elapsed_s: 0, remaining_s: 0 });
 	expect([at(0), at(1), at(3)]).toEqual([1, 2, 3]);

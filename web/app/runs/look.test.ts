@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { RunSummary } from '../api/types';
-import { readHidden, readViews, runsCsv, toggleColumn, toggleView } from './look';
+import { readHidden, readViews, runsTable, toggleColumn, toggleView } from './look';
 
 function storage() {
 	const kept = new Map<string, string>();
@@ -28,9 +28,9 @@ it('keeps searches and forgets them again', () => {
 
 it('writes the list as a table', () => {
 	const run = { id: 3, state: 'failed', procedure: 'friction', kind: 'friction', bench: 'a', simulated: true, created_at: '2026-01-02T03:04:05Z', duration_s: 1.5, rows: 7, safe: null, reason: 'no "contact", twice', tags: ['cold', 'new oil'], model: { validation_rms: 0.002, unit: 'Nm', coulomb: { value: 0.03, ci95: [0.029, null] } } };
-	expect(runsCsv([run as unknown as RunSummary]).split('\n')).toEqual([
-		'id,state,procedure,kind,bench,simulated,created_at,duration_s,rows,safe,reason,tags,note,held_out_rms,unit,coulomb,coulomb_low,coulomb_high',
-		'3,failed,friction,friction,a,true,2026-01-02T03:04:05Z,1.5,7,,"no ""contact"", twice",cold new oil,,0.002,Nm,0.03,0.029,',
-		'',
+	const { head, rows } = runsTable([run as unknown as RunSummary]);
+	expect(head.slice(-5)).toEqual(['held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high']);
+	expect(rows).toEqual([
+		[3, 'failed', 'friction', 'friction', 'a', 'true', '2026-01-02T03:04:05Z', 1.5, 7, null, 'no "contact", twice', 'cold new oil', null, 0.002, 'Nm', 0.03, 0.029, null],
 	]);
 });

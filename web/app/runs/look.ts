@@ -1,4 +1,4 @@
-import type { RunSummary } from '../api/types';
+import type { RunSummary, Table } from '../api/types';
 
 /** What the list can show of a run beside its number and its state; a person chooses, and the browser remembers. */
 export const COLUMNS = ['procedure', 'bench', 'started', 'duration', 'rows', 'safe', 'error', 'Coulomb', 'note'] as const;
@@ -32,12 +32,9 @@ export function toggleView(search: string, kept: Pick<Storage, 'getItem' | 'setI
 const FIELDS = ['id', 'state', 'procedure', 'kind', 'bench', 'simulated', 'created_at', 'duration_s', 'rows', 'safe', 'reason', 'tags', 'note'] as const;
 
 /** The list as a table for other programs. */
-export function runsCsv(runs: readonly RunSummary[]): string {
-	const cell = (value: unknown) => {
-		const text = Array.isArray(value) ? value.join(' ') : String(value ?? '');
-		return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-	};
+export function runsTable(runs: readonly RunSummary[]): Table {
+	const cell = (value: unknown) => (Array.isArray(value) ? value.join(' ') : typeof value === 'number' ? value : value == null ? null : String(value));
 	const model = ({ model }: RunSummary) => [model?.validation_rms, model?.unit, model?.coulomb?.value, ...(model?.coulomb?.ci95 ?? [null, null])];
 	const head = [...FIELDS, 'held_out_rms', 'unit', 'coulomb', 'coulomb_low', 'coulomb_high'];
-	return [head, ...runs.map((run) => [...FIELDS.map((field) => run[field]), ...model(run)].map(cell))].map((row) => row.join(',')).join('\n') + '\n';
+	return { head, rows: runs.map((run) => [...FIELDS.map((field) => run[field]), ...model(run)].map(cell)) };
 }

@@ -1,7 +1,12 @@
+import type { Hand } from '../plot/gestures';
 import { type Route, parseRoute, withQuery } from './route';
 
 /** A browser takes 200 changes of the address in ten seconds; a wheel makes more. The last one of a while is enough. */
 const REST_MS = 120;
+/** A wheel that rests so long has begun anew. */
+const PAUSE_MS = 800;
+/** In the browser's history: an entry that a plot has made. */
+const STEP = 'look';
 
 class Router {
 	path = $state(location.pathname);
@@ -37,12 +42,26 @@ class Router {
 		else this.late ??= setTimeout(() => this.write(), wait_ms);
 	}
 
+	private moved_ms = Number.NEGATIVE_INFINITY;
+
+	/** Changes what a plot shows. What one hand does at a time is a step in the browser's history, and a double click takes one back. */
+	look(changes: Record<string, string | null>, hand: Hand): void {
+		if (hand === 'back' && history.state === STEP) return history.back();
+		const goes_on = hand !== 'box' && performance.now() - this.moved_ms < PAUSE_MS;
+		this.moved_ms = performance.now();
+		if (hand !== 'back' && !goes_on && withQuery(this.query, changes) !== this.search) {
+			this.write();
+			history.pushState(STEP, '', this.path + this.search);
+		}
+		this.set(changes);
+	}
+
 	/** The view as it is becomes the address. */
 	private write(): void {
 		clearTimeout(this.late);
 		this.late = undefined;
 		if (location.search === this.search || location.pathname !== this.path) return;
-		history.replaceState(null, '', this.path + this.search);
+		history.replaceState(history.state, '', this.path + this.search);
 		this.replaced_ms = performance.now();
 	}
 

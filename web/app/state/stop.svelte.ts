@@ -23,8 +23,12 @@ class SoftwareStop {
 		while (this.pressed) {
 			try {
 				await api.stopBench(bench);
-				this.acknowledged_ms = performance.now() - begin;
+				// The page may have been busy when the answer came.
+				const [answer] = performance.getEntriesByType('resource').filter((one) => one.startTime >= begin && one.name.endsWith('/stop')).slice(-1);
+				const end = answer instanceof PerformanceResourceTiming ? answer.responseEnd : performance.now();
+				this.acknowledged_ms = end - begin;
 				this.pressed = false;
+				if (this.acknowledged_ms <= PATIENCE_MS) this.overdue = false;
 			} catch (failure) {
 				this.fault = asRefusal(failure).message;
 				await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));

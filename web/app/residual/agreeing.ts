@@ -1,0 +1,10 @@
+import type { ResidualSet } from '../api/types';
+
+/** In how many repeats what is left shrinks by what an effect would take of it. `null` where nothing was repeated. */
+export function agreeing({ error, repeat, held_out }: Pick<ResidualSet, 'error' | 'repeat' | 'held_out'>, taken: readonly number[]): { yes: number; of: number } | null {
+	const gain = new Map<number, number>();
+	for (let i = 0; i < error.length; i++) {
+		if (!held_out[i]) gain.set(repeat[i]!, (gain.get(repeat[i]!) ?? 0) + error[i]! ** 2 - (error[i]! - taken[i]!) ** 2);
+	}
+	return gain.size < 2 ? null : { yes: [...gain.values()].filter((one) => one > 0).length, of: gain.size };
+}
