@@ -133,6 +133,7 @@ export async function dashesOf(page, address) {
 	await page.goto(address);
 	const plot = page.locator('figure:has(.uplot)').first();
 	await plot.waitFor({ timeout: PATIENCE_MS });
+	await page.locator('[data-figure=difference]').waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the difference of the runs is not drawn'));
 	const legend = await plot.locator('figcaption line').evaluateAll((lines) => lines.map((line) => line.getAttribute('stroke-dasharray') ?? ''));
 	const ratio = await page.evaluate(() => devicePixelRatio);
 	const painted = await page.evaluate(() => [...window.painted]);

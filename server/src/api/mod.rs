@@ -108,6 +108,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(notes::tags))
         .routes(routes!(runs::samples))
         .routes(routes!(runs::statistics))
+        .routes(routes!(runs::differences))
         .routes(routes!(identifications::get))
         .routes(routes!(identifications::earlier))
         .routes(routes!(identifications::beside))

@@ -1,9 +1,9 @@
 //! Runs: start, watch, steer.
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
-use super::problem::Refusals;
-use crate::lab::{Caller, Lab};
-use crate::view::{ChannelStatistics, NewRun, Run, RunEvent, RunList, Samples};
+use super::problem::{Problem, Refusals};
+use crate::lab::{Alignment, Caller, Lab};
+use crate::view::{ChannelStatistics, Figure, NewRun, Run, RunEvent, RunList, Samples};
 use axum::Extension;
 use axum::extract::State;
 use jointbench_procedure::Control;
@@ -157,6 +157,38 @@ pub async fn statistics(
     Query(query): Query<StatisticsQuery>,
 ) -> Answer<Vec<ChannelStatistics>> {
     Ok(Json(lab.statistics(id, named(query.channels).as_deref(), query.from_s, query.to_s).await?))
+}
+
+#[derive(Debug, Clone, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct DifferenceQuery {
+    /// The others, one to five, with commas between.
+    pub others: String,
+    /// The channel that is held against that of the first run.
+    pub channel: String,
+    /// The channel by which the runs are aligned; the time where left out.
+    pub by: Option<String>,
+    /// The event, by its text, from which on the time is told.
+    pub from: Option<String>,
+}
+
+/// How far a channel of other runs is from that of a first one, over time or another channel, with two standard errors
+#[utoipa::path(get, path = "/runs/{id}/differences", operation_id = "run_differences", tag = "samples",
+    params(("id" = i64, Path, description = "The run that the others are held against"), DifferenceQuery),
+    responses((status = 200, description = "Figures; the means first where the runs are not aligned by time", body = Vec<Figure>), Refusals))]
+pub async fn differences(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Query(query): Query<DifferenceQuery>,
+) -> Answer<Vec<Figure>> {
+    let others: Result<Vec<i64>, _> = query.others.split(',').map(|run| run.trim().parse()).collect();
+    let others = others.map_err(|_| {
+        Problem::malformed(format!("others = {}: write numbers of runs with commas between", query.others))
+    })?;
+    let by = query.by.unwrap_or_else(|| "time_s".to_owned());
+    let how = Alignment { channel: query.channel, by, from: query.from };
+    Ok(Json(lab.differences(&[vec![id], others].concat(), &how).await?))
 }
 
 fn named(channels: Option<String>) -> Option<Vec<String>> {

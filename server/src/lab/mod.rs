@@ -7,6 +7,7 @@ mod beside;
 mod calibrations;
 mod continuing;
 mod convert;
+mod differences;
 mod error;
 mod excluding;
 mod experiment;
@@ -25,6 +26,7 @@ mod tokens;
 mod transfer;
 
 pub use convert::{bench_view, reread, run_event, safe_view, state_view};
+pub use differences::Alignment;
 pub use error::LabError;
 pub use experiment::{Offer, next_run};
 pub use models::diagnose;

@@ -4,7 +4,7 @@ use super::{Answer, Lab};
 use crate::view::ChannelStatistics;
 
 /// So many rows are in memory at a time, whatever the window.
-const ROWS_AT_ONCE: u64 = 1 << 18;
+pub(super) const ROWS_AT_ONCE: u64 = 1 << 18;
 
 impl Lab {
     /// From every row with `from_s ≤ time ≤ to_s`: a picture's smallest and largest values give no mean.
@@ -34,10 +34,10 @@ impl Lab {
 
 /// Welford's running mean and squares about it: no cancellation where the mean is large.
 #[derive(Debug, Clone, Copy)]
-struct Figures {
-    n: u64,
-    mean: f64,
-    squares: f64,
+pub(super) struct Figures {
+    pub n: u64,
+    pub mean: f64,
+    pub squares: f64,
     min: f64,
     max: f64,
 }
@@ -49,7 +49,7 @@ impl Default for Figures {
 }
 
 impl Figures {
-    fn take(&mut self, value: f64) {
+    pub fn take(&mut self, value: f64) {
         self.n += 1;
         let off = value - self.mean;
         self.mean += off / self.n as f64;

@@ -3,6 +3,7 @@
 mod autopilots;
 mod calibrations;
 mod daemon;
+mod differences;
 mod disk;
 mod door;
 mod import;

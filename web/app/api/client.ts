@@ -53,6 +53,9 @@ export const api = {
 	statistics: (id: number, query: { channels?: string; from_s?: number; to_s?: number }, signal?: Signal) =>
 		ask('get', '/api/v1/runs/{id}/statistics', { path: { id }, query }, signal),
 
+	differences: (id: number, query: { others: string; channel: string; by?: string; from?: string }, signal?: Signal) =>
+		ask('get', '/api/v1/runs/{id}/differences', { path: { id }, query }, signal),
+
 	effects: (kind?: string, signal?: Signal) => ask('get', '/api/v1/effects', { query: { kind } }, signal),
 	formulas: (kind: string, signal?: Signal) => ask('get', '/api/v1/formulas/{kind}', { path: { kind } }, signal),
 	checkEffect: (trial: { effect: EffectDefinition; run?: number }, signal?: Signal) =>

@@ -1,27 +1,23 @@
 import type { RunEvent, Samples } from '../api/types';
 
-/** One channel of a run over whatever the runs are aligned by. */
+/** One channel of a run over time. */
 export interface Course {
 	x: number[];
 	low: (number | null)[];
 	high: (number | null)[];
 }
 
-/** A channel over time, from a moment of the run on, or over another channel of the same samples. */
-export function courseOf(samples: Samples, channel: string, by: string, zero_s = 0): Course | null {
+/** A channel over time, from a moment of the run on. */
+export function courseOf(samples: Samples, channel: string, zero_s = 0): Course | null {
 	const values = samples.channels.find((one) => one.name === channel);
-	if (!values) return null;
-	if (by === 'time_s') return { x: zero_s === 0 ? samples.time_s : samples.time_s.map((t) => t - zero_s), low: values.min, high: values.max };
-	const along = samples.channels.find((one) => one.name === by);
-	if (!along) return null;
-	return { x: along.min.map((low, i) => ((low ?? Number.NaN) + (along.max[i] ?? Number.NaN)) / 2), low: values.min, high: values.max };
+	return values ? { x: zero_s === 0 ? samples.time_s : samples.time_s.map((t) => t - zero_s), low: values.min, high: values.max } : null;
 }
 
 /** What happened in every one of the runs, by its words, and when it first did. */
-export function sharedMoments(runs: readonly (readonly Pick<RunEvent, 'text' | 'at_s'>[])[]): Map<string, number[]> {
+export function sharedMoments(runs: readonly (readonly Pick<RunEvent, 'text' | 'at_s' | 'kind'>[])[]): Map<string, number[]> {
 	const first = runs.map((events) => {
 		const times = new Map<string, number>();
-		for (const { text, at_s } of events) if (!times.has(text)) times.set(text, at_s);
+		for (const { text, at_s, kind } of events) if (kind !== 'step_finished' && !times.has(text)) times.set(text, at_s);
 		return times;
 	});
 	const everywhere = [...(first[0]?.keys() ?? [])].filter((text) => first.every((times) => times.has(text)));

@@ -1,4 +1,4 @@
-import { percent } from '../format/number';
+import { figure, percent } from '../format/number';
 
 /** A figure that several runs give, each with what is known of its interval. */
 export interface Given {
@@ -6,11 +6,13 @@ export interface Given {
 	ci95?: readonly (number | null)[] | null;
 }
 
-/** Change against the base, as a share of it: `+17 %`. Nothing where there is no base or it is zero. */
-export function against(base: Given | null, one: Given | null): string {
+/** Change against the base: `+17 %`, or as a number, times `factor`, where the base may be zero. */
+export function against(base: Given | null, one: Given | null, factor = 1): string {
 	if (!base || !one || base.value === 0) return '';
-	const share = (one.value - base.value) / Math.abs(base.value);
-	return `${share >= 0 ? '+' : ''}${percent(share, Math.abs(share) < 0.1 ? 1 : 0)}`;
+	const change = one.value - base.value;
+	const share = change / Math.abs(base.value);
+	const said = Math.abs(base.value) < (half(base) ?? 0) ? figure(change * factor, 2) : percent(share, Math.abs(share) < 0.1 ? 1 : 0);
+	return `${change >= 0 ? '+' : ''}${said}`;
 }
 
 function half({ ci95 }: Given): number | null {

@@ -14,26 +14,24 @@ const samples = {
 } as unknown as Samples;
 
 it('puts runs on one axis and keeps a spike', () => {
-	const course = courseOf(samples, 'torque', 'time_s');
+	const course = courseOf(samples, 'torque');
 	const { x, columns } = alignCourses([course, null]);
 	expect(x).toEqual([0.75, 0.75, 2.25, 2.25]);
 	expect(columns[0]).toEqual([1, 2, 3, 9]);
 	expect(columns[1]).toEqual([null, null, null, null]);
 });
 
-it('aligns by another channel, and leaves out what has no place there', () => {
-	const course = courseOf(samples, 'torque', 'speed')!;
-	expect(course.x.slice(0, 3)).toEqual([4, 3, 2]);
-	expect(alignCourses([course]).columns[0]).toEqual([3, 9, 1, 2]);
-	expect(courseOf(samples, 'torque', 'absent')).toBeNull();
+it('leaves out a channel that a run does not have', () => {
+	expect(courseOf(samples, 'absent')).toBeNull();
 	expect(alignCourses([null])).toEqual({ x: [], columns: [[]] });
 });
 
 it('aligns by a moment that all runs have', () => {
-	const first = [{ text: 'running', at_s: 0 }, { text: 'step', at_s: 4 }, { text: 'step', at_s: 9 }, { text: 'limit', at_s: 5 }];
-	const second = [{ text: 'running', at_s: 0 }, { text: 'step', at_s: 2.5 }];
+	const at = (at_s: number, text: string, kind = 'step_started') => ({ text, at_s, kind });
+	const first = [at(0, 'running', 'state'), at(4, 'step'), at(8, 'step 1 done, 9 rows', 'step_finished'), at(9, 'step'), at(5, 'limit')];
+	const second = [at(0, 'running', 'state'), at(2.5, 'step'), at(7, 'step 1 done, 9 rows', 'step_finished')];
 	expect([...sharedMoments([first, second])]).toEqual([['step', [4, 2.5]]]);
-	expect(courseOf(samples, 'torque', 'time_s', 2)!.x).toEqual([-2, -1, 0, 1]);
+	expect(courseOf(samples, 'torque', 2)!.x).toEqual([-2, -1, 0, 1]);
 });
 
 it('tells figures that differ from those that only look different', () => {
@@ -73,5 +71,6 @@ it('holds the others against the base, which comes first', () => {
 	expect(withBase([3, 1, 2], 2)).toEqual([2, 3, 1]);
 	expect(against({ value: -2 }, { value: -1.5 })).toBe('+25 %');
 	expect(against({ value: 4 }, { value: 3.9 })).toBe('−2.5 %');
+	expect(against({ value: 0.1, ci95: [-0.1, 0.3] }, { value: 0.4 }, 1000)).toBe('+300');
 	expect([against(null, { value: 1 }), against({ value: 0 }, { value: 1 })]).toEqual(['', '']);
 });

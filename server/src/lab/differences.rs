@@ -1,0 +1,254 @@
+//! Runs held against a first one: a channel over what they are aligned by, and how far it is from that of the first.
+
+use super::statistics::ROWS_AT_ONCE;
+use super::{Answer, Lab, LabError};
+use crate::view::{Figure, FigureAxis, FigureForm, FigureSeries, Mark};
+use jointbench_instrument::Channel;
+use jointbench_model::words::spoken;
+
+/// Places along the axis.
+const PLACES: usize = 60;
+/// Two runs are held against each other at so many moments in each place of the time.
+const MOMENTS: usize = 8;
+const AT_MOST: usize = 6;
+const TIME: &str = "time_s";
+const VELOCITY: &str = "motor_velocity_rad_s";
+/// Slower than this share of the fastest speed, a joint goes neither way.
+const AT_REST: f64 = 0.01;
+
+/// What is looked at, and over what.
+#[derive(Debug, Clone)]
+pub struct Alignment {
+    pub channel: String,
+    pub by: String,
+    /// The event from which on the time is told.
+    pub from: Option<String>,
+}
+
+impl Lab {
+    /// The channel over what the runs are aligned by, unless that is the time, and the differences from the first run with two
+    /// standard errors, which come from how far stretches at the same place are apart.
+    pub async fn differences(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
+        if !(2..=AT_MOST).contains(&runs.len()) {
+            return Err(LabError::Invalid(format!("{} runs: choose 2 to {AT_MOST}", runs.len())));
+        }
+        let mut zeros = Vec::new();
+        for run in runs {
+            zeros.push(self.zero(*run, how).await?);
+        }
+        let spans = self.spans(runs, &how.by).await?;
+        let spans: Vec<[f64; 2]> = spans.iter().zip(&zeros).map(|(span, zero)| span.map(|end| end - zero)).collect();
+        let low = spans.iter().map(|span| span[0]).fold(f64::INFINITY, f64::min);
+        let high = spans.iter().map(|span| span[1]).fold(f64::NEG_INFINITY, f64::max);
+        if !(high - low).is_finite() || high <= low {
+            return Err(LabError::Invalid(format!("{} stays where it is in these runs", spoken(&how.by))));
+        }
+        let places = if how.by == TIME { PLACES * MOMENTS } else { PLACES };
+        let axis = Axis { low, step: (high - low) / places as f64, places };
+        let mut courses = Vec::new();
+        for (run, zero) in runs.iter().zip(zeros) {
+            courses.push(self.course(*run, how, &axis, zero).await?);
+        }
+        Ok(figures(runs, how, &axis, &courses))
+    }
+
+    /// The moment from which on a run's time is told [s].
+    async fn zero(&self, run: i64, how: &Alignment) -> Answer<f64> {
+        let Some(from) = how.from.as_deref().filter(|_| how.by == TIME) else { return Ok(0.0) };
+        let events = self.events(run, None).await?;
+        let event = events.into_iter().find(|event| event.text == from);
+        event.map(|event| event.at_s).ok_or_else(|| LabError::Invalid(format!("run {run} has no event “{from}”")))
+    }
+
+    /// Smallest and largest value of a channel in each run.
+    async fn spans(&self, runs: &[i64], channel: &str) -> Answer<Vec<[f64; 2]>> {
+        let mut spans = Vec::new();
+        for run in runs {
+            let whole = self.inner.store.view(*run, Some(&[channel.to_owned()]), None, None, 1).await?;
+            let column = whole.columns.first();
+            let low = column.map_or(f64::NAN, |column| column.min.iter().copied().fold(f64::NAN, f64::min));
+            let high = column.map_or(f64::NAN, |column| column.max.iter().copied().fold(f64::NAN, f64::max));
+            spans.push([low, high]);
+        }
+        Ok(spans)
+    }
+
+    async fn course(&self, run: i64, how: &Alignment, axis: &Axis, zero: f64) -> Answer<Course> {
+        let store = &self.inner.store;
+        let mut names = vec![how.channel.clone(), how.by.clone()];
+        let known = store.trace(run, None, 0..0).await?;
+        let turns = how.by != TIME && how.by != VELOCITY && known.channels().iter().any(|c| c.name == VELOCITY);
+        let mut rest = 0.0;
+        if turns {
+            names.push(VELOCITY.to_owned());
+            let [low, high] = self.spans(&[run], VELOCITY).await?[0];
+            rest = AT_REST * low.abs().max(high.abs());
+        }
+        let rows = store.rows_between(run, None, None).await?;
+        let mut walk = Walk::new(axis.places);
+        let mut unit = None;
+        for first in rows.clone().step_by(ROWS_AT_ONCE as usize) {
+            let trace = store.trace(run, Some(&names), first..(first + ROWS_AT_ONCE).min(rows.end)).await?;
+            let column = |name: &str| trace.column(name).unwrap_or_default();
+            let (values, along, velocity) = (column(&how.channel), column(&how.by), column(VELOCITY));
+            unit = trace.channels().iter().find(|c| c.name == how.channel).and_then(Channel::unit).map(str::to_owned);
+            for (i, (value, at)) in values.iter().zip(along).enumerate() {
+                let way = match velocity.get(i).filter(|_| turns) {
+                    Some(speed) if speed.abs() <= rest => None,
+                    Some(speed) => Some(usize::from(*speed < 0.0)),
+                    None => Some(0),
+                };
+                let place = way.zip(axis.place(at - zero)).filter(|_| value.is_finite());
+                walk.step(place.map(|(way, place)| way * axis.places + place), *value);
+            }
+        }
+        Ok(Course { tallies: walk.end(), unit: unit.unwrap_or_default(), turns })
+    }
+}
+
+struct Axis {
+    low: f64,
+    step: f64,
+    places: usize,
+}
+
+impl Axis {
+    fn place(&self, at: f64) -> Option<usize> {
+        let place = (at - self.low) / self.step;
+        // The largest value is in the last place.
+        (place >= 0.0 && place <= self.places as f64).then(|| (place as usize).min(self.places - 1))
+    }
+}
+
+/// What a run shows at each place, first forwards and then backwards: means of stretches, as samples that follow each other are not
+/// independent, each with the weight of its rows.
+struct Course {
+    tallies: Vec<Tally>,
+    unit: String,
+    turns: bool,
+}
+
+/// A weighted mean, and what the values are from it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    n: usize,
+    weight: f64,
+    mean: f64,
+    squares: f64,
+}
+
+impl Tally {
+    fn take(&mut self, value: f64, weight: f64) {
+        self.n += 1;
+        self.weight += weight;
+        let off = value - self.mean;
+        self.mean += off * weight / self.weight;
+        self.squares += weight * off * (value - self.mean);
+    }
+}
+
+/// Rows one after the other: as long as they stay at a place they are one stretch.
+struct Walk {
+    tallies: Vec<Tally>,
+    place: Option<usize>,
+    stretch: Tally,
+}
+
+impl Walk {
+    fn new(places: usize) -> Self {
+        Self { tallies: vec![Tally::default(); 2 * places], place: None, stretch: Tally::default() }
+    }
+
+    fn step(&mut self, place: Option<usize>, value: f64) {
+        if place != self.place {
+            self.close();
+            self.place = place;
+        }
+        self.stretch.take(value, 1.0);
+    }
+
+    fn close(&mut self) {
+        if let Some(place) = self.place {
+            self.tallies[place].take(self.stretch.mean, self.stretch.weight);
+        }
+        self.stretch = Tally::default();
+    }
+
+    fn end(mut self) -> Vec<Tally> {
+        self.close();
+        self.tallies
+    }
+}
+
+/// Variance of a stretch about the others at its place, times its rows, over all places: few are come back to often.
+fn scatter(course: &Course) -> Option<f64> {
+    let more = course.tallies.iter().map(|tally| tally.n.saturating_sub(1) as f64).sum::<f64>();
+    (more > 0.0).then(|| course.tallies.iter().map(|tally| tally.squares).sum::<f64>() / more)
+}
+
+/// Place, value and two standard errors, where they are known.
+type Points = Vec<(f64, f64, Option<f64>)>;
+
+fn figures(runs: &[i64], how: &Alignment, axis: &Axis, courses: &[Course]) -> Vec<Figure> {
+    let centre = |place: usize, wide: f64| axis.low + (place as f64 + 0.5) * wide * axis.step;
+    let ways: &[&str] = if courses.iter().any(|course| course.turns) { &[", forwards", ", backwards"] } else { &[""] };
+    let (mut shown, mut apart) = (Vec::new(), Vec::new());
+    let scatters: Vec<Option<f64>> = courses.iter().map(scatter).collect();
+    for (way, name) in ways.iter().enumerate() {
+        let at = |course: usize, place: usize| {
+            Some(courses[course].tallies[way * axis.places + place]).filter(|tally| tally.n > 0)
+        };
+        for (i, run) in runs.iter().enumerate() {
+            let mean = |place| {
+                let tally = at(i, place)?;
+                Some((centre(place, 1.0), tally.mean, scatters[i].map(|s| 2.0 * (s / tally.weight).sqrt())))
+            };
+            shown.push(series(format!("#{run}{name}"), (0..axis.places).filter_map(mean).collect()));
+            if i == 0 {
+                continue;
+            }
+            let difference = |place| {
+                let (base, other) = (at(0, place)?, at(i, place)?);
+                let error =
+                    scatters[0].zip(scatters[i]).map(|(a, b)| 2.0 * (a / base.weight + b / other.weight).sqrt());
+                Some((centre(place, 1.0), other.mean - base.mean, error))
+            };
+            let over_time = |place| {
+                let mut tally = Tally::default();
+                for moment in place * MOMENTS..(place + 1) * MOMENTS {
+                    tally.take(at(i, moment)?.mean - at(0, moment)?.mean, 1.0);
+                }
+                let error = 2.0 * (tally.squares / (MOMENTS * (MOMENTS - 1)) as f64).sqrt();
+                Some((centre(place, MOMENTS as f64), tally.mean, Some(error)))
+            };
+            let points = match how.by == TIME {
+                true => (0..PLACES).filter_map(over_time).collect(),
+                false => (0..axis.places).filter_map(difference).collect(),
+            };
+            apart.push(series(format!("#{run} − #{}{name}", runs[0]), points));
+        }
+    }
+    let figure = |name: &str, title: String, series: Vec<FigureSeries>| Figure {
+        name: name.to_owned(),
+        title,
+        form: FigureForm::Cartesian,
+        x: axis_of(&how.from.as_ref().map_or(spoken(&how.by), |from| format!("time since “{from}”")), &how.by),
+        y: FigureAxis { label: spoken(&how.channel), unit: courses[0].unit.clone(), names: Vec::new() },
+        series,
+    };
+    let mean = figure("mean", format!("Mean of the {}, ± 2 σ", spoken(&how.channel)), shown);
+    let difference = figure("difference", format!("Difference from #{}, ± 2 σ", runs[0]), apart);
+    let all = if how.by == TIME { vec![difference] } else { vec![mean, difference] };
+    all.into_iter().filter(|figure| figure.series.iter().any(|series| !series.x.is_empty())).collect()
+}
+
+fn axis_of(label: &str, column: &str) -> FigureAxis {
+    let unit = Channel::new(column).unit().unwrap_or_default().to_owned();
+    FigureAxis { label: label.to_owned(), unit, names: Vec::new() }
+}
+
+fn series(label: String, points: Points) -> FigureSeries {
+    let band = points.iter().filter_map(|(_, y, error)| error.map(|error| [y - error, y + error])).collect();
+    let (x, y) = points.into_iter().map(|(x, y, _)| (x, y)).unzip();
+    FigureSeries { label, mark: Mark::Line, x, y, band }
+}
