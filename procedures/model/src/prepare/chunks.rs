@@ -58,6 +58,8 @@ impl Source {
     pub fn even_part(&self, leg: &Range<usize>, chunk: usize) -> Range<usize> {
         const EVEN: f64 = 0.05;
         let Some(velocity) = self.signals.find(Signal::Velocity) else { return leg.clone() };
+        // A model's file may ask for means over more than there is.
+        let chunk = chunk.min(leg.len()).max(1);
         let means: Vec<f64> =
             velocity[leg.clone()].chunks(chunk).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
         let kept = super::median(means.iter().copied());
