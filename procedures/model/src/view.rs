@@ -132,6 +132,8 @@ pub struct Constants {
     pub poles: Option<u32>,
     /// The axis slides: nothing repeats with its angle.
     pub slides: bool,
+    /// Torque once per link turn that the measured load does not hold, about: factors of cos and sin [Nm].
+    pub weight: Option<[f64; 2]>,
 }
 
 /// The first sample of a recording, and what a memory brings along from before it.

@@ -113,7 +113,9 @@ fn shown(repeats: usize) -> View {
         };
         signals.set(signal, values);
     }
-    View::new(signals.clone(), signals, (0..rows).map(|i| i..i + 1).collect(), vec![0], 1.0)
+    let mut view = View::new(signals.clone(), signals, (0..rows).map(|i| i..i + 1).collect(), vec![0], 1.0);
+    view.constants.weight = Some([1.0, 1.0]);
+    view
 }
 
 #[cfg(test)]

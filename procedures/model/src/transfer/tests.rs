@@ -32,7 +32,9 @@ fn view(kind: Kind) -> View {
     // Three repeats, for what changes from one to the next.
     given.set(Signal::Repeat, (0..ROWS).map(|i| (i / 60) as f64).collect());
     given.set(Signal::Drive, moments(kind)[1].1.clone());
-    View::new(given.clone(), given, Vec::new(), vec![0], STEP_S)
+    let mut view = View::new(given.clone(), given, Vec::new(), vec![0], STEP_S);
+    view.constants.weight = Some([0.3, -0.2]);
+    view
 }
 
 /// A fit of all effects of a kind, each in one form: the `n`-th of those that it has.

@@ -38,6 +38,9 @@ pub enum Rule {
     Lag,
 }
 
+/// What the teeth bear where the sensor does not feel the weight.
+const TEETH: &str = "load + g_c * cos(link_position) + g_s * sin(link_position)";
+
 const UNKNOWN: &str = "its form is not written out for a controller";
 
 /// Columns of a term, or why a controller cannot compute them.
@@ -62,6 +65,9 @@ pub fn written(kind: Kind, term: &Term) -> Result<Vec<Column>, &'static str> {
             ("viscous_quadratic", _) => formula("velocity * abs(velocity)"),
             ("viscous_sublinear", "limited") => formula("(1 - exp(-abs(velocity) / omega_l)) * direction"),
             ("viscous_sublinear", _) => formula("abs(velocity) ^ alpha * direction"),
+            ("load_linear", "with_weight") => formula(&format!("abs({TEETH}) * direction")),
+            ("load_quadratic", "with_weight") => formula(&format!("({TEETH})^2 * direction")),
+            ("load_viscous", "with_weight") => formula(&format!("abs({TEETH}) * velocity")),
             ("load_linear", _) => formula("abs(load) * direction"),
             ("load_quadratic", _) => formula("load * load * direction"),
             ("load_viscous", _) => formula("abs(load) * velocity"),

@@ -128,6 +128,15 @@ fn an_arm_is_heavy_and_its_directions_differ() {
 }
 
 #[test]
+fn teeth_bear_what_an_arm_weighs_beside_its_load() {
+    // Load alone had left a load_quadratic and a friction_ripple at twice the floor, and called them an explanation.
+    for hidden in [["gravity", "load_linear"], ["gravity", "load_quadratic"]] {
+        let run = seeded(1, Joint::JointA, &hidden, "friction", json!({}));
+        assert_eq!(shown(&run), hidden);
+    }
+}
+
+#[test]
 fn what_an_arm_cannot_tell_apart_is_told() {
     // About the upright pose gravity's cosine is a constant torque: the 27 mNm by which the directions differ could be its.
     let alone = diagnosis(&run(Joint::Puma, &[], "puma_friction", json!({})));

@@ -1,5 +1,6 @@
 //! Load-dependent friction.
 
+use super::teeth;
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
@@ -14,10 +15,10 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Load-dependent friction",
     sentence: "The teeth rub harder under load: friction grows in proportion to the transmitted torque.",
-    formula: "μ·|τ_link/N|·sgn ω",
-    source: "thesis on joint test benches, eq. 2.6; Duclusaud et al. 2025, M3",
+    formula: "μ·|τ_link/N|·sgn ω, or with τ_link/N + g_c·cos θ_link + g_s·sin θ_link where the sensor does not feel the weight",
+    source: "thesis on joint test benches, eq. 2.6; Duclusaud et al. 2025, M3 (torque of the gear); contract section 1, power balance",
     looks: "a step at zero speed that grows with the load",
-    parameters: &[parameter("mu", "1", -MOST, MOST)],
+    parameters: &[parameter("mu", "1", 0.0, MOST), teeth::COS, teeth::SIN],
     needs: &["link_torque_nm"],
 };
 
@@ -27,10 +28,11 @@ impl Effect for LoadLinear {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        if view.bears_load() { vec![Form::linear(&["mu"])] } else { Vec::new() }
+        teeth::forms(view, "mu")
     }
 
-    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
-        vec![view.map2(Signal::Load, Signal::Direction, |l, d| l.abs() * d)]
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        let borne = teeth::bear(shape, view);
+        vec![borne.iter().zip(view.get(Signal::Direction)).map(|(l, d)| l.abs() * d).collect()]
     }
 }

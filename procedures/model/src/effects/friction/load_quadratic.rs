@@ -1,5 +1,6 @@
 //! Quadratic load friction.
 
+use super::teeth;
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
@@ -11,10 +12,10 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Quadratic load friction",
     sentence: "Friction grows faster than the load, as when a gear deforms under torque.",
-    formula: "μ_2·(τ_link/N)²·sgn ω",
-    source: "thesis on joint test benches, eq. 2.6; Duclusaud et al. 2025, M6",
+    formula: "μ_2·(τ_link/N)²·sgn ω, or with τ_link/N + g_c·cos θ_link + g_s·sin θ_link where the sensor does not feel the weight",
+    source: "thesis on joint test benches, eq. 2.6; Duclusaud et al. 2025, M6; contract section 1, power balance",
     looks: "a step at zero speed that grows with the square of the load",
-    parameters: &[parameter("mu_2", "1/Nm", f64::NEG_INFINITY, f64::INFINITY)],
+    parameters: &[parameter("mu_2", "1/Nm", 0.0, f64::INFINITY), teeth::COS, teeth::SIN],
     needs: &["link_torque_nm"],
 };
 
@@ -24,10 +25,11 @@ impl Effect for LoadQuadratic {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        if view.bears_load() { vec![Form::linear(&["mu_2"])] } else { Vec::new() }
+        teeth::forms(view, "mu_2")
     }
 
-    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
-        vec![view.map2(Signal::Load, Signal::Direction, |l, d| l * l * d)]
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        let borne = teeth::bear(shape, view);
+        vec![borne.iter().zip(view.get(Signal::Direction)).map(|(l, d)| l * l * d).collect()]
     }
 }

@@ -1,5 +1,6 @@
 //! Load-dependent viscous friction.
 
+use super::teeth;
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
@@ -11,10 +12,10 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Load-dependent viscous friction",
     sentence: "Under load the drag grows more steeply with speed.",
-    formula: "c_l·|τ_link/N|·ω",
-    source: "Bittencourt et al. 2010",
+    formula: "c_l·|τ_link/N|·ω, or with τ_link/N + g_c·cos θ_link + g_s·sin θ_link where the sensor does not feel the weight",
+    source: "Bittencourt et al. 2010; contract section 1, power balance",
     looks: "a line over speed whose slope grows with the load",
-    parameters: &[parameter("c_l", "s/rad", f64::NEG_INFINITY, f64::INFINITY)],
+    parameters: &[parameter("c_l", "s/rad", f64::NEG_INFINITY, f64::INFINITY), teeth::COS, teeth::SIN],
     needs: &["link_torque_nm"],
 };
 
@@ -24,10 +25,11 @@ impl Effect for LoadViscous {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        if view.bears_load() { vec![Form::linear(&["c_l"])] } else { Vec::new() }
+        teeth::forms(view, "c_l")
     }
 
-    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
-        vec![view.map2(Signal::Load, Signal::Velocity, |l, w| l.abs() * w)]
+    fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
+        let borne = teeth::bear(shape, view);
+        vec![borne.iter().zip(view.get(Signal::Velocity)).map(|(l, w)| l.abs() * w).collect()]
     }
 }

@@ -16,6 +16,7 @@ mod presliding;
 mod signal_delay;
 mod stribeck;
 mod stribeck_load;
+mod teeth;
 mod temperature_coulomb;
 mod temperature_viscous;
 mod torque_constant_saturation;

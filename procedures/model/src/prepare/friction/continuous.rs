@@ -3,12 +3,13 @@
 //! Parallel filtering after Gautier 1997: the response and every column pass the same zero-phase filter before one of n
 //! samples is kept. The defaults are those of Janot, Gautier and Brunot 2019 at any sample rate.
 
+use super::weight;
 use crate::prepare::chunks::Source;
 use crate::prepare::filter::{LowPass, by_recording};
 use crate::prepare::repeats::{self, Same};
 use crate::prepare::{Prepared, Problem, Reduce, layout, segments};
 use crate::report::Preparation;
-use crate::view::{Signal, View};
+use crate::view::{Constants, Signal, View};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
 
@@ -107,7 +108,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     samples.signals.set(Signal::Drive, drive);
     let points = std::mem::take(&mut samples.signals);
     let mut view = View::new(points.clone(), points, Vec::new(), starts, samples.step_s);
-    view.constants = samples.constants;
+    view.constants = Constants { weight: weight::unmeasured(&view.points, &samples.target), ..samples.constants };
     let mut main = Problem {
         view,
         target,

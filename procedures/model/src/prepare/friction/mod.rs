@@ -3,6 +3,7 @@
 mod continuous;
 mod lag;
 mod plateaus;
+mod weight;
 
 use super::chunks::Source;
 use super::{Prepared, filter, median, sample_s, segments};

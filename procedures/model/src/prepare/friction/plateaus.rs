@@ -4,6 +4,7 @@
 //! periodic effect fades at speed exactly as its data does. Ramps and reversals are kept apart, where signals of
 //! different instruments are not aligned and friction has memory.
 
+use super::weight;
 use crate::prepare::chunks::{Layout, Source, problem};
 use crate::prepare::{Prepared, Problem, layout, median, segments};
 use crate::report::Preparation;
@@ -106,6 +107,7 @@ pub fn prepare(
         let mut main = problem(&samples, layout);
         let drive = super::drive(&main.view.points, &main.target);
         main.view.points.set(Signal::Drive, drive);
+        main.view.constants.weight = weight::unmeasured(&main.view.points, &main.target);
         main
     };
     let apart = |fastest| apart(&samples, &plateaus, fastest);
