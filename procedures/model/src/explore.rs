@@ -141,7 +141,7 @@ impl<'p> Exploration<'p> {
             advances.last().into_iter().for_each(&mut *on_advance);
         }
         let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn);
-        let floor = floor::noise_floor(prepared, &residual);
+        let floor = floor::noise_floor(prepared, &residual, search.now.contains("hysteresis"));
         Ok(Self { start, advances, withdrawn, others, maps, floor, ties, upheld, open })
     }
 

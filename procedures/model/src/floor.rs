@@ -16,16 +16,19 @@ const FEWEST: usize = 8;
 /// From the residual, not from the response, so that small differences of speed or load between repeats cancel.
 ///
 /// Pure error of pairs, σ² = Σ (e_a − e_b)²/2 over their number; the mean product of the same pairs is what repeats
-/// itself, whatever the noise within a repeat remembers.
-pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
+/// itself, whatever the noise within a repeat remembers. What came there on different ways is equal only in a model that
+/// `remembers`.
+pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> NoiseFloor {
     let problem = &prepared.main;
-    if problem.twins.len() < FEWEST {
+    let is_equal = |twins: &&(usize, usize)| remembers || !problem.other_pasts.contains(*twins);
+    let twins: Vec<&(usize, usize)> = problem.twins.iter().filter(is_equal).collect();
+    if twins.len() < FEWEST {
         return NoiseFloor { rms: None, ci95: None, source: unknown(prepared), repeatable_share: None };
     }
     let (piece, count) = pieces(problem, 1);
     let mut of_piece = vec![(0.0, 0.0); count];
     let (mut noise, mut common) = (0.0, 0.0);
-    for (a, b) in &problem.twins {
+    for (a, b) in &twins {
         let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
         noise += half;
         common += residual[*a] * residual[*b];
@@ -34,7 +37,7 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
             (*sum, *pairs) = (*sum + half, *pairs + 1.0);
         }
     }
-    let pairs = problem.twins.len() as f64;
+    let pairs = twins.len() as f64;
     let variance = noise / pairs;
     let common = (common / pairs).max(0.0);
     let total = common + variance;
@@ -44,7 +47,7 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64]) -> NoiseFloor {
         source: format!(
             "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
              different repeats ({})",
-            problem.twins.len(),
+            twins.len(),
             match (prepared.about.repeats_from.as_str(), prepared.main.settled || prepared.kind == Kind::Friction) {
                 ("column", _) => "as numbered",
                 (_, true) => "found by the period of the motion",
@@ -68,6 +71,10 @@ fn unknown(prepared: &Prepared) -> String {
             say(unlike.apart),
             say(unlike.spread)
         );
+    }
+    if !problem.other_pasts.is_empty() {
+        return "no noise floor: the brake came to no moment twice on the same way; repeat its loops in the same order"
+            .into();
     }
     let source = match problem.repeat.iter().any(|r| *r != problem.repeat[0]) {
         true => {

@@ -6,6 +6,7 @@ use crate::assembly::Assembly;
 use crate::prepare::{Prepared, Problem, Reduce, drive};
 use crate::view::{Signal, Signals, View};
 use jointbench_instrument::Kind;
+use std::collections::HashSet;
 
 /// More points of one stretch say little more: what one stretch has in common is not averaged away. Waves over the turn of
 /// an encoder have to be followed.
@@ -49,6 +50,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly, gear: f64
         fold: vec![0; rows],
         folds: 1,
         twins: Vec::new(),
+        other_pasts: HashSet::new(),
         unlike: None,
         segment: vec![0; rows],
         repeat: vec![0; rows],

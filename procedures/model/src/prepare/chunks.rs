@@ -3,6 +3,7 @@
 use super::repeats::{self, Same};
 use super::{Problem, Reduce, layout, segments, wavering};
 use crate::view::{Constants, Signal, Signals, View};
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// The samples of a run in model quantities.
@@ -162,6 +163,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         fold,
         folds,
         twins,
+        other_pasts: HashSet::new(),
         unlike: None,
         segment,
         repeat,

@@ -7,6 +7,7 @@ mod doubts;
 mod encoder;
 pub mod filter;
 mod friction;
+mod history;
 mod holds;
 mod layout;
 mod past;
@@ -26,6 +27,7 @@ use filter::LowPass;
 use jointbench_instrument::{Kind, Motion, RunTable};
 pub use repeats::Unlike;
 pub use segments::stretches;
+use std::collections::HashSet;
 pub use unknown::may_cause;
 
 /// What a model is judged on: the response at points with the signals that may explain it.
@@ -44,6 +46,8 @@ pub struct Problem {
     pub folds: usize,
     /// Rows that should be equal but for noise: the same condition and phase in another repeat.
     pub twins: Vec<(usize, usize)>,
+    /// Those of them that came there on different ways: equal only where a model knows the ways.
+    pub other_pasts: HashSet<(usize, usize)>,
     /// Why there are none, where repeats are different motions.
     pub unlike: Option<Unlike>,
     pub segment: Vec<i64>,

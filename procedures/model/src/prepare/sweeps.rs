@@ -2,7 +2,7 @@
 
 use super::chunks::{Layout, Source, problem};
 use super::repeats::Same;
-use super::{Prepared, Problem, holds, layout, past};
+use super::{Prepared, Problem, history, holds, layout, past};
 use crate::report::Preparation;
 use crate::view::Signal;
 use crate::{ModelError, Options, ResidualKind};
@@ -55,6 +55,7 @@ pub fn prepare(
     if run.kind() == Kind::Brake {
         let drive = super::brake::drive(&main);
         main.view.points.set(Signal::Drive, drive);
+        history::part(&mut main);
     }
     let repeats_from = match main.repeat.iter().any(|r| *r != main.repeat[0]) {
         true => "column",

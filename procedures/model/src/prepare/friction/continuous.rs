@@ -12,6 +12,7 @@ use crate::report::Preparation;
 use crate::view::{Constants, Signal, View};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
+use std::collections::HashSet;
 
 /// Of a trajectory of more rows than these some are taken.
 const MOST_ROWS: usize = 12_000;
@@ -118,6 +119,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         fold,
         folds,
         twins,
+        other_pasts: HashSet::new(),
         unlike: None,
         segment,
         repeat,

@@ -1,0 +1,70 @@
+//! A brake through loops of different size: at one current each holds a torque of its own, and none repeats another.
+
+mod common;
+
+use common::tables::{meta, scatter};
+use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use jointbench_model::{Discovery, ModelSpec, Options, Verdict, discover};
+
+/// Currents at which dry contacts slip [A].
+const SLIPS: [f64; 12] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6];
+const STEP_A: f64 = 0.1;
+/// Largest scatter of a sample to either side [Nm].
+const SCATTER_NM: f64 = 0.01;
+
+/// What bearings hold [Nm].
+const DRAG_NM: f64 = 0.5;
+
+/// Up and down in steps, to 1 A first and then to less, three times. `hold_nm` is what each contact holds at most.
+fn run(hold_nm: f64, bends: bool) -> RunTable {
+    let names = ["time_s", "brake_current_a", "brake_torque_nm", "segment", "repeat"];
+    let mut trace = Trace::new(names.map(Channel::new).to_vec());
+    let levels = [10, 7, 4].into_iter().flat_map(|top: i32| (0..2 * top).map(move |step| top - (step - top).abs()));
+    let levels: Vec<i32> = levels.collect();
+    let mut states = [0.0f64; SLIPS.len()];
+    let (mut before, mut at) = (0.0, 0);
+    for (step, level) in levels.iter().cycle().take(3 * levels.len()).enumerate() {
+        let level = f64::from(*level) * STEP_A;
+        for _ in 0..100 {
+            let current: f64 = before + (level - before) * 0.2;
+            let pairs = states.iter_mut().zip(SLIPS);
+            pairs.for_each(|(state, slips)| *state = (*state + current - before).clamp(-slips, slips));
+            before = current;
+            let held: f64 = states.iter().zip(SLIPS).map(|(state, slips)| hold_nm * state / slips).sum();
+            let curve = if bends { 5.0 * (current / 0.8).powi(3).tanh() } else { 6.0 * current };
+            let torque = DRAG_NM + curve - held + 2.0 * SCATTER_NM * scatter(at, 1);
+            let repeat = (step / levels.len()) as f64;
+            trace.push_row(&[0.01 * at as f64, current, torque, step as f64, repeat]);
+            at += 1;
+        }
+    }
+    RunTable::new(meta(Kind::Brake), trace).unwrap()
+}
+
+fn end(run: &RunTable, most: usize) -> Discovery {
+    discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), most, |_| {}).unwrap()
+}
+
+#[test]
+fn the_floor_of_a_brake_holds_no_hysteresis() {
+    for (hold_nm, bends, expected) in [
+        (0.0125, false, ["hysteresis"].as_slice()),
+        (0.003, false, &["hysteresis"]),
+        (0.0125, true, &["saturation", "hysteresis"]),
+    ] {
+        let run = run(hold_nm, bends);
+        let found = end(&run, 4);
+        // With the hysteresis in the model and without.
+        for found in [&found, &end(&run, 0)] {
+            let floor = found.noise_floor_rms.unwrap();
+            assert!(floor < 0.2 * SCATTER_NM, "{floor}: {}", found.summary);
+        }
+        let added: Vec<&String> = found.model[2..].iter().collect();
+        assert!(
+            added.len() == expected.len() && expected.iter().all(|e| added.iter().any(|a| a == e)),
+            "{added:?} {}",
+            found.summary
+        );
+        assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+    }
+}
