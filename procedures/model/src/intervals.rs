@@ -2,6 +2,7 @@
 
 mod jumps;
 mod orders;
+mod remanence;
 mod words;
 
 pub use words::IMPOSSIBLE;
@@ -78,6 +79,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
     }
     parameters.extend(found(terms, &linear.residual, motion));
     orders::open(terms, &linear.residual, &mut parameters);
+    remanence::open(terms, &mut parameters);
     let mut trade_offs = Vec::new();
     for a in 0..p {
         for b in 0..a {

@@ -4,7 +4,7 @@ mod common;
 
 use common::tables::{meta, scatter};
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
-use jointbench_model::{Discovery, ModelSpec, Options, Verdict, discover};
+use jointbench_model::{Discovery, ModelSpec, Options, Parameter, Verdict, discover, fit};
 
 /// Currents at which dry contacts slip [A].
 const SLIPS: [f64; 12] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6];
@@ -17,6 +17,11 @@ const DRAG_NM: f64 = 0.5;
 
 /// Up and down in steps, to 1 A first and then to less, three times. `hold_nm` is what each contact holds at most.
 fn run(hold_nm: f64, bends: bool) -> RunTable {
+    recorded(hold_nm, bends, 0)
+}
+
+/// The same without its first steps.
+fn recorded(hold_nm: f64, bends: bool, from: usize) -> RunTable {
     let names = ["time_s", "brake_current_a", "brake_torque_nm", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).to_vec());
     let levels = [10, 7, 4].into_iter().flat_map(|top: i32| (0..2 * top).map(move |step| top - (step - top).abs()));
@@ -34,7 +39,9 @@ fn run(hold_nm: f64, bends: bool) -> RunTable {
             let curve = if bends { 5.0 * (current / 0.8).powi(3).tanh() } else { 6.0 * current };
             let torque = DRAG_NM + curve - held + 2.0 * SCATTER_NM * scatter(at, 1);
             let repeat = (step / levels.len()) as f64;
-            trace.push_row(&[0.01 * at as f64, current, torque, step as f64, repeat]);
+            if step >= from {
+                trace.push_row(&[0.01 * at as f64, current, torque, step as f64, repeat]);
+            }
             at += 1;
         }
     }
@@ -66,5 +73,23 @@ fn the_floor_of_a_brake_holds_no_hysteresis() {
             found.summary
         );
         assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+    }
+}
+
+fn drag(run: &RunTable) -> Parameter {
+    let spec = ModelSpec::parse(Kind::Brake, "drag,torque_per_current,hysteresis").unwrap();
+    let found = fit(run, &spec, &Options::default()).unwrap();
+    found.parameters.into_iter().find(|p| p.effect == "drag").unwrap()
+}
+
+/// After a fall to no current the iron holds as well, and nothing but a moment before any current tells how much of it is drag.
+#[test]
+fn drag_beside_hysteresis_is_told_with_the_remanence_that_it_holds() {
+    for (from, word) in [(0, "before any current"), (20, "trades off with hysteresis")] {
+        let found = drag(&recorded(0.0125, false, from));
+        let [low, high] = found.ci95;
+        assert!(low <= DRAG_NM + 0.04 && DRAG_NM <= high, "{found:?}");
+        assert!(found.value > DRAG_NM + 0.1, "{found:?}");
+        assert!(found.note.as_ref().is_some_and(|note| note.contains(word)), "{found:?}");
     }
 }
