@@ -90,9 +90,9 @@ impl<'p> Exploration<'p> {
                     let residual = search.now.tangent().rest(&search.now.response());
                     let maps = Maps::new(prepared, swift::without_swift_waves(&search.now, residual.clone()), options);
                     let axis = outside::structured(&maps);
-                    if let Some((id, why)) =
-                        axis.and_then(|axis| outside::taken_back(&search, &maps, axis, prepared, options))
-                    {
+                    let whole = axis.and_then(|axis| outside::taken_back(&search, &maps, axis, prepared, options));
+                    let bump = || Some((outside::bump(&search, &maps, prepared, options)?, Withdrawal::HalfExplains));
+                    if let Some((id, why)) = whole.or_else(bump) {
                         taken_back.push((id, why));
                         search.closed = true;
                         search.withdraw(id)

@@ -18,7 +18,7 @@ const WHOLE_EXPLANATION: f64 = 0.7;
 
 /// A wave that was not there this often is a curve over the angle with three numbers, which follows many others.
 const PERIODS: f64 = 2.0;
-const WHOLE_CURVE: f64 = 0.95;
+const WHOLE_CURVE: f64 = 0.98;
 
 /// Columns of which less than this share is left beside an axis are a function of it.
 const FUNCTION: f64 = 0.1;
@@ -32,6 +32,33 @@ pub fn structured(maps: &Maps) -> Option<&str> {
 /// function of that axis would take away much more than it does. A wave over the angle is not the answer to a bump at
 /// one angle.
 fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, options: &Options) -> Option<&'p str> {
+    // What depends on the past is a function of no axis, even where a repeated motion makes it look like one.
+    let of_axes = search.added().filter(|term| term.effect.stage() != Stage::Memory);
+    least_whole(search, of_axes, axis, prepared, options)
+}
+
+/// A wave over a part of a turn of which less than two periods were seen, where any function of its angle would take more, or
+/// structure remains over the angle beside it: a bump at this place. A weak one leaves nothing that could be called structure.
+pub fn bump<'p>(search: &Search<'_, 'p>, maps: &Maps, prepared: &Prepared, options: &Options) -> Option<&'p str> {
+    let view = &search.now.problem.view;
+    let is_open = |term: &&Term<'p>| {
+        let turns = term.effect.wave().map(|angle| view.turns(angle));
+        turns.zip(term.shape.first()).is_some_and(|(turns, order)| turns < 1.0 && order * turns < PERIODS)
+    };
+    let open = search.added().find(is_open)?;
+    let axis = prepared.column_name(open.effect.wave()?);
+    let remains = (structured(maps) == Some(axis)).then_some(open.id());
+    remains.or_else(|| least_whole(search, search.added().filter(is_open), axis, prepared, options))
+}
+
+/// The effect that takes least of what any function of the axis would take, where that is too little.
+fn least_whole<'s, 'p: 's>(
+    search: &'s Search<'_, 'p>,
+    terms: impl Iterator<Item = &'s Term<'p>>,
+    axis: &str,
+    prepared: &Prepared,
+    options: &Options,
+) -> Option<&'p str> {
     let now = &search.now;
     let (full, factors) = (now.linear().sse, now.linear().factors);
     let share = |term: &Term<'p>| {
@@ -46,9 +73,7 @@ fn half_explained<'p>(search: &Search<'_, 'p>, axis: &str, prepared: &Prepared, 
             Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;
         Some((term.id(), own / any / least_share(term, now.problem)))
     };
-    // What depends on the past is a function of no axis, even where a repeated motion makes it look like one.
-    let of_axes = search.added().filter(|term| term.effect.stage() != Stage::Memory);
-    let least = of_axes.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let least = terms.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
     (least.1 < 1.0).then_some(least.0)
 }
 

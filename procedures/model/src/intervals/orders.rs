@@ -25,7 +25,8 @@ pub fn open(terms: &Terms, residual: &[f64], parameters: &mut [Parameter]) {
                     p.state = ParameterState::Unidentified;
                     p.note = Some(format!(
                         "not identified by this run, which covers {turns:.2} of a turn: {} to {} waves in a turn explain it \
-                         alike, each with another size; a run over more of the turn tells their number",
+                         alike, each with another size, and so may a bump at this place; a run over more of the turn tells their \
+                         number",
                         p.ci95[0], p.ci95[1]
                     ));
                 } else if let Some(at) = term.form.linear.iter().position(|name| *name == p.name) {
