@@ -11,6 +11,8 @@ use axum::extract::{Request, State};
 use axum::http::{HeaderMap, Method, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use percent_encoding::percent_decode_str;
+use std::borrow::Cow;
 
 fn check(tokens: &Tokens, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<Caller, Problem> {
     let host = text(headers, header::HOST).or_else(|| uri.authority().map(|a| a.as_str()));
@@ -27,7 +29,7 @@ fn check(tokens: &Tokens, method: &Method, uri: &Uri, headers: &HeaderMap) -> Re
             "the page at {origin} may not steer this bench; open the dashboard of the daemon itself"
         )));
     }
-    let caller = match secret(headers, uri).and_then(|secret| tokens.holder(secret)) {
+    let caller = match secret(headers, uri).and_then(|secret| tokens.holder(&secret)) {
         Some(caller) => caller,
         None if tokens.are_needed() && uri.path().starts_with("/api") => return Err(Problem::unauthorized()),
         None => Caller::local(),
@@ -81,12 +83,18 @@ fn same_origin(origin: &str, host: Option<&str>) -> bool {
     matches!((authority, host), (Some(authority), Some(host)) if authority.eq_ignore_ascii_case(host))
 }
 
-/// `Authorization: Bearer`, or `?token=` where a browser opens the live stream and cannot set headers.
-fn secret<'r>(headers: &'r HeaderMap, uri: &'r Uri) -> Option<&'r str> {
-    let bearer = text(headers, header::AUTHORIZATION).and_then(|value| value.strip_prefix("Bearer "));
-    let in_query = || uri.query()?.split('&').find_map(|pair| pair.strip_prefix("token="));
-    let in_query = if headers.contains_key(header::UPGRADE) { in_query() } else { None };
-    bearer.or(in_query).map(str::trim)
+/// `Authorization: Bearer`; on the live stream, where a browser cannot set headers, also as the subprotocol `token.TOKEN` or as
+/// `?token=TOKEN`, percent-encoded both.
+fn secret<'r>(headers: &'r HeaderMap, uri: &'r Uri) -> Option<Cow<'r, str>> {
+    if let Some(bearer) = text(headers, header::AUTHORIZATION).and_then(|value| value.strip_prefix("Bearer ")) {
+        return Some(Cow::Borrowed(bearer.trim()));
+    }
+    headers.get(header::UPGRADE)?;
+    let offered = text(headers, header::SEC_WEBSOCKET_PROTOCOL).unwrap_or_default().split(',');
+    let asked = uri.query().unwrap_or_default().split('&');
+    let offered = offered.filter_map(|one| one.trim().strip_prefix("token."));
+    let encoded = offered.chain(asked.filter_map(|pair| pair.strip_prefix("token="))).next()?;
+    percent_decode_str(encoded).decode_utf8().ok()
 }
 
 #[cfg(test)]
@@ -133,6 +141,22 @@ mod tests {
             ("/api/v1/bench", vec![host, ("authorization", "Bearer s3cret")], None),
             ("/api/v1/bench?token=s3cret", vec![host], Some(401)),
             ("/api/v1/events?token=s3cret", vec![host, ("upgrade", "websocket")], None),
+            (
+                "/api/v1/events",
+                vec![host, ("upgrade", "websocket"), ("sec-websocket-protocol", "jointbench, token.s3cret")],
+                None,
+            ),
+            (
+                "/api/v1/events",
+                vec![host, ("upgrade", "websocket"), ("sec-websocket-protocol", "token.s3%63ret")],
+                None,
+            ),
+            (
+                "/api/v1/events",
+                vec![host, ("upgrade", "websocket"), ("sec-websocket-protocol", "token.wrong")],
+                Some(401),
+            ),
+            ("/api/v1/bench", vec![host, ("sec-websocket-protocol", "token.s3cret")], Some(401)),
             ("/", vec![host], None),
         ] {
             assert_eq!(refusal(&door, Method::GET, path, &headers), refused, "{path} {headers:?}");

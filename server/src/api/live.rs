@@ -11,7 +11,8 @@ use axum::response::Response;
 ///
 /// Text frames are `LiveMessage`s. Binary frames carry samples, little endian: u32 sequence, u32 dropped frames, u32 rows,
 /// u32 channels, f64 t0 [s], then one f32 column after the other in the order of the last `channels` message; `time_s` is
-/// relative to t0. At most 30 frames a second; a slow client gets larger frames, never older ones.
+/// relative to t0. A token comes as the header `Authorization: Bearer TOKEN`, as `?token=TOKEN`, or, out of a browser and away from
+/// the address, among the subprotocols: `jointbench` and `token.TOKEN`, percent-encoded. At most 30 frames a second; a slow client gets larger frames, never older ones.
 #[utoipa::path(get, path = "/events", tag = "live",
     responses((status = 101, description = "The stream", body = crate::view::LiveMessage), Refusals))]
 pub async fn stream(
@@ -19,7 +20,8 @@ pub async fn stream(
     Extension(caller): Extension<Caller>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    upgrade.on_upgrade(async move |socket| {
+    // A browser hangs up where none of what it offers is taken.
+    upgrade.protocols(["jointbench"]).on_upgrade(async move |socket| {
         tokio::select! {
             () = crate::live::serve(socket, lab.clone()) => {}
             () = lab.shut_out(&caller) => {}

@@ -23,8 +23,9 @@ export function connectLive(handlers: LiveHandlers): () => void {
 	const open = () => {
 		const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
 		const kept = token();
-		const query = kept ? `?token=${encodeURIComponent(kept)}` : '';
-		socket = new WebSocket(`${scheme}://${location.host}${BASE}/events${query}`);
+		// Addresses are logged on the way; a subprotocol has no brackets.
+		const offered = kept ? ['jointbench', `token.${encodeURIComponent(kept).replace(/[()]/g, (bracket) => `%${bracket.charCodeAt(0).toString(16)}`)}`] : [];
+		socket = new WebSocket(`${scheme}://${location.host}${BASE}/events`, offered);
 		socket.binaryType = 'arraybuffer';
 		socket.onopen = () => {
 			wait_ms = FIRST_RETRY_MS;

@@ -1,6 +1,6 @@
 /**
  * A daemon that listens beyond loopback wants a token. A person gives it once for each browser session; it goes into a
- * header, and into the address only where a browser cannot set one (the live stream).
+ * header: that of the subprotocol where a browser can set no other (the live stream).
  */
 const KEPT = 'jointbench.token';
 
