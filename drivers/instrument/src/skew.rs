@@ -24,7 +24,7 @@ pub const WARMTH_SKEW: &str = "thermometer_skew_s";
 const HELD_S: f64 = 3e-6;
 
 /// What tells a skew, and the columns that have it. A thermometer's first channel may stand for the joint's temperature.
-fn skewed(trace: &Trace) -> [(&'static str, Vec<String>); 3] {
+pub fn skewed(trace: &Trace) -> [(&'static str, Vec<String>); 3] {
     let stands_in = trace.column("thermometer_1_c").is_none();
     let is_warmth = |name: &str| name.starts_with("thermometer_") && name.ends_with("_c");
     let warmth = trace.channels().iter().map(|channel| &channel.name);

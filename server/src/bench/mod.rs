@@ -1,6 +1,7 @@
 //! One bench, one thread: the thread owns the instruments, everybody else holds a [`BenchHandle`].
 
 mod handle;
+mod health;
 mod instruments;
 mod look;
 mod recorder;

@@ -1,5 +1,6 @@
 //! Keeps what a run brings: durable in the store first, then shown to whoever watches.
 
+use super::health::Health;
 use super::status::{Met, Status, readings};
 use super::thread::Start;
 use crate::lab::{run_event, state_view};
@@ -16,6 +17,8 @@ use tokio::sync::watch;
 
 /// A mock bench outruns the clock on the wall; eyes do not.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+/// Limits and channels of a bench.
+const BENCH_EVERY: Duration = Duration::from_millis(500);
 
 pub(super) struct StoreRecorder<'a> {
     start: &'a Start,
@@ -26,8 +29,10 @@ pub(super) struct StoreRecorder<'a> {
     run: RunId,
     /// The last model of the bench, beside what is measured. `None` from where it cannot tell.
     model: Option<Alongside>,
+    health: Health,
     told_events: u64,
     told_progress: Option<Instant>,
+    told_bench: Option<Instant>,
     began: Instant,
     state: RunState,
     faults: Vec<Met>,
@@ -41,9 +46,23 @@ impl<'a> StoreRecorder<'a> {
         mock: Option<&'a MockBench>,
         run: RunId,
         model: Option<Alongside>,
+        rate_hz: f64,
     ) -> Self {
-        let (told_events, told_progress, began, state) = (0, None, Instant::now(), RunState::Queued);
-        Self { start, status, runtime, mock, run, model, told_events, told_progress, began, state, faults: Vec::new() }
+        Self {
+            start,
+            status,
+            runtime,
+            mock,
+            run,
+            model,
+            health: Health::new(rate_hz),
+            told_events: 0,
+            told_progress: None,
+            told_bench: None,
+            began: Instant::now(),
+            state: RunState::Queued,
+            faults: Vec::new(),
+        }
     }
 
     pub fn into_faults(self) -> Vec<Met> {
@@ -78,6 +97,11 @@ impl<'a> StoreRecorder<'a> {
             };
             self.start.hub.tell(message);
         }
+        self.tell_bench();
+    }
+
+    fn tell_bench(&mut self) {
+        self.told_bench = Some(Instant::now());
         let bench = crate::lab::bench_view(&self.start.description, &self.status.borrow());
         self.start.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
     }
@@ -130,6 +154,7 @@ impl Recorder for StoreRecorder<'_> {
     }
 
     fn live(&mut self, live: Live<'_>) {
+        self.health.add(live.rows);
         let rows = self.beside_model(live.rows.clone());
         self.start.hub.show(Rows { bench: self.bench().to_owned(), run: live.run, rows });
         if self.told_progress.is_some_and(|told| told.elapsed() < PROGRESS_EVERY) {
@@ -150,10 +175,15 @@ impl Recorder for StoreRecorder<'_> {
             LiveMessage::Progress { bench: self.bench().to_owned(), run: live.run, progress: progress.clone() };
         self.start.hub.tell(message);
         let readings = readings(live.rows, self.start.description.constants.gear_ratio);
+        let channels = self.health.told(Timestamp::now());
         self.status.send_modify(|status| {
             status.progress = Some(progress);
             status.readings = readings;
+            status.channels = channels;
         });
+        if self.told_bench.is_none_or(|told| told.elapsed() >= BENCH_EVERY) {
+            self.tell_bench();
+        }
     }
 }
 

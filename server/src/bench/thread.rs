@@ -239,7 +239,8 @@ impl Owner {
             return;
         };
         let model = self.runtime.block_on(self.start.alongside(run, plan));
-        let mut recorder = StoreRecorder::new(&self.start, &self.status, &self.runtime, mock.as_ref(), run, model);
+        let mut recorder =
+            StoreRecorder::new(&self.start, &self.status, &self.runtime, mock.as_ref(), run, model, plan.rate_hz);
         let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
         let faults = recorder.into_faults();
         self.unkept.push((run, end.clone()));

@@ -60,6 +60,7 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
                 value: status.reading(*quantity),
             })
             .collect(),
+        channels: status.channels.clone(),
         constants: view::Constants {
             torque_constant_nm_per_a: constants.torque_constant_nm_per_a,
             gear_ratio: constants.gear_ratio,

@@ -31,6 +31,8 @@ pub struct Bench {
     pub run: Option<i64>,
     pub instruments: Vec<Instrument>,
     pub limits: Vec<Limit>,
+    /// As they come in during the run that is on, or came in during the last one since the daemon began.
+    pub channels: Vec<ChannelHealth>,
     pub constants: Constants,
 }
 
@@ -102,6 +104,20 @@ pub struct Limit {
     pub limit: f64,
     /// The newest reading, where a run is on.
     pub value: Option<f64>,
+}
+
+/// How a channel comes in.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ChannelHealth {
+    pub name: String,
+    pub unit: Option<String>,
+    /// New readings in a second of the bench's clock; one that is held counts once. `null` before the second.
+    pub rate_hz: Option<f64>,
+    /// When the last value was felt.
+    #[schema(format = DateTime)]
+    pub at: Option<String>,
+    /// Samples of the run that did not come.
+    pub dropped: u64,
 }
 
 /// Constants of the joint under test.

@@ -6,6 +6,7 @@ type Schemas = components['schemas'];
 export type Autopilot = Schemas['Autopilot'];
 export type AutopilotStep = Schemas['AutopilotStep'];
 export type Bench = Schemas['Bench'];
+export type ChannelHealth = Schemas['ChannelHealth'];
 export type Channel = Schemas['ChannelInfo'];
 export type Comparison = Schemas['Comparison'];
 export type Diagnosis = Schemas['Diagnosis'];

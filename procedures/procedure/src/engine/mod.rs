@@ -31,6 +31,7 @@ pub use safe_state::{Secured, secure};
 use session::Session;
 use skew::Skews;
 use std::sync::mpsc::Receiver;
+pub use tick::SLOW_EVERY_S;
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq)]

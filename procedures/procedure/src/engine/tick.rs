@@ -17,7 +17,7 @@ use std::sync::mpsc::TryRecvError;
 /// A supply needs up to 118 ms for a new current (scpi-current-source, timing): more commands would only queue.
 const BRAKE_EVERY_S: f64 = 0.1;
 /// Temperature and supply are read this often and held in between.
-const SLOW_EVERY_S: f64 = 0.5;
+pub const SLOW_EVERY_S: f64 = 0.5;
 /// A supply is good for 10 to 20 readings a second (scpi-current-source, timing): so often while its current changes.
 const CHANGING_EVERY_S: f64 = 0.1;
 /// A new current has come to rest this long after its command: supply and coil.
