@@ -23,7 +23,7 @@ export function writeLook(look: Look): string {
 export function readLook(text: string | null, live: boolean): Look {
 	if (text === null) return live ? { follow: true, width_s: 10 } : { follow: false, view: null };
 	const [first = '', second = ''] = text.split(':');
-	if (first === 'follow' && Number(second) > 0) return { follow: true, width_s: Number(second) };
+	if (first === 'follow' && Number(second) > 0) return live ? { follow: true, width_s: Number(second) } : { follow: false, view: null };
 	const [from, to] = [Number(first), Number(second)];
 	const whole = second !== '' && Number.isFinite(from) && Number.isFinite(to) && from < to;
 	return { follow: false, view: whole ? [from, to] : null };

@@ -15,7 +15,7 @@ export interface Group {
 export const COUNTERS = new Set(['time_s', 'segment', 'repeat']);
 /** What the daemon tells beside a run that is on: the torque of the motor, measured and as the bench's last model has it. Small beside what the link carries, so a plot of its own. */
 export const MODEL = 'model';
-const TOLD = ['motor_torque_nm', 'model_torque_nm'];
+export const TOLD = ['motor_torque_nm', 'model_torque_nm'];
 /** What a unit measures, in the order in which people look at it. */
 const QUANTITIES = new Map([
 	['rad/s', 'velocity'],

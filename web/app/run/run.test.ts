@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { afterHand, readLook, readOwns, viewOf, writeLook, writeOwns } from './follow';
 import { groupsOf } from './groups';
+import { meansOf } from './means';
 import { stepOn } from './progress';
 
 describe('following the live end', () => {
@@ -22,6 +23,7 @@ describe('following the live end', () => {
 		for (const text of ['follow:7.5', '12.5:30', 'all']) expect(writeLook(readLook(text, true))).toBe(text);
 		expect(readLook('nonsense', true)).toEqual({ follow: false, view: null });
 		expect(readLook(null, false)).toEqual({ follow: false, view: null });
+		expect(readLook('follow:7.5', false), 'nothing is followed once the run is over').toEqual({ follow: false, view: null });
 	});
 });
 
@@ -52,4 +54,8 @@ it('draws the model of a run that is on beside what was measured, apart from the
 it('counts the step that is on, and stays on the last', () => {
 	const at = (step: number) => stepOn({ step, steps: 3, label: '', elapsed_s: 0, remaining_s: 0 });
 	expect([at(0), at(1), at(3)]).toEqual([1, 2, 3]);
+});
+
+it('takes what a model leaves together over fifths of a second', () => {
+	expect(meansOf([0, 0.1, 0.25, 0.3, 0.7], [3, 5, 7, NaN, 1], [1, 1, 1, 1, null])).toEqual([[0.1, 3], [expect.closeTo(0.3), 6]]);
 });

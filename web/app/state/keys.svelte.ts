@@ -23,7 +23,7 @@ class Keys {
 
 	press(event: KeyboardEvent): void {
 		if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-		if (isTyping(event.target)) return;
+		if (isTyping(event.target) || (event.key === ' ' && isPressed(event.target))) return;
 		for (const group of [...this.groups].reverse()) {
 			const key = group.keys.find((candidate) => candidate.key === event.key);
 			if (!key) continue;
@@ -38,5 +38,8 @@ function isTyping(target: EventTarget | null): boolean {
 	// A box to tick takes no letters.
 	return !!element && (element.isContentEditable || element.matches('textarea, select, input:not([type=checkbox], [type=radio], [type=range])'));
 }
+
+/** Space is its own key there. */
+const isPressed = (target: EventTarget | null) => target instanceof HTMLElement && target.matches('button, summary, input');
 
 export const keys = new Keys();

@@ -56,6 +56,12 @@ class Router {
 		this.set(changes);
 	}
 
+	/** A double click leads no further back than here. */
+	root(): void {
+		this.write();
+		history.replaceState(null, '');
+	}
+
 	/** The view as it is becomes the address. */
 	private write(): void {
 		clearTimeout(this.late);
