@@ -43,6 +43,17 @@ export async function zoomWhileFollowing(page, base) {
 	const until = Date.now() + 5000;
 	while ((await picture()) === before && Date.now() < until) await page.waitForTimeout(100);
 	expect((await picture()) !== before, 'the plot stands still after a zoom, although the run goes on');
+	await page.keyboard.press('Space');
+	await page.waitForURL(/view=-?[\d.]+:[\d.]+/, { timeout: 5000 }).catch(() => expect(false, `Space does not freeze the plots: ${page.url()}`));
+	await page.keyboard.press('Space');
+	await page.waitForURL(/view=follow:/, { timeout: 5000 }).catch(() => expect(false, `Space does not go on: ${page.url()}`));
+	await page.keyboard.press('n');
+	await page.keyboard.type('walked by');
+	await page.keyboard.press('Enter');
+	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: 5000 }).catch(() => expect(false, 'Enter does not keep a note'));
+	await page.goto(`${base}/?bench=${bench}`);
+	const health = page.locator('section', { has: page.getByRole('heading', { name: 'Channel health' }) });
+	await health.locator('tbody tr', { hasText: 'motor velocity' }).waitFor({ timeout: 10_000 }).catch(() => expect(false, 'the channels of a run that is on are not told'));
 	await fetch(`${base}/api/v1/runs/${id}/abort`, { method: 'POST' });
 }
 
@@ -87,7 +98,7 @@ export async function takeAway(page, base, run) {
 
 /** The residual map as a file: its name, and how it begins. */
 export async function takeMap(page) {
-	await page.getByLabel('Menu of the residual map').click();
+	await page.getByLabel('Menu of Residual map').click();
 	const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Parquet' }).click()]);
 	return { name: file.suggestedFilename(), begins: readFileSync(await file.path(), 'latin1').slice(0, 4) };
 }
@@ -215,15 +226,8 @@ async function readCampaign(page, base, runs) {
 	await page.unroute('**/identification');
 }
 
-/** Opens what is folded below the residual curves, and folds it again; how many axes are shown before and then. */
-export async function unfoldAxes(page) {
-	const curves = page.getByTitle("Show on the map's x axis");
-	const before = await curves.count();
-	const fold = page.getByText(/^(One axis|\d+ axes) without structure/);
-	await fold.click({ timeout: PATIENCE_MS });
-	await page.waitForURL(/flat=1/);
-	const then = await curves.count();
-	await fold.click();
-	await page.waitForFunction(() => !location.search.includes('flat='));
-	return { before, then };
+/** How many curves of the residual are shown, and how many axes there are to show it along. */
+export async function countCurves(page) {
+	const axes = await page.locator('section', { has: page.getByRole('heading', { name: 'Where the model is wrong' }) }).locator('select').first().locator('option').count();
+	return { curves: await page.getByTitle("Show on the map's x axis").count(), axes };
 }

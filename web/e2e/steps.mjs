@@ -87,7 +87,7 @@ export async function readResult(page) {
 	const choose = async (item) => {
 		await card.locator('[data-figure] summary').first().focus();
 		await page.keyboard.press('Enter');
-		for (let i = 0; i < 6; i++) {
+		for (let i = 0; i < 8; i++) {
 			await page.keyboard.press('Tab');
 			if ((await page.evaluate(() => document.activeElement.textContent)) === item) return page.keyboard.press('Enter');
 		}

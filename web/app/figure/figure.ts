@@ -128,12 +128,3 @@ export function tableOf(figure: Figure): Table {
 		rows: rowsOf(figure).map((row) => [row.series, row.x, row.y, row.low, row.high]),
 	};
 }
-
-/** Numbers with all their digits; texts quoted where they must be (RFC 4180). */
-export function csv(head: readonly string[], rows: readonly (readonly (string | number | null)[])[]): string {
-	const cell = (value: string | number | null) => {
-		const text = value === null ? '' : String(value);
-		return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-	};
-	return [head, ...rows].map((row) => row.map(cell).join(',')).join('\n') + '\n';
-}

@@ -1,5 +1,7 @@
 /** A figure on the screen as a file. The page's policy lets no picture be loaded from memory, so the shapes are read and drawn once more. */
 
+import { escaped } from '../plot/svg';
+
 interface Ink {
 	/** Path data, or none for a text. */
 	d: string;
@@ -11,6 +13,8 @@ interface Ink {
 	dash: number[];
 	font: string;
 	anchor: CanvasTextAlign;
+	/** It is cut off there. */
+	clip?: string;
 }
 
 const TITLE = 24;
@@ -38,26 +42,48 @@ function dataOf(shape: Element): string {
 const faded = (colour: string, opacity: string) =>
 	colour === 'none' || opacity === '1' ? colour : colour.replace(/^rgb\((.+)\)$/, (_all, parts: string) => `rgba(${parts}, ${opacity})`);
 
-function inkOf(svg: SVGSVGElement): Ink[] {
-	return [...svg.querySelectorAll<SVGGraphicsElement>('path, line, rect, circle, text')].map((shape) => {
+/** From a shape's own numbers to the place in what is taken. */
+const within = (host: Element) => new DOMMatrix().translate(-host.getBoundingClientRect().left, -host.getBoundingClientRect().top);
+
+function shapesOf(host: Element): Ink[] {
+	return [...host.querySelectorAll<SVGGraphicsElement>(':is(path, line, rect, circle, text):not(clipPath *)')].map((shape) => {
 		const style = getComputedStyle(shape);
-		const { a = 1, b = 0, c = 0, d = 1, e = 0, f = 0 } = shape.transform.baseVal.consolidate()?.matrix ?? {};
-		const group = (shape.parentNode as SVGGraphicsElement).transform?.baseVal.consolidate()?.matrix;
-		const own = new DOMMatrix([a, b, c, d, e, f]);
 		const isText = shape.tagName === 'text';
-		const place = isText ? own.translate(Number(shape.getAttribute('x') ?? 0), Number(shape.getAttribute('y') ?? 0)) : own;
+		const place = within(host).multiply(DOMMatrix.fromMatrix(shape.getScreenCTM()!));
 		return {
 			d: dataOf(shape),
 			text: isText ? (shape.textContent ?? '') : '',
-			matrix: group ? new DOMMatrix([group.a, group.b, group.c, group.d, group.e, group.f]).multiply(place) : place,
+			matrix: isText ? place.translate(Number(shape.getAttribute('x') ?? 0), Number(shape.getAttribute('y') ?? 0)) : place,
 			fill: faded(style.fill, style.fillOpacity),
 			stroke: faded(style.stroke, style.strokeOpacity),
 			width: Number.parseFloat(style.strokeWidth),
 			dash: style.strokeDasharray === 'none' ? [] : style.strokeDasharray.split(/[ ,]+/).map(Number.parseFloat),
-			font: `${style.fontSize} ${style.fontFamily}`,
+			clip: shape.closest('[clip-path]') ? dataOf(host.querySelector('clipPath > rect')!) : undefined,
+			font: fontOf(style),
 			anchor: style.textAnchor === 'middle' ? 'center' : style.textAnchor === 'end' ? 'right' : 'left',
 		};
 	});
+}
+
+const fontOf = (style: CSSStyleDeclaration) => `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
+
+/** The words around the drawings, each where it stands. */
+function wordsOf(host: Element): Ink[] {
+	const inks: Ink[] = [];
+	const texts = document.createTreeWalker(host, NodeFilter.SHOW_TEXT);
+	const range = document.createRange();
+	for (let node = texts.nextNode(); node; node = texts.nextNode()) {
+		const parent = node.parentElement!;
+		if (parent.closest('svg, [class=hidden]')) continue;
+		const style = getComputedStyle(parent);
+		for (const { 0: text, index } of node.textContent!.matchAll(/\S+/g)) {
+			range.setStart(node, index);
+			range.setEnd(node, index + text.length);
+			const box = range.getBoundingClientRect();
+			inks.push({ d: '', text, matrix: within(host).translate(box.left, box.bottom - 0.22 * box.height), fill: style.color, stroke: 'none', width: 0, dash: [], font: fontOf(style), anchor: 'left' });
+		}
+	}
+	return inks;
 }
 
 interface Sheet {
@@ -68,9 +94,9 @@ interface Sheet {
 }
 
 /** The figure with its title above it and a margin around it. */
-function sheetOf(svg: SVGSVGElement, title: string): Sheet {
+function sheetOf(host: Element, title: string): Sheet {
 	const root = getComputedStyle(document.documentElement);
-	const inks = inkOf(svg).map((ink) => ({ ...ink, matrix: new DOMMatrix().translate(MARGIN, TITLE + MARGIN).multiply(ink.matrix) }));
+	const inks = [...shapesOf(host), ...wordsOf(host)].map((ink) => ({ ...ink, matrix: new DOMMatrix().translate(MARGIN, TITLE + MARGIN).multiply(ink.matrix) }));
 	const head: Ink = {
 		d: '',
 		text: title,
@@ -83,17 +109,15 @@ function sheetOf(svg: SVGSVGElement, title: string): Sheet {
 		anchor: 'left',
 	};
 	return {
-		width: svg.clientWidth + 2 * MARGIN,
-		height: svg.clientHeight + TITLE + 2 * MARGIN,
+		width: host.clientWidth + 2 * MARGIN,
+		height: host.clientHeight + TITLE + 2 * MARGIN,
 		paper: root.getPropertyValue('--panel').trim(),
 		inks: [head, ...inks],
 	};
 }
 
-const escaped = (text: string) => text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
-
-export function svgFile(svg: SVGSVGElement, title: string): Blob {
-	const { width, height, paper, inks } = sheetOf(svg, title);
+export function svgFile(host: Element, title: string): Blob {
+	const { width, height, paper, inks } = sheetOf(host, title);
 	const anchors: Partial<Record<CanvasTextAlign, string>> = { center: 'middle', right: 'end' };
 	const body = inks.map((ink) => {
 		const common = `transform="${ink.matrix.toString()}" fill="${ink.fill}" stroke="${ink.stroke}" stroke-width="${ink.width}"`;
@@ -107,15 +131,18 @@ export function svgFile(svg: SVGSVGElement, title: string): Blob {
 /** Twice as fine as the screen: for slides and papers. */
 const FINE = 2;
 
-export async function pngFile(svg: SVGSVGElement, title: string): Promise<Blob> {
-	const { width, height, paper, inks } = sheetOf(svg, title);
+export async function pngFile(host: Element, title: string): Promise<Blob> {
+	const { width, height, paper, inks } = sheetOf(host, title);
 	const canvas = new OffscreenCanvas(width * FINE, height * FINE);
 	const ctx = canvas.getContext('2d')!;
 	ctx.scale(FINE, FINE);
 	ctx.fillStyle = paper;
 	ctx.fillRect(0, 0, width, height);
 	for (const ink of inks) {
+		ctx.restore();
+		ctx.save();
 		ctx.setTransform(new DOMMatrix().scale(FINE).multiply(ink.matrix));
+		if (ink.clip) ctx.clip(new Path2D(ink.clip));
 		ctx.lineWidth = ink.width;
 		ctx.setLineDash(ink.dash);
 		ctx.font = ink.font;

@@ -17,7 +17,7 @@ export interface Drawing {
 }
 
 const [LEFT, RIGHT, HEAD, FOOT] = [76, 10, 26, 44];
-const escaped = (text: string) => text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
+export const escaped = (text: string) => text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
 const short = (pixels: number) => String(Number(pixels.toFixed(2)));
 
 /** `ink` gives the colour of a custom property. */

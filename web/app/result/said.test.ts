@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { judged, partsOf, quantitiesCsv, sayQuantity, tableOf } from './said';
+import { judged, partsOf, sayQuantity, tableOf } from './said';
 
 it('says a quantity with one prefix for value and interval', () => {
 	expect(sayQuantity({ value: 3.2e-5, unit: 'Nm·s/rad', ci95: [3.16e-5, 3.24e-5] })).toEqual({ value: '32.00', interval: '± 0.40', unit: 'µNm·s/rad' });
@@ -10,11 +10,6 @@ it('says an uneven interval by its ends, and none where there is none', () => {
 	expect(sayQuantity({ value: 0.0506, unit: 'rad/s', ci95: [0.047, 0.0561] }).interval).toBe('[47.0, 56.1]');
 	expect(sayQuantity({ value: 7, unit: '', ci95: null })).toEqual({ value: '7', interval: '', unit: '' });
 	expect(sayQuantity({ value: 0.9987, unit: '' }).value).toBe('0.9987');
-});
-
-it('copies figures in SI units with all their digits', () => {
-	const one = { name: 'tau_c', symbol: 'τ_c', title: 'Coulomb friction, positive', unit: 'Nm', value: 0.03312345, ci95: [0.033, 0.034] };
-	expect(quantitiesCsv([one])).toBe('name,symbol,quantity,unit,value,ci95 lower,ci95 upper\ntau_c,τ_c,"Coulomb friction, positive",Nm,0.03312345,0.033,0.034\n');
 });
 
 it('sets what was found for several ways side by side, and nothing else', () => {

@@ -1,5 +1,4 @@
 import type { Identification, IdentifiedQuantity } from '../api/types';
-import { csv } from '../figure/figure';
 import { type Scale, bounds, estimate, figure, scaleFor } from '../format/number';
 import type { Mood } from '../ui/states';
 
@@ -37,13 +36,6 @@ export function sayQuantity(of: Pick<IdentifiedQuantity, 'value' | 'unit' | 'ci9
 		interval: even && half > 0 ? `± ${figure(half, 2)}` : bounds(scaled),
 		unit: scale.unit,
 	};
-}
-
-export function quantitiesCsv(quantities: readonly IdentifiedQuantity[]): string {
-	return csv(
-		['name', 'symbol', 'quantity', 'unit', 'value', 'ci95 lower', 'ci95 upper'],
-		quantities.map(({ name, symbol, title, unit, value, ci95 }) => [name, symbol, title, unit, value, ci95?.[0] ?? null, ci95?.[1] ?? null]),
-	);
 }
 
 /** What was found for each of several ways. */

@@ -1,7 +1,7 @@
 import type { ResidualSet } from '../api/types';
-import { type Bins, binsFor } from '../residual/bins';
+import { type Bins, binOf, binsFor } from '../residual/bins';
 import { type Point, curve, explainedShare } from '../residual/curve';
-import { type Side, keep, usefulAxes } from '../residual/points';
+import { type Side, directionOf, keep, usefulAxes } from '../residual/points';
 
 /** One axis with the residual along it. */
 export interface Ranked {
@@ -9,6 +9,8 @@ export interface Ranked {
 	bins: Bins;
 	/** Share of the residual's variance that depends on this axis. */
 	share: number;
+	/** The same with each direction for itself, without what the direction alone decides: what turns with it averages out over both. */
+	split: number;
 	all: Point[];
 	positive: Point[];
 	negative: Point[];
@@ -29,19 +31,24 @@ export function usualAxes(set: ResidualSet, kind: string | undefined): string[] 
 export function rankAxes(set: ResidualSet, figure: readonly number[], side: Side, ramps: boolean, noise: number, shown: (unit: string) => { factor: number } = () => ({ factor: 1 })): Ranked[] {
 	const kept = keep(set, side, ramps);
 	const sides = { positive: keep(set, 'positive', ramps), negative: keep(set, 'negative', ramps) };
+	const way = side === 'both' ? directionOf(set) : null;
+	const turned = way ? explainedShare(way, [-Infinity, 0, Infinity], figure, kept) : 0;
 	return usefulAxes(set, kept)
 		.map((axis) => {
 			const bins = { ...binsFor(axis.values, RUNS_ALONG.test(axis.name) ? [] : set.segment, kept), factor: shown(axis.unit).factor };
 			const { edges } = bins;
 			const over = (which: Uint8Array) => curve(axis.values, edges, figure, which, noise, set.piece);
+			const share = explainedShare(axis.values, edges, figure, kept);
+			const cells = way && axis.values.map((value, i) => 2 * binOf(edges, value) + (way[i]! < 0 ? 1 : 0));
 			return {
 				axis,
 				bins,
-				share: explainedShare(axis.values, edges, figure, kept),
+				share,
+				split: cells ? Math.max(0, explainedShare(cells, Array.from({ length: 2 * edges.length - 1 }, (_, i) => i), figure, kept) - turned) : share,
 				all: over(kept),
 				positive: over(sides.positive),
 				negative: over(sides.negative),
 			};
 		})
-		.sort((a, b) => b.share - a.share);
+		.sort((a, b) => Math.max(b.share, b.split) - Math.max(a.share, a.split));
 }

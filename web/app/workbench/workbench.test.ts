@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import type { Model, Parameter, ResidualSet, Suggestion } from '../api/types';
 import { forest } from './forest';
 import { overlay } from './overlay';
+import { rankAxes } from './ranked';
 import { readView, writeView } from './lens';
 import { readRegion, strength, writeRegion, writeStretch } from './region';
 import { sharesOf } from '../residual/line';
@@ -164,4 +165,30 @@ it('flags parameters in words', () => {
 	const pair = ['a', 'b'].map((name) => ({ effect: 'e', name, value: 1, ci95: [0.5, 1.5], state: 'ok' })) as Parameter[];
 	const [first] = forest(pair, [{ first: 'e.a', second: 'e.b', correlation: -0.96 }]);
 	expect(first!.flags).toEqual(['ρ −0.96 with e.b']);
+});
+
+describe('the axes that explain the residual', () => {
+	const axis = (name: string, unit: string, values: number[]) => ({ name, unit, values });
+	const points = Array.from({ length: 800 }, (_, i) => i);
+	const way = points.map((i) => (i % 2 ? 1 : -1));
+	const pressure = points.map((i) => (i >> 1) % 5);
+	const left = (one: (i: number) => number) =>
+		({
+			axes: [axis('direction', '', way), axis('oil_pressure_pa', 'Pa', pressure)],
+			error: points.map((i) => one(i) + 0.01 * Math.sin(37 * i)),
+			excluded: points.map(() => false),
+			held_out: points.map(() => false),
+			segment: points.map((i) => i >> 3),
+			piece: points.map((i) => i >> 3),
+		}) as unknown as ResidualSet;
+	const shares = (set: ResidualSet) =>
+		rankAxes(set, set.error, 'both', false, 0).map(({ axis, share, split }) => [axis.name, Math.round(100 * share), Math.round(100 * split)]);
+
+	it('tells what shows only with each direction for itself', () => {
+		expect(shares(left((i) => (pressure[i] === 2 ? way[i]! : 0)))).toEqual([['oil_pressure_pa', 0, 80], ['direction', 20, 0]]);
+	});
+
+	it('gives no axis what the direction alone decides', () => {
+		expect(shares(left((i) => way[i]!))).toEqual([['direction', 100, 0], ['oil_pressure_pa', 0, 0]]);
+	});
 });
