@@ -38,15 +38,10 @@ impl Lab {
         }
         let spans = self.spans(runs, &how.by).await?;
         let spans: Vec<[f64; 2]> = spans.iter().zip(&zeros).map(|(span, zero)| span.map(|end| end - zero)).collect();
-        let ends =
-            |i: usize, pick: fn(f64, f64) -> f64| spans.iter().map(|span| span[i]).reduce(pick).unwrap_or_default();
-        // Over time the differences alone are drawn, and they are there where all runs are.
-        let [low, high] = match how.by == TIME {
-            true => [ends(0, f64::max), ends(1, f64::min)],
-            false => [ends(0, f64::min), ends(1, f64::max)],
-        };
+        let low = spans.iter().map(|span| span[0]).fold(f64::INFINITY, f64::min);
+        let high = spans.iter().map(|span| span[1]).fold(f64::NEG_INFINITY, f64::max);
         if !(high - low).is_finite() || high <= low {
-            return Err(LabError::Invalid(format!("these runs have no range of {} in common", spoken(&how.by))));
+            return Err(LabError::Invalid(format!("{} stays where it is in these runs", spoken(&how.by))));
         }
         let places = if how.by == TIME { PLACES * MOMENTS } else { PLACES };
         let axis = Axis { low, step: (high - low) / places as f64, places };
