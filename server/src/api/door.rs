@@ -5,6 +5,7 @@
 //! request must be ours or absent (programs send none). Browsers differ in what they refuse by themselves.
 
 use super::problem::Problem;
+use super::size;
 use crate::lab::{Caller, Lab, Tokens};
 use crate::view::Access;
 use axum::extract::{Request, State};
@@ -48,7 +49,7 @@ fn only_looks(method: &Method, path: &str) -> bool {
     asks.iter().any(|end| path.ends_with(end)) || method.is_safe() && !path.starts_with("/api/v1/tokens")
 }
 
-/// Middleware: refuses before anything is read, and tells handlers who calls.
+/// Middleware: refuses before anything is looked at, and tells handlers who calls.
 pub async fn guard(State(lab): State<Lab>, mut request: Request, next: Next) -> Response {
     match check(lab.tokens(), request.method(), request.uri(), request.headers()) {
         Ok(caller) => {
@@ -56,7 +57,10 @@ pub async fn guard(State(lab): State<Lab>, mut request: Request, next: Next) -> 
             request.extensions_mut().insert(caller);
             next.run(request).await
         }
-        Err(problem) => problem.into_response(),
+        Err(problem) => {
+            size::hear_out(request).await;
+            problem.into_response()
+        }
     }
 }
 

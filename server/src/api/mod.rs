@@ -160,6 +160,7 @@ pub fn router(lab: Lab) -> Router {
         .fallback_service(any(dashboard::serve).layer(CompressionLayer::new().quality(CompressionLevel::Best)))
         .with_state(lab.clone())
         .layer(middleware::from_fn_with_state(lab, door::guard))
+        .layer(middleware::from_fn(size::take_in))
         .layer(middleware::from_fn(problem::name_instance))
         .layer(middleware::from_fn(dashboard::security_headers))
         .layer(TraceLayer::new_for_http())

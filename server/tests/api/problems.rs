@@ -1,6 +1,10 @@
 //! What cannot be answered is answered with a problem document that says what to do.
 
 use crate::daemon::TestDaemon;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::thread::sleep;
+use std::time::Duration;
 
 #[test]
 fn every_refusal_is_a_problem_document() {
@@ -46,6 +50,33 @@ fn every_refusal_is_a_problem_document() {
         assert!(problem["instance"].as_str().is_some_and(|path| path.starts_with("/api")), "{problem}");
         let detail = problem["detail"].as_str().unwrap();
         assert!(detail.contains(said), "{said:?} in {detail:?}");
+    }
+}
+
+/// A client keeps its connection for the next request; whatever of a refused one is still on its way must not end it.
+#[test]
+fn a_refusal_leaves_the_connection_open() {
+    let daemon = TestDaemon::start();
+    let host = daemon.address();
+    let mut wire = TcpStream::connect(&host).unwrap();
+    wire.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    let mut answers = BufReader::new(wire.try_clone().unwrap());
+    for (path, origin, status) in [
+        ("nothing", &*host, "404"),
+        ("health", &*host, "405"),
+        ("runs/one/notes", &*host, "400"),
+        ("runs", "evil.example", "403"),
+        ("runs", &*host, "400"),
+    ] {
+        write!(wire, "POST /api/v1/{path} HTTP/1.1\r\nhost: {host}\r\norigin: http://{origin}\r\n").unwrap();
+        write!(wire, "content-type: application/json\r\ncontent-length: 2\r\n\r\n").unwrap();
+        sleep(Duration::from_millis(50));
+        wire.write_all(b"{}").unwrap();
+        let head: Vec<String> =
+            answers.by_ref().lines().map(Result::unwrap).take_while(|line| !line.is_empty()).collect();
+        assert_eq!(head.first().and_then(|line| line.split(' ').nth(1)), Some(status), "{path} {head:?}");
+        let length = head.iter().find_map(|line| line.strip_prefix("content-length: ")).unwrap();
+        answers.read_exact(&mut vec![0; length.parse().unwrap()]).unwrap();
     }
 }
 
