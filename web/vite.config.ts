@@ -51,8 +51,20 @@ const plainUplot: Plugin = {
 	},
 };
 
+/** Svelte without taking over markup that a server has sent: no server here sends any. */
+const noHydration: Plugin = {
+	name: 'no-hydration',
+	apply: 'build',
+	transform(code, id) {
+		if (!id.endsWith('dom/hydration.js')) return;
+		const fixed = code.replace('export let hydrating = false', 'export const hydrating = false').replace('hydrating = value;', '');
+		if (!fixed.includes('const hydrating') || fixed.includes('= value')) this.error('Svelte has changed: hydrating is not where it was');
+		return { code: fixed, map: null };
+	},
+};
+
 export default defineConfig({
-	plugins: [svelte(), plainUplot, smaller],
+	plugins: [svelte(), plainUplot, noHydration, smaller],
 	build: { target: 'es2022', modulePreload: false, assetsInlineLimit: 0, cssCodeSplit: false, outDir: 'dist' },
 	// `npm run dev` beside a daemon: pages from Vite, everything else from the daemon, which takes only its own origin.
 	server: { proxy: { '/api': { target: daemon, ws: true, changeOrigin: true, headers: { origin: daemon } } } },
