@@ -38,18 +38,44 @@ impl Lab {
         }
         let spans = self.spans(runs, &how.by).await?;
         let spans: Vec<[f64; 2]> = spans.iter().zip(&zeros).map(|(span, zero)| span.map(|end| end - zero)).collect();
+        if how.by == TIME {
+            return self.over_time(runs, how, &zeros, &spans).await;
+        }
         let low = spans.iter().map(|span| span[0]).fold(f64::INFINITY, f64::min);
         let high = spans.iter().map(|span| span[1]).fold(f64::NEG_INFINITY, f64::max);
         if !(high - low).is_finite() || high <= low {
             return Err(LabError::Invalid(format!("{} stays where it is in these runs", spoken(&how.by))));
         }
-        let places = if how.by == TIME { PLACES * MOMENTS } else { PLACES };
-        let axis = Axis { low, step: (high - low) / places as f64, places };
+        let axis = Axis { low, step: (high - low) / PLACES as f64, places: PLACES };
         let mut courses = Vec::new();
         for (run, zero) in runs.iter().zip(zeros) {
             courses.push(self.course(*run, how, &axis, zero).await?);
         }
-        Ok(figures(runs, how, &axis, &courses))
+        let (shown, apart) = over_places(runs, &axis, &courses);
+        Ok(figures(runs[0], how, &courses[0].unit, shown, apart))
+    }
+
+    /// Each run from the first over the time that the two have, so that a short one takes nothing from the others.
+    async fn over_time(&self, runs: &[i64], how: &Alignment, zeros: &[f64], spans: &[[f64; 2]]) -> Answer<Vec<Figure>> {
+        let (mut apart, mut unit) = (Vec::new(), String::new());
+        for other in 1..runs.len() {
+            let low = spans[0][0].max(spans[other][0]);
+            let high = spans[0][1].min(spans[other][1]);
+            let mut rows = (PLACES * 2 * MOMENTS) as u64;
+            for i in [0, other] {
+                let both = self.inner.store.rows_between(runs[i], Some(low + zeros[i]), Some(high + zeros[i])).await?;
+                rows = rows.min(both.end - both.start);
+            }
+            // Two rows in each moment, or nothing is there to be told.
+            let places = (rows as usize / 2 / MOMENTS).max(1) * MOMENTS;
+            let axis = Axis { low, step: (high - low) / places as f64, places };
+            let base = self.course(runs[0], how, &axis, zeros[0]).await?;
+            let course = self.course(runs[other], how, &axis, zeros[other]).await?;
+            let points = (0..places / MOMENTS).filter_map(|place| apart_at(&axis, [&base, &course], place)).collect();
+            apart.push(series(format!("#{} − #{}", runs[other], runs[0]), points));
+            unit = base.unit;
+        }
+        Ok(figures(runs[0], how, &unit, Vec::new(), apart))
     }
 
     /// The moment from which on a run's time is told [s].
@@ -84,7 +110,11 @@ impl Lab {
             let [low, high] = self.spans(&[run], VELOCITY).await?[0];
             rest = AT_REST * low.abs().max(high.abs());
         }
-        let rows = store.rows_between(run, None, None).await?;
+        let [from_s, to_s] = [axis.low, axis.low + axis.step * axis.places as f64].map(|end| Some(end + zero));
+        let rows = match how.by == TIME {
+            true => store.rows_between(run, from_s, to_s).await?,
+            false => store.rows_between(run, None, None).await?,
+        };
         let mut walk = Walk::new(axis.places);
         let mut unit = None;
         for first in rows.clone().step_by(ROWS_AT_ONCE as usize) {
@@ -118,6 +148,11 @@ impl Axis {
         // The largest value is in the last place.
         (place >= 0.0 && place <= self.places as f64).then(|| (place as usize).min(self.places - 1))
     }
+
+    /// The middle of a place that is `wide` of these.
+    fn centre(&self, place: usize, wide: usize) -> f64 {
+        self.low + (place as f64 + 0.5) * wide as f64 * self.step
+    }
 }
 
 /// What a run shows at each place, first forwards and then backwards: means of stretches, as samples that follow each other are not
@@ -126,6 +161,12 @@ struct Course {
     tallies: Vec<Tally>,
     unit: String,
     turns: bool,
+}
+
+impl Course {
+    fn at(&self, place: usize) -> Option<Tally> {
+        Some(self.tallies[place]).filter(|tally| tally.n > 0)
+    }
 }
 
 /// A weighted mean, and what the values are from it.
@@ -189,19 +230,17 @@ fn scatter(course: &Course) -> Option<f64> {
 /// Place, value and two standard errors, where they are known.
 type Points = Vec<(f64, f64, Option<f64>)>;
 
-fn figures(runs: &[i64], how: &Alignment, axis: &Axis, courses: &[Course]) -> Vec<Figure> {
-    let centre = |place: usize, wide: f64| axis.low + (place as f64 + 0.5) * wide * axis.step;
+/// Means of all runs, and how far the others are from the first, at each place and in each direction.
+fn over_places(runs: &[i64], axis: &Axis, courses: &[Course]) -> (Vec<FigureSeries>, Vec<FigureSeries>) {
     let ways: &[&str] = if courses.iter().any(|course| course.turns) { &[", forwards", ", backwards"] } else { &[""] };
     let (mut shown, mut apart) = (Vec::new(), Vec::new());
     let scatters: Vec<Option<f64>> = courses.iter().map(scatter).collect();
     for (way, name) in ways.iter().enumerate() {
-        let at = |course: usize, place: usize| {
-            Some(courses[course].tallies[way * axis.places + place]).filter(|tally| tally.n > 0)
-        };
+        let at = |course: usize, place: usize| courses[course].at(way * axis.places + place);
         for (i, run) in runs.iter().enumerate() {
             let mean = |place| {
                 let tally = at(i, place)?;
-                Some((centre(place, 1.0), tally.mean, scatters[i].map(|s| 2.0 * (s / tally.weight).sqrt())))
+                Some((axis.centre(place, 1), tally.mean, scatters[i].map(|s| 2.0 * (s / tally.weight).sqrt())))
             };
             shown.push(series(format!("#{run}{name}"), (0..axis.places).filter_map(mean).collect()));
             if i == 0 {
@@ -211,35 +250,38 @@ fn figures(runs: &[i64], how: &Alignment, axis: &Axis, courses: &[Course]) -> Ve
                 let (base, other) = (at(0, place)?, at(i, place)?);
                 let error =
                     scatters[0].zip(scatters[i]).map(|(a, b)| 2.0 * (a / base.weight + b / other.weight).sqrt());
-                Some((centre(place, 1.0), other.mean - base.mean, error))
+                Some((axis.centre(place, 1), other.mean - base.mean, error))
             };
-            let over_time = |place| {
-                let mut tally = Tally::default();
-                for moment in place * MOMENTS..(place + 1) * MOMENTS {
-                    tally.take(at(i, moment)?.mean - at(0, moment)?.mean, 1.0);
-                }
-                let error = 2.0 * (tally.squares / (MOMENTS * (MOMENTS - 1)) as f64).sqrt();
-                Some((centre(place, MOMENTS as f64), tally.mean, Some(error)))
-            };
-            let points = match how.by == TIME {
-                true => (0..PLACES).filter_map(over_time).collect(),
-                false => (0..axis.places).filter_map(difference).collect(),
-            };
+            let points = (0..axis.places).filter_map(difference).collect();
             apart.push(series(format!("#{run} − #{}{name}", runs[0]), points));
         }
     }
+    (shown, apart)
+}
+
+/// From the differences at the moments of a place.
+fn apart_at(axis: &Axis, [base, other]: [&Course; 2], place: usize) -> Option<(f64, f64, Option<f64>)> {
+    let mut tally = Tally::default();
+    for moment in place * MOMENTS..(place + 1) * MOMENTS {
+        tally.take(other.at(moment)?.mean - base.at(moment)?.mean, 1.0);
+    }
+    let error = 2.0 * (tally.squares / (MOMENTS * (MOMENTS - 1)) as f64).sqrt();
+    Some((axis.centre(place, MOMENTS), tally.mean, Some(error)))
+}
+
+fn figures(base: i64, how: &Alignment, unit: &str, shown: Vec<FigureSeries>, apart: Vec<FigureSeries>) -> Vec<Figure> {
     let figure = |name: &str, title: String, series: Vec<FigureSeries>| Figure {
         name: name.to_owned(),
         title,
         form: FigureForm::Cartesian,
         x: axis_of(&how.from.as_ref().map_or(spoken(&how.by), |from| format!("time since “{from}”")), &how.by),
-        y: FigureAxis { label: spoken(&how.channel), unit: courses[0].unit.clone(), names: Vec::new() },
+        y: FigureAxis { label: spoken(&how.channel), unit: unit.to_owned(), names: Vec::new() },
         series,
     };
     let mean = figure("mean", format!("Mean of the {}, ± 2 σ", spoken(&how.channel)), shown);
-    let difference = figure("difference", format!("Difference from #{}, ± 2 σ", runs[0]), apart);
-    let all = if how.by == TIME { vec![difference] } else { vec![mean, difference] };
-    all.into_iter().filter(|figure| figure.series.iter().any(|series| !series.x.is_empty())).collect()
+    let difference = figure("difference", format!("Difference from #{base}, ± 2 σ"), apart);
+    let both = [mean, difference].into_iter();
+    both.filter(|figure| figure.series.iter().any(|series| !series.x.is_empty())).collect()
 }
 
 fn axis_of(label: &str, column: &str) -> FigureAxis {

@@ -49,7 +49,7 @@ fn a_difference_is_told_with_two_standard_errors() {
     let add = |table: String| upload(&daemon, &table, &[("meta", META)]).1["id"].as_i64().unwrap();
     let (base, other) = (add(strokes(0.0, 1)), add(strokes(MORE_A, 2)));
     let ask =
-        |by: &str| daemon.get(&format!("/api/v1/runs/{base}/differences?others={other}&channel=motor_current_a{by}"));
+        |by: &str| daemon.get(&format!("/api/v1/runs/{base}/differences?channel=motor_current_a&others={other}{by}"));
 
     let (status, figures) = ask("&by=motor_position_rad");
     assert_eq!(status, 200, "{figures}");
@@ -69,6 +69,12 @@ fn a_difference_is_told_with_two_standard_errors() {
     assert_eq!((figures.as_array().unwrap().len(), &figures[0]["name"]), (1, &"difference".into()));
     let mean = held(&figures[0]["series"][0], 0.0).0;
     assert!((mean - MORE_A / 2.0).abs() < 0.01, "{mean}");
+    // A short run has its own stretch of the time, and takes nothing from the other.
+    let short = add(strokes(0.0, 3).lines().take(1001).map(|line| format!("{line}\n")).collect());
+    let (_, both) = ask(&format!(",{short}"));
+    assert_eq!(both[0]["series"][0], figures[0]["series"][0]);
+    held(&both[0]["series"][1], 0.0);
+    assert!(numbers(&both[0]["series"][1]["x"]).iter().all(|at_s| (0.0..4.0).contains(at_s)));
 
     for (query, refused, why) in [("&by=oil", 404, "no channel oil"), ("&from=the%20end", 422, "no event “the end”")]
     {
