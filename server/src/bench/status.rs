@@ -1,6 +1,7 @@
 //! What a bench thread tells of itself.
 
-use crate::view::{BenchState, Blocked, ChannelHealth, Instrument, InstrumentFault, Progress};
+use super::health::Incoming;
+use crate::view::{BenchState, Blocked, Instrument, InstrumentFault, Progress};
 use jiff::Timestamp;
 use jointbench_instrument::limits::Limited;
 use jointbench_instrument::{Fault, Trace};
@@ -30,7 +31,7 @@ pub struct Status {
     pub blocked: Option<Blocked>,
     /// The newest row of the run, against the limits.
     pub readings: Vec<(Limited, f64)>,
-    pub channels: Vec<ChannelHealth>,
+    pub channels: Vec<Incoming>,
     /// The thread has opened and secured the bench since it began, as far as that was possible.
     pub settled: bool,
 }

@@ -1,6 +1,7 @@
 //! The thread that owns a bench. An ordinary loop: one command after the other, a run is one command.
 
 use super::handle::{Slot, lock};
+use super::health::expected;
 use super::instruments::{Opened, open};
 use super::recorder::StoreRecorder;
 use super::status::{FAULTS, New, Status};
@@ -189,8 +190,14 @@ impl Owner {
         for instrument in &mut instruments {
             instrument.faults = self.known_faults(&instrument.name);
         }
+        let channels = opened.bench.as_ref().map(expected).unwrap_or_default();
         self.opened = Some(opened);
-        let new = self.change(|status| status.found(instruments));
+        let new = self.change(|status| {
+            if status.channels.is_empty() {
+                status.channels = channels;
+            }
+            status.found(instruments)
+        });
         self.keep_faults(new);
         self.is_open()
     }

@@ -5,6 +5,7 @@ use crate::bench::Status;
 use crate::config::BenchDescription;
 use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord};
 use crate::view;
+use jiff::Timestamp;
 use jointbench_instrument::limits::Limited;
 use jointbench_procedure::{Control, EventKind, RunState, Safe};
 use serde::Serialize;
@@ -60,7 +61,7 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
                 value: status.reading(*quantity),
             })
             .collect(),
-        channels: status.channels.clone(),
+        channels: status.channels.iter().map(|channel| channel.told(Timestamp::now())).collect(),
         constants: view::Constants {
             torque_constant_nm_per_a: constants.torque_constant_nm_per_a,
             gear_ratio: constants.gear_ratio,

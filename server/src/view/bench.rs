@@ -31,7 +31,8 @@ pub struct Bench {
     pub run: Option<i64>,
     pub instruments: Vec<Instrument>,
     pub limits: Vec<Limit>,
-    /// As they come in during the run that is on, or came in during the last one since the daemon began.
+    /// As they come in during the run that is on, or came in during the last one since the daemon began; before it, what the
+    /// instruments tell in every run.
     pub channels: Vec<ChannelHealth>,
     pub constants: Constants,
 }
@@ -113,9 +114,11 @@ pub struct ChannelHealth {
     pub unit: Option<String>,
     /// New readings in a second of the bench's clock; one that is held counts once. `null` before the second.
     pub rate_hz: Option<f64>,
-    /// When the last value was felt.
+    /// When the last value was felt, by the daemon's clock.
     #[schema(format = DateTime)]
     pub at: Option<String>,
+    /// How long ago that was when the bench was told of.
+    pub age_s: Option<f64>,
     /// Samples of the run that did not come.
     pub dropped: u64,
 }

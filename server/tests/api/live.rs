@@ -116,3 +116,19 @@ fn the_last_model_of_the_bench_goes_along_with_a_run() {
     let share = (left / squares).sqrt();
     assert!(share < 0.25, "the model leaves {share} of the torque");
 }
+
+#[test]
+fn a_bench_tells_its_channels_before_and_after_a_run() {
+    let daemon = TestDaemon::start();
+    let channels = |bench: &Value| bench["channels"].as_array().unwrap().clone();
+    let before = channels(&daemon.wait_for("/api/v1/bench/joint-a-mock", |bench| !channels(bench).is_empty()));
+    assert!(before.iter().all(|one| one["unit"].is_string() && one["rate_hz"].is_null() && one["age_s"].is_null()));
+    let run = daemon.post("/api/v1/runs", SHORT_RUN).1["id"].as_i64().unwrap();
+    daemon.wait_for_end(run);
+    let after = channels(&daemon.get("/api/v1/bench/joint-a-mock").1);
+    for channel in before {
+        let same = after.iter().find(|one| one["name"] == channel["name"]).unwrap();
+        let age_s = same["age_s"].as_f64().unwrap();
+        assert!(same["rate_hz"].as_f64().unwrap() > 1.0 && (0.0..60.0).contains(&age_s), "{same}");
+    }
+}
