@@ -38,6 +38,11 @@ export function openWorkbench(id: number) {
 		() => (run.data ? `${run.data.kind} ${lab.effects}` : null),
 		(_key, signal) => api.effects(run.data?.kind ?? '', signal),
 	);
+	/** Runs of the same kind. */
+	const alike = resource(
+		() => (run.data ? `kind:${run.data.kind}` : null),
+		(search, signal) => api.runs({ limit: 100, search }, signal),
+	);
 	const versions: Model[] = $derived(models.data ?? []);
 	const asked = $derived(router.query.get('model'));
 	const named = $derived(versions.find((one) => String(one.id) === asked));
@@ -78,7 +83,7 @@ export function openWorkbench(id: number) {
 	/** Everything that the page is laid out by has come, once: until then nothing is shown that it would push aside. */
 	let laid = $state(false);
 	$effect(() => {
-		laid ||= model !== null && [run, effects, residuals, diagnosis].every((one) => one.data ?? one.error);
+		laid ||= model !== null && [run, effects, residuals, diagnosis, alike].every((one) => one.data ?? one.error);
 	});
 
 	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? words(effect);
@@ -154,39 +159,26 @@ export function openWorkbench(id: number) {
 	/** What columns suggest that contradict each other is no advice. */
 	const contradicts = $derived(diagnosis.data?.undecided?.includes('columns contradict') ?? false);
 
-	/** The same model on one run more. */
-	async function join(more: number): Promise<void> {
-		const from = model;
-		if (!from || busy !== null) return;
-		busy = `Fitting run #${more} with the others`;
-		refused = null;
-		try {
-			const made = await api.fit(id, from.effects, { id: from.id, more_runs: [...from.more_runs, more] });
-			models.put([...versions.filter((one) => one.id !== made.id), made]);
-			busy = null;
-			show(made, from);
-		} catch (failure) {
-			refused = asRefusal(failure);
-			busy = null;
-		}
-	}
-
-	/** The same effects fitted to other samples of the same runs. */
-	async function refitWithout(excluded: Exclusion[], what: string, told: string): Promise<void> {
+	/** The same effects fitted to other data; without `excluded` it looks away where this version does. */
+	async function refitOn(more: number[], what: string, excluded?: Exclusion[], told?: string): Promise<void> {
 		const from = model;
 		if (!from || busy !== null) return;
 		busy = what;
 		refused = null;
 		try {
-			const made = await api.fit(id, from.effects, from, excluded);
+			const made = await api.fit(id, from.effects, { id: from.id, more_runs: more }, excluded);
 			models.put([...versions.filter((one) => one.id !== made.id), made]);
 			show(made, from);
-			notice = { text: `${told} Undo with z.`, good: true };
+			if (told) notice = { text: `${told} Undo with z.`, good: true };
 		} catch (failure) {
 			refused = asRefusal(failure);
 		}
 		busy = null;
 	}
+	const others = $derived(model?.more_runs ?? []);
+	const join = (more: number) => refitOn([...others, more], `Fitting run #${more} with the others`);
+	const leave = (less: number) => refitOn(others.filter((one) => one !== less), `Fitting without run #${less}`);
+	const refitWithout = (excluded: Exclusion[], what: string, told: string) => refitOn(others, what, excluded, told);
 	const exclude = (stretches: Exclusion[], reason: string) =>
 		refitWithout([...(model?.excluded ?? []), ...stretches], 'Refitting without the chosen samples', `Fitted without the chosen samples (${reason}).`);
 	/** Takes what was excluded for a reason in again. */
@@ -242,8 +234,12 @@ export function openWorkbench(id: number) {
 		remove,
 		begin,
 		join,
+		leave,
 		undo,
 		redo,
+		get alike() {
+			return (alike.data?.runs ?? []).filter((one) => one.rows > 0 && isFinal(one.state));
+		},
 		get versions() {
 			return versions;
 		},
