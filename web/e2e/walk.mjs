@@ -136,7 +136,7 @@ await tell('walk', async () => {
 	expect(jumped < 0.1, `removing an effect and undoing that makes the page jump, by ${jumped}`);
 	console.log(`layout shift of removing and undoing: ${jumped.toFixed(4)}`);
 
-	for (const path of ['/', '/log', '/settings']) {
+	for (const path of ['/', '/live', '/log', '/settings']) {
 		await page.goto(where.base + path);
 		await page.getByRole('heading', { level: 1 }).first().waitFor({ state: 'attached' });
 		await audit(page, path);

@@ -7,6 +7,7 @@ it.each([
 	['/runs/12', 'run', 12],
 	['/workbench/3', 'workbench', 3],
 	['/workbench', 'workbench', null],
+	['/live', 'live', null],
 	['/log', 'log', null],
 	['/settings', 'settings', null],
 	['/settings/1', 'lost', null],
