@@ -38,6 +38,11 @@ impl Lab {
     /// What a formula means, and what it comes to on a run.
     pub async fn check_effect(&self, trial: &EffectTrial) -> Answer<EffectCheck> {
         let own = parse(&trial.effect)?;
+        if let Some(run) = trial.columns_of.or(trial.run) {
+            let none = self.inner.store.trace(run, None, 0..0).await?;
+            let columns: Vec<&str> = none.channels().iter().map(|channel| channel.name.as_str()).collect();
+            own.missing(&columns).map_or(Ok(()), |fault| Err(LabError::Formula(fault.into())))?;
+        }
         let name = |p: &usize| own.definition().parameters[*p].name.clone();
         let mut check = EffectCheck {
             effect: Effect { definition: Some(reread(own.definition())?), ..effect_view(&own.info()) },

@@ -55,6 +55,9 @@ pub struct EffectTrial {
     /// The formula must be finite on this run; the effect is fitted beside the run's baseline.
     #[serde(default)]
     pub run: Option<i64>,
+    /// The run whose columns the formula may name; nothing is fitted to it.
+    #[serde(default)]
+    pub columns_of: Option<i64>,
     /// Further runs of the same joint, looked at together with the first.
     #[serde(default)]
     pub more_runs: Vec<i64>,

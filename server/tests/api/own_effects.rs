@@ -76,6 +76,13 @@ fn a_wrong_formula_is_refused_at_its_character() {
 fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
     let daemon = TestDaemon::start();
     let run = rubbing_run(&daemon, 12_345);
+    let oil = rub("tau = a * tanh(velocity / w0) * column(link_torqe_nm)");
+    assert_eq!(daemon.post("/api/v1/effects/check", &json!({"effect": oil}).to_string()).0, 200);
+    for asked in ["run", "columns_of"] {
+        let (status, problem) = daemon.post("/api/v1/effects/check", &json!({"effect": oil, asked: run}).to_string());
+        assert_eq!((status, &problem["place"]["position"]), (422, &32.into()), "{problem}");
+        assert!(problem["detail"].as_str().unwrap().contains("did you mean link_torque_nm?"), "{problem}");
+    }
     let bare = json!({"run": run, "effects": ["load_transmission", "coulomb", "viscous"]});
     let (_, model) = daemon.post("/api/v1/models", &bare.to_string());
     let diagnosed = |model: &Value| daemon.post("/api/v1/diagnoses", &json!({"model": model["id"]}).to_string()).1;

@@ -105,6 +105,17 @@ impl Expression {
         self.any(&mut |what| *what == What::Signal(signal))
     }
 
+    /// Where a signal is named first.
+    pub fn place_of(&self, signal: Signal) -> Option<Range<usize>> {
+        match &self.what {
+            What::Number(_) | What::Parameter(_) => None,
+            What::Signal(own) => (*own == signal).then(|| self.at.clone()),
+            What::Negate(a) => a.place_of(signal),
+            What::Binary(_, a, b) => a.place_of(signal).or_else(|| b.place_of(signal)),
+            What::Call(_, arguments) => arguments.iter().find_map(|a| a.place_of(signal)),
+        }
+    }
+
     /// The same with parameters under other numbers.
     pub fn renumbered(&self, number: &dyn Fn(usize) -> usize) -> Self {
         let of = |e: &Expression| e.renumbered(number);

@@ -8,9 +8,10 @@ pub use definition::{Definition, OwnParameter};
 
 use crate::ModelError;
 use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Shape, Stage};
-use crate::formula::{Formula, FormulaFault, NamedSignal, signals};
+use crate::formula::{Formula, FormulaFault, Mistake, NamedSignal, signals};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
+use jointbench_instrument::spelling::instead;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -61,6 +62,15 @@ impl OwnEffect {
     /// Units that contradict each other: the figures are the formula's, whatever the units say.
     pub fn doubt(&self) -> Option<FormulaFault> {
         Some(self.formula.doubt.clone()?.found(self.id(), "formula", &self.definition.formula))
+    }
+
+    /// The first column that the formula names and a run with these has not.
+    pub fn missing(&self, columns: &[&str]) -> Option<FormulaFault> {
+        let others = self.formula.signals.iter().filter(|s| matches!(s.signal, Signal::Column(_)));
+        let missing = others.into_iter().find(|s| !columns.contains(&s.column))?;
+        let place = self.formula.columns.iter().find_map(|(_, e)| e.place_of(missing.signal))?;
+        let message = format!("the run has no column {}; {}", missing.column, instead(missing.column, columns));
+        Some(Mistake::new(place, message).found(self.id(), "formula", &self.definition.formula))
     }
 
     /// [`ModelError::NotFinite`] where a signal that this data has makes the formula fail at every shape.

@@ -147,3 +147,13 @@ fn a_wave_fades_over_a_plateau() {
     let view = View::new(points, samples, std::iter::once(0..40).collect(), vec![0], 0.004);
     assert!((effect.columns("formula", &[], &view)[0][0] - mean).abs() < 1e-15);
 }
+
+#[test]
+fn a_column_that_the_run_has_not_is_missed_at_its_character() {
+    let text = "oil: tau = a * tanh(velocity) + b * column(oil_presure_pa); a [Nm]; b [1]";
+    let oil = OwnEffect::inline(Kind::Friction, text).unwrap();
+    let fault = oil.missing(&["time_s", "oil_pressure_pa"]).unwrap();
+    assert_eq!((fault.position, fault.length), (31, 22));
+    assert!(fault.message.contains("did you mean oil_pressure_pa?"), "{fault}");
+    assert!(oil.missing(&["oil_presure_pa"]).is_none() && rub().missing(&[]).is_none());
+}
