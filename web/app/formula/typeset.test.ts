@@ -14,18 +14,18 @@ function say(nodes: readonly Node[]): string {
 
 it.each([
 	['τ_link/N', 'τ_{link}/N'],
-	['τ_s·exp(−(|ω|/ω_s)^δ)·sgn ω', 'τ_{s}·\\exp (−(|ω|/ω_{s})^{δ})·\\sgn ω'],
-	['c_α·|ω|^α·sgn ω, α < 1', 'c_{α}·|ω|^{α}·\\sgn ω,α<1'],
-	['μ_2·(τ_link/N)²·sgn ω', 'μ_{2}·(τ_{link}/N)^{2}·\\sgn ω'],
+	['τ_s·exp(−(|ω|/ω_s)^δ)·sign ω', 'τ_{s}·\\exp (−(|ω|/ω_{s})^{δ})·\\sign ω'],
+	['c_α·|ω|^α·sign ω, α < 1', 'c_{α}·|ω|^{α}·\\sign ω,α<1'],
+	['μ_2·(τ_link/N)²·sign ω', 'μ_{2}·(τ_{link}/N)^{2}·\\sign ω'],
 	['τ_0, that is τ_c⁺ = τ_c + τ_0', 'τ_{0},"that is"τ_{c}^{+}=τ_{c}+τ_{0}'],
-	['φ_h·(√(1 + |τ|/τ_h) − 1)·sgn τ', 'φ_{h}·(√(1+|τ|/τ_{h})−1)·\\sgn τ'],
-	['dz = (1 − z·sgn ω)·dθ/θ_p (Dahl); or a stop', 'dz=(1−z·\\sgn ω)·dθ/θ_{p}("Dahl");"or a stop"'],
+	['φ_h·(√(1 + |τ|/τ_h) − 1)·sign τ', 'φ_{h}·(√(1+|τ|/τ_{h})−1)·\\sign τ'],
+	['dz = (1 − z·sign ω)·dθ/θ_p (Dahl); or a stop', 'dz=(1−z·\\sign ω)·dθ/θ_{p}("Dahl");"or a stop"'],
 	['c·cos 2pθ', 'c·\\cos 2pθ'],
 	['μ·|τ_link/N|·ω', 'μ·|τ_{link}/N|·ω'],
 	['c_T·(T − 25 °C)·ω', 'c_{T}·(T−25°C)·ω'],
 	['θ̇_s', 'θ̇_{s}'],
 	['dT/dω', 'dT/dω'],
-	['β₀·sgn ω', 'β_{0}·\\sgn ω'],
+	['β₀·sign ω', 'β_{0}·\\sign ω'],
 	['k_m·|−x|', 'k_{m}·|−x|'],
 ])('%s', (text, said) => expect(say(typeset(text))).toBe(said));
 

@@ -1,5 +1,5 @@
 /**
- * Formulas as the daemon writes them, `τ_s·exp(−(|ω|/ω_s)^δ)·sgn ω`, taken apart for MathML. Words between formulas stay words. The
+ * Formulas as the daemon writes them, `τ_s·exp(−(|ω|/ω_s)^δ)·sign ω`, taken apart for MathML. Words between formulas stay words. The
  * line stays a line: no fraction is stacked, so that nothing is drawn that the text leaves open.
  */
 export type Node =
@@ -7,7 +7,7 @@ export type Node =
 	| { is: 'group'; open: string; close: string; inner: Node[] }
 	| { is: 'raised'; base: Node; sub: Node | null; sup: Node | null };
 
-const FUNCTIONS = new Set(['sgn', 'exp', 'tanh', 'cos', 'sin', 'sqrt', 'abs']);
+const FUNCTIONS = new Set(['sign', 'exp', 'tanh', 'cos', 'sin', 'sqrt', 'abs']);
 const RAISED = new Map([...'⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻'].map((letter, i) => [letter, '0123456789+−'[i]!]));
 const LOWERED = '₀₁₂₃₄₅₆₇₈₉';
 const TOKEN = /\s+|\d+(?:\.\d+)?|°?[A-Za-zα-ωΑ-Ω][A-Za-zα-ωΑ-Ω\u0307]*|_[A-Za-z0-9α-ωΑ-Ω]+|[⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻]+|[₀₁₂₃₄₅₆₇₈₉]+|./gu;

@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Encoder,
     title: "Direction hysteresis",
     sentence: "The reading depends on the side from which a place is reached: play in the coupling or magnetic hysteresis.",
-    formula: "h·sgn ω",
+    formula: "h·sign ω",
     source: "contract section 2",
     looks: "the same constant, with the sign of the direction",
     parameters: &[parameter("h", "rad", f64::NEG_INFINITY, f64::INFINITY)],

@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Coulomb friction",
     sentence: "A constant drag against the motion, however slow or fast.",
-    formula: "τ_c·sgn ω",
+    formula: "τ_c·sign ω",
     source: "thesis on joint test benches, eq. 2.5",
     looks: "a step at zero speed",
     parameters: &[parameter("tau_c", "Nm", 0.0, f64::INFINITY)],

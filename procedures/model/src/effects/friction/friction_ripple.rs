@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Friction ripple",
     sentence: "Bearings or teeth that are not quite round rub harder at some link angles than at others.",
-    formula: "(a·cos(h·θ_link) + b·sin(h·θ_link))·sgn ω, or with (a + a_v·|ω|) and (b + b_v·|ω|), h found",
+    formula: "(a·cos(h·θ_link) + b·sin(h·θ_link))·sign ω, or with (a + a_v·|ω|) and (b + b_v·|ω|), h found",
     source: "contract section 2; Armstrong-Hélouvry 1991, position-dependent friction",
     looks: "waves over the link angle that change sign with the direction",
     parameters: &[

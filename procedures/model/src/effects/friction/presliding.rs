@@ -12,7 +12,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Presliding hysteresis",
     sentence: "After a reversal the contacts bend like bristles before they slip: friction builds up over a short way.",
-    formula: "τ_p·(z − sgn ω), dz = (1 − z·sgn ω)·dθ/θ_p (Dahl); or a stop, dz = dθ/θ_p within ±1; or the mean of four stops with reaches up to θ_p (Maxwell slip); or τ_p·(z − g·sgn ω), dz = (1 − z·sgn ω/g)·dθ/θ_p, g = 1 + ρ·exp(−(ω/ω_s)²) (LuGre)",
+    formula: "τ_p·(z − sign ω), dz = (1 − z·sign ω)·dθ/θ_p (Dahl); or a stop, dz = dθ/θ_p within ±1; or the mean of four stops with reaches up to θ_p (Maxwell slip); or τ_p·(z − g·sign ω), dz = (1 − z·sign ω/g)·dθ/θ_p, g = 1 + ρ·exp(−(ω/ω_s)²) (LuGre)",
     source: "Dahl 1968; Canudas de Wit, Olsson, Åström, Lischinsky 1995; Al-Bender, Lampaert, Swevers 2005",
     looks: "loops at reversals: the torque arrives later than the direction changes",
     parameters: &[

@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Stribeck effect",
     sentence: "Near standstill the oil film breaks down and friction rises again, so slow motion needs more torque.",
-    formula: "τ_s·exp(−(|ω|/ω_s)^δ)·sgn ω",
+    formula: "τ_s·exp(−(|ω|/ω_s)^δ)·sign ω",
     source: "thesis on joint test benches, eq. 2.6 (τ_h − τ_c, θ̇_s, δ_s); Stribeck 1902; Bo and Pavelescu 1982",
     looks: "an upturn at the lowest speeds, odd in direction",
     parameters: &[

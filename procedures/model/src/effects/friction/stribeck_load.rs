@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Load-dependent Stribeck effect",
     sentence: "Under load the oil film breaks down sooner: the extra friction at low speed grows with the transmitted torque.",
-    formula: "μ_s·|τ_link/N|·exp(−(|ω|/ω_s)^δ)·sgn ω",
+    formula: "μ_s·|τ_link/N|·exp(−(|ω|/ω_s)^δ)·sign ω",
     source: "Duclusaud et al. 2025, M4",
     looks: "an upturn at the lowest speeds that is there only under load",
     parameters: &[

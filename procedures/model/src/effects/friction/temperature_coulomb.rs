@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Temperature-dependent Coulomb friction",
     sentence: "The constant part of the friction changes as the joint warms up.",
-    formula: "τ_T·(T − 25 °C)·sgn ω",
+    formula: "τ_T·(T − 25 °C)·sign ω",
     source: "Bittencourt et al. 2010, linearised about 25 °C",
     looks: "a step at zero speed that changes with temperature",
     parameters: &[parameter("tau_t", "Nm/K", f64::NEG_INFINITY, f64::INFINITY)],

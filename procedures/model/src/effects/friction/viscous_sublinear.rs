@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Shear-thinning viscous friction",
     sentence: "Sheared grease gets thinner: the drag grows more slowly than the speed.",
-    formula: "c_α·|ω|^α·sgn ω, α < 1; or τ_l·(1 − exp(−|ω|/ω_l))·sgn ω, a limiting shear stress",
+    formula: "c_α·|ω|^α·sign ω, α < 1; or τ_l·(1 − exp(−|ω|/ω_l))·sign ω, a limiting shear stress",
     source: "Harnoy, Friedland, Cohn 2008; contract section 2; Bair and Winer 1979 for the limit",
     looks: "a curve over speed that is steep at first and flattens, odd in direction",
     parameters: &[

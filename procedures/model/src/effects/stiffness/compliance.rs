@@ -12,7 +12,7 @@ static INFO: EffectInfo = EffectInfo {
     title: "Compliance",
     sentence: "The joint twists in proportion to the torque, like a spring.",
     formula: "τ/k",
-    source: "thesis on joint test benches, Δq = τ/k′ + β₀·sgn τ",
+    source: "thesis on joint test benches, Δq = τ/k′ + β₀·sign τ",
     looks: "a line over torque",
     parameters: &[parameter("inverse_k", "rad/Nm", 0.0, f64::INFINITY)],
     needs: &[],

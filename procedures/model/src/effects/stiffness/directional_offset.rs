@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Stiffness,
     title: "Directional offset",
     sentence: "The joint rests on the other flank when it turns the other way: a constant twist with the sign of the motion.",
-    formula: "β₀·sgn ω",
+    formula: "β₀·sign ω",
     source: "thesis on joint test benches, β₀",
     looks: "the same constant, with the sign of the motion",
     parameters: &[parameter("beta_0", "rad", f64::NEG_INFINITY, f64::INFINITY)],

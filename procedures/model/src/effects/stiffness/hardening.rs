@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Stiffness,
     title: "Hardening",
     sentence: "The joint gets stiffer or softer the more it is loaded, as more teeth come to bear.",
-    formula: "κ·τ³, or φ_h·(√(1 + |τ|/τ_h) − 1)·sgn τ, or φ_h·τ/(τ_hⁿ + |τ|ⁿ)^(1/n)",
+    formula: "κ·τ³, or φ_h·(√(1 + |τ|/τ_h) − 1)·sign τ, or φ_h·τ/(τ_hⁿ + |τ|ⁿ)^(1/n)",
     source: "thesis on joint test benches, joint B softer at low torque; Kircanski and Goldenberg 1997",
     looks: "a curve over torque, odd",
     parameters: &[

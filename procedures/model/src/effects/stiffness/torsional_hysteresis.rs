@@ -16,7 +16,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Stiffness,
     title: "Torsional hysteresis",
     sentence: "The twist depends on how the torque came about: on the way up it lags, on the way down too.",
-    formula: "η·z, dz = (1 − z·sgn dτ)·dτ/τ_η (Dahl), or a stop dz = dτ/τ_η within ±1, or the mean of four stops with reaches up to τ_η (Maxwell slip); or one of these with one or two more stops",
+    formula: "η·z, dz = (1 − z·sign dτ)·dτ/τ_η (Dahl), or a stop dz = dτ/τ_η within ±1, or the mean of four stops with reaches up to τ_η (Maxwell slip); or one of these with one or two more stops",
     source: "Dahl 1968; Al-Bender, Lampaert, Swevers 2005; Ruderman, Bertram, Iwasaki 2014",
     looks: "loops over torque",
     parameters: &[
