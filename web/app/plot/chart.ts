@@ -18,7 +18,11 @@ export interface Curve {
 	dash?: number[];
 	/** Half height of the box that a `dash` stands in: how far repeats scatter about it. */
 	spread?: number;
+	/** Its marks stand a little to the right, beside those that they would cover. */
+	aside?: boolean;
 }
+
+const ASIDE = 5;
 
 export interface Frame {
 	xTitle: string;
@@ -66,6 +70,8 @@ export function makeChart(
 	let backdrop = NOTHING;
 	let lines: ReturnType<typeof rulers> | null = null;
 	const hands = gestures(asked);
+	/** Points at the ends are drawn whole. */
+	const marked = frame.curves.some(({ mark }) => mark !== 'line');
 	const plot = new uPlot(
 		{
 			width: Math.max(80, host.clientWidth),
@@ -73,7 +79,7 @@ export function makeChart(
 			legend: { show: false },
 			padding: [8, 10, 0, 0],
 			scales: {
-				x: { time: false, range: (_u, low, high) => view ?? padded(low, high) },
+				x: { time: false, range: (_u, low, high) => view ?? padded(low, high, marked ? 0.012 : 0) },
 				y: frame.banded ? { range: (_u, low, high) => withBand(low, high, backdrop.band ?? 0) } : {},
 			},
 			axes: [axis(frame.bareX ? '' : frame.xTitle, frame.bareX), axis(frame.yTitle, false, 58)],
@@ -111,9 +117,10 @@ export function makeChart(
 
 const shown = (scale: uPlot.Scale | undefined): View => [scale?.min ?? 0, scale?.max ?? 1];
 
-function padded(low: number, high: number): View {
+function padded(low: number, high: number, share = 0): View {
 	if (low == null || high == null) return [0, 1];
-	return low === high ? [low - 0.5, high + 0.5] : [low, high];
+	const more = low === high ? 0.5 : (high - low) * share;
+	return [low - more, high + more];
 }
 
 function withBand(low: number | null, high: number | null, band: number): View {
@@ -140,16 +147,17 @@ function axis(title: string, bare = false, size?: number): uPlot.Axis {
 
 function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 	const stroke = () => colour(curve.stroke);
+	const aside = () => (curve.aside ? ASIDE * devicePixelRatio : 0);
 	if (curve.mark === 'line') {
 		return { stroke, points: { show: false }, paths: trace(curve.dash, () => backdrop().gaps) };
 	}
 	if (curve.mark === 'chord') return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, paths: chord };
 	if (curve.mark === 'dash') {
-		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashes(u, i, from, to, curve.spread ?? 0);
+		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashes(u, i, from, to, curve.spread ?? 0, aside());
 		return { stroke, width: 2, points: { show: false }, paths, fill: () => `color-mix(in srgb, ${stroke()} 22%, transparent)` };
 	}
 	const filled = curve.mark === 'dot';
-	return { stroke, width: 1, fill: stroke, points: { show: false }, paths: (u, i, from, to) => points(u, i, from, to, filled) };
+	return { stroke, width: 1, fill: stroke, points: { show: false }, paths: (u, i, from, to) => points(u, i, from, to, filled, aside()) };
 }
 
 function chord(u: uPlot, index: number): uPlot.Series.Paths {

@@ -31,31 +31,31 @@ function each(u: uPlot, index: number, from: number, to: number, cell: readonly 
 }
 
 /** Each point by itself: circles, or squares where there are many. A point alone is seen in either. */
-export function points(u: uPlot, index: number, from: number, to: number, filled: boolean): uPlot.Series.Paths {
+export function points(u: uPlot, index: number, from: number, to: number, filled: boolean, aside: number): uPlot.Series.Paths {
 	const path = new Path2D();
 	const ratio = devicePixelRatio;
 	if (to - from > MANY) {
 		const side = SIDE * ratio;
-		each(u, index, from, to, [2 * ratio, 2 * ratio], (x, y) => path.rect(Math.round(x - side / 2), Math.round(y - side / 2), side, side));
+		each(u, index, from, to, [2 * ratio, 2 * ratio], (x, y) => path.rect(Math.round(x + aside - side / 2), Math.round(y - side / 2), side, side));
 		return { stroke: null, fill: path };
 	}
 	const radius = (filled ? 2.5 : 2.7) * ratio;
 	each(u, index, from, to, null, (x, y) => {
-		path.moveTo(x + radius, y);
-		path.arc(x, y, radius, 0, 2 * Math.PI);
+		path.moveTo(x + aside + radius, y);
+		path.arc(x + aside, y, radius, 0, 2 * Math.PI);
 	});
 	return filled ? { stroke: null, fill: path } : { stroke: path };
 }
 
 /** A short level stroke at each point: where the model says the point should be, and the box that repeats would fill. */
-export function dashes(u: uPlot, index: number, from: number, to: number, spread: number): uPlot.Series.Paths {
+export function dashes(u: uPlot, index: number, from: number, to: number, spread: number, aside: number): uPlot.Series.Paths {
 	const [path, boxes] = [new Path2D(), new Path2D()];
 	const half = HALF * devicePixelRatio;
 	const { ky } = placesOf(u);
 	const cell = to - from > MANY ? ([half, devicePixelRatio] as const) : null;
 	each(u, index, from, to, cell, (x, y) => {
-		path.moveTo(x - half, y);
-		path.lineTo(x + half, y);
+		path.moveTo(x + aside - half, y);
+		path.lineTo(x + aside + half, y);
 		if (spread > 0) boxes.rect(x - half, y - spread * ky, 2 * half, 2 * spread * ky);
 	});
 	return { stroke: path, fill: boxes };

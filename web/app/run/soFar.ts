@@ -6,6 +6,24 @@ export interface Said {
 	quantities: readonly IdentifiedQuantity[];
 }
 
+/** An interval so many times as wide as before is told. */
+const WIDER = 1.5;
+const width = ({ ci95 }: IdentifiedQuantity) => ci95![1]! - ci95![0]!;
+
+/** What has last joined the quantities that the samples decide, or left them, or become less certain, and when. */
+export function changed(story: readonly Said[]): string | null {
+	const known = story.map(({ quantities }) => quantities.filter((one) => one.ci95));
+	for (let i = story.length - 1; i > 0 && known[i - 1]!.length > 0; i--) {
+		const [before, now] = [known[i - 1]!, known[i]!];
+		const only = (here: readonly IdentifiedQuantity[], there: readonly IdentifiedQuantity[]) => here.filter(({ name }) => there.every((one) => one.name !== name)).map(({ title }) => title).join(', ');
+		const [came, went] = [only(now, before), only(before, now)];
+		const wider = now.filter((one) => before.some((other) => other.name === one.name && width(one) > WIDER * width(other))).length;
+		const said = [came && `found now: ${came}`, went && `not found any more: ${went}`, wider && `${wider} of ${now.length} intervals wider`].filter(Boolean).join('; ');
+		if (said) return `From ${story[i]!.at_s.toFixed(0)} s on ${said}. They grow with what is looked for beside them, and where new samples contradict the former.`;
+	}
+	return null;
+}
+
 /** How the interval of a quantity has gone: lower and upper end in shares of the height, 0 at the top. */
 export interface Funnel {
 	x: number;
