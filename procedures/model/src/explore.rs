@@ -36,6 +36,7 @@ pub struct Exploration<'p> {
     /// Maps of what the last model leaves.
     pub maps: Maps,
     pub floor: NoiseFloor,
+    pub end_held_out_rms: f64,
     /// Effects of the last model, and what this run cannot tell them from.
     ties: Vec<(&'p str, &'p str)>,
     /// Effects of the last model that the error would hardly miss.
@@ -142,15 +143,12 @@ impl<'p> Exploration<'p> {
         }
         let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn);
         let floor = floor::noise_floor(prepared, &residual, search.now.contains("hysteresis"));
-        Ok(Self { start, advances, withdrawn, others, maps, floor, ties, upheld, open })
+        let end_held_out_rms = held_out_rms(&advances.last().map_or(&start, |a| &a.after).main);
+        Ok(Self { start, advances, withdrawn, others, maps, floor, end_held_out_rms, ties, upheld, open })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
         self.advances.last().map_or(&self.start, |a| &a.after)
-    }
-
-    pub fn end_held_out_rms(&self) -> f64 {
-        held_out_rms(&self.end().main)
     }
 
     /// Effects that this run cannot show, those of the model first.
@@ -190,7 +188,7 @@ impl<'p> Exploration<'p> {
     /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
     /// noise, whether or not a map shows where it comes from.
     fn repeats_itself(&self) -> bool {
-        let held_out = self.end_held_out_rms();
+        let held_out = self.end_held_out_rms;
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
             || self.floor.rms.is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
     }
@@ -201,7 +199,7 @@ impl<'p> Exploration<'p> {
         let response = main.response();
         let mean = response.iter().sum::<f64>() / response.len() as f64;
         let spread = (response.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / response.len() as f64).sqrt();
-        self.start.prepared.kind != Kind::Encoder && self.end_held_out_rms() < FORM_ACCURACY * spread
+        self.start.prepared.kind != Kind::Encoder && self.end_held_out_rms < FORM_ACCURACY * spread
     }
 
     /// Added effects that are still there, the most important first: by what the last model loses without them, so

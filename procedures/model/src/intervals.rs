@@ -54,11 +54,13 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
     let groups = replicates.len().max(2) as f64;
     // The replicates are steps from the full estimate, which the residual holds at zero.
     let covariance = |a: usize, b: usize| (groups - 1.0) / groups * replicates.iter().map(|r| r[a] * r[b]).sum::<f64>();
+    let variance: Vec<f64> = (0..p).map(|k| covariance(k, k)).collect();
+    let active = active(&grams);
     let mut parameters = Vec::new();
     for (k, slot) in slots.iter().enumerate() {
-        let freedom = (resting_pieces(&grams, &spd, k) - 1.0).max(1.0);
+        let freedom = (resting_pieces(&grams, &active, &spd, k) - 1.0).max(1.0);
         let t = StudentsT::new(0.0, 1.0, freedom).map_or(2.0, |t| t.inverse_cdf(0.975));
-        let reach = if spd.is_dead(k) { f64::INFINITY } else { t * covariance(k, k).sqrt() };
+        let reach = if spd.is_dead(k) { f64::INFINITY } else { t * variance[k].sqrt() };
         let ci95 = match slot.shape {
             Some(shape) => [
                 shape.moved(slot.value, (-reach).max(-50.0)).max(shape.min.min(slot.value)),
@@ -83,7 +85,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
     let mut trade_offs = Vec::new();
     for a in 0..p {
         for b in 0..a {
-            let scale = (covariance(a, a) * covariance(b, b)).sqrt();
+            let scale = (variance[a] * variance[b]).sqrt();
             let correlation = if scale > 0.0 { covariance(a, b) / scale } else { 0.0 };
             if correlation.abs() > TRADE_OFF {
                 let name = |k: usize| format!("{}.{}", slots[k].effect, slots[k].name);
@@ -118,16 +120,23 @@ fn slots<'a>(
     slots
 }
 
+/// Columns that are not zero throughout a piece: of an offset for each power-up one.
+fn active(grams: &BlockGrams) -> Vec<Vec<usize>> {
+    let p = grams.columns;
+    (0..grams.groups).map(|g| (0..p).filter(|a| grams.xx(g)[a * p + a] > 0.0).collect()).collect()
+}
+
 /// How many equal pieces would decide a parameter as well as these unequal ones: (Σ w)²/Σ w² with the share w of each
 /// piece in the parameter's variance.
-fn resting_pieces(grams: &BlockGrams, spd: &Spd, k: usize) -> f64 {
+fn resting_pieces(grams: &BlockGrams, active: &[Vec<usize>], spd: &Spd, k: usize) -> f64 {
     let p = grams.columns;
     let mut unit = vec![0.0; p];
     unit[k] = 1.0;
     let row = spd.solve(&unit);
     let weight = |g: usize| {
-        let xx = grams.xx(g);
-        (0..p).map(|a| row[a] * (0..p).map(|b| xx[a * p + b] * row[b]).sum::<f64>()).sum::<f64>()
+        let (xx, active) = (grams.xx(g), &active[g]);
+        let along = |a: usize| active.iter().map(|b| xx[a * p + b] * row[*b]).sum::<f64>();
+        active.iter().map(|a| row[*a] * along(*a)).sum::<f64>()
     };
     let weights: Vec<f64> = (0..grams.groups).map(weight).collect();
     let squares: f64 = weights.iter().map(|w| w * w).sum();

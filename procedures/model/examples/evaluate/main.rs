@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         power::measure(&asked)?;
     }
     if asked.wants("speed") {
-        speed::measure()?;
+        speed::measure(asked.case)?;
     }
     Ok(())
 }

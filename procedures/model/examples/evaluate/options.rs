@@ -32,6 +32,9 @@ pub struct Asked {
     /// Only cases whose name contains this
     #[arg(long, default_value = "", hide_default_value = true)]
     only: String,
+    /// One case of `speed`, in this process
+    #[arg(long, hide = true)]
+    pub case: Option<usize>,
     /// Tables only
     #[arg(long)]
     pub quiet: bool,

@@ -4,37 +4,58 @@ use crate::made::{Dice, friction_run};
 use jointbench_instrument::{Channel, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, diagnose};
 use std::error::Error;
+use std::process::Command;
 use std::time::Instant;
 
-pub fn measure() -> Result<(), Box<dyn Error>> {
+const HIDDEN: [(&str, &[&str]); 3] = [
+    ("nothing hidden", &[]),
+    ("stribeck and load_linear", &["stribeck", "load_linear"]),
+    ("stribeck, and structure over the speed", &["stribeck", "hump"]),
+];
+const ROWS: [usize; 2] = [50_000, 1_000_000];
+
+/// Every case in a process of its own: what the allocator kept of one is no measure of the next.
+pub fn measure(case: Option<usize>) -> Result<(), Box<dyn Error>> {
+    if let Some(case) = case {
+        return one(HIDDEN[case / ROWS.len() % HIDDEN.len()], ROWS[case % ROWS.len()]);
+    }
     println!("\nSeconds of one diagnosis after loading, whole friction library\n");
     println!(
-        "| run | rows × columns | s (best of three) | memory above the run, as multiple of it |\n| --- | --- | --- | --- |"
+        "| run | verdict | rows × columns | s (best of three) | memory above the run, as multiple of it |\n| --- | --- | --- | --- | --- |"
     );
-    // The first diagnosis brings the program's own pages in.
-    let small = of_length(&friction_run(&mut Dice::new(4), &[]), 2_000);
-    diagnose(&small, &ModelSpec::baseline(&small)?, &Options::default())?;
-    for (label, hidden) in [("nothing hidden", &[][..]), ("stribeck and load_linear", &["stribeck", "load_linear"])] {
-        for rows in [50_000, 1_000_000] {
-            let run = of_length(&friction_run(&mut Dice::new(4), hidden), rows);
-            let spec = ModelSpec::baseline(&run)?;
-            let before = resident();
-            let mut best = f64::INFINITY;
-            for _ in 0..3 {
-                let start = Instant::now();
-                diagnose(&run, &spec, &Options::default())?;
-                best = best.min(start.elapsed().as_secs_f64());
-            }
-            let own = (run.len() * run.trace().channels().len() * 8) as f64;
-            // What the allocator kept of the runs before is no measure of the next.
-            let memory = match (before, peak()) {
-                (Some(before), Some(peak)) if hidden.is_empty() => format!("{:.1}", (peak - before) / own),
-                _ => "–".into(),
-            };
-            println!("| {label} | {} × {} | {best:.3} | {memory} |", run.len(), run.trace().channels().len());
+    for case in 0..HIDDEN.len() * ROWS.len() {
+        let done =
+            Command::new(std::env::current_exe()?).args(["--part", "speed", "--case", &case.to_string()]).status()?;
+        if !done.success() {
+            return Err(format!("case {case}: {done}").into());
         }
     }
     println!();
+    Ok(())
+}
+
+fn one((label, hidden): (&str, &[&str]), rows: usize) -> Result<(), Box<dyn Error>> {
+    // The first diagnosis brings the program's own pages in.
+    let small = of_length(&friction_run(&mut Dice::new(4), &[]), 2_000);
+    diagnose(&small, &ModelSpec::baseline(&small)?, &Options::default())?;
+    let run = of_length(&friction_run(&mut Dice::new(4), hidden), rows);
+    let spec = ModelSpec::baseline(&run)?;
+    let before = resident();
+    let (mut best, mut verdict) = (f64::INFINITY, String::new());
+    for _ in 0..3 {
+        let start = Instant::now();
+        let found = diagnose(&run, &spec, &Options::default())?;
+        best = best.min(start.elapsed().as_secs_f64());
+        let named: Vec<&str> = found.suggestions.iter().map(|s| s.effect.as_str()).collect();
+        let beyond = if found.structure_remains { ", structure remains" } else { "" };
+        verdict = format!("{}{beyond}", if named.is_empty() { "nothing".into() } else { named.join(", ") });
+    }
+    let own = (run.len() * run.trace().channels().len() * 8) as f64;
+    let memory = match (before, peak()) {
+        (Some(before), Some(peak)) => format!("{:.1}", (peak - before) / own),
+        _ => "–".into(),
+    };
+    println!("| {label} | {verdict} | {} × {} | {best:.3} | {memory} |", run.len(), run.trace().channels().len());
     Ok(())
 }
 

@@ -208,7 +208,7 @@ fn unexplained(found: &Exploration) -> &'static str {
 
 /// Effects that would bring something, and whose size the run does not decide.
 fn left_out<'f, 'p>(found: &'f Exploration<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
-    let bound = WORTH_TELLING * found.end_held_out_rms();
+    let bound = WORTH_TELLING * found.end_held_out_rms;
     found.withdrawn.iter().filter(move |w| w.why == Withdrawal::Undecided && w.held_out_rms < bound)
 }
 
@@ -230,7 +230,7 @@ fn taken_back(found: &Exploration, unit: &str) -> String {
              how large {are}.",
             list(&named),
             figure(with, unit),
-            figure(found.end_held_out_rms(), unit)
+            figure(found.end_held_out_rms, unit)
         )
     });
     let half = (!half.is_empty()).then(|| {
