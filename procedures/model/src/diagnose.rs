@@ -6,14 +6,14 @@ mod summary;
 
 use crate::assembly::Assembly;
 use crate::explore::{Advance, Exploration};
-use crate::fit::report;
+use crate::fit::{report, written};
 use crate::linear::dot;
 use crate::maps::{Maps, yardstick};
 use crate::prepare::{Prepared, prepare};
 use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Parameter, Region, Step, Suggestion, Verdict};
 use crate::select::held_out;
 use crate::words::{figure, list, percent};
-use crate::{Fit, ModelError, ModelSpec, Options};
+use crate::{Fit, ModelError, ModelSpec, Options, together};
 use jointbench_instrument::RunTable;
 
 /// How far the search looks ahead for a diagnosis.
@@ -183,7 +183,10 @@ fn suggestions(
                 "Without this effect the complete model's squared error on the fitted data would be {times} times as large."
             )
         };
-        let why = format!("{} {evidence}{tie}", info.sentence);
+        let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
+        let instead = together::instead(rival.term.effect, found.start.prepared);
+        let also: String = written.into_iter().chain(instead).map(|said| format!(" {said}.")).collect();
+        let why = format!("{} {evidence}{tie}{also}", info.sentence);
         out.push(Suggestion {
             effect: id.into(),
             validation_rms: with.validation_rms,
@@ -232,7 +235,7 @@ fn shows_over(found: &Exploration, structure: Option<&PairMap>) -> Vec<String> {
 
 /// What to measure next.
 fn experiment(found: &Exploration, prepared: &Prepared) -> Option<Experiment> {
-    if found.floor.rms.is_none() {
+    if found.floor.rms.is_none() && prepared.clashes.is_empty() {
         let mut parameters = serde_json::Map::new();
         parameters.insert("repeats".into(), 3.into());
         return Some(Experiment {

@@ -137,6 +137,11 @@ pub trait Effect: Sync {
     /// The columns of one form at the points of the view.
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns;
 
+    /// The formula of one form, where it is not that of all.
+    fn formula_of(&self, _form: &str) -> &str {
+        self.info().formula
+    }
+
     /// The form with one more part and one more shape parameter, and the form that finds this part alone. `None` for a
     /// form that is not a sum of like parts, or is long enough.
     fn extended(&self, _form: &Form) -> Option<(&'static str, Form<'static>)> {

@@ -7,9 +7,9 @@ use crate::linear::{condition, dot};
 use crate::prepare::{Prepared, Problem, prepare};
 use crate::report::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport};
 use crate::select::held_out;
-use crate::terms::Terms;
+use crate::terms::{Term, Terms};
 use crate::view::View;
-use crate::{ModelError, ModelSpec, Options, ResidualKind, effects};
+use crate::{ModelError, ModelSpec, Options, ResidualKind, effects, together};
 use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
@@ -77,6 +77,9 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
                     as well";
         notes.push(note.into());
     }
+    notes.extend(main.terms.iter().filter_map(written));
+    let mut instead = main.terms.iter().map(|term| together::instead(term.effect, prepared));
+    notes.extend(instead.find(|said| !said.is_empty()).unwrap_or_default());
     let own: Vec<OwnEffect> =
         assembly.spec.own.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect();
     let scope = Scope::of(prepared, &own);
@@ -97,6 +100,12 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         terms,
         scope: Some(scope),
     })
+}
+
+/// The formula that an effect has in this data, where that is not the one of the library.
+pub fn written(term: &Term) -> Option<String> {
+    let (info, formula) = (term.effect.info(), term.effect.formula_of(term.form.name));
+    (formula != info.formula).then(|| format!("{} is {formula} in this data", info.id))
 }
 
 /// The square of more is no number any more.

@@ -62,6 +62,16 @@ pub fn spoken_axis(axis: &str, kind: Kind) -> String {
     }
 }
 
+/// What goes one way or the other: the motion, or the current of a brake.
+pub fn way(kind: Kind, positive: bool) -> &'static str {
+    match (kind, positive) {
+        (Kind::Brake, true) => "while the current rises",
+        (Kind::Brake, false) => "while the current falls",
+        (_, true) => "in positive motion",
+        (_, false) => "in negative motion",
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,7 +4,7 @@ mod common;
 
 use common::bench::{Moment, Staircase};
 use jointbench_instrument::RunTable;
-use jointbench_model::{Discovery, ModelSpec, Options, Verdict, discover};
+use jointbench_model::{Discovery, ModelSpec, Options, Verdict, diagnose, discover};
 
 /// Torque on the motor side of an arm that hangs down where the link's angle is `down` [rad].
 fn weight(moment: Moment, down: f64) -> f64 {
@@ -45,12 +45,20 @@ fn teeth_that_bear_load_and_weight_rub_by_both() {
             let [one, other] = ["gravity", "load_linear"].map(|effect| value(&found, effect, name));
             assert!((one - other).abs() < 5e-3, "one weight: {one} {other}");
         }
+        let said = "load_linear is μ·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·sign ω in this data";
+        assert!(found.fit.notes.iter().any(|note| note == said), "{:?}", found.fit.notes);
     }
 }
 
 #[test]
 fn friction_that_grows_with_the_square_of_both_is_told_as_that() {
-    let found = end(&run(6, 0.3, |borne| 0.5 * borne * borne));
+    let run = run(6, 0.3, |borne| 0.5 * borne * borne);
+    let missing = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    let why = |effect: &str| missing.suggestions.iter().find(|s| s.effect == effect).unwrap().why.clone();
+    let said = " load_quadratic is μ_2·(τ_link/N + g_c·cos θ_link + g_s·sin θ_link)²·sign ω in this data.";
+    assert!(why("load_quadratic").ends_with(said), "{}", why("load_quadratic"));
+    assert!(!why("gravity").contains("in this data"), "{}", why("gravity"));
+    let found = end(&run);
     assert_eq!(added(&found), ["gravity", "load_quadratic"], "{}", found.summary);
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
 }
@@ -64,4 +72,5 @@ fn a_weight_that_the_sensor_feels_is_load() {
     }));
     assert_eq!(added(&found), ["load_linear"], "{}", found.summary);
     assert!(found.fit.parameters.iter().all(|p| p.name != "g_c"), "{:?}", found.fit.parameters);
+    assert!(!found.fit.notes.iter().any(|note| note.starts_with("load_linear")), "{:?}", found.fit.notes);
 }

@@ -3,8 +3,9 @@
 mod common;
 
 use common::recordings::{BAM, EMPS, KR300, ODRIVE, PLACID, WAVES, most, of_pulses, recording, waves};
-use common::shared;
-use jointbench_instrument::{RunTable, Trace};
+use common::{read, shared};
+use jointbench_instrument::{Kind, RunTable, Trace};
+use jointbench_model::prepare::attention;
 use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover, fit};
 
 /// Janot, Gautier, Brunot 2019: symmetric model of the electro-mechanical positioning system.
@@ -72,6 +73,29 @@ fn a_current_of_another_unit_or_sign_is_told_before_all_else() {
         let first = found.summary.split(". Mend that first").next().unwrap();
         assert!(first.starts_with("Attention: motor_current_a with the torque constant"), "{}", found.summary);
         assert!(first.len() < found.summary.len() && found.undecided.is_some(), "{factor}: {}", found.summary);
+    }
+}
+
+/// Every run that there is, by its column of a brake's current, and those of brakes by their torque.
+#[test]
+fn what_measured_brakes_reach_is_no_slip_of_a_unit() {
+    let scaled = |run: &RunTable, name: &str, factor: f64| {
+        let mut columns = run.trace().columns().to_vec();
+        let place = run.trace().channels().iter().position(|channel| channel.name == name).unwrap();
+        columns[place].iter_mut().for_each(|value| *value *= factor);
+        RunTable::new(run.meta().clone(), Trace::from_columns(run.trace().channels().to_vec(), columns)).unwrap()
+    };
+    let told = |run: &RunTable| attention(run).iter().any(|said| said.contains("another unit"));
+    for folder in ["data", "hidden-effects"].into_iter().filter_map(shared) {
+        for case in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+            let run = read(&case);
+            assert!(!told(&run), "{}: {:?}", case.display(), attention(&run));
+            if run.kind() == Kind::Brake {
+                for (name, factor) in [("brake_current_a", 1e3), ("brake_current_a", 1e-3), ("brake_torque_nm", 1e-3)] {
+                    assert!(told(&scaled(&run, name, factor)), "{}: {name} times {factor}", case.display());
+                }
+            }
+        }
     }
 }
 

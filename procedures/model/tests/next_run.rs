@@ -73,17 +73,22 @@ fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
     let why = &before.suggestions[0].why;
     let alike = why.split("take off the error is ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
     assert!(alike.parse::<f64>().is_ok_and(|r| r > 0.9), "{why}");
-    let ask = |menu: &[Choice]| next_run(&first, &open, menu, &Options::default()).unwrap();
+    let ask = |menu: &[Choice]| next_run(&first, &open, menu, &Options::default()).unwrap().experiment;
     let same = strokes("same", &SPEEDS, 8.0, 1.0);
     let other = strokes("other", &SPEEDS, 12.0, 1.5);
     assert_eq!(ask(std::slice::from_ref(&same)).map(|e| e.expected_z), None, "nothing new is measured there");
+    let vain = next_run(&first, &open, std::slice::from_ref(&same), &Options::default()).unwrap().in_vain.unwrap();
+    assert!(vain.starts_with("No run within what this bench may do is expected to tell load_"), "{vain}");
     let without_floor = Open { has_noise_floor: false, ..open.clone() };
-    let repeats = next_run(&first, &without_floor, std::slice::from_ref(&same), &Options::default()).unwrap().unwrap();
+    let repeats =
+        next_run(&first, &without_floor, std::slice::from_ref(&same), &Options::default()).unwrap().experiment.unwrap();
     assert!(
         repeats.why.starts_with("no run within what this bench may do is expected to tell load_"),
         "{}",
         repeats.why
     );
+    let decided = next_run(&first, &open, &[same.clone(), other.clone()], &Options::default()).unwrap();
+    assert_eq!(decided.in_vain, None, "a run does");
     let next = ask(&[same, other]).unwrap();
     assert_eq!(next.procedure, "other", "{}", next.why);
     assert!(next.expected_z.unwrap() > 4.0 && next.separates.iter().any(|e| e == "load_quadratic"), "{}", next.why);
@@ -103,7 +108,7 @@ fn what_a_run_could_not_show_is_offered_and_what_it_could_is_not() {
         let run = bench(3).run_at(loads, plain);
         let found = diagnosed(&run);
         assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
-        next_run(&run, &Open::from(&found), &menu, &Options::default()).unwrap()
+        next_run(&run, &Open::from(&found), &menu, &Options::default()).unwrap().experiment
     };
     let next = ask(&[0.0]).unwrap();
     assert_eq!(next.procedure, "heavy", "{}", next.why);
@@ -165,7 +170,7 @@ fn another_speed_tells_play_in_a_coupling_from_a_delay() {
     let tied: Vec<&String> = first.confounded_with.iter().chain([&first.effect]).collect();
     assert!(tied.iter().any(|e| *e == "delay") && tied.iter().any(|e| *e == "direction_hysteresis"), "{tied:?}");
     let menu = [strokes("same", &[20.0], 0.0, 1.0), strokes("other", &[5.0, 40.0], 0.0, 1.0)];
-    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap();
+    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap().experiment;
     assert!(ask(&menu[..1]).is_none(), "the same speed tells nothing new");
     let next = ask(&menu).unwrap();
     assert_eq!(next.procedure, "other", "{}", next.why);
@@ -196,7 +201,7 @@ fn more_power_ups_tell_a_zero_that_each_of_them_moves_from_a_slip() {
     let mut powered = strokes("powered", &[20.0], 0.0, 1.0);
     powered.stretches.iter_mut().enumerate().for_each(|(i, s)| s.power_ups = 1 + i as u32 / 2);
     let menu = [strokes("again", &[20.0, 40.0], 0.0, 1.0), powered];
-    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap();
+    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap().experiment;
     let next = ask(&menu).unwrap();
     assert_eq!(next.procedure, "powered", "{}", next.why);
     assert!(next.expected_z.unwrap() > 4.0 && next.separates.iter().any(|e| e == "slip"), "{}", next.why);
@@ -216,7 +221,7 @@ fn a_brake_that_turned_at_one_speed_is_asked_for_others() {
         choice.stretches.iter_mut().for_each(|s| s.brake_current_a = 0.5);
         choice
     };
-    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap();
+    let ask = |menu: &[Choice]| next_run(&run, &Open::from(&found), menu, &Options::default()).unwrap().experiment;
     assert_eq!(ask(&[at("same", &[6.0])]).map(|next| next.separates), None);
     let next = ask(&[at("same", &[6.0]), at("others", &[2.0, 6.0, 12.0])]).unwrap();
     assert_eq!(
@@ -238,7 +243,7 @@ fn a_new_speed_decides_between_two_shapes_of_asymmetry() {
     let z = |speed: f64| {
         let once = strokes("stroke", &[speed], 0.0, (0.2 / speed).min(2.0));
         let choice = Choice { stretches: once.stretches[..2].to_vec(), ..once };
-        let next = next_run(&run, &open, &[choice], &Options::default()).unwrap();
+        let next = next_run(&run, &open, &[choice], &Options::default()).unwrap().experiment;
         next.and_then(|next| next.expected_z).unwrap_or(0.0)
     };
     let found = [0.25, 0.01, 0.08].map(z);

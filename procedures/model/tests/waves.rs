@@ -42,4 +42,7 @@ fn what_is_small_beside_eccentricity_is_found_all_the_same() {
     effects.sort();
     assert_eq!(effects, ["delay", "direction_hysteresis", "harmonic_1", "offset", "pole_period"]);
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
+    // No threshold without what it was sought within.
+    let sought = |effect: &str| found.silent.iter().find(|s| s.effect == effect).unwrap().sought.clone();
+    assert_eq!((sought("harmonic_n").as_deref(), sought("harmonic_2")), (Some("3 to 15 waves a turn"), None));
 }

@@ -82,7 +82,9 @@ fn conclude(client: &Client, autopilot: &Autopilot) -> Done {
         println!("model {id}: {}", model.effects.join(" + "));
     }
     println!("{} run(s), {:.0} s of the bench", autopilot.runs.len(), autopilot.bench_time_s);
-    if let Some(reason) = &autopilot.reason {
+    // What it was cut short by is told with the exit code.
+    let by_itself = matches!(autopilot.state, AutopilotState::Finished | AutopilotState::BudgetSpent);
+    if let Some(reason) = autopilot.reason.as_ref().filter(|_| by_itself) {
         println!("{reason}");
     }
     Ok(())

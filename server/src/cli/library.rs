@@ -4,6 +4,7 @@ use super::exit::{Done, Exit};
 use jointbench_devices::sim::HIDDEN_EFFECTS;
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::instead;
+use jointbench_model::effects::WITH_WEIGHT;
 use jointbench_model::{EffectInfo, effects as effects_of};
 use jointbench_procedure::catalogue;
 
@@ -25,7 +26,8 @@ pub fn procedures(asked: Option<&str>) -> Done {
 }
 
 pub fn effects(asked: Option<&str>) -> Done {
-    let all: Vec<EffectInfo> = Kind::ALL.into_iter().flat_map(effects_of).map(|effect| effect.info()).collect();
+    let library = || Kind::ALL.into_iter().flat_map(effects_of);
+    let all: Vec<EffectInfo> = library().map(|effect| effect.info()).collect();
     let Some(asked) = asked else {
         for kind in Kind::ALL {
             println!("{kind}");
@@ -40,13 +42,18 @@ pub fn effects(asked: Option<&str>) -> Done {
         );
         return Ok(());
     };
-    let named: Vec<&EffectInfo> = all.iter().filter(|one| one.id == asked).collect();
+    let named: Vec<_> = library().filter(|effect| effect.info().id == asked).collect();
     if named.is_empty() {
         let known: Vec<&str> = all.iter().map(|one| one.id).collect();
         return Err(unknown("effect", asked, &known));
     }
-    for one in named {
+    for effect in named {
+        let one = effect.info();
         println!("{} ({}): {}\n{}\n  {}", one.id, one.kind, one.title, one.sentence, one.formula);
+        let weighed = effect.formula_of(WITH_WEIGHT);
+        if weighed != one.formula {
+            println!("  where the run shows a weight that the torque sensor does not feel:\n  {weighed}");
+        }
         for parameter in one.parameters {
             println!("  {} [{}], {} to {}", parameter.name, parameter.unit, parameter.min, parameter.max);
         }

@@ -26,7 +26,7 @@ pub fn diagnose(arguments: &Diagnose) -> Done {
         json_out(&object)?;
     } else {
         print::diagnosis(&diagnosis);
-        drawn.iter().for_each(print::maps);
+        drawn.iter().for_each(|maps| print::maps(maps, &diagnosis.shows_over, diagnosis.kind));
     }
     decided(diagnosis.undecided.as_ref())
 }
@@ -36,8 +36,10 @@ pub fn discover(arguments: &Discover) -> Done {
     let about = |fault| Exit::of(&arguments.run.files, fault);
     let mut discovery =
         jointbench_model::discover(&run, &spec, &options, arguments.max_effects, |_| {}).map_err(about)?;
-    discovery.experiment =
-        next_run(&run, &Open { own: spec.own, ..Open::from(&discovery) }, &Offer::shown_by(&run), &options);
+    let open = Open { own: spec.own, ..Open::from(&discovery) };
+    let next = next_run(&run, &open, &Offer::shown_by(&run), &options);
+    discovery.experiment = next.experiment;
+    discovery.summary.extend(next.in_vain.map(|said| format!(" {said}")));
     if arguments.run.json {
         json_out(&discovery)?;
     } else {

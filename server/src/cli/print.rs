@@ -1,12 +1,12 @@
 //! Results as a person reads them.
 
+mod advice;
 mod maps;
 mod others;
 
-use jointbench_instrument::Motion;
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Experiment, Fit, NoiseFloor, Parameter, ParameterPair,
-    ParameterState, Region, ResidualKind, Suggestion, Verdict, formula, words,
+    Comparison, Diagnosis, Discovery, Evaluation, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState, Region,
+    ResidualKind, Suggestion, words,
 };
 pub use maps::print as maps;
 use std::path::Path;
@@ -102,11 +102,10 @@ pub fn diagnosis(diagnosis: &Diagnosis) {
     println!();
     println!("{}", diagnosis.summary);
     regions(&diagnosis.regions, &diagnosis.fit.unit);
-    own_formula(&diagnosis.shows_over, &diagnosis.fit);
-    // What columns suggest that contradict each other is no advice.
-    if diagnosis.undecided.is_none() || diagnosis.verdict == Verdict::Adequate {
+    if advice::is_any(diagnosis.undecided.as_ref(), diagnosis.verdict) {
+        advice::own_formula(&diagnosis.shows_over, &diagnosis.fit);
         suggestions(&diagnosis.suggestions, diagnosis.fit.validation_rms, &diagnosis.fit.unit);
-        next_run(diagnosis.experiment.as_ref());
+        advice::next_run(diagnosis.experiment.as_ref());
     }
     others::print(&diagnosis.silent, &diagnosis.not_visible, &diagnosis.left_out, &diagnosis.fit.unit);
 }
@@ -142,44 +141,11 @@ pub fn discovery(discovery: &Discovery) {
         }
     }
     regions(&discovery.regions, &discovery.fit.unit);
-    own_formula(&discovery.shows_over, &discovery.fit);
-    next_run(discovery.experiment.as_ref());
+    if advice::is_any(discovery.undecided.as_ref(), discovery.verdict) {
+        advice::own_formula(&discovery.shows_over, &discovery.fit);
+        advice::next_run(discovery.experiment.as_ref());
+    }
     others::print(&discovery.silent, &discovery.not_visible, &discovery.left_out, &discovery.fit.unit);
-}
-
-/// What the library lacks, the user may know: over the axes that the summary has named.
-fn own_formula(columns: &[String], fit: &Fit) {
-    let named: Vec<String> = columns.iter().filter_map(|column| formula::in_formula(fit.kind, column)).collect();
-    if named.is_empty() {
-        return;
-    }
-    println!();
-    println!(
-        "what you can do: write what you suspect as a formula of {} with --own (see --help), and see whether the error falls",
-        words::list(&named)
-    );
-    let turns = fit.scope.as_ref().is_none_or(|scope| scope.motion != Motion::Linear);
-    let angle = formula::signals(fit.kind)
-        .iter()
-        .find(|s| s.name.ends_with("position") && columns.iter().any(|column| *column == s.column));
-    if let Some(angle) = angle.filter(|_| turns) {
-        println!(
-            "  angles are folded into one turn above; a formula folds this one with wrap({} - p), -π to π",
-            angle.name
-        );
-    }
-}
-
-/// As a command, so that it can be typed.
-fn next_run(experiment: Option<&Experiment>) {
-    let Some(experiment) = experiment else { return };
-    let set = experiment.parameters.iter().map(|(name, value)| format!(" --set {name}={value}"));
-    println!();
-    println!("what to measure next, on a bench that can do what this run shows: {}", experiment.why);
-    if let Some(duration_s) = experiment.expected_duration_s {
-        println!("  {duration_s:.0} s of the bench at most:");
-    }
-    println!("  jointbench run {}{}", experiment.procedure, set.collect::<String>());
 }
 
 pub fn parameters(parameters: &[Parameter]) {

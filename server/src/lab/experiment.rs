@@ -4,7 +4,7 @@ use super::{Answer, Lab, LabError, convert};
 use crate::store::{DiagnosisRecord, ModelRecord};
 use crate::view;
 use jointbench_instrument::RunTable;
-use jointbench_model::{Experiment, Open, Options};
+use jointbench_model::{Next, Open, Options};
 use jointbench_procedure::{BenchFacts, menu};
 use serde_json::{Map, Value};
 
@@ -23,11 +23,11 @@ impl Offer {
 }
 
 /// The run to make next. A diagnosis stands without it: where it cannot be worked out there is none.
-pub fn next_run(run: &RunTable, open: &Open, offer: &Offer, options: &Options) -> Option<Experiment> {
+pub fn next_run(run: &RunTable, open: &Open, offer: &Offer, options: &Options) -> Next {
     let menu = menu(&offer.bench, run, &offer.parameters);
     jointbench_model::next_run(run, open, &menu, options).unwrap_or_else(|fault| {
         tracing::warn!(%fault, "no next run was worked out");
-        None
+        Next::default()
     })
 }
 
@@ -66,7 +66,7 @@ impl Lab {
         let found: jointbench_model::Diagnosis = convert::reread(&record.diagnosis)?;
         let open = Open { own: self.own_effects(table.kind()).await?, ..Open::from(&found) };
         let next = super::models::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
-        Ok((model, next.map(|next| convert::reread(&next)).transpose()?))
+        Ok((model, next.experiment.map(|next| convert::reread(&next)).transpose()?))
     }
 }
 

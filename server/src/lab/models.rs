@@ -202,7 +202,9 @@ pub fn diagnose(
 ) -> Result<jointbench_model::Diagnosis, ModelError> {
     let mut diagnosis = jointbench_model::diagnose(table, spec, options)?;
     let open = Open { own: spec.own.clone(), ..Open::from(&diagnosis) };
-    diagnosis.experiment = next_run(table, &open, offer, options);
+    let next = next_run(table, &open, offer, options);
+    diagnosis.experiment = next.experiment;
+    diagnosis.summary.extend(next.in_vain.map(|said| format!(" {said}")));
     Ok(diagnosis)
 }
 

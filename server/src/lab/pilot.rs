@@ -139,6 +139,10 @@ impl Pilot {
     ) -> Answer<Through<Finding>> {
         for _ in 0..request.max_effects {
             let Some(best) = found.suggestions.first() else { break };
+            // What columns suggest that contradict each other is no advice.
+            if found.undecided.is_some() {
+                break;
+            }
             let decidable = found
                 .experiment
                 .as_ref()

@@ -152,6 +152,9 @@ pub struct Silent {
     pub effect: String,
     /// RMS of the smallest effect that would have been found with 80 % probability.
     pub minimum_detectable_rms: f64,
+    /// Within what it was looked for, where that has ends: `1 to 60 waves a turn`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sought: Option<String>,
 }
 
 /// An effect that was tried and is not in the model, though it might be there.

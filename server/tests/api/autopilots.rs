@@ -170,6 +170,25 @@ fn an_autopilot_begins_with_the_run_that_is_there() {
 }
 
 #[test]
+fn an_autopilot_adds_nothing_to_columns_that_contradict_each_other() {
+    let daemon = hiding(&["stribeck"], None);
+    let body = json!({"bench": BENCH, "procedure": "friction"});
+    let (_, run) = daemon.post("/api/v1/runs", &body.to_string());
+    daemon.wait_for_end(run["id"].as_i64().unwrap());
+    let raw = |what: &str| {
+        daemon.get_raw(&format!("/api/v1/runs/{}/{what}", run["id"])).into_body().read_to_string().unwrap()
+    };
+    let (_, broken) =
+        upload(&daemon, &raw("export?format=csv"), &[("meta", &raw("meta")), ("scale", "motor_current_a=1000")]);
+    let body = json!({"bench": BENCH, "runs": 2, "from_run": broken["id"]});
+    let ended = wait(&daemon, start(&daemon, &body));
+    let actions: Vec<&str> = ended["steps"].as_array().unwrap().iter().filter_map(|s| s["action"].as_str()).collect();
+    assert_eq!((actions.as_slice(), &ended["state"]), (&["fit"][..], &"finished".into()), "{ended}");
+    let reason = ended["reason"].as_str().unwrap();
+    assert!(reason.starts_with("Attention: ") && reason.contains("Mend that first"), "{reason}");
+}
+
+#[test]
 fn an_autopilot_is_stopped_by_a_person_and_interrupted_with_its_daemon() {
     let mut daemon = hiding(&[], Some(4.0));
     let body = json!({"bench": BENCH, "parameters": no_load()});

@@ -116,6 +116,24 @@ fn runs_are_listed_and_ended_from_the_command_line() {
 }
 
 #[test]
+fn an_autopilot_that_a_person_ended_says_so_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = bench(folder.path(), "b", 20.0);
+    let daemon = Daemon::serve(&folder.path().join("data"), &config);
+    let told = std::thread::scope(|scope| {
+        let waiting = scope.spawn(|| run(&["autopilot", "--wait", "--daemon", daemon.base.as_str()]));
+        let started = |all: &Value| !all[0]["runs"].as_array().is_none_or(Vec::is_empty);
+        daemon.wait_for("/autopilots", Duration::from_secs(60), started);
+        let (status, _) = daemon.post("/autopilots/1/stop", &json!({}));
+        assert_eq!(status, 200);
+        waiting.join().expect("the command ends")
+    });
+    let said = stdout(&told) + &stderr(&told);
+    assert_eq!(told.status.code(), Some(1), "{said}");
+    assert_eq!(said.matches("(local)").count(), 1, "{said}");
+}
+
+#[test]
 fn a_run_that_decides_nothing_is_no_success() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = bench(folder.path(), "a", 200.0);

@@ -103,6 +103,28 @@ fn a_file_that_will_not_do_is_named() {
 }
 
 #[test]
+fn nothing_is_advised_before_contradicting_columns_are_mended() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_run(folder.path());
+    for verb in ["diagnose", "discover"] {
+        let told = |more: &[&str]| {
+            let output = run_in(folder.path(), &[&[verb, "run.csv"], more].concat());
+            (output.status.code(), stdout(&output))
+        };
+        let (code, whole) = told(&[]);
+        assert!(code == Some(0) && whole.contains("what to measure next"), "{whole}");
+        let (code, broken) = told(&["--scale", "motor_current_a=1000"]);
+        assert!(code == Some(3) && broken.contains("Attention: motor_current_a with the torque constant"), "{broken}");
+        for advice in ["what to measure next", "what you can do", "what is missing, the most"] {
+            assert!(!broken.contains(advice), "{broken}");
+        }
+        let json = stdout(&run_in(folder.path(), &[verb, "run.csv", "--scale", "motor_current_a=1000", "--json"]));
+        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        assert!(json["experiment"].is_null(), "{}", json["experiment"]);
+    }
+}
+
+#[test]
 fn the_library_is_listed() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
@@ -113,6 +135,9 @@ fn the_library_is_listed() {
     let told = done(folder, &["effects"]);
     assert!(told.contains("  stribeck ") && told.contains("jointbench demo --effect"), "{told}");
     assert!(done(folder, &["effects", "stribeck"]).contains("missing, it looks like this: "), "what it means");
+    let told = done(folder, &["effects", "load_linear"]);
+    let (plain, weighed) = told.split_once("a weight that the torque sensor does not feel:").expect("both formulas");
+    assert!(plain.contains("\n  μ·|τ_link/N|·sign ω\n") && weighed.contains("|τ_link/N + g_c·cos θ_link"), "{told}");
     refused(folder, &["effects", "stribek"], &["there is no effect stribek: did you mean stribeck?"]);
 }
 

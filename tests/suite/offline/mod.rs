@@ -2,6 +2,7 @@
 
 mod elsewhere;
 mod emps;
+mod maps;
 mod own;
 mod practice;
 mod refused;

@@ -88,19 +88,3 @@ fn the_practice_cases_are_right() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
-
-#[test]
-fn the_error_is_drawn_over_each_quantity_and_only_where_it_is_asked_for() {
-    let Some(case) = shared("hidden-effects/friction-stribeck") else { return };
-    let case = case.to_str().expect("a path");
-    let drawn = String::from_utf8(run(&["diagnose", case, "--maps"]).stdout).expect("UTF-8");
-    let (_, maps) = drawn.split_once("where the model fails: ").expect("maps");
-    assert!(
-        maps.contains("motor_velocity_rad_s [rad/s]: a function of it would take ") && maps.contains('●'),
-        "{maps}"
-    );
-    assert!(maps.contains("\nflat over ") && maps.contains("temperature_c"), "{maps}");
-    let told = |more: &[&str]| json("diagnose", Path::new(case), more);
-    assert!(told(&["--maps"])["maps"]["pairs"].as_array().is_some_and(|pairs| !pairs.is_empty()));
-    assert!(told(&[]).get("maps").is_none());
-}

@@ -6,6 +6,8 @@ mod friction;
 pub(crate) mod memory;
 mod stiffness;
 
+pub use friction::WITH_WEIGHT;
+
 use crate::effect::{Effect, Form, Search, Shape};
 use crate::view::{Signal, View};
 use crate::{ModelError, OwnEffect};

@@ -2,7 +2,7 @@
 
 use super::Withdrawn;
 use crate::assembly::Assembly;
-use crate::effect::{Effect, Stage};
+use crate::effect::{Effect, Form, Search as How, Stage};
 use crate::memory;
 use crate::report::{Invisible, LeftOut, Silent};
 use crate::select::{Search, Silence};
@@ -27,7 +27,12 @@ impl Others {
             if let Some(why) = tried.or_else(|| given(effect, end)) {
                 others.left_out.push(LeftOut { effect: id.into(), why: why.into() });
             } else if let Some(silence) = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite()) {
-                others.silent.push(Silent { effect: id.into(), minimum_detectable_rms: silence.detectable_rms });
+                let sought = sought(effect, end);
+                others.silent.push(Silent {
+                    effect: id.into(),
+                    minimum_detectable_rms: silence.detectable_rms,
+                    sought,
+                });
             } else {
                 others.invisible.push(Invisible { effect: id.into(), why: invisible(effect, end) });
             }
@@ -40,6 +45,19 @@ impl Others {
 fn given(effect: &dyn Effect, end: &Assembly) -> Option<&'static str> {
     let is_tried = effect.is_given() && effect.hidden(&end.prepared.main.view).is_none();
     is_tried.then_some("it enters as it is measured, and the error is not clearly smaller with it")
+}
+
+/// The numbers of waves that were tried.
+fn sought(effect: &dyn Effect, end: &Assembly) -> Option<String> {
+    let forms = effect.forms(&end.prepared.main.view);
+    let whole = |form: &&Form| form.shape.first().is_some_and(|shape| shape.search == How::Whole);
+    let numbers = forms.iter().filter(whole).flat_map(|form| &form.grid).map(|shape| shape[0]);
+    let (least, most) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), n| (l.min(n), m.max(n)));
+    let waves = if most == 1.0 { "wave" } else { "waves" };
+    match least < most {
+        true => Some(format!("{least} to {most} {waves} a turn")),
+        false => least.is_finite().then(|| format!("{least} {waves} a turn")),
+    }
 }
 
 fn invisible(effect: &dyn Effect, end: &Assembly) -> String {

@@ -4,7 +4,7 @@ use super::Maps;
 use super::map::{Cell, Map};
 use super::scale::Scale;
 use crate::report::{Fit, NoiseFloor, Region};
-use crate::words::{figure, percent, spoken_axis};
+use crate::words::{figure, percent, spoken_axis, way};
 use jointbench_instrument::Kind;
 
 /// More regions than these nobody reads.
@@ -121,16 +121,6 @@ fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
         }
     }
     out
-}
-
-/// What goes one way or the other: the motion, or the current of a brake.
-fn way(kind: Kind, positive: bool) -> &'static str {
-    match (kind, positive) {
-        (Kind::Brake, true) => "while the current rises",
-        (Kind::Brake, false) => "while the current falls",
-        (_, true) => "in positive motion",
-        (_, false) => "in negative motion",
-    }
 }
 
 impl Stretch<'_> {

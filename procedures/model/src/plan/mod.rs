@@ -8,10 +8,10 @@ mod imagine;
 mod unseen;
 
 use crate::assembly::Assembly;
-use crate::prepare::prepare;
+use crate::prepare::{Prepared, prepare};
 use crate::report::{Diagnosis, Discovery, Experiment, Verdict};
 use crate::words::list;
-use crate::{ModelError, ModelSpec, Options, OwnEffect};
+use crate::{ModelError, ModelSpec, Options, OwnEffect, together};
 use design::{Noise, Side};
 use imagine::imagine;
 use jointbench_instrument::{Motion, RunTable};
@@ -108,24 +108,32 @@ impl From<&Discovery> for Open {
     }
 }
 
-/// The run to make next, `None` where nothing is open that the menu could decide.
+/// What is to be done about what a diagnosis leaves open.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Next {
+    /// The run to make, `None` where nothing is open that the menu could decide.
+    pub experiment: Option<Experiment>,
+    /// Where there is none: the ties that stay, in a sentence.
+    pub in_vain: Option<String>,
+}
+
+/// The run to make next. Of columns that contradict each other none follows: they are to be mended.
 ///
-/// Rivals that tie come first, then an effect that may be there as well, then a run without repeats, then effects that this run could not have shown.
-pub fn next_run(
-    run: &RunTable,
-    open: &Open,
-    menu: &[Choice],
-    options: &Options,
-) -> Result<Option<Experiment>, ModelError> {
+/// Rivals that tie come first, then an effect that may be there as well, then a change with temperature that may be one with time,
+/// then a run without repeats, then effects that this run could not have shown.
+pub fn next_run(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Next, ModelError> {
     let mut next = choose(run, open, menu, options)?;
-    if let (Some(next), Motion::Linear) = (&mut next, run.meta().motion) {
+    if let (Some(next), Motion::Linear) = (&mut next.experiment, run.meta().motion) {
         next.why.push_str("; the axis slides: rad in the names of the parameters is m");
     }
     Ok(next)
 }
 
-fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Option<Experiment>, ModelError> {
+fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Next, ModelError> {
     let prepared = prepare(run, options)?;
+    if !prepared.clashes.is_empty() {
+        return Ok(Next::default());
+    }
     let spec = |effects: &[String]| ModelSpec::with_own(run.kind(), effects, open.own.clone());
     let with_all = spec(&open.model)?;
     let model = Assembly::new(&prepared, &with_all, options)?;
@@ -156,7 +164,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         }
         if let Some(bid) = decided(&specs)? {
             let tells = format!("{effect} from {}", list(rivals));
-            return Ok(Some(told(bid, &tells, std::iter::once(effect).chain(rivals))));
+            return Ok(told(bid, &tells, std::iter::once(effect).chain(rivals)).into());
         }
         in_vain.push(format!("{effect} from {}", list(rivals)));
     }
@@ -164,6 +172,10 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         && let Some(bid) = decided(&[with_all.with(effect)?])?
     {
         Some(told(bid, &format!("whether {effect} is there as well"), [effect]))
+    } else if let Some((effect, spec)) = over_time(&with_all, &prepared)?
+        && let Some(bid) = decided(&[spec])?
+    {
+        Some(told(bid, &format!("{effect} from a drift over time"), [&effect]))
     } else if !open.has_noise_floor
         && let Some(choice) = menu.first()
     {
@@ -174,18 +186,36 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         imagined.retain(|(choice, _)| !choice.powers_anew());
         unseen::unseen(&model, &noise, &imagined)
     };
-    Ok(next.map(|next| Experiment { why: format!("{}{}", said_of(&in_vain), next.why), ..next }))
+    let in_vain = (!in_vain.is_empty()).then(|| {
+        let ties = list(&in_vain);
+        format!("run within what this bench may do is expected to tell {ties}: that takes another speed, load or temperature")
+    });
+    Ok(match (next, in_vain) {
+        (Some(next), Some(vain)) => Experiment { why: format!("no {vain}; but {}", next.why), ..next }.into(),
+        (Some(next), None) => next.into(),
+        (None, vain) => Next { experiment: None, in_vain: vain.map(|vain| format!("No {vain}.")) },
+    })
 }
 
-/// Ties that stay, before what else a run can tell.
-fn said_of(in_vain: &[String]) -> String {
-    match in_vain {
-        [] => String::new(),
-        ties => format!(
-            "no run within what this bench may do is expected to tell {}: that takes another speed, load or temperature; but ",
-            list(ties)
-        ),
+impl From<Experiment> for Next {
+    fn from(experiment: Experiment) -> Self {
+        Self { experiment: Some(experiment), in_vain: None }
     }
+}
+
+/// An effect of the model that tells of a temperature which moved as time did, and the model with the same over time.
+fn over_time(model: &ModelSpec, prepared: &Prepared) -> Result<Option<(String, ModelSpec)>, ModelError> {
+    for id in &model.effects {
+        let Some(over_time) = together::over_time(model.find(id)?, prepared) else { continue };
+        if model.own.iter().any(|own| own.id() == over_time.id()) {
+            continue;
+        }
+        let effects = model.effects.iter().map(|e| if e == id { over_time.id() } else { e }.to_owned());
+        let effects: Vec<String> = effects.collect();
+        let own = model.own.iter().cloned().chain([over_time.clone()]).collect();
+        return Ok(Some((id.clone(), ModelSpec::with_own(model.kind, effects, own)?)));
+    }
+    Ok(None)
 }
 
 /// A choice with what is expected of it.

@@ -37,7 +37,7 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
     };
     let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
     let torques = (run.kind() == Kind::Friction).then(|| torque_clash(run)).flatten();
-    motions.chain(torques).chain(dead_load(run)).chain(noise(run)).chain(beyond_rating(run)).collect()
+    motions.chain(torques).chain(dead_load(run)).chain(noise(run)).chain(super::reach::beyond(run)).collect()
 }
 
 /// Pieces of the run that do not reach over the end of a recording, with the time that passes in each.
@@ -187,19 +187,6 @@ fn noise(run: &RunTable) -> Option<String> {
     })
 }
 
-/// A brake takes no more than a few times what it is rated for.
-fn beyond_rating(run: &RunTable) -> Option<String> {
-    const TIMES: f64 = 20.0;
-    let rated_a = run.meta().rated_current_a?;
-    let current = run.column("brake_current_a").filter(|_| run.kind() == Kind::Brake)?;
-    let largest = current.iter().fold(0.0f64, |most, i| most.max(i.abs()));
-    (largest > TIMES * rated_a).then(|| {
-        format!(
-            "brake_current_a reaches {largest:.0} A, and the brake is rated for {rated_a} A: one of them has another unit (mA?)"
-        )
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -308,26 +295,6 @@ mod tests {
         assert_eq!(told(0.03, 0.0, 0.0), Vec::<String>::new(), "friction of a tenth of the noise");
         assert_eq!(told(0.0, 0.2, 0.0), Vec::<String>::new(), "a wave that comes and goes");
         assert_eq!(told(0.0, 0.0, 0.4), Vec::<String>::new(), "a current that is held");
-    }
-
-    #[test]
-    fn a_brake_current_in_milliamperes_is_told() {
-        let told = |unit: f64, rated_current_a: Option<f64>| {
-            let names = ["time_s", "position_rad", "brake_current_a", "brake_torque_nm"];
-            let mut trace = Trace::new(names.map(Channel::new).to_vec());
-            (0..400)
-                .map(|i| 0.01 * f64::from(i))
-                .for_each(|t| trace.push_row(&[t, t, unit * 0.6 * t.sin().abs(), t.sin().abs()]));
-            let meta = Meta { kind: Some(Kind::Brake), rated_current_a, ..Meta::default() };
-            clashes(&RunTable::new(meta, trace).unwrap())
-        };
-        assert_eq!(told(1.0, Some(0.5)), Vec::<String>::new());
-        assert!(
-            told(1000.0, Some(0.5))[0].starts_with("brake_current_a reaches 600 A"),
-            "{:?}",
-            told(1000.0, Some(0.5))
-        );
-        assert_eq!(told(1000.0, None), Vec::<String>::new(), "no limit is known");
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod history;
 mod holds;
 mod layout;
 mod past;
+mod reach;
 mod repeats;
 mod segments;
 mod stiffness;

@@ -16,6 +16,13 @@ pub struct ResidualMaps {
     pub regions: Vec<Region>,
 }
 
+impl ResidualMaps {
+    /// The map of an axis in each direction, where it has one.
+    pub fn in_each_direction(&self, axis: &AxisMap) -> Option<&PairMap> {
+        self.pairs.iter().find(|pair| pair.x == axis.axis && pair.y == "direction")
+    }
+}
+
 /// Mean residual over one quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AxisMap {

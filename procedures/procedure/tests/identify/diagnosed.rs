@@ -2,6 +2,7 @@
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::RunTable;
+use jointbench_model::prepare::attention;
 use jointbench_model::{Diagnosis, ModelSpec, Open, Options, diagnose, discover, next_run};
 use jointbench_procedure::conduct::conduct;
 use jointbench_procedure::{BenchFacts, menu, procedure};
@@ -44,6 +45,16 @@ fn a_brake_saturates_and_remembers() {
     assert_eq!(found(Joint::JointA, "brake_hysteresis", given), ["hysteresis", "saturation"]);
     // At one speed a dependence on it is the torque itself, and what only the largest loop tells is not asked of the others.
     assert_eq!(found(Joint::JointB, "brake_hysteresis", json!({})), ["hysteresis", "saturation"]);
+}
+
+#[test]
+fn what_a_brake_of_the_bench_reaches_is_no_slip_of_a_unit() {
+    for joint in [Joint::JointA, Joint::JointB] {
+        for id in ["brake_hysteresis", "brake_speed_independence", "demagnetise"] {
+            let run = run(joint, &[], id, json!({}));
+            assert_eq!(attention(&run), Vec::<String>::new(), "{id} of {joint:?}");
+        }
+    }
 }
 
 #[test]
@@ -116,7 +127,7 @@ fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
     assert!(tau_c.ci95[0] < 0.022 && tau_c.ci95[1] > 0.99 * imitated.with, "{tau_c:?}");
     assert!(tau_c.note.as_ref().is_some_and(|note| note.contains("viscous_quadratic")), "{tau_c:?}");
     let offered = menu(&BenchFacts::shown_by(&run), &run, &Map::new());
-    let next = next_run(&run, &Open::from(&open), &offered, &Options::default()).unwrap().unwrap();
+    let next = next_run(&run, &Open::from(&open), &offered, &Options::default()).unwrap().experiment.unwrap();
     assert_eq!(next.separates, ["viscous_quadratic"], "{}", next.why);
     assert!(next.expected_z.unwrap() > 2.0, "{}", next.why);
 }

@@ -30,7 +30,7 @@ impl Laboratory {
 
     fn asked(&self) -> Option<Experiment> {
         let offered = menu(&BenchFacts::of(&self.bench), &self.run, &Map::new());
-        next_run(&self.run, &Open::from(&self.diagnosis()), &offered, &Options::default()).unwrap()
+        next_run(&self.run, &Open::from(&self.diagnosis()), &offered, &Options::default()).unwrap().experiment
     }
 
     fn measure(&mut self, asked: &Experiment) {

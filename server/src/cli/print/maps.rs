@@ -1,19 +1,23 @@
 //! Residual maps, as a person reads them.
 
-use jointbench_model::{AxisMap, MapBin, ResidualMaps, words};
+use jointbench_instrument::Kind;
+use jointbench_model::{AxisMap, MapBin, MapCell, PairMap, ResidualMaps, words};
 
 /// Characters of the largest mean, to either side.
 const REACH: f64 = 20.0;
 /// A quantity of which a function would take less off the squared error is named and not drawn.
 const DRAWN_SHARE: f64 = 0.01;
 
-pub fn print(maps: &ResidualMaps) {
-    let mut axes: Vec<&AxisMap> = maps.axes.iter().collect();
-    axes.sort_by(|a, b| b.removable_share.total_cmp(&a.removable_share));
-    let (axes, flat): (Vec<&AxisMap>, Vec<&AxisMap>) =
-        axes.into_iter().partition(|axis| axis.removable_share >= DRAWN_SHARE);
-    let means = axes.iter().flat_map(|axis| &axis.bins).map(|bin| bin.mean.abs());
-    let largest = means.fold(f64::MIN_POSITIVE, f64::max);
+/// `named`: what the summary calls an axis is drawn, whatever it takes by itself.
+pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
+    let mut axes: Vec<(&AxisMap, Option<&PairMap>)> =
+        maps.axes.iter().map(|a| (a, maps.in_each_direction(a))).collect();
+    axes.sort_by(|a, b| telling(b).total_cmp(&telling(a)));
+    let is_drawn = |axis: &(&AxisMap, _)| telling(axis) >= DRAWN_SHARE || named.contains(&axis.0.axis);
+    let (axes, flat): (Vec<_>, Vec<_>) = axes.into_iter().partition(is_drawn);
+    let cells = axes.iter().flat_map(told_apart).flat_map(|pair| &pair.cells).map(|cell| cell.mean);
+    let means = axes.iter().flat_map(|(axis, _)| &axis.bins).map(|bin| bin.mean).chain(cells);
+    let largest = means.fold(f64::MIN_POSITIVE, |most, mean| most.max(mean.abs()));
     println!();
     if !axes.is_empty() {
         println!("where the model fails: mean of what it leaves (measured − model) over each quantity");
@@ -21,24 +25,59 @@ pub fn print(maps: &ResidualMaps) {
             "± holds for every line at once; ● is no noise, ○ may be, ? from too few pieces of the run to be judged"
         );
     }
-    for axis in axes {
+    for axis in &axes {
         println!();
         println!("{}", title(axis));
-        for bin in &axis.bins {
-            println!("{}", line(bin, &maps.unit, largest));
+        match told_apart(axis) {
+            None => axis.0.bins.iter().for_each(|bin| println!("{}", line(bin, &maps.unit, largest))),
+            Some(pair) => {
+                for (y, [from, _]) in pair.y_bins.iter().enumerate() {
+                    println!("{}:", words::way(kind, *from > 0.0));
+                    let side = pair.cells.iter().filter(|cell| cell.y == y);
+                    side.for_each(|cell| println!("{}", line(&bin(pair, cell), &maps.unit, largest)));
+                }
+            }
         }
     }
     if !flat.is_empty() {
-        let names: Vec<&str> = flat.iter().map(|axis| axis.axis.as_str()).collect();
+        let names: Vec<&str> = flat.iter().map(|(axis, _)| axis.axis.as_str()).collect();
         println!();
-        println!("flat over {}: a function of one would take less than 1 % off", words::list(&names));
+        println!(
+            "flat over {}: a function of one, in each direction its own too, would take less than 1 % off",
+            words::list(&names)
+        );
     }
 }
 
-fn title(axis: &AxisMap) -> String {
+/// What any function of an axis would take, as the verdict asks it: both directions alike, or each for itself.
+fn telling((axis, sides): &(&AxisMap, Option<&PairMap>)) -> f64 {
+    sides.map_or(axis.removable_share, |pair| pair.removable_share.max(axis.removable_share))
+}
+
+/// The map by direction, where one direction hides from the other what shows.
+fn told_apart<'m>((axis, sides): &(&AxisMap, Option<&'m PairMap>)) -> Option<&'m PairMap> {
+    sides.filter(|pair| pair.removable_share - axis.removable_share >= DRAWN_SHARE)
+}
+
+fn title(of: &(&AxisMap, Option<&PairMap>)) -> String {
+    let axis = of.0;
     let unit = if axis.unit == "1" { String::new() } else { format!(" [{}]", axis.unit) };
-    let share = 100.0 * axis.removable_share;
-    format!("{}{unit}: a function of it would take {share:.1} % off the squared error", axis.axis)
+    let percent = |share: f64| 100.0 * share.max(0.0);
+    let apart = told_apart(of)
+        .map(|pair| format!(", and one of its own in each direction {:.1} %", percent(pair.removable_share)));
+    format!(
+        "{}{unit}: a function of it would take {:.1} % off the squared error{}",
+        axis.axis,
+        percent(axis.removable_share),
+        apart.unwrap_or_default()
+    )
+}
+
+/// A cell of a map by direction as a line of its axis.
+fn bin(pair: &PairMap, cell: &MapCell) -> MapBin {
+    let [from, to] = pair.x_bins[cell.x];
+    let (mean, half_width, rows) = (cell.mean, cell.half_width, cell.rows);
+    MapBin { from, to, centre: 0.5 * (from + to), mean, half_width, rows }
 }
 
 fn line(bin: &MapBin, unit: &str, largest: f64) -> String {

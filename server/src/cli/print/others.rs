@@ -21,7 +21,9 @@ fn silences(silent: &[Silent], unit: &str) -> Option<String> {
     let mut silent: Vec<&Silent> = silent.iter().collect();
     silent.sort_by(|a, b| a.minimum_detectable_rms.total_cmp(&b.minimum_detectable_rms));
     let (named, rest) = silent.split_at(silent.len().min(NAMED_SILENT));
-    let named = named.iter().map(|s| format!("{} {}", s.effect, words::figure(s.minimum_detectable_rms, unit)));
+    let within = |s: &Silent| s.sought.as_ref().map_or_else(String::new, |sought| format!(" ({sought})"));
+    let named =
+        named.iter().map(|s| format!("{} {}{}", s.effect, words::figure(s.minimum_detectable_rms, unit), within(s)));
     let named: Vec<String> = named.collect();
     let rest = if rest.is_empty() { String::new() } else { format!(", and {} more from above that", rest.len()) };
     (!named.is_empty()).then(|| format!("would have been found from (rms): {}{rest}", named.join(", ")))
@@ -33,11 +35,16 @@ mod tests {
 
     #[test]
     fn the_smallest_are_named_and_the_rest_counted() {
-        let silent = |effect: &str, nm: f64| Silent { effect: effect.into(), minimum_detectable_rms: nm };
+        let silent = |effect: &str, nm: f64| Silent { effect: effect.into(), minimum_detectable_rms: nm, sought: None };
         let mut all: Vec<Silent> = [5e-3, 2e-3, 4e-3, 3e-3].iter().map(|nm| silent("gravity", *nm)).collect();
-        all.push(silent("cogging", 1.2e-4));
+        all.push(Silent { sought: Some("1 to 60 waves a turn".into()), ..silent("cogging", 1.2e-4) });
         let said = silences(&all, "Nm").unwrap();
-        assert!(said.starts_with("would have been found from (rms): cogging 120 µNm, gravity 2.00 mNm, "), "{said}");
+        assert!(
+            said.starts_with(
+                "would have been found from (rms): cogging 120 µNm (1 to 60 waves a turn), gravity 2.00 mNm, "
+            ),
+            "{said}"
+        );
         assert!(said.ends_with(", and 1 more from above that"), "{said}");
         assert_eq!(silences(&[], "Nm"), None);
     }

@@ -15,7 +15,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Load-dependent friction",
     sentence: "The teeth rub harder under load: friction grows in proportion to the transmitted torque.",
-    formula: "μ·|τ_link/N|·sign ω, or with τ_link/N + g_c·cos θ_link + g_s·sin θ_link where the sensor does not feel the weight",
+    formula: "μ·|τ_link/N|·sign ω",
     source: "thesis on joint test benches, eq. 2.6; Duclusaud et al. 2025, M3 (torque of the gear); contract section 1, power balance",
     looks: "a step at zero speed that grows with the load",
     parameters: &[parameter("mu", "1", 0.0, MOST), teeth::COS, teeth::SIN],
@@ -29,6 +29,14 @@ impl Effect for LoadLinear {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         teeth::forms(view, "mu")
+    }
+
+    fn formula_of(&self, form: &str) -> &str {
+        if form == teeth::WITH_WEIGHT {
+            "μ·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·sign ω"
+        } else {
+            INFO.formula
+        }
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -12,7 +12,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Quadratic load friction",
     sentence: "Friction grows faster than the load, as when a gear deforms under torque.",
-    formula: "μ_2·(τ_link/N)²·sign ω, or with τ_link/N + g_c·cos θ_link + g_s·sin θ_link where the sensor does not feel the weight",
+    formula: "μ_2·(τ_link/N)²·sign ω",
     source: "thesis on joint test benches, eq. 2.6; Duclusaud et al. 2025, M6; contract section 1, power balance",
     looks: "a step at zero speed that grows with the square of the load",
     parameters: &[parameter("mu_2", "1/Nm", 0.0, f64::INFINITY), teeth::COS, teeth::SIN],
@@ -26,6 +26,14 @@ impl Effect for LoadQuadratic {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         teeth::forms(view, "mu_2")
+    }
+
+    fn formula_of(&self, form: &str) -> &str {
+        if form == teeth::WITH_WEIGHT {
+            "μ_2·(τ_link/N + g_c·cos θ_link + g_s·sin θ_link)²·sign ω"
+        } else {
+            INFO.formula
+        }
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -12,7 +12,7 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Friction,
     title: "Load-dependent viscous friction",
     sentence: "Under load the drag grows more steeply with speed.",
-    formula: "c_l·|τ_link/N|·ω, or with τ_link/N + g_c·cos θ_link + g_s·sin θ_link where the sensor does not feel the weight",
+    formula: "c_l·|τ_link/N|·ω",
     source: "Bittencourt et al. 2010; contract section 1, power balance",
     looks: "a line over speed whose slope grows with the load",
     parameters: &[parameter("c_l", "s/rad", f64::NEG_INFINITY, f64::INFINITY), teeth::COS, teeth::SIN],
@@ -26,6 +26,14 @@ impl Effect for LoadViscous {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         teeth::forms(view, "c_l")
+    }
+
+    fn formula_of(&self, form: &str) -> &str {
+        if form == teeth::WITH_WEIGHT {
+            "c_l·|τ_link/N + g_c·cos θ_link + g_s·sin θ_link|·ω"
+        } else {
+            INFO.formula
+        }
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {

@@ -26,6 +26,7 @@ mod viscous_quadratic;
 mod viscous_sublinear;
 
 use crate::effect::Effect;
+pub use teeth::WITH_WEIGHT;
 
 pub static ALL: &[&dyn Effect] = &[
     &inertia::Inertia,

@@ -1,0 +1,44 @@
+//! What a person could do next.
+
+use jointbench_instrument::Motion;
+use jointbench_model::{Experiment, Fit, Verdict, formula, words};
+
+/// What columns suggest that contradict each other is no advice.
+pub fn is_any(undecided: Option<&String>, verdict: Verdict) -> bool {
+    undecided.is_none() || verdict == Verdict::Adequate
+}
+
+/// What the library lacks, the user may know: over the axes that the summary has named.
+pub fn own_formula(columns: &[String], fit: &Fit) {
+    let named: Vec<String> = columns.iter().filter_map(|column| formula::in_formula(fit.kind, column)).collect();
+    if named.is_empty() {
+        return;
+    }
+    println!();
+    println!(
+        "what you can do: write what you suspect as a formula of {} with --own (see --help), and see whether the error falls",
+        words::list(&named)
+    );
+    let turns = fit.scope.as_ref().is_none_or(|scope| scope.motion != Motion::Linear);
+    let angle = formula::signals(fit.kind)
+        .iter()
+        .find(|s| s.name.ends_with("position") && columns.iter().any(|column| *column == s.column));
+    if let Some(angle) = angle.filter(|_| turns) {
+        println!(
+            "  angles are folded into one turn above; a formula folds this one with wrap({} - p), -π to π",
+            angle.name
+        );
+    }
+}
+
+/// As a command, so that it can be typed.
+pub fn next_run(experiment: Option<&Experiment>) {
+    let Some(experiment) = experiment else { return };
+    let set = experiment.parameters.iter().map(|(name, value)| format!(" --set {name}={value}"));
+    println!();
+    println!("what to measure next, on a bench that can do what this run shows: {}", experiment.why);
+    if let Some(duration_s) = experiment.expected_duration_s {
+        println!("  {duration_s:.0} s of the bench at most:");
+    }
+    println!("  jointbench run {}{}", experiment.procedure, set.collect::<String>());
+}

@@ -1,0 +1,63 @@
+//! `diagnose --maps`: the error drawn over each quantity, where the verdict looks for it too.
+
+use super::json;
+use super::own::{run_in, write_run};
+use crate::program::{run, stdout};
+use crate::shared::shared;
+use std::path::Path;
+
+#[test]
+fn the_error_is_drawn_over_each_quantity_and_only_where_it_is_asked_for() {
+    let Some(case) = shared("hidden-effects/friction-stribeck") else { return };
+    let case = case.to_str().expect("a path");
+    let drawn = String::from_utf8(run(&["diagnose", case, "--maps"]).stdout).expect("UTF-8");
+    let (_, maps) = drawn.split_once("where the model fails: ").expect("maps");
+    assert!(
+        maps.contains("motor_velocity_rad_s [rad/s]: a function of it would take ") && maps.contains('●'),
+        "{maps}"
+    );
+    assert!(maps.contains("\nflat over ") && maps.contains("temperature_c"), "{maps}");
+    let told = |more: &[&str]| json("diagnose", Path::new(case), more);
+    assert!(told(&["--maps"])["maps"]["pairs"].as_array().is_some_and(|pairs| !pairs.is_empty()));
+    assert!(told(&[]).get("maps").is_none());
+}
+
+/// Pressure of a step, which goes up and down without the load and the speed.
+fn pressure_pa(segment: u64) -> f64 {
+    1e5 + 2e4 * (segment.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 61) as f64
+}
+
+#[test]
+fn an_axis_that_the_verdict_names_by_direction_is_not_called_flat() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_run(folder.path());
+    let table = std::fs::read_to_string(folder.path().join("run.csv")).expect("a table");
+    let rubbing = table.lines().enumerate().map(|(i, line)| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if i == 0 {
+            fields.push("oil_pressure_pa".to_owned());
+        } else {
+            let velocity: f64 = fields[2].parse().expect("a velocity");
+            let current: f64 = fields[3].parse().expect("a current");
+            let pressure_pa = pressure_pa(fields[5].parse().expect("a segment"));
+            // More friction in the middle: over the pressure alone both directions cancel.
+            let rub = 0.1 * velocity.signum() * f64::from(u8::from((1.5e5..1.9e5).contains(&pressure_pa)));
+            fields[3] = format!("{}", current + rub);
+            fields.push(pressure_pa.to_string());
+        }
+        fields.join(",")
+    });
+    let rubbing: Vec<String> = rubbing.collect();
+    std::fs::write(folder.path().join("run.csv"), rubbing.join("\n")).expect("a table");
+    let rub = "rub: tau = a * tanh(velocity / 12) * abs(load); a [1] 0..1";
+    let model = "load_transmission,coulomb,viscous,rub";
+    let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv", "--own", rub, "--model", model, "--maps"]));
+    assert!(told.contains("it shows most over oil pressure and direction, a function of which"), "{told}");
+    let (_, maps) = told.split_once("mean of what it leaves").expect("maps");
+    let (drawn, flat) = maps.split_once("\nflat over ").unwrap_or((maps, ""));
+    assert!(!flat.contains("oil_pressure_pa"), "{told}");
+    let (_, drawn) = drawn.split_once("oil_pressure_pa [Pa]: a function of it would take ").expect("the pressure");
+    assert!(drawn.contains(", and one of its own in each direction "), "{told}");
+    let (negative, positive) = drawn.split_once("in positive motion:").expect("both directions");
+    assert!(negative.contains("in negative motion:") && positive.contains('●'), "{told}");
+}
