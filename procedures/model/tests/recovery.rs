@@ -72,6 +72,7 @@ fn a_hidden_effect_is_named() {
     check_found("direction_offset", 4, |m| dry(m) + 0.004);
     check_found("viscous_asymmetry", 5, |m| dry(m) + 4e-5 * m.velocity.abs());
     check_found("drift", 6, |m| dry(m) + 1e-4 * m.time);
+    check_found("drift", 7, |m| dry(m) + 8e-3 * (1.0 - (-m.time / 25.0).exp()));
 }
 
 /// A Stribeck peak bends into the place of Coulomb or viscous friction where it stands in the model without one of them.

@@ -1,20 +1,27 @@
 //! Drift with time.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 
 pub struct Drift;
 
+/// Share of the run's length.
+const SOONEST: f64 = 0.1;
+
 static INFO: EffectInfo = EffectInfo {
     id: "drift",
     kind: Kind::Friction,
     title: "Drift with time",
-    sentence: "Something changes slowly from the first sample to the last, such as the zero of a sensor.",
-    formula: "d·t, zero at the first sample",
-    source: "contract section 2",
-    looks: "a line over time, the same in both directions",
-    parameters: &[parameter("d", "Nm/s", f64::NEG_INFINITY, f64::INFINITY)],
+    sentence: "Something changes slowly from the first sample to the last, such as the zero of a sensor that warms up.",
+    formula: "d·t, or d_e·(1 − exp(−t/t_d)) where it comes to an end; zero at the first sample",
+    source: "contract section 2; a body that warms up by Newton's law of cooling",
+    looks: "a line over time, or a curve that flattens, the same in both directions",
+    parameters: &[
+        parameter("d", "Nm/s", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("d_e", "Nm", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("t_d", "s", 0.0, f64::INFINITY),
+    ],
     needs: &[],
 };
 
@@ -23,11 +30,23 @@ impl Effect for Drift {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
-        vec![Form::linear(&["d"])]
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        let line = Form::linear(&["d"]);
+        // What settles sooner is an offset in most of the run, and what takes longer than it is a line to 4 %.
+        let high = view.get(Signal::Time).iter().fold(0.0f64, |m, t| m.max(*t));
+        if high <= 0.0 {
+            return vec![line];
+        }
+        let low = SOONEST * high;
+        let shape = vec![Shape { name: "t_d", min: low, max: high, search: Search::Smooth }];
+        let grid = crate::effects::log_grid(low, high, 4).into_iter().map(|t| vec![t]).collect();
+        vec![line, Form { name: "settling", linear: vec!["d_e"], shape, grid }]
     }
 
-    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
-        vec![view.get(Signal::Time).to_vec()]
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
+        vec![match form {
+            "settling" => view.map(Signal::Time, |t| 1.0 - (-t / shape[0]).exp()),
+            _ => view.get(Signal::Time).to_vec(),
+        }]
     }
 }
