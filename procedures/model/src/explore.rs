@@ -186,11 +186,15 @@ impl<'p> Exploration<'p> {
     }
 
     /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
-    /// noise, whether or not a map shows where it comes from.
+    /// noise, whether or not a map shows where it comes from. A floor without an interval is too little known to accuse.
     fn repeats_itself(&self) -> bool {
         let held_out = self.end_held_out_rms;
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
-            || self.floor.rms.is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
+            || self
+                .floor
+                .rms
+                .filter(|_| self.floor.ci95.is_some())
+                .is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
     }
 
     /// What is left is small beside what was measured, however much of it repeats.

@@ -8,7 +8,7 @@ use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// An interval that reaches this many times as far tells nothing.
-const WIDEST: f64 = 5.0;
+const WIDEST: f64 = 3.0;
 
 /// Fewer pairs than these have no scatter that could be told.
 const FEWEST: usize = 8;

@@ -45,6 +45,36 @@ fn repeats_of_different_motions_tell_nothing() {
     assert!(found.experiment.is_some(), "the run that would tell");
 }
 
+/// Nothing loads the joint: what the sensor of its torque reads in each leg is noise, and no two legs have the same.
+#[test]
+fn noise_of_a_torque_sensor_makes_no_other_condition() {
+    const STEP_S: f64 = 0.004;
+    let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a link_torque_nm segment repeat";
+    let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
+    let mut random = ChaCha8Rng::seed_from_u64(6);
+    let noise = Normal::new(0.0, 1.0).unwrap();
+    let (mut i, mut position) = (0, 0.7);
+    for leg in 0..48 {
+        let sign = if leg % 2 == 0 { 1.0 } else { -1.0 };
+        let velocity = sign * 2.5 * 1.52f64.powi(leg % 24 / 2);
+        let reading = 1e-3 * noise.sample(&mut random);
+        for _ in 0..150 {
+            let torque = 0.03 * sign + 1.5e-4 * velocity + 1e-3 * noise.sample(&mut random);
+            let segment = f64::from(leg);
+            let repeat = f64::from(leg / 24);
+            trace.push_row(&[STEP_S * f64::from(i), position, velocity, torque / 0.08, reading, segment, repeat]);
+            (i, position) = (i + 1, position + STEP_S * velocity);
+        }
+    }
+    let run = RunTable::new(meta(Kind::Friction), trace).unwrap();
+    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    // 48 legs of at most 15 chunks of ten samples.
+    let (rms, floor) = (1e-3 / 10f64.sqrt(), &found.noise_floor);
+    assert!(floor.rms.is_some_and(|found| (found / rms - 1.0).abs() < 0.15), "{floor:?}");
+    assert!(floor.ci95.is_some_and(|[low, high]| high < 1.5 * low), "{floor:?}");
+    assert_eq!((found.verdict, &found.undecided), (Verdict::Adequate, &None), "{}", found.summary);
+}
+
 /// An industrial robot whose three repeats are three motions.
 #[test]
 fn kr300_repeats_are_different_motions() {

@@ -133,7 +133,8 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
     }
     let target = mean(&samples.target);
     let (block, blocks) = layout::blocks(&group, 48);
-    let (mut fold, folds) = layout::folds(&condition, &block, 10);
+    let held_out = if settled { layout::held_out(&condition, &group) } else { &condition };
+    let (mut fold, folds) = layout::folds(held_out, &block, 10);
     // What a brake remembers of its largest current no smaller loop tells.
     if let Some(current) = points.find(Signal::Current) {
         layout::share_edges(&mut fold, folds, &group, current);

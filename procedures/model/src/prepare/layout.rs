@@ -42,13 +42,16 @@ pub fn clusters(values: &[f64], tolerance: impl Fn(f64) -> f64) -> Vec<usize> {
     cluster
 }
 
+/// Fewer conditions than these have no neighbours that would predict them.
+const NEIGHBOURS: usize = 12;
+
 /// Folds from conditions: every n-th condition together, so that each fold is predicted by its neighbours.
 ///
 /// Fewer conditions than a dozen have no neighbours, and a first magnetisation or warm-up is there only once: then every
 /// n-th stretch of a block is held out, its rest kept.
 pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, usize) {
     let conditions = condition.iter().max().map_or(0, |c| c + 1);
-    if conditions >= 12 {
+    if conditions >= NEIGHBOURS {
         let n = conditions.min(most);
         return (condition.iter().map(|c| c % n).collect(), n);
     }
@@ -56,6 +59,14 @@ pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, 
     let stretch = (block.len() / (blocks * most).max(1)).max(4);
     let n = most.min(block.len() / stretch).max(1);
     ((0..block.len()).map(|i| i / stretch % n).collect(), n)
+}
+
+/// What is held out as one: a condition with its repeats, or where these are few, each stretch of consecutive rows (`group`) of
+/// them, which is then predicted by its repeats. Half a stretch would be predicted by what is that stretch's own.
+pub fn held_out<'a>(condition: &'a [usize], group: &'a [usize]) -> &'a [usize] {
+    let count = |of: &[usize]| of.iter().max().map_or(0, |c| c + 1);
+    let is_few = count(condition) < NEIGHBOURS && count(group) >= NEIGHBOURS.max(2 * count(condition));
+    if is_few { group } else { condition }
 }
 
 /// Stretches of consecutive rows (`group`) that alone reach beyond everything that the other folds hold can be predicted from
@@ -125,6 +136,17 @@ mod tests {
     #[test]
     fn close_values_are_one_condition() {
         assert_eq!(clusters(&[1.0, 5.0, 1.01, 5.02, -3.0], |_| 0.1), vec![1, 2, 1, 2, 0]);
+    }
+
+    #[test]
+    fn legs_are_held_out_whole_where_conditions_are_few() {
+        let of = |conditions: usize, legs: usize| {
+            let group: Vec<usize> = (0..10 * legs).map(|row| row / 10).collect();
+            let condition: Vec<usize> = group.iter().map(|g| g % conditions).collect();
+            held_out(&condition, &group) == group
+        };
+        assert!(of(4, 12) && of(6, 24));
+        assert!(!of(4, 8) && !of(8, 12) && !of(12, 36), "too few legs, hardly a repeat, conditions enough");
     }
 
     #[test]

@@ -149,11 +149,15 @@ fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&[f64
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let speeds: Vec<f64> = plateaus.iter().map(|p| middle(velocity, p)).collect();
     let lengths: Vec<f64> = plateaus.iter().map(|p| p.len() as f64).collect();
-    let loads: Vec<f64> = match command.or(samples.signals.find(Signal::Load)) {
-        Some(load) => plateaus.iter().map(|p| middle(load, p)).collect(),
-        None => vec![0.0; plateaus.len()],
+    let middles = |signal: &[f64]| -> Vec<f64> { plateaus.iter().map(|p| middle(signal, p)).collect() };
+    let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let measured = samples.signals.find(Signal::Load);
+    let loads = command.or(measured).map_or_else(|| vec![0.0; plateaus.len()], middles);
+    // Where nothing loads the joint, what its sensor reads is noise and small beside the torque.
+    let peak = match command {
+        Some(_) => largest(&loads),
+        None => largest(&loads).max(largest(&middles(&samples.target))),
     };
-    let peak = loads.iter().fold(0.0f64, |m, l| m.max(l.abs()));
     let speed = layout::clusters(&speeds, |v| 0.03 * v.abs());
     let load = layout::clusters(&loads, |l| 0.03 * l.abs() + 0.01 * peak);
     // Short steps and long turns at one speed are different conditions: they start at different places.
