@@ -178,7 +178,8 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        if (outside::structured(&self.maps).is_some() || self.repeats_itself()) && !self.is_negligible() {
+        let shows = outside::structured(&self.maps).is_some() && !outside::is_scatter(&self.maps, &self.floor);
+        if (shows || self.repeats_itself()) && !self.is_negligible() {
             Verdict::UnexplainedStructure
         } else {
             Verdict::Adequate
@@ -195,6 +196,11 @@ impl<'p> Exploration<'p> {
                 .rms
                 .filter(|_| self.floor.ci95.is_some())
                 .is_some_and(|floor| held_out > FAR_FROM_FLOOR * floor)
+    }
+
+    /// RMS of what whole stretches of motion differ by, where that is what shows over an axis.
+    pub fn scatter_rms(&self) -> Option<f64> {
+        outside::is_scatter(&self.maps, &self.floor).then(|| self.maps.between_rms())
     }
 
     /// What is left is small beside what was measured, however much of it repeats.

@@ -1,7 +1,7 @@
 //! Legs that lie apart by chance: a step in time is more than that.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
-use jointbench_model::{Diagnosis, ModelSpec, Options, diagnose};
+use jointbench_model::{Diagnosis, Discovery, ModelSpec, Options, Verdict, diagnose, discover};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -37,4 +37,39 @@ fn four_legs_that_scatter_a_little_have_not_slipped() {
     assert!(named.len() <= 1, "{named:?}");
     let slipped = diagnosed(1, 4e-4);
     assert_eq!(slipped.suggestions.first().map(|s| s.effect.as_str()), Some("slip"), "{}", slipped.summary);
+}
+
+/// Three times up and down through the current of a brake at two speeds. Each leg lies elsewhere by as much as a row scatters.
+fn braked(seed: u64) -> Discovery {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
+    let names = ["time_s", "brake_current_a", "brake_torque_nm", "velocity_rad_s", "position_rad", "segment", "repeat"];
+    let mut trace = Trace::new(names.map(Channel::new).into());
+    let (mut time, mut angle) = (0.0, 0.0);
+    for leg in 0..12 {
+        let (speed, apart) = ([2.0, 20.0][leg / 2 % 2], 0.007 * normal());
+        for i in 0..400 {
+            time += 0.02;
+            angle += 0.02 * speed;
+            let way = f64::from(i) / 400.0;
+            let current = if leg % 2 == 0 { way } else { 1.0 - way };
+            let torque = 0.05 + 10.0 * current + apart + 0.01 * normal();
+            trace.push_row(&[time, current, torque, speed, angle, leg as f64, (leg / 4) as f64]);
+        }
+    }
+    let run = RunTable::new(Meta { kind: Some(Kind::Brake), ..Meta::default() }, trace).unwrap();
+    let spec = ModelSpec::new(Kind::Brake, ["drag", "torque_per_current"]).unwrap();
+    discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap()
+}
+
+#[test]
+fn what_whole_legs_scatter_by_is_neither_an_effect_nor_structure() {
+    let found: Vec<Discovery> = (0..12).map(braked).collect();
+    let wrong: Vec<String> = found
+        .iter()
+        .filter(|found| found.model.len() > 2 || found.verdict != Verdict::Adequate)
+        .map(|found| format!("{:?}: {}", found.model, found.summary))
+        .collect();
+    assert!(wrong.len() <= 2, "{}: {wrong:#?}", wrong.len());
+    assert!(found.iter().any(|found| found.summary.contains("the zero wanders by")));
 }

@@ -81,7 +81,19 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
              cannot be decided: {why}."
         ),
     };
-    attention(found) + &said + &open(found) + &taken_back(found, &fit.unit)
+    attention(found) + &said + &scatter(found, verdict, &fit.unit) + &open(found) + &taken_back(found, &fit.unit)
+}
+
+/// Why what shows over an axis is called noise.
+fn scatter(found: &Exploration, verdict: Verdict, unit: &str) -> String {
+    let said = |rms: f64| {
+        format!(
+            " What is left shows over an axis, but hardly comes again in another repeat, and no part of the axis stands out of \
+             what whole stretches of motion scatter by: the zero wanders by {} from one to another.",
+            figure(rms, unit)
+        )
+    };
+    found.scatter_rms().filter(|_| verdict == Verdict::Adequate).map(said).unwrap_or_default()
 }
 
 /// An effect that may be there as well, for all that the error tells.

@@ -6,6 +6,7 @@ use crate::effect::Stage;
 use crate::linear::dot;
 use crate::maps::Maps;
 use crate::prepare::{Prepared, Problem};
+use crate::report::NoiseFloor;
 use crate::select::{Ground, Search, alone};
 use crate::terms::Term;
 
@@ -26,6 +27,13 @@ const FUNCTION: f64 = 0.1;
 /// The axis over which structure remains.
 pub fn structured(maps: &Maps) -> Option<&str> {
     maps.removable().filter(|(_, share)| *share > STRUCTURE_SHARE).map(|(axis, _)| axis)
+}
+
+/// What shows over an axis is what whole stretches of motion differ by, a zero that wanders or lies elsewhere after every
+/// reversal: little of it comes again in another repeat, and no part of any axis stands out of that scatter.
+pub fn is_scatter(maps: &Maps, floor: &NoiseFloor) -> bool {
+    let comes_again = floor.ci95.is_none() || floor.repeatable_share.is_none_or(|share| share > STRUCTURE_SHARE);
+    structured(maps).is_some() && !comes_again && !maps.stand_out()
 }
 
 /// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any

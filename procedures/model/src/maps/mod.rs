@@ -88,6 +88,22 @@ impl Maps {
         cell.half_width(self.alpha, self.cells)
     }
 
+    /// Some part of an axis stands out of what the pieces of the run scatter by.
+    pub fn stand_out(&self) -> bool {
+        let mut cells = self.axes.iter().chain(&self.by_direction).flat_map(|map| &map.cells);
+        cells.any(|cell| self.half_width(cell).is_some_and(|half_width| cell.mean.abs() > half_width))
+    }
+
+    /// RMS of the means of the pieces, each counted with its rows.
+    pub fn between_rms(&self) -> f64 {
+        let mut at = 0;
+        let squares = self.piece.chunk_by(|a, b| a == b).map(|rows| {
+            at += rows.len();
+            self.residual[at - rows.len()..at].iter().sum::<f64>().powi(2) / rows.len() as f64
+        });
+        (squares.sum::<f64>() / self.residual.len() as f64).sqrt()
+    }
+
     /// Regions in which the residual is not noise, the worst first.
     pub fn regions(&self, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
         regions::regions(self, unit, yardstick)

@@ -113,14 +113,7 @@ impl Ground {
         let rest = self.basis.rest(column);
         let sums = products(&rest, &self.residual, &self.groups);
         let squares = products(&rest, &rest, &self.groups);
-        let (sum, square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
-        let factor = sum / square;
-        let without = |(s, h): (&f64, &f64)| ((sum - s) / (square - h) - factor).powi(2);
-        let n = sums.len() as f64;
-        let error = ((n - 1.0) / n * sums.iter().zip(&squares).map(without).sum::<f64>()).sqrt();
-        let deciding = square * square / dot(&squares, &squares);
-        let t = StudentsT::new(0.0, 1.0, deciding - 1.0).ok()?;
-        let chance = 2.0 * t.sf((factor / error).abs());
+        let chance = jackknife(&sums, &squares)?;
         Some(Normal::standard().inverse_cdf(1.0 - chance.max(1e-15))).filter(|z| z.is_finite())
     }
 
@@ -141,6 +134,19 @@ impl Own {
     }
 }
 
-fn products<C: Into<f64> + Copy>(a: &[C], b: &[f64], groups: &[Range<usize>]) -> Vec<f64> {
+/// How often noise alone would bring a factor so far from zero, beside the scatter of groups: `sums` are the products of its
+/// column with the residual, `squares` those with itself.
+pub fn jackknife(sums: &[f64], squares: &[f64]) -> Option<f64> {
+    let (sum, square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
+    let factor = sum / square;
+    let without = |(s, h): (&f64, &f64)| ((sum - s) / (square - h) - factor).powi(2);
+    let n = sums.len() as f64;
+    let error = ((n - 1.0) / n * sums.iter().zip(squares).map(without).sum::<f64>()).sqrt();
+    let deciding = square * square / dot(squares, squares);
+    let t = StudentsT::new(0.0, 1.0, deciding - 1.0).ok()?;
+    Some(2.0 * t.sf((factor / error).abs()))
+}
+
+pub fn products<C: Into<f64> + Copy>(a: &[C], b: &[f64], groups: &[Range<usize>]) -> Vec<f64> {
     groups.iter().map(|rows| dot(&a[rows.clone()], &b[rows.clone()])).collect()
 }

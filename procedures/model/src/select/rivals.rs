@@ -129,7 +129,7 @@ pub fn step<'p>(
             let sse = polish(&mut term, basis, residual, problem);
             let [term] = term;
             let possible = term.allows(&ground.own(&term.columns).factors()) && bar.leaves_possible(now, &term);
-            let possible = possible && !scatter::could_be(&term, now, &ground, bar.kind, options.alpha);
+            let possible = possible && !scatter::could_be(&term, now, &ground, bar.kind, options);
             let sse = if possible { sse } else { energy };
             (term, 1.0 - sse / energy)
         })
@@ -177,25 +177,30 @@ pub fn step<'p>(
     let mut rival = rivals.swap_remove(winner);
     let scores =
         open.par_iter().zip(&gains).map(|(i, own)| ground.score(&library.candidates[*i].columns, own)).collect();
-    rival.p_value = family_wise(&rival.term, scores, &ground, options);
+    rival.p_value = family_wise(&rival.term.columns, scores, &ground, options);
     (rival.p_value <= options.alpha).then_some((rival, ties))
 }
 
 /// How often noise alone would bring any candidate of the library as far as this one: the family-wise p-value.
 pub fn significance(term: &Term, library: &Library, ground: &Ground, options: &Options) -> f64 {
     let scores = library.candidates.iter().map(|c| ground.score(&c.columns, &ground.own(&c.columns)));
-    family_wise(term, scores.collect(), ground, options)
+    family_wise(&term.columns, scores.collect(), ground, options)
 }
 
 /// The p-value of one effect that nothing else was tried beside.
 pub fn alone(term: &Term, ground: &Ground, options: &Options) -> f64 {
-    family_wise(term, Vec::new(), ground, options)
+    chance(&term.columns, ground, options)
+}
+
+/// The same of its columns.
+pub(super) fn chance(columns: &[Vec<f64>], ground: &Ground, options: &Options) -> f64 {
+    family_wise(columns, Vec::new(), ground, options)
 }
 
 /// The same from scores that are there already.
-fn family_wise(term: &Term, mut scores: Vec<Score>, ground: &Ground, options: &Options) -> f64 {
-    let own = ground.score(&term.columns, &ground.own(&term.columns));
-    let z = own.z().max(ground.jackknife_z(&term.columns).unwrap_or(f64::NEG_INFINITY));
+fn family_wise(columns: &[Vec<f64>], mut scores: Vec<Score>, ground: &Ground, options: &Options) -> f64 {
+    let own = ground.score(columns, &ground.own(columns));
+    let z = own.z().max(ground.jackknife_z(columns).unwrap_or(f64::NEG_INFINITY));
     scores.push(own);
     Null::new(&scores, options.flips, options.seed).p_value(z)
 }

@@ -3,11 +3,13 @@
 //! The blocks that are turned over are parts of long legs. What a whole leg has in common (where an encoder came to rest in
 //! its coupling, where a gear rests) is in all of them, and few legs in a row lie apart like a step in time.
 
-use super::ground::Ground;
+use super::ground::{Ground, jackknife, products};
+use super::rivals::chance;
+use crate::Options;
 use crate::effect::Search;
 use crate::linear::{Basis, dot};
 use crate::pieces::legs;
-use crate::prepare::stretches;
+use crate::prepare::{Problem, stretches};
 use crate::terms::{Term, Terms};
 use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
@@ -19,15 +21,20 @@ const BETWEEN: f64 = 0.9;
 /// So many times the scatter of the readings is a step that nobody doubts.
 const READINGS: f64 = 2.0;
 
-/// F-test of the means of legs, for what the columns of an effect have of their own beside the model. A step may lie between
-/// any two legs, and one within a leg moves its mean too.
-pub fn could_be(term: &Term, now: &Terms, ground: &Ground, kind: Kind, alpha: f64) -> bool {
-    if !matches!(kind, Kind::Encoder | Kind::Stiffness) {
+/// What the columns of an effect have of their own beside the model, against the scatter of whole legs. What differs from leg
+/// to leg has to pass an F-test of their means: a step may lie between any two legs, and one within a leg moves its mean too.
+pub fn could_be(term: &Term, now: &Terms, ground: &Ground, kind: Kind, options: &Options) -> bool {
+    // A friction run has a leg for every speed both ways: its blocks are its legs.
+    if kind == Kind::Friction {
         return false;
     }
     let legs = stretches(&legs(now.problem));
     let steps = term.form.shape.iter().any(|shape| shape.search == Search::Jump);
     let own: Vec<Vec<f64>> = term.columns.iter().map(|column| ground.basis.rest(column)).collect();
+    if !steps && !own.iter().all(|column| is_between(column, &legs)) {
+        return !shows_within(&own, &legs, ground, now.problem, options)
+            && !shows_between(&own, term, &legs, ground, options);
+    }
     // The model has taken its own share of what the legs scatter by.
     let taken = now.columns().into_iter().filter(|column| is_between(column, &legs)).count() as f64;
     let explained = own.len() as f64;
@@ -35,15 +42,44 @@ pub fn could_be(term: &Term, now: &Terms, ground: &Ground, kind: Kind, alpha: f6
     if free < 1.0 {
         return steps && own.iter().all(|column| is_small(column, &ground.residual));
     }
-    if !steps && !own.iter().all(|column| is_between(column, &legs)) {
-        return false;
-    }
     let plain = means(&ground.residual, &legs);
     let left = Basis::of(&own.iter().map(|column| means(column, &legs)).collect::<Vec<_>>()).rest(&plain);
     let (before, after) = (dot(&plain, &plain), dot(&left, &left));
     let f = (before - after) / explained / (after / free).max(f64::MIN_POSITIVE);
     let places = if steps { legs.len() as f64 - 1.0 } else { 1.0 };
-    FisherSnedecor::new(explained, free).is_ok_and(|law| places * (1.0 - law.cdf(f)) > alpha)
+    FisherSnedecor::new(explained, free).is_ok_and(|law| places * (1.0 - law.cdf(f)) > options.alpha)
+}
+
+/// The effect shows within legs, with a zero of its own for each.
+fn shows_within(
+    own: &[Vec<f64>],
+    legs: &[Range<usize>],
+    ground: &Ground,
+    problem: &Problem,
+    options: &Options,
+) -> bool {
+    let within = |column: &Vec<f64>| {
+        let mut column = column.clone();
+        means(&column, legs)
+            .iter()
+            .zip(legs)
+            .for_each(|(mean, leg)| column[leg.clone()].iter_mut().for_each(|v| *v -= mean));
+        column
+    };
+    let basis = Basis::of(&ground.basis.vectors().iter().map(within).collect::<Vec<_>>());
+    let residual = basis.rest(&within(&ground.residual));
+    let columns: Vec<Vec<f64>> = own.iter().map(within).collect();
+    chance(&columns, &Ground::new(basis, residual, problem), options) <= options.alpha
+}
+
+/// Its size stands out of what it would be without one leg after the other.
+fn shows_between(own: &[Vec<f64>], term: &Term, legs: &[Range<usize>], ground: &Ground, options: &Options) -> bool {
+    let mut taken = vec![0.0; ground.residual.len()];
+    for (column, factor) in own.iter().zip(ground.own(&term.columns).factors()) {
+        taken.iter_mut().zip(column).for_each(|(t, v)| *t += factor * v);
+    }
+    let (sums, squares) = (products(&taken, &ground.residual, legs), products(&taken, &taken, legs));
+    jackknife(&sums, &squares).is_some_and(|chance| chance <= options.alpha)
 }
 
 /// Legs too few to tell their scatter: a step is one where it is larger than what the readings scatter by.
