@@ -15,6 +15,7 @@ pub mod spelling;
 pub mod table;
 pub mod trace;
 pub mod units;
+pub mod zero;
 
 pub use bench::Bench;
 pub use clock::{Clock, SystemClock};

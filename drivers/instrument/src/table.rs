@@ -1,6 +1,7 @@
 //! A run table: one run's samples with the facts about the set-up, checked once at the door.
 
 use crate::skew::align;
+use crate::zero::take_off;
 use crate::{Kind, Meta, Trace};
 
 /// One run, ready for a model: the required columns are there, all values of the time are finite and rising.
@@ -82,8 +83,8 @@ impl RunTable {
     /// Checks a trace against its kind: required columns, units, finite values, rising time, whole segment numbers.
     ///
     /// Unknown columns may hold anything finite. Columns that were felt later than their rows are moved to them
-    /// ([`crate::skew`]). Cost: one pass over the columns.
-    pub fn new(meta: Meta, trace: Trace) -> Result<Self, TableFault> {
+    /// ([`crate::skew`]), and a torque sensor's zero is taken off ([`crate::zero`]). Cost: one pass over the columns.
+    pub fn new(mut meta: Meta, trace: Trace) -> Result<Self, TableFault> {
         let kind = meta.kind.ok_or(TableFault::UnknownKind)?;
         check_names(kind, &trace)?;
         if trace.is_empty() {
@@ -104,7 +105,8 @@ impl RunTable {
             return Err(TableFault::TimeNotRising { row: row + 1, before: time_s[row], after: time_s[row + 1] });
         }
         check_facts(&meta, time_s)?;
-        Ok(Self { kind, meta, trace: align(trace) })
+        let trace = align(take_off(&mut meta, trace));
+        Ok(Self { kind, meta, trace })
     }
 
     pub fn kind(&self) -> Kind {

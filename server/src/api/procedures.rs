@@ -12,7 +12,7 @@ use utoipa::IntoParams;
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct ProcedureQuery {
-    /// A bench: each procedure then says whether it could be made there.
+    /// A bench: each procedure then says whether it could be made there, and its defaults are those of what was applied to it.
     pub bench: Option<String>,
 }
 
@@ -20,7 +20,7 @@ pub struct ProcedureQuery {
 #[utoipa::path(get, path = "/procedures", operation_id = "list_procedures", tag = "procedures", params(ProcedureQuery),
     responses((status = 200, description = "The procedures", body = Vec<Procedure>), Refusals))]
 pub async fn list(State(lab): State<Lab>, Query(query): Query<ProcedureQuery>) -> Answer<Vec<Procedure>> {
-    Ok(Json(lab.procedures(query.bench.as_deref())?))
+    Ok(Json(lab.procedures(query.bench.as_deref()).await?))
 }
 
 /// Dry run: duration, steps, extremes against the limits, checks; nothing moves

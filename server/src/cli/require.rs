@@ -127,7 +127,7 @@ fn factor(written: &str, own: &str) -> Option<f64> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::view::{Identified, Shown};
+    use crate::view::{Applies, Identified, Shown};
 
     /// A friction of 30.6 mNm ± 0.4 mNm.
     pub fn found() -> Identification {
@@ -146,7 +146,9 @@ pub(super) mod tests {
             quantities: vec![quantity],
             figures: Vec::new(),
         };
-        Identification { run: 1, procedure: "friction".to_owned(), software: String::new(), result, follow_up: None }
+        let applies = Applies { can: false, what: String::new() };
+        let procedure = "friction".to_owned();
+        Identification { run: 1, procedure, software: String::new(), result, follow_up: None, applies }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
 use crate::store::RunFilter;
 use crate::view::{self, Bench, BenchState};
+use jointbench_instrument::zero::TORQUE_ZERO;
 use jointbench_procedure::catalogue::{BrakeModel, brake_model};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
 use jointbench_procedure::{BenchFacts, Plan, PlanFault, Procedure, catalogue, procedure};
@@ -73,10 +74,19 @@ impl Lab {
     }
 
     /// The catalogue, with what a bench could not make of it, where one is named.
-    pub fn procedures(&self, bench: Option<&str>) -> Answer<Vec<view::Procedure>> {
+    pub async fn procedures(&self, bench: Option<&str>) -> Answer<Vec<view::Procedure>> {
         let facts = bench.map(|name| self.handle(name)).transpose()?.map(BenchHandle::facts);
-        let refused = |procedure| facts.as_ref().and_then(|facts| refusal(procedure, facts));
-        Ok(catalogue().iter().map(|one| procedure_view(*one, refused(*one))).collect())
+        let mut told = Vec::new();
+        for one in catalogue() {
+            let given = match bench {
+                Some(bench) => self.applied_choices(bench, one.id()).await?.map(|(_, given)| given),
+                None => None,
+            }
+            .unwrap_or_default();
+            let refused = facts.as_ref().and_then(|facts| refusal(*one, &given, facts));
+            told.push(procedure_view(*one, &given, refused));
+        }
+        Ok(told)
     }
 
     /// Dry run. Nothing moves.
@@ -100,14 +110,29 @@ impl Lab {
             LabError::NotFound(format!("there is no procedure {id}; there are {}", known.join(", ")))
         })?;
         let mut facts = bench.facts();
-        let values = Values::parse(procedure.schema(), parameters).map_err(PlanFault::from)?;
+        let (friction, given) = self.applied_choices(bench.name(), id).await?.unzip();
+        let given = given.unwrap_or_default();
+        let mut choices = given.clone();
+        choices.extend(parameters.clone());
+        let values = Values::parse(procedure.schema(), &choices).map_err(PlanFault::from)?;
         let mut source = None;
         if let Some(run) = procedure.brake_model(&values) {
             (source, facts.brake_model) = self.brake_model(bench.name(), i64::from(run)).await?.unzip();
         }
-        let mut plan = procedure.plan(parameters, &facts)?;
+        let mut plan = procedure.plan(&choices, &facts)?;
+        let mut tell = |fact: &str, value: Value| plan.meta.other.insert(fact.to_owned(), value);
         if let Some(run) = source {
-            plan.meta.other.insert("brake_model_of_run".into(), run.into());
+            tell("brake_model_of_run", run.into());
+        }
+        let used = |(name, value): (&String, &Value)| choices[name].as_f64() == value.as_f64();
+        if let Some(run) = friction.filter(|_| given.iter().any(used)) {
+            tell("friction_of_run", run.into());
+        }
+        if facts.has_torque_sensor
+            && let Some((run, zero_nm)) = self.applied_zero(bench.name(), procedure).await?
+        {
+            tell(TORQUE_ZERO, zero_nm.into());
+            tell("torque_sensor_zero_of_run", run.into());
         }
         Ok((bench, plan))
     }
@@ -176,35 +201,35 @@ fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
     ]
 }
 
-/// Why a procedure could not be made with its defaults, as far as that does not depend on earlier runs.
-fn refusal(procedure: &dyn Procedure, facts: &BenchFacts) -> Option<String> {
-    let defaults = Values::parse(procedure.schema(), &Map::new()).ok()?;
+/// Why a procedure could not be made with its defaults, or what was applied instead, as far as that does not depend on earlier runs.
+fn refusal(procedure: &dyn Procedure, given: &Map<String, Value>, facts: &BenchFacts) -> Option<String> {
+    let defaults = Values::parse(procedure.schema(), given).ok()?;
     if procedure.brake_model(&defaults).is_some() {
         return (!facts.has_brake).then(|| format!("bench {} has no brake", facts.name));
     }
-    match procedure.plan(&Map::new(), facts) {
+    match procedure.plan(given, facts) {
         Ok(plan) => plan.preview(facts).checks.into_iter().find(|check| !check.ok).map(|check| check.detail),
         Err(fault) => Some(fault.to_string()),
     }
 }
 
-fn procedure_view(procedure: &dyn Procedure, refused: Option<String>) -> view::Procedure {
+fn procedure_view(procedure: &dyn Procedure, given: &Map<String, Value>, refused: Option<String>) -> view::Procedure {
     view::Procedure {
         id: procedure.id().to_owned(),
         title: procedure.title().to_owned(),
         summary: procedure.summary().to_owned(),
         kind: procedure.kind().to_string(),
-        parameters: procedure.schema().iter().map(parameter_view).collect(),
+        parameters: procedure.schema().iter().map(|one| parameter_view(one, given)).collect(),
         refused,
     }
 }
 
-fn parameter_view(parameter: &Parameter) -> view::ProcedureParameter {
+fn parameter_view(parameter: &Parameter, given: &Map<String, Value>) -> view::ProcedureParameter {
     view::ProcedureParameter {
         name: parameter.name.to_owned(),
         title: parameter.title.to_owned(),
         unit: parameter.unit.to_owned(),
-        default: parameter.default,
+        default: given.get(parameter.name).and_then(Value::as_f64).unwrap_or(parameter.default),
         min: parameter.min,
         max: parameter.max,
         type_: match parameter.kind {

@@ -1,13 +1,42 @@
-//! Results that the next runs of a bench use. The brake's hysteresis is the one that a run is commanded with.
+//! Results that the next runs of a bench use: the brake's hysteresis, with which a brake is commanded, the torque sensor's zero,
+//! which is taken off, and friction, with which its compensation is planned.
 
 use super::{Answer, Lab, LabError};
-use crate::view::{Calibration, Identified, NewCalibration};
-use jointbench_procedure::RunState;
+use crate::view::{Applies, Calibration, Identified, NewCalibration};
+use jointbench_procedure::{Procedure, RunState};
+use serde_json::{Map, Value};
 
-/// Whose result is used.
+/// Whose result a brake is commanded with.
 pub(super) const BRAKE_MODEL: &str = "brake_hysteresis";
+const SENSOR_ZERO: &str = "torque_sensor_zero";
+const FRICTION: &str = "friction";
+/// What can be applied, and what becomes of it.
+const USES: [(&str, &str); 3] = [
+    (BRAKE_MODEL, "the bench's next runs command the brake with it"),
+    (SENSOR_ZERO, "the zero is taken off the torque of the bench's next runs; their rows stay as felt"),
+    (FRICTION, "it is what friction compensation on this bench is planned with, unless told otherwise"),
+];
 /// More entries than a bench has in years.
 const MOST: u32 = 500;
+
+/// What becomes of the result of a procedure when it is applied, or why it cannot be.
+pub(super) fn applies(procedure: &str) -> Applies {
+    match USES.iter().find(|(id, _)| *id == procedure) {
+        Some((_, what)) => Applies { can: true, what: (*what).to_owned() },
+        None => Applies { can: false, what: why_not(procedure).to_owned() },
+    }
+}
+
+fn why_not(procedure: &str) -> &'static str {
+    match procedure {
+        "encoder_linearity" => {
+            "Not applied to the bench: the table belongs into the controller that reads this encoder, and a bench that took it off \
+             would no longer measure the encoder as it is."
+        }
+        "identify_joint" => "Not applied as a whole: run friction or torque_sensor_zero by itself, and apply that.",
+        _ => "Not applied to the bench: no procedure uses what this one finds.",
+    }
+}
 
 impl Lab {
     /// Newest first.
@@ -25,16 +54,17 @@ impl Lab {
     /// The next run uses it. Gives all entries, this one first.
     pub async fn calibrate(&self, bench: &str, new: &NewCalibration, by: &str) -> Answer<Vec<Calibration>> {
         let is_simulated = self.handle(bench)?.description().is_simulated();
-        if new.procedure != BRAKE_MODEL {
+        let wanted = new.procedure.as_str();
+        if !applies(wanted).can {
+            let can = USES.map(|(id, _)| id).join(", ");
             return Err(LabError::Invalid(format!(
-                "no run uses what {} finds: {BRAKE_MODEL} is what can be applied to a bench",
-                new.procedure
+                "no run uses what {wanted} finds: what can be applied to a bench is {can}"
             )));
         }
         if let Some(id) = new.run {
             let record = self.inner.store.run(id).await?;
-            if (record.bench.as_str(), record.procedure.as_str()) != (bench, BRAKE_MODEL) {
-                return Err(LabError::Invalid(format!("run {id} is no {BRAKE_MODEL} of bench {bench}")));
+            if (record.bench.as_str(), record.procedure.as_str()) != (bench, wanted) {
+                return Err(LabError::Invalid(format!("run {id} is no {wanted} of bench {bench}")));
             }
             if record.simulated != is_simulated {
                 return Err(LabError::Invalid(format!(
@@ -48,8 +78,25 @@ impl Lab {
                 )));
             }
         }
-        self.inner.store.calibrate(bench, BRAKE_MODEL, new.run, by).await?;
-        tracing::warn!(bench, procedure = BRAKE_MODEL, run.id = new.run, by, "applied to the bench");
+        self.inner.store.calibrate(bench, wanted, new.run, by).await?;
+        tracing::warn!(bench, procedure = wanted, run.id = new.run, by, "applied to the bench");
         self.calibrations(bench).await
+    }
+
+    /// The choices for a procedure as the bench's applied friction gives them, and the run that found it.
+    pub(super) async fn applied_choices(&self, bench: &str, id: &str) -> Answer<Option<(i64, Map<String, Value>)>> {
+        let Some(run) = self.inner.store.calibration(bench, FRICTION).await? else { return Ok(None) };
+        let Some(next) = self.follow_up(run).await?.filter(|next| next.procedure == id) else { return Ok(None) };
+        Ok(Some((run, next.parameters)))
+    }
+
+    /// The zero that is taken off the torque of a run of this procedure: not of one that measures it anew.
+    pub(super) async fn applied_zero(&self, bench: &str, of: &dyn Procedure) -> Answer<Option<(i64, f64)>> {
+        let parts = of.finds();
+        if parts.iter().any(|found| found.name.rsplit('.').next() == Some("zero")) {
+            return Ok(None);
+        }
+        let Some(run) = self.inner.store.calibration(bench, SENSOR_ZERO).await? else { return Ok(None) };
+        Ok(self.quantities(run).await?.into_iter().find(|one| one.name == "zero").map(|zero| (run, zero.value)))
     }
 }

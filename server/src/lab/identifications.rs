@@ -1,14 +1,18 @@
 //! What a procedure makes of a run that is kept.
 
+use super::calibrations::applies;
 use super::{Answer, Lab, LabError, reread};
 use crate::store::Subject;
-use crate::view::{Earlier, Identification, Quantity};
+use crate::view::{Earlier, FollowUp, Identification, Quantity};
 use jointbench_procedure::parameter::Values;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// As many as a small plot can show.
 const EARLIER: u32 = 12;
-/// Under which name the quantities of a complete run are kept.
+/// Under which names parts of what a complete run has found are kept.
 const QUANTITIES: &str = "quantities";
+const FOLLOW_UP: &str = "follow_up";
 
 impl Lab {
     /// What earlier runs have found with which this one can be compared, newest first. A run of which this version makes
@@ -28,15 +32,31 @@ impl Lab {
         Ok(told)
     }
 
-    /// The figures of a run that is complete: worked out once, then kept.
-    async fn quantities(&self, run: i64) -> Answer<Vec<Quantity>> {
-        if let Some(kept) = self.inner.store.kept(Subject::Run(run), QUANTITIES).await? {
-            return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
+    /// The figures of a run that is complete.
+    pub(super) async fn quantities(&self, run: i64) -> Answer<Vec<Quantity>> {
+        self.kept_of(run, QUANTITIES, |found| found.result.quantities).await
+    }
+
+    /// The run for which a complete one has found the parameters.
+    pub(super) async fn follow_up(&self, run: i64) -> Answer<Option<FollowUp>> {
+        self.kept_of(run, FOLLOW_UP, |found| found.follow_up).await
+    }
+
+    /// A part of what a complete run has found: worked out once, then kept.
+    async fn kept_of<T: Serialize + DeserializeOwned>(
+        &self,
+        run: i64,
+        what: &str,
+        part: impl FnOnce(Identification) -> T,
+    ) -> Answer<T> {
+        let damaged = |fault: serde_json::Error| LabError::Internal(fault.to_string());
+        if let Some(kept) = self.inner.store.kept(Subject::Run(run), what).await? {
+            return serde_json::from_slice(&kept).map_err(damaged);
         }
-        let quantities = self.identification(run).await?.result.quantities;
-        let json = serde_json::to_vec(&quantities).map_err(|fault| LabError::Internal(fault.to_string()))?;
-        self.inner.store.keep(Subject::Run(run), QUANTITIES, &json).await?;
-        Ok(quantities)
+        let part = part(self.identification(run).await?);
+        let json = serde_json::to_vec(&part).map_err(damaged)?;
+        self.inner.store.keep(Subject::Run(run), what, &json).await?;
+        Ok(part)
     }
 
     /// Worked out anew from the samples, so that it is always the present code's; `None` where the procedure asks nothing of
@@ -67,6 +87,7 @@ impl Lab {
         }
         Ok(Identification {
             run: id,
+            applies: applies(&record.procedure),
             procedure: record.procedure,
             software: concat!("jointbench ", env!("CARGO_PKG_VERSION")).to_owned(),
             follow_up: procedure.follow_up(&found).map(|next| reread(&next)).transpose()?,

@@ -7,9 +7,9 @@ use utoipa::ToSchema;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Calibration {
     pub id: i64,
-    /// Whose results take each other's place: `brake_hysteresis`.
+    /// Whose results take each other's place: `brake_hysteresis`, `torque_sensor_zero` or `friction`.
     pub procedure: String,
-    /// `null`: none in particular, the last complete one counts.
+    /// `null`: none in particular. For the brake the last complete one counts then, for the others none.
     pub run: Option<i64>,
     /// Name of the token, or `local`.
     pub by: String,
@@ -23,6 +23,6 @@ pub struct Calibration {
 #[serde(deny_unknown_fields)]
 pub struct NewCalibration {
     pub procedure: String,
-    /// A complete run of the bench that has identified what it was made for; `null` leaves it to the last complete one again.
+    /// A complete run of the bench that has identified what it was made for; `null` takes back what was applied.
     pub run: Option<i64>,
 }

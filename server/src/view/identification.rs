@@ -26,6 +26,15 @@ pub struct Identification {
     /// The run that uses what was found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub follow_up: Option<FollowUp>,
+    pub applies: Applies,
+}
+
+/// Whether the next runs of the bench can be made to use the result (`POST /bench/{bench}/calibrations`).
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Applies {
+    pub can: bool,
+    /// What becomes of it then, or why it cannot be.
+    pub what: String,
 }
 
 /// A run for which this one has found the parameters.

@@ -39,7 +39,7 @@ fn the_next_run_is_commanded_by_the_brake_that_was_applied_and_the_way_back_is_o
     daemon.wait_for_end(friction);
     for (refused, status) in [
         (json!({"procedure": "brake_hysteresis", "run": friction}), 422),
-        (json!({"procedure": "friction", "run": friction}), 422),
+        (json!({"procedure": "stiffness", "run": friction}), 422),
         (json!({"procedure": "brake_hysteresis", "run": 7777}), 404),
     ] {
         assert_eq!(daemon.post(&path, &refused.to_string()).0, status, "{refused}");
@@ -47,4 +47,52 @@ fn the_next_run_is_commanded_by_the_brake_that_was_applied_and_the_way_back_is_o
     let (_, log) = daemon.get("/api/v1/log");
     let of_kind = log.as_array().unwrap().iter().filter(|entry| entry["kind"] == "calibration");
     assert_eq!(of_kind.count(), 3, "{log}");
+}
+
+#[test]
+fn a_zero_is_taken_off_the_next_runs_and_compensation_is_planned_with_the_friction_that_was_applied() {
+    let daemon = TestDaemon::start();
+    let path = format!("/api/v1/bench/{BENCH}/calibrations");
+    let apply = |procedure: &str, run: Value| {
+        let (status, told) = daemon.post(&path, &json!({"procedure": procedure, "run": run}).to_string());
+        assert_eq!((status, &told[0]["procedure"], &told[0]["run"]), (201, &procedure.into(), &run), "{told}");
+        told
+    };
+    let run = |id: i64| daemon.get(&format!("/api/v1/runs/{id}")).1;
+    let found = |id: i64| daemon.get(&format!("/api/v1/runs/{id}/identification")).1;
+    let quantity = |found: &Value, name: &str| {
+        let all = found["quantities"].as_array().unwrap();
+        all.iter().find(|one| one["name"] == name).unwrap()["value"].as_f64().unwrap()
+    };
+    let sensor = || made(&daemon, "torque_sensor_zero", json!({"duration_s": 60, "steady_nm_per_min": 1}));
+    let measured = sensor();
+    let zero_nm = quantity(&found(measured), "zero");
+    assert_eq!(found(measured)["applies"]["can"], true);
+    apply("torque_sensor_zero", measured.into());
+
+    let friction = made(&daemon, "friction", json!({"warm_up_s": 30.0}));
+    let meta = &run(friction)["meta"];
+    assert_eq!(
+        (&meta["torque_sensor_zero_nm"], &meta["torque_sensor_zero_of_run"]),
+        (&zero_nm.into(), &measured.into())
+    );
+    assert!(run(sensor())["meta"]["torque_sensor_zero_nm"].is_null(), "a zero is measured from what is felt");
+
+    let next = found(friction)["follow_up"]["parameters"]["tau_c_nm"].as_f64().unwrap();
+    apply("friction", friction.into());
+    let (_, offered) = daemon.get(&format!("/api/v1/procedures?bench={BENCH}"));
+    let compensation = offered.as_array().unwrap().iter().find(|one| one["id"] == "compensation").unwrap();
+    let default = compensation["parameters"].as_array().unwrap().iter().find(|one| one["name"] == "tau_c_nm").unwrap();
+    assert_eq!(default["default"], next);
+    let fed = run(made(&daemon, "compensation", json!({"periods": 2})));
+    assert_eq!((&fed["parameters"]["tau_c_nm"], &fed["meta"]["friction_of_run"]), (&next.into(), &friction.into()));
+
+    let told = apply("friction", Value::Null);
+    let holds = |procedure: &str| {
+        let mut all = told.as_array().unwrap().iter();
+        all.find(|one| one["procedure"] == procedure && one["holds"] == true).unwrap()["run"].clone()
+    };
+    assert_eq!((holds("friction"), holds("torque_sensor_zero")), (Value::Null, measured.into()), "{told}");
+    let fed = run(made(&daemon, "compensation", json!({"periods": 2})));
+    assert_eq!((&fed["parameters"]["tau_c_nm"], &fed["meta"]["friction_of_run"]), (&0.03.into(), &Value::Null));
 }
