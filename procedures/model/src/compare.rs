@@ -2,7 +2,8 @@
 
 use crate::ModelError;
 use crate::fit::evaluate;
-use crate::report::{Comparison, Fit, Parameter, ParameterPair};
+use crate::report::{Comparison, Fit, Parameter, ParameterPair, Wider};
+use crate::words;
 use jointbench_instrument::RunTable;
 
 /// What the second model has that the first has not, and the other way round, parameter by parameter, and the error of
@@ -20,6 +21,9 @@ pub fn compare(first: &Fit, second: &Fit, run: &RunTable) -> Result<Comparison, 
     let same = |a: &&Parameter, b: &&Parameter| a.effect == b.effect && a.name == b.name;
     let mut parameters: Vec<ParameterPair> =
         first.parameters.iter().map(|a| pair(Some(a), second.parameters.iter().find(|b| same(b, &a)))).collect();
+    for pair in &mut parameters {
+        pair.wider = wider([first, second], pair);
+    }
     let new = second.parameters.iter().filter(|b| !first.parameters.iter().any(|a| same(&a, b)));
     parameters.extend(new.map(|b| pair(None, Some(b))));
     Ok(Comparison {
@@ -45,5 +49,54 @@ fn pair(first: Option<&Parameter>, second: Option<&Parameter>) -> ParameterPair 
         (Some(p), _) | (None, Some(p)) => (p.effect.clone(), p.name.clone(), p.unit.clone()),
         (None, None) => Default::default(),
     };
-    ParameterPair { effect, name, unit, first: first.cloned(), second: second.cloned(), differ }
+    ParameterPair { effect, name, unit, first: first.cloned(), second: second.cloned(), differ, wider: None }
+}
+
+/// An interval so many times as wide as the other is told.
+const WIDER: f64 = 1.5;
+/// So much fewer rows, or so much less left over, is a reason.
+const FEWER: f64 = 0.8;
+
+fn wider(fits: [&Fit; 2], pair: &ParameterPair) -> Option<Wider> {
+    let width = |p: &Parameter| p.ci95[1] - p.ci95[0];
+    let times = width(pair.second.as_ref()?) / width(pair.first.as_ref()?);
+    if !times.is_finite() || times <= 0.0 {
+        return None;
+    }
+    let (second, times) = (times > 1.0, times.max(1.0 / times));
+    let (wide, narrow) = (fits[usize::from(second)], fits[usize::from(!second)]);
+    (times > WIDER).then(|| Wider { second, times, why: why_wider(wide, narrow, pair) })
+}
+
+/// The first of the reasons that the fits themselves tell.
+fn why_wider(wide: &Fit, narrow: &Fit, pair: &ParameterPair) -> String {
+    let me = format!("{}.{}", pair.effect, pair.name);
+    let partners = |fit: &Fit| -> Vec<(String, f64)> {
+        let mine = fit.trade_offs.iter().filter(|one| one.first == me || one.second == me);
+        mine.map(|one| (if one.first == me { &one.second } else { &one.first }.clone(), one.correlation)).collect()
+    };
+    let before = partners(narrow);
+    let new = partners(wide).into_iter().filter(|(other, _)| before.iter().all(|(one, _)| one != other));
+    if let Some((other, correlation)) = new.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
+        let (effect, name) = other.split_once('.').unwrap_or((&other, ""));
+        let added = if narrow.effects.iter().any(|one| one == effect) { "" } else { "the added effect " };
+        return format!(
+            "it trades off with {added}{} ({name}, correlation {correlation:.2})",
+            effect.replace('_', " ")
+        );
+    }
+    let rows = [wide, narrow].map(|fit| fit.preparation.rows);
+    if (rows[0] as f64) < FEWER * rows[1] as f64 {
+        return format!("fewer samples, {} rows of the fit instead of {}", rows[0], rows[1]);
+    }
+    if narrow.rms < FEWER * wide.rms {
+        let [more, less] = [wide, narrow].map(|fit| words::figure(fit.rms, &fit.unit));
+        return format!("more is left unexplained, {more} instead of {less}");
+    }
+    let added = wide.effects.iter().filter(|effect| !narrow.effects.contains(effect));
+    let added: Vec<String> = added.map(|effect| effect.replace('_', " ")).collect();
+    if !added.is_empty() {
+        return format!("with {} there is more to tell apart by the same samples", added.join(" and "));
+    }
+    "segments and repeats agree less about it".to_owned()
 }

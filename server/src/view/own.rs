@@ -148,6 +148,17 @@ pub struct ParameterPair {
     pub second: Option<FittedParameter>,
     /// The values are further apart than their intervals allow; `null` where one is missing or has no interval.
     pub differ: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wider: Option<Wider>,
+}
+
+/// Why a parameter's interval is much wider in one of two versions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Wider {
+    /// In the second, or in the first.
+    pub second: bool,
+    pub times: f64,
+    pub why: String,
 }
 
 /// An exported model that comes in as a version of a run.

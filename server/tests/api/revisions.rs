@@ -58,6 +58,15 @@ fn two_versions_stand_side_by_side() {
     let pair = |name: &str| found["parameters"].as_array().unwrap().iter().find(|p| p["name"] == name).unwrap().clone();
     assert!(pair("a")["first"].is_null() && pair("a")["differ"].is_null() && pair("a")["second"]["value"].is_f64());
     assert!(pair("tau_c")["differ"].is_boolean(), "{found}");
+    let width = |one: &Value| one["ci95"][1].as_f64().unwrap() - one["ci95"][0].as_f64().unwrap();
+    for pair in found["parameters"].as_array().unwrap().iter().filter(|pair| pair["differ"].is_boolean()) {
+        let times = width(&pair["second"]) / width(&pair["first"]);
+        assert_eq!(pair["wider"].is_object(), times > 1.5 || times < 1.0 / 1.5, "{pair}");
+        if pair["wider"].is_object() {
+            assert_eq!(pair["wider"]["second"], times > 1.0);
+            assert!(pair["wider"]["why"].as_str().unwrap().len() > 10, "{pair}");
+        }
+    }
     let (status, held) =
         daemon.post(&format!("/api/v1/models/{}/evaluate", better["id"]), &json!({"run": run}).to_string());
     assert_eq!((status, &held["rms"]), (200, &found["second"]["rms"]), "{held}");

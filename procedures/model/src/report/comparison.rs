@@ -29,4 +29,16 @@ pub struct ParameterPair {
     pub second: Option<Parameter>,
     /// The values are further apart than their intervals allow. `None` where one is missing or has no interval.
     pub differ: Option<bool>,
+    /// Where one interval is much wider than the other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wider: Option<Wider>,
+}
+
+/// Why a parameter is less certain in one of two models.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Wider {
+    /// In the second, or in the first.
+    pub second: bool,
+    pub times: f64,
+    pub why: String,
 }

@@ -6,7 +6,7 @@ mod fit;
 mod maps;
 mod residuals;
 
-pub use comparison::{Comparison, ParameterPair};
+pub use comparison::{Comparison, ParameterPair, Wider};
 pub use diagnosis::{
     Diagnosis, Discovery, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, Region, Silent, Step, Suggestion,
     Verdict,
