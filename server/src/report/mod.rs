@@ -42,7 +42,7 @@ impl Report {
                 }
                 body {
                     main {
-                        h1 { (title) " " (badge(summary.simulated)) }
+                        h1 { (title) " " (self.badge()) }
                         (self.course())
                         @if let Some(found) = &self.identification { (result(found)) }
                         @if let Some(model) = self.versions.last() { (self.model(model)) }
@@ -54,9 +54,32 @@ impl Report {
         .into_string()
     }
 
+    /// Where a run that came in as a file was measured nobody here has seen.
+    fn badge(&self) -> Markup {
+        let word = match (self.run.summary.simulated, self.file()) {
+            (true, _) => "SIMULATED",
+            (false, Some(_)) => "IMPORTED",
+            (false, None) => "HARDWARE",
+        };
+        html! { span.badge { (word) } }
+    }
+
+    /// The file that the run came in as.
+    fn file(&self) -> Option<&str> {
+        self.run.provenance.get("imported")?.get("file")?.as_str()
+    }
+
     fn course(&self) -> Markup {
         let summary = &self.run.summary;
         html! {
+            @if let Some(file) = self.file() {
+                p {
+                    "Data of the file " b { (file) }
+                    @if let Some(source) = self.run.meta.get("source") { ", source: " (plain(source)) }
+                    @if summary.simulated { "; its facts say that a simulated bench made it." }
+                    @else { ", measured elsewhere: what bench made it is known from its facts alone." }
+                }
+            }
             p.quiet {
                 (summary.created_at) " · " (word(summary.state).replace('_', " ")) " · " (summary.rows) " samples"
                 @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of the bench")) }
@@ -123,10 +146,6 @@ impl Report {
             @if let Some(text) = text { p { "Bench description" } pre { (text) } }
         }
     }
-}
-
-fn badge(simulated: bool) -> Markup {
-    html! { span.badge { @if simulated { "SIMULATED" } @else { "HARDWARE" } } }
 }
 
 fn result(found: &Identification) -> Markup {

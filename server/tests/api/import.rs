@@ -91,3 +91,21 @@ fn a_stretch_goes_out_and_is_summed_up_in_full_resolution() {
         daemon.get(&format!("{path}/samples?channels=absent")).0
     );
 }
+
+#[test]
+fn a_report_says_whose_data_it_tells_of() {
+    let daemon = TestDaemon::start();
+    let told = |meta: &str| {
+        let (status, run) = upload(&daemon, GOOD, &[("meta", meta)]);
+        assert_eq!(status, 201, "{run}");
+        let path = format!("/api/v1/runs/{}/report", run["id"]);
+        daemon.get_raw(&path).into_body().read_to_string().unwrap()
+    };
+    let report = told(&META.replace('}', r#", "source": "line 3"}"#));
+    for part in ["IMPORTED</span>", "bench.csv", "source: line 3", "measured elsewhere"] {
+        assert!(report.contains(part), "{part}: {report}");
+    }
+    assert!(!report.contains("HARDWARE"));
+    let report = told(&META.replace('}', r#", "simulated": true}"#));
+    assert!(report.contains("SIMULATED</span>") && report.contains("bench.csv"), "{report}");
+}
