@@ -37,6 +37,13 @@ describe('telling series apart', () => {
 		expect(looks[3]!.dash).not.toBe(looks[2]!.dash);
 	});
 
+	it('draws a run as the plot above draws it, and its second curve in the same colour', () => {
+		const [mean, apart] = [['#1, up', '#2, up', '#1, down', '#2, down'], ['#2 − #1, up', '#2 − #1, down']].map((labels) => styles(labels!.map((label) => series(label, 'line', [], [])), ['#1', '#2']));
+		expect([apart![0], apart![1]].map((look) => [look!.stroke, look!.dash])).toEqual([mean![1], mean![3]].map((look) => [look!.stroke, look!.dash]));
+		expect(mean![0]!.stroke).not.toBe(mean![1]!.stroke);
+		expect(new Set(mean!.map((look) => look.dash)).size).toBe(4);
+	});
+
 	it('never comes back to the same colour and dash within thirty lines', () => {
 		const looks = styles(Array.from({ length: 30 }, (_, i) => series(`line ${i}`, 'line', [], [])));
 		expect(new Set(looks.map((look) => look.stroke + look.dash)).size).toBe(30);

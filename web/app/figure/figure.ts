@@ -44,22 +44,27 @@ const STROKES = ['--oi-blue', '--oi-vermillion', '--oi-green', '--oi-purple', '-
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2', '14 3'];
 const GLYPHS: Glyph[] = ['dot', 'ring', 'square', 'cross', 'triangle'];
 
-/** `model, positive` and `line at 0.2 A` are drawn in the colours of `positive` and `0.2 A`: a model and its points belong together. */
+/** What is of a run is in its colour. `model, positive` and `line at 0.2 A` are drawn in the colours of `positive` and `0.2 A`: a model and its points belong together. */
 function family(labels: readonly string[], i: number): string {
 	const label = labels[i]!;
+	const run = /^#\d+/.exec(label);
+	if (run) return run[0];
 	const kin = labels.find((one) => one !== label && (label.endsWith(` ${one}`) || label.split(', ').at(-1) === one));
 	return kin ?? label.split(', ').at(-1)!;
 }
 
-export function styles(series: readonly Series[]): Style[] {
+/** `runs`: in whose colours and dashes another plot is drawn. */
+export function styles(series: readonly Series[], runs: readonly string[] = []): Style[] {
 	const labels = series.map((one) => one.label);
 	const kin = labels.map((_, i) => family(labels, i));
-	const families = [...new Set(kin)];
+	const families = [...new Set([...runs, ...kin])];
 	/** Its place among the series of its mark; what has one name is one thing, drawn alike. */
 	const before = (i: number) => [...new Set(series.filter((one) => one.mark === series[i]!.mark).map((one) => one.label))].indexOf(labels[i]!);
+	/** A run's second curve has a dash that no first one has. */
+	const dash = (i: number) => (runs.length ? families.indexOf(kin[i]!) + runs.length * labels.slice(0, i).filter((_, k) => kin[k] === kin[i]).length : before(i));
 	return series.map((_, i) => ({
 		stroke: STROKES[families.indexOf(kin[i]!) % STROKES.length]!,
-		dash: DASHES[before(i) % DASHES.length]!,
+		dash: DASHES[dash(i) % DASHES.length]!,
 		glyph: GLYPHS[before(i) % GLYPHS.length]!,
 		bar: before(i),
 	}));
