@@ -148,6 +148,9 @@ export async function dashesOf(page, address) {
 	const legend = await plot.locator('figcaption line').evaluateAll((lines) => lines.map((line) => line.getAttribute('stroke-dasharray') ?? ''));
 	const ratio = await page.evaluate(() => devicePixelRatio);
 	const painted = await page.evaluate(() => [...window.painted]);
+	const inks = (figure) => figure.locator('[stroke^="var(--oi"]').evaluateAll((drawn) => [...new Set(drawn.map((one) => one.getAttribute('stroke')))]);
+	const [above, below] = [await inks(plot), await inks(page.locator('[data-figure=difference]'))];
+	expect(below.join() === above.slice(1).join(), `the difference is drawn in ${below.join()}, its runs above in ${above.join()}`);
 	return { legend, missing: legend.filter((dash) => !painted.includes(dash.split(' ').map((n) => (n ? n * ratio : '')).join(' '))) };
 }
 
@@ -230,4 +233,14 @@ async function readCampaign(page, base, runs) {
 export async function countCurves(page) {
 	const axes = await page.locator('section', { has: page.getByRole('heading', { name: 'Where the model is wrong' }) }).locator('select').first().locator('option').count();
 	return { curves: await page.getByTitle("Show on the map's x axis").count(), axes };
+}
+
+/** Ticks two runs of the picker, and waits for the one model of both. */
+export async function openTogether(page, base, [first, second]) {
+	await page.goto(`${base}/workbench`);
+	for (const run of [first, second]) await page.getByLabel(`Together: run ${run}`).check({ timeout: PATIENCE_MS });
+	await audit(page, 'the picker with two runs');
+	await page.getByRole('link', { name: 'One model of 2 runs' }).click();
+	await page.getByRole('list', { name: 'Runs of the data' }).getByText(`#${second}`).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the runs that were ticked together have no model together'));
+	expect(!page.url().includes('more='), `the address still asks for what it shows: ${page.url()}`);
 }

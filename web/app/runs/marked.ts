@@ -13,3 +13,6 @@ export function toggleMarked(marked: readonly number[], id: number): number[] {
 	if (marked.includes(id)) return marked.filter((one) => one !== id);
 	return marked.length < MOST ? [...marked, id] : [...marked];
 }
+
+/** The workbench with one model of all of them; the first keeps it. */
+export const together = ([first, ...more]: readonly number[]): string => `/workbench/${first}${more.length ? `?more=${more.join(',')}` : ''}`;

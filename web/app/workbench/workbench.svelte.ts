@@ -6,6 +6,7 @@ import { percent, quantity } from '../format/number';
 import { words } from '../format/label';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
+import { readMarked } from '../runs/marked';
 import { router } from '../state/router.svelte';
 import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
@@ -176,6 +177,18 @@ export function openWorkbench(id: number) {
 		busy = null;
 	}
 	const others = $derived(model?.more_runs ?? []);
+	/** Runs that the address wants in the data too: once, then it names the version. */
+	$effect(() => {
+		const more = readMarked(router.query.get('more')).filter((one) => one !== id);
+		if (!model || busy !== null || !more.length) return;
+		const from = model;
+		untrack(() => {
+			router.set({ more: null });
+			const known = versions.find((one) => one.effects.join() === from.effects.join() && one.more_runs.join() === more.join());
+			if (known) router.set({ model: known.id });
+			else void refitOn(more, `Fitting run #${[id, ...more].join(' and #')} together`);
+		});
+	});
 	const join = (more: number) => refitOn([...others, more], `Fitting run #${more} with the others`);
 	const leave = (less: number) => refitOn(others.filter((one) => one !== less), `Fitting without run #${less}`);
 	const refitWithout = (excluded: Exclusion[], what: string, told: string) => refitOn(others, what, excluded, told);
