@@ -109,9 +109,9 @@ export async function showEarlier(page, base) {
 	await page.locator('main tbody tr').first().waitFor({ timeout: PATIENCE_MS });
 	const first = page.getByRole('cell', { name: '#1', exact: true }).first();
 	expect(!(await first.isVisible()), 'the log begins with more than the newest runs');
-	for (let pages = 0; pages < 3 && !(await first.isVisible()); pages++) {
+	for (let pages = 0; pages < 40 && !(await first.isVisible()); pages++) {
 		await page.getByRole('button', { name: 'Show earlier' }).click({ timeout: 5000 });
-		await first.waitFor({ timeout: 3000 }).catch(() => {});
+		await first.waitFor({ timeout: 1000 }).catch(() => {});
 	}
 	expect(await first.isVisible(), 'the log does not go back to the first run');
 	await audit(page, 'the log of earlier runs');

@@ -304,6 +304,8 @@ export async function chooseForeign(page, base, table) {
 /** Brings the table in, in three clicks from the file to the workbench. */
 export async function importForeign(page, base, table) {
 	const form = await chooseForeign(page, base, table);
+	expect(await form.getByRole('button', { name: 'Import' }).isDisabled(), 'a file without torque constant can be imported');
+	await form.getByText('torque constant: a number is needed').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the page does not say what the import lacks'));
 	for (const [name, value] of [['torque constant', '0.08'], ['gear ratio', '50'], ['rotor inertia', '4e-5']]) await form.getByLabel(name).fill(value);
 	await form.getByRole('button', { name: 'Import' }).click();
 	await page.getByRole('link', { name: 'open in the workbench' }).waitFor({ timeout: 30_000 });
@@ -395,7 +397,9 @@ export async function writeEffect(page, run) {
 	await page.getByRole('button', { name: 'Own formula' }).click();
 	const form = page.getByRole('form', { name: 'Own formula' });
 	const formula = form.getByLabel('formula', { exact: true });
-	await form.getByLabel('name', { exact: true }).fill('Walked load');
+	await page.keyboard.type('Walked load');
+	const name = await form.getByLabel('name', { exact: true }).inputValue();
+	expect(name === 'Walked load', `what is typed after opening the own formula goes elsewhere: ${name}`);
 	await formula.fill('tau = a * direction * abs(load');
 	await form.getByText('character 31').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the mistake is not marked at its character'));
 	expect((await form.locator('mark').count()) === 1, 'nothing is marked in the formula');

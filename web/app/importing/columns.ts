@@ -5,6 +5,8 @@ export interface Kind {
 	optional: string[];
 	/** Facts about the set-up that the models of this kind need or use. */
 	facts: string[];
+	/** Without these nothing is fitted. */
+	must?: string[];
 	baseline: string[];
 }
 
@@ -16,6 +18,7 @@ export const KINDS: Kind[] = [
 		required: ['time_s', 'motor_position_rad', 'motor_current_a'],
 		optional: ['motor_velocity_rad_s', 'link_position_rad', 'link_torque_nm', 'brake_current_a', 'brake_torque_command_nm', ...ALWAYS],
 		facts: ['torque_constant_nm_per_a', 'gear_ratio', 'rotor_inertia_kg_m2'],
+		must: ['torque_constant_nm_per_a'],
 		baseline: ['inertia', 'load_transmission', 'coulomb', 'viscous'],
 	},
 	{
@@ -30,6 +33,7 @@ export const KINDS: Kind[] = [
 		required: ['time_s', 'motor_position_rad', 'link_position_rad', 'link_torque_nm'],
 		optional: ['link_velocity_rad_s', ...ALWAYS],
 		facts: ['gear_ratio'],
+		must: ['gear_ratio'],
 		baseline: ['offset', 'compliance'],
 	},
 	{

@@ -18,7 +18,7 @@ const ALIASES: Record<string, RegExp> = {
 	motor_current_a: /^(motorcurrent|iq|current|i|strom)$/,
 	link_position_rad: /^(link(pos|position|angle)|output(pos|position|angle)|loadangle)$/,
 	link_velocity_rad_s: /^(link(vel|velocity|speed)|output(vel|velocity|speed))$/,
-	link_torque_nm: /^(link|load|output|sensor)?(torque|tau|moment|drehmoment)$/,
+	link_torque_nm: /^(link|load|output|sensor)?(torque|tau|moment|drehmoment)$|^(load|last)$/,
 	temperature_c: /^(temp(erature)?|winding(temp(erature)?)?|tmotor)$/,
 	brake_current_a: /^(brakecurrent|current|ibrake|i)$/,
 	brake_torque_nm: /^(brake)?(torque|tau)$/,

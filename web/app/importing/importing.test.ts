@@ -18,6 +18,10 @@ describe('the mapping of a foreign table', () => {
 		expect(mapping['segment']!.from).toBe('');
 	});
 
+	it('takes the load by the name that the page gives it', () => {
+		for (const load of ['load', 'Load [Nm]', 'load_nm', 'Last']) expect(guess(friction, [load])['link_torque_nm']!.from).toBe(load);
+	});
+
 	it('becomes what the daemon understands', () => {
 		const { map, scale } = instructions(mapping);
 		expect(map).toContain('motor_current_a=Iq [A]');

@@ -16,6 +16,8 @@ export const COUNTERS = new Set(['time_s', 'segment', 'repeat']);
 /** What the daemon tells beside a run that is on: the torque of the motor, measured and as the bench's last model has it. Small beside what the link carries, so a plot of its own. */
 export const MODEL = 'model';
 export const TOLD = ['motor_torque_nm', 'model_torque_nm'];
+/** Angles by which a stage is moved: some mrad, which the turns of a shaft would make flat lines of. */
+const STAGE = 'stage';
 /** What a unit measures, in the order in which people look at it. */
 const QUANTITIES = new Map([
 	['rad/s', 'velocity'],
@@ -24,6 +26,7 @@ const QUANTITIES = new Map([
 	['A', 'current'],
 	['°C', 'temperature'],
 	['rad', 'position'],
+	[STAGE, 'stage angle'],
 ]);
 const ORDER = [...QUANTITIES.keys()];
 
@@ -32,7 +35,7 @@ export function groupsOf(channels: readonly Channel[], rpm = false, model = MODE
 	const byUnit = new Map<string, string[]>();
 	for (const channel of channels) {
 		if (COUNTERS.has(channel.name)) continue;
-		const unit = TOLD.includes(channel.name) ? MODEL : label(channel.name, channel.unit).unit;
+		const unit = TOLD.includes(channel.name) ? MODEL : /^stage_.*_rad$/.test(channel.name) ? STAGE : label(channel.name, channel.unit).unit;
 		byUnit.set(unit, [...(byUnit.get(unit) ?? []), channel.name]);
 	}
 	const place = (unit: string) => (ORDER.includes(unit) ? ORDER.indexOf(unit) : ORDER.length);
@@ -42,7 +45,7 @@ export function groupsOf(channels: readonly Channel[], rpm = false, model = MODE
 function makeGroup(unit: string, names: string[], rpm: boolean, model: string): Group {
 	const titles = unit === MODEL ? ['measured', model] : names.map((name) => label(name).title);
 	const title = QUANTITIES.get(unit) ?? titles.join(', ');
-	const shown = unit === MODEL ? 'Nm' : speedScale(unit, rpm).unit;
+	const shown = unit === MODEL ? 'Nm' : unit === STAGE ? 'rad' : speedScale(unit, rpm).unit;
 	const curves = titles.map((title, i) => ({ label: title, unit: shown, mark: 'line' as const, ...curveStyle(i) }));
 	return { unit, title: unit ? `${title} [${shown}]` : title, names, curves };
 }

@@ -43,6 +43,14 @@ it('draws channels of one unit together', () => {
 	expect(groups[0]!.curves[0]!.dash).not.toEqual(groups[0]!.curves[1]!.dash);
 });
 
+it('draws the small angles of a stage apart from the turns of a shaft', () => {
+	const groups = groupsOf(['stage_tilt_rad', 'reference_position_rad', 'stage_nod_rad'].map((name) => ({ name })));
+	expect(groups.map((group) => [group.title, group.names.length])).toEqual([
+		['position [rad]', 1],
+		['stage angle [rad]', 2],
+	]);
+});
+
 it('draws the model of a run that is on beside what was measured, apart from the load', () => {
 	const names = ['link_torque_nm', 'motor_torque_nm', 'model_torque_nm'];
 	const [torque, load] = groupsOf(names.map((name) => ({ name })), false, 'model 12');

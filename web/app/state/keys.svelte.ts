@@ -35,8 +35,8 @@ class Keys {
 
 function isTyping(target: EventTarget | null): boolean {
 	const element = target instanceof HTMLElement ? target : null;
-	// A box to tick takes no letters.
-	return !!element && (element.isContentEditable || element.matches('textarea, select, input:not([type=checkbox], [type=radio], [type=range])'));
+	// A box to tick takes no letters; in a form with a name of its own, such as an editor, all keys are its own.
+	return !!element && (element.isContentEditable || element.closest('form[aria-label]') !== null || element.matches('textarea, select, input:not([type=checkbox], [type=radio], [type=range])'));
 }
 
 /** Space is its own key there. */
