@@ -54,7 +54,13 @@ impl Identification {
                 }
             };
             let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
-            self.summary = format!("{part} ({state}), this is what its part says:{gap}{}", self.summary);
+            self.summary = match (&self.advice, self.verdict) {
+                // Nothing has failed while samples still come.
+                (Some(lacking), Verdict::Failed) if !state.is_final() => {
+                    format!("Not yet: {}.", without_remedy(lacking))
+                }
+                _ => format!("{part} ({state}), this is what its part says:{gap}{}", self.summary),
+            };
             // What a part lacks is no fault of how the run was planned.
             self.advice = Some(next.to_owned());
             if self.verdict == Verdict::Identified {
@@ -70,6 +76,11 @@ impl Identification {
     pub fn quantity(&self, name: &str) -> Option<&Quantity> {
         self.quantities.iter().find(|quantity| quantity.name == name)
     }
+}
+
+/// What is lacking, without what follows on it: how to make the run anew.
+fn without_remedy(lacking: &str) -> &str {
+    lacking.split_once("; ").or_else(|| lacking.rsplit_once(": ")).map_or(lacking, |(why, _)| why)
 }
 
 /// With a minus as long as a plus before each number that stands alone; a command has none of those.
@@ -192,6 +203,21 @@ mod tests {
         assert!(said(RunState::Stopped, true).contains("jointbench run --continue 12"));
         assert_eq!(said(RunState::Failed, false), "make it again");
         assert_eq!(said(RunState::Paused, true), "let it come to its end");
+    }
+
+    #[test]
+    fn what_is_lacking_is_no_failure_while_the_run_is_on() {
+        let said = |lacking: &str, state| Identification::failed("Nothing.", lacking).of_run(12, state, true).summary;
+        let few = "too few samples: 12 usable in motion, at least 40 are needed; record a longer run";
+        assert_eq!(
+            said(few, RunState::Running),
+            "Not yet: too few samples: 12 usable in motion, at least 40 are needed."
+        );
+        assert_eq!(
+            said("too few speeds were held: make the run to its end", RunState::Paused),
+            "Not yet: too few speeds were held."
+        );
+        assert!(said(few, RunState::Aborted).ends_with("this is what its part says: Nothing."));
     }
 
     #[test]
