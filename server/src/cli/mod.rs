@@ -33,6 +33,7 @@ pub use exit::Exit;
 /// Reads the arguments and does what they say. Exit codes: 0 done, 1 the run failed or a limit was broken, 2 bad arguments
 /// or bad input, 3 could not be decided.
 pub fn main() -> ExitCode {
+    jointbench_model::one_heap();
     let arguments = Arguments::parse();
     // `jointbench fit … | head` ends quietly. Never where a bench is ours: its end is the engine's business.
     if !matches!(arguments.command, Command::Demo(_) | Command::Serve(_)) {

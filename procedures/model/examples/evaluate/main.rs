@@ -20,6 +20,7 @@ use score::Table;
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
+    jointbench_model::one_heap();
     let asked = Asked::parse();
     if let Some(folder) = &asked.folder {
         return show::show(folder);
