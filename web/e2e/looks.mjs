@@ -214,7 +214,7 @@ async function readCampaign(page, base, runs) {
 	const parts = await Promise.all(runs.map((one, i) => of(one, `Part ${i + 1}`)));
 	const whole = (what) => parts.flatMap((part) => part[what]);
 	await page.route('**/identification', (route) =>
-		route.fulfill({ json: { run: runs[0].run, procedure: 'identify_joint', software: 'jointbench', verdict: 'identified', advice: null, summary: whole('summary').join('\n'), quantities: whole('quantities'), figures: whole('figures') } }),
+		route.fulfill({ json: { run: runs[0].run, procedure: 'identify_joint', software: 'jointbench', verdict: 'identified', advice: null, applies: { can: false, what: 'Nothing of this is applied.' }, summary: whole('summary').join('\n'), quantities: whole('quantities'), figures: whole('figures') } }),
 	);
 	await page.goto(`${base}/runs/${runs[0].run}`);
 	const lines = page.locator('[data-part]');
