@@ -13,6 +13,9 @@ const MOMENTS: usize = 8;
 const AT_MOST: usize = 6;
 const TIME: &str = "time_s";
 const VELOCITY: &str = "motor_velocity_rad_s";
+const LOAD: &str = "link_torque_nm";
+/// Only what carries about the same load is held against each other: the span of all loads in so many.
+const LOADS: usize = 8;
 /// Slower than this share of the fastest speed, a joint goes neither way.
 const AT_REST: f64 = 0.01;
 
@@ -27,7 +30,7 @@ pub struct Alignment {
 
 impl Lab {
     /// The channel over what the runs are aligned by, unless that is the time, and the differences from the first run with two
-    /// standard errors, which come from how far stretches at the same place are apart.
+    /// standard errors, which come from how far stretches at the same place and load are apart.
     pub async fn differences(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
         if !(2..=AT_MOST).contains(&runs.len()) {
             return Err(LabError::Invalid(format!("{} runs: choose 2 to {AT_MOST}", runs.len())));
@@ -47,9 +50,10 @@ impl Lab {
             return Err(LabError::Invalid(format!("{} stays where it is in these runs", spoken(&how.by))));
         }
         let axis = Axis { low, step: (high - low) / PLACES as f64, places: PLACES };
+        let loads = self.loads(runs, how).await?;
         let mut courses = Vec::new();
         for (run, zero) in runs.iter().zip(zeros) {
-            courses.push(self.course(*run, how, &axis, zero).await?);
+            courses.push(self.course(*run, how, [&axis, &loads], zero).await?);
         }
         let (shown, apart) = over_places(runs, &axis, &courses);
         Ok(figures(runs[0], how, &courses[0].unit, shown, apart))
@@ -69,8 +73,8 @@ impl Lab {
             // Two rows in each moment, or nothing is there to be told.
             let places = (rows as usize / 2 / MOMENTS).max(1) * MOMENTS;
             let axis = Axis { low, step: (high - low) / places as f64, places };
-            let base = self.course(runs[0], how, &axis, zeros[0]).await?;
-            let course = self.course(runs[other], how, &axis, zeros[other]).await?;
+            let base = self.course(runs[0], how, [&axis, &Axis::ANY], zeros[0]).await?;
+            let course = self.course(runs[other], how, [&axis, &Axis::ANY], zeros[other]).await?;
             let points = (0..places / MOMENTS).filter_map(|place| apart_at(&axis, [&base, &course], place)).collect();
             apart.push(series(format!("#{} − #{}", runs[other], runs[0]), points));
             unit = base.unit;
@@ -99,14 +103,32 @@ impl Lab {
         Ok(spans)
     }
 
-    async fn course(&self, run: i64, how: &Alignment, axis: &Axis, zero: f64) -> Answer<Course> {
+    /// The loads, where they are about the same in all runs and not themselves what is looked at.
+    async fn loads(&self, runs: &[i64], how: &Alignment) -> Answer<Axis> {
+        let spans = match [how.channel.as_str(), how.by.as_str()].contains(&LOAD) {
+            true => Vec::new(),
+            false => self.spans(runs, LOAD).await.unwrap_or_default(),
+        };
+        let low = spans.iter().map(|span| span[0]).fold(f64::INFINITY, f64::min);
+        let high = spans.iter().map(|span| span[1]).fold(f64::NEG_INFINITY, f64::max);
+        let alike = low < high && spans.iter().all(|span| span[1] - span[0] > (high - low) / 2.0);
+        Ok(if alike { Axis { low, step: (high - low) / LOADS as f64, places: LOADS } } else { Axis::ANY })
+    }
+
+    async fn course(&self, run: i64, how: &Alignment, [axis, loads]: [&Axis; 2], zero: f64) -> Answer<Course> {
         let store = &self.inner.store;
         let mut names = vec![how.channel.clone(), how.by.clone()];
+        if loads.places > 1 {
+            names.push(LOAD.to_owned());
+        }
         let known = store.trace(run, None, 0..0).await?;
-        let turns = how.by != TIME && how.by != VELOCITY && known.channels().iter().any(|c| c.name == VELOCITY);
+        let moves = how.by != TIME && known.channels().iter().any(|c| c.name == VELOCITY);
+        let turns = moves && how.by != VELOCITY;
         let mut rest = 0.0;
-        if turns {
-            names.push(VELOCITY.to_owned());
+        if moves {
+            if turns {
+                names.push(VELOCITY.to_owned());
+            }
             let [low, high] = self.spans(&[run], VELOCITY).await?[0];
             rest = AT_REST * low.abs().max(high.abs());
         }
@@ -115,21 +137,23 @@ impl Lab {
             true => store.rows_between(run, from_s, to_s).await?,
             false => store.rows_between(run, None, None).await?,
         };
-        let mut walk = Walk::new(axis.places);
+        let mut walk = Walk::new(axis.places, loads);
         let mut unit = None;
         for first in rows.clone().step_by(ROWS_AT_ONCE as usize) {
             let trace = store.trace(run, Some(&names), first..(first + ROWS_AT_ONCE).min(rows.end)).await?;
             let column = |name: &str| trace.column(name).unwrap_or_default();
             let (values, along, velocity) = (column(&how.channel), column(&how.by), column(VELOCITY));
+            let load = column(LOAD);
             unit = trace.channels().iter().find(|c| c.name == how.channel).and_then(Channel::unit).map(str::to_owned);
             for (i, (value, at)) in values.iter().zip(along).enumerate() {
-                let way = match velocity.get(i).filter(|_| turns) {
+                let way = match velocity.get(i).filter(|_| moves) {
                     Some(speed) if speed.abs() <= rest => None,
-                    Some(speed) => Some(usize::from(*speed < 0.0)),
+                    Some(speed) => Some(usize::from(turns && *speed < 0.0)),
                     None => Some(0),
                 };
                 let place = way.zip(axis.place(at - zero)).filter(|_| value.is_finite());
-                walk.step(place.map(|(way, place)| way * axis.places + place), *value);
+                let load = load.get(i).copied().unwrap_or_default();
+                walk.step(place.map(|(way, place)| way * axis.places + place), *value, load);
             }
         }
         Ok(Course { tallies: walk.end(), unit: unit.unwrap_or_default(), turns })
@@ -143,6 +167,9 @@ struct Axis {
 }
 
 impl Axis {
+    /// One place for whatever there is.
+    const ANY: Axis = Axis { low: f64::MIN, step: f64::INFINITY, places: 1 };
+
     fn place(&self, at: f64) -> Option<usize> {
         let place = (at - self.low) / self.step;
         // The largest value is in the last place.
@@ -155,17 +182,39 @@ impl Axis {
     }
 }
 
-/// What a run shows at each place, first forwards and then backwards: means of stretches, as samples that follow each other are not
-/// independent, each with the weight of its rows.
+/// What a run shows at each place, first forwards and then backwards, and load: means of stretches, as samples that follow
+/// each other are not independent, each with the weight of its rows.
 struct Course {
-    tallies: Vec<Tally>,
+    tallies: Vec<[Tally; LOADS]>,
     unit: String,
     turns: bool,
 }
 
 impl Course {
+    /// Over all loads.
     fn at(&self, place: usize) -> Option<Tally> {
-        Some(self.tallies[place]).filter(|tally| tally.n > 0)
+        let mut all = Tally::default();
+        self.loads(place).for_each(|(_, tally)| all.take(tally.mean, tally.weight));
+        Some(all).filter(|tally| tally.n > 0)
+    }
+
+    /// What there is at a place, load by load.
+    fn loads(&self, place: usize) -> impl Iterator<Item = (usize, Tally)> {
+        self.tallies[place].into_iter().enumerate().filter(|(_, tally)| tally.n > 0)
+    }
+
+    /// How far another is from this where both carry the same load, and its variance when a row of each has `scatters`.
+    fn apart(&self, other: &Course, place: usize, scatters: [f64; 2]) -> Option<(f64, f64)> {
+        let (mut all, mut variance) = (Tally::default(), 0.0);
+        for (load, a) in self.loads(place) {
+            let b = other.tallies[place][load];
+            if b.n > 0 {
+                let weight = 1.0 / (1.0 / a.weight + 1.0 / b.weight);
+                all.take(b.mean - a.mean, weight);
+                variance += weight.powi(2) * (scatters[0] / a.weight + scatters[1] / b.weight);
+            }
+        }
+        (all.n > 0).then(|| (all.mean, variance / all.weight.powi(2)))
     }
 }
 
@@ -189,42 +238,48 @@ impl Tally {
 }
 
 /// Rows one after the other: as long as they stay at a place they are one stretch.
-struct Walk {
-    tallies: Vec<Tally>,
+struct Walk<'a> {
+    loads: &'a Axis,
+    tallies: Vec<[Tally; LOADS]>,
     place: Option<usize>,
     stretch: Tally,
+    load: Tally,
 }
 
-impl Walk {
-    fn new(places: usize) -> Self {
-        Self { tallies: vec![Tally::default(); 2 * places], place: None, stretch: Tally::default() }
+impl<'a> Walk<'a> {
+    fn new(places: usize, loads: &'a Axis) -> Self {
+        let tallies = vec![[Tally::default(); LOADS]; 2 * places];
+        Self { loads, tallies, place: None, stretch: Tally::default(), load: Tally::default() }
     }
 
-    fn step(&mut self, place: Option<usize>, value: f64) {
+    fn step(&mut self, place: Option<usize>, value: f64, load: f64) {
         if place != self.place {
             self.close();
             self.place = place;
         }
         self.stretch.take(value, 1.0);
+        self.load.take(load, 1.0);
     }
 
     fn close(&mut self) {
-        if let Some(place) = self.place {
-            self.tallies[place].take(self.stretch.mean, self.stretch.weight);
+        if let Some((place, load)) = self.place.zip(self.loads.place(self.load.mean)) {
+            self.tallies[place][load].take(self.stretch.mean, self.stretch.weight);
         }
-        self.stretch = Tally::default();
+        (self.stretch, self.load) = (Tally::default(), Tally::default());
     }
 
-    fn end(mut self) -> Vec<Tally> {
+    fn end(mut self) -> Vec<[Tally; LOADS]> {
         self.close();
         self.tallies
     }
 }
 
-/// Variance of a stretch about the others at its place, times its rows, over all places: few are come back to often.
+/// Variance of a stretch about the others at its place and load, times its rows, over all places: few are come back to
+/// often.
 fn scatter(course: &Course) -> Option<f64> {
-    let more = course.tallies.iter().map(|tally| tally.n.saturating_sub(1) as f64).sum::<f64>();
-    (more > 0.0).then(|| course.tallies.iter().map(|tally| tally.squares).sum::<f64>() / more)
+    let tallies = || course.tallies.iter().flatten();
+    let more = tallies().map(|tally| tally.n.saturating_sub(1) as f64).sum::<f64>();
+    (more > 0.0).then(|| tallies().map(|tally| tally.squares).sum::<f64>() / more)
 }
 
 /// Place, value and two standard errors, where they are known.
@@ -247,10 +302,10 @@ fn over_places(runs: &[i64], axis: &Axis, courses: &[Course]) -> (Vec<FigureSeri
                 continue;
             }
             let difference = |place| {
-                let (base, other) = (at(0, place)?, at(i, place)?);
-                let error =
-                    scatters[0].zip(scatters[i]).map(|(a, b)| 2.0 * (a / base.weight + b / other.weight).sqrt());
-                Some((axis.centre(place, 1), other.mean - base.mean, error))
+                let known = scatters[0].zip(scatters[i]);
+                let (a, b) = known.unwrap_or_default();
+                let (apart, variance) = courses[0].apart(&courses[i], way * axis.places + place, [a, b])?;
+                Some((axis.centre(place, 1), apart, known.map(|_| 2.0 * variance.sqrt())))
             };
             let points = (0..axis.places).filter_map(difference).collect();
             apart.push(series(format!("#{run} − #{}{name}", runs[0]), points));

@@ -127,6 +127,9 @@ fn condition(term: &str) -> Result<Condition, StoreError> {
             return Ok(Condition::Number(column, operator, number));
         }
     }
+    if let Some((key, _)) = term.split_once(['<', '>']).filter(|(_, value)| value.parse::<f64>().is_ok()) {
+        return Err(refuse(format!("{key} cannot be compared; there are {KEYS}")));
+    }
     let Some((key, value)) = term.split_once(':') else { return Ok(Condition::Word(term.to_owned())) };
     if let Some((_, column)) = FIELDS.iter().find(|(name, _)| *name == key) {
         // As the pages call it.
@@ -202,6 +205,7 @@ mod tests {
     fn a_wrong_term_is_named_with_what_there_is() {
         for (text, said) in [
             ("colour:red", "there is no field colour; there are bench:"),
+            ("temp<30", "temp cannot be compared; there are bench:"),
             ("rows>many", "\"many\" is no number"),
             ("tag:", "a value is missing"),
             ("after:tomorrow", "2026-01-31"),

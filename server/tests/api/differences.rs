@@ -84,3 +84,31 @@ fn a_difference_is_told_with_two_standard_errors() {
     let (status, problem) = daemon.get(&format!("/api/v1/runs/{base}/differences?others=x&channel=motor_current_a"));
     assert!(status == 400 && problem["detail"].as_str().unwrap().contains("others = x"), "{problem}");
 }
+
+/// The same under four loads, each of which takes much more current than the runs are from each other.
+fn loaded(more_a: f64, seed: u64) -> String {
+    let mut table = String::new();
+    for (i, line) in strokes(more_a, seed).lines().enumerate() {
+        let (row, current) = line.rsplit_once(',').unwrap();
+        let load = i / 1000 % 4;
+        table += &match current.parse::<f64>() {
+            Ok(current) => format!("{row},{},{load}\n", current + load as f64 * current.signum()),
+            Err(_) => format!("{line},link_torque_nm\n"),
+        };
+    }
+    table
+}
+
+#[test]
+fn runs_are_held_against_each_other_under_the_same_load() {
+    let daemon = TestDaemon::start();
+    let add = |table: String| upload(&daemon, &table, &[("meta", META)]).1["id"].as_i64().unwrap();
+    let (base, other) = (add(loaded(0.0, 1)), add(loaded(MORE_A, 2)));
+    for by in ["motor_position_rad", "motor_velocity_rad_s"] {
+        let (_, figures) =
+            daemon.get(&format!("/api/v1/runs/{base}/differences?channel=motor_current_a&others={other}&by={by}"));
+        let bands: Vec<Vec<f64>> = figures[1]["series"][0]["band"].as_array().unwrap().iter().map(numbers).collect();
+        let wide = bands.iter().filter(|band| band[1] - band[0] > MORE_A).count();
+        assert!(bands.len() > 20 && wide * 5 < bands.len(), "{by}: {wide} of {} bands tell nothing", bands.len());
+    }
+}
