@@ -86,3 +86,31 @@ fn kr300_repeats_are_different_motions() {
         assert!(found.verdict != Verdict::Adequate || found.undecided.is_some(), "{axis}: {}", found.summary);
     }
 }
+
+/// Slow legs that come again, and quick ones with four times their noise that do not.
+#[test]
+fn an_error_above_what_repeats_show_is_told() {
+    const STEP_S: f64 = 0.004;
+    let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a segment repeat";
+    let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let noise = Normal::new(0.0, 1.0).unwrap();
+    let (mut i, mut position) = (0, 0.7);
+    for leg in 0..72 {
+        let sign = if leg % 2 == 0 { 1.0 } else { -1.0 };
+        let again = leg < 48;
+        let velocity = sign * if again { 2.5 * 1.2f64.powi(leg % 24 / 2) } else { 20.0 * 1.1f64.powi(leg % 24 / 2) };
+        for _ in 0..150 {
+            let rough = if again { 1e-3 } else { 4e-3 };
+            let torque = 0.03 * sign + 1.5e-4 * velocity + rough * noise.sample(&mut random);
+            let repeat = f64::from(leg / 24 % 2);
+            trace.push_row(&[STEP_S * f64::from(i), position, velocity, torque / 0.08, f64::from(leg), repeat]);
+            (i, position) = (i + 1, position + STEP_S * velocity);
+        }
+    }
+    let run = RunTable::new(meta(Kind::Friction), trace).unwrap();
+    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    assert_eq!((found.verdict, found.suggestions.len()), (Verdict::Adequate, 0), "{}", found.summary);
+    assert!(found.validation_rms > found.noise_floor.ci95.unwrap()[1], "{:?}", found.noise_floor);
+    assert!(found.summary.contains("what is above that is not the same"), "{}", found.summary);
+}

@@ -75,7 +75,9 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
             },
             structure(found, fit, shown)
         ),
-        (_, None) => format!("The model explains this run: its held-out error is {error}, and {floor}."),
+        (_, None) => {
+            format!("The model explains this run: its held-out error is {error}, and {floor}{}.", above(found, fit))
+        }
         (_, Some(why)) => format!(
             "Nothing more can be named in this run, whose held-out error is {error}; whether the model is adequate \
              cannot be decided: {why}."
@@ -143,6 +145,25 @@ fn floor(found: &Exploration, end: &Fit) -> String {
     };
     let about = if found.floor.ci95.is_some() { "" } else { "about " };
     format!("the run repeats itself to {about}{}{below}", figure(floor, &end.unit))
+}
+
+/// What an error is that is larger than the run repeats itself to, and that nothing takes away.
+fn above(found: &Exploration, end: &Fit) -> String {
+    if found.floor.ci95.is_none_or(|[_, high]| end.validation_rms <= high) {
+        return String::new();
+    }
+    match found.floor.repeatable_share {
+        Some(share) if share < NOTHING_IN_COMMON => {
+            ": what is above that is not the same at the same moment of another repeat".to_owned()
+        }
+        Some(share) => {
+            format!(
+                ": {} of the squared error is the same in every repeat, and nothing that was tried takes it away",
+                percent(share)
+            )
+        }
+        None => String::new(),
+    }
 }
 
 /// Where what is left shows most.
