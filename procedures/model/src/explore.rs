@@ -81,8 +81,9 @@ impl<'p> Exploration<'p> {
         let mut taken_back = Vec::new();
         let (maps, residual, open) = loop {
             let made = search.next().or_else(|| {
-                let id = undecided(&search, prepared)?;
-                taken_back.push((id, Withdrawal::Undecided));
+                let undecided = || Some((undecided(&search, prepared)?, Withdrawal::Undecided));
+                let (id, why) = search.wandering().map(|id| (id, Withdrawal::Wanders)).or_else(undecided)?;
+                taken_back.push((id, why));
                 Some(search.withdraw(id))
             });
             let made = match made {

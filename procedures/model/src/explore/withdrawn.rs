@@ -18,6 +18,8 @@ pub enum Withdrawal {
     HalfExplains,
     /// Beside any function of the axis over which structure remains it explains nothing.
     Borrows,
+    /// It shows no more than a zero that wanders over time.
+    Wanders,
     /// It would have to be of an impossible size.
     Impossible,
     /// Whatever came in since explains the rest of it.
@@ -30,6 +32,7 @@ impl Withdrawal {
             Withdrawal::Undecided => "this run does not decide how large it is",
             Withdrawal::HalfExplains => "it explains only a part of what shows over its own axis",
             Withdrawal::Borrows => "beside the structure that remains it explains nothing",
+            Withdrawal::Wanders => "the zero wanders over time, which explains as much",
             Withdrawal::Impossible => "it would have to be of a size that is physically impossible",
             Withdrawal::Idle => "beside the other effects it brings nothing that is worth a name",
         }

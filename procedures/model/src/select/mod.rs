@@ -9,6 +9,7 @@ mod library;
 mod rivals;
 mod scatter;
 mod search;
+mod wander;
 
 pub use ground::Ground;
 pub use imitated::moved;

@@ -50,6 +50,14 @@ pub fn could_be(term: &Term, now: &Terms, ground: &Ground, kind: Kind, options: 
     FisherSnedecor::new(explained, free).is_ok_and(|law| places * (1.0 - law.cdf(f)) > options.alpha)
 }
 
+/// An effect of a model shows within blocks, with a zero of its own for each.
+pub fn shows_within_blocks(term: &Term, now: &Terms, options: &Options) -> bool {
+    let without = now.without(term.id());
+    let ground = Ground::of(&without);
+    let own: Vec<Vec<f64>> = term.columns.iter().map(|column| ground.basis.rest(column)).collect();
+    shows_within(&own, &stretches(&without.problem.block), &ground, without.problem, options)
+}
+
 /// The effect shows within legs, with a zero of its own for each.
 fn shows_within(
     own: &[Vec<f64>],

@@ -4,6 +4,8 @@ use super::ground::Ground;
 use super::layout::lay;
 use super::library::{Candidate, Library};
 use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, is_tie, left_by_memory, step};
+use super::scatter::shows_within_blocks;
+use super::wander::Wander;
 use crate::Options;
 use crate::linear::{BlockGrams, dot};
 use crate::terms::{Term, Terms};
@@ -268,6 +270,18 @@ impl<'l, 'p> Search<'l, 'p> {
     /// Effects that were added and are still there.
     pub fn added(&self) -> impl Iterator<Item = &Term<'p>> {
         self.now.terms.iter().filter(|t| !self.kept.contains(&t.id()))
+    }
+
+    /// An added effect that shows from stretch to stretch of motion only, and there no more than a zero that wanders would.
+    pub fn wandering(&self) -> Option<&'p str> {
+        self.added().next()?;
+        let wander = Wander::of(&self.now, self.options)?;
+        let mut open: Vec<&str> = self.library.candidates.iter().map(Candidate::id).collect();
+        open.dedup();
+        let explained = |term: &&Term<'p>| Some((wander.gain(term, open.len(), self.options)?, term.id()));
+        let within = |term: &&Term<'p>| shows_within_blocks(term, &self.now, self.options);
+        let explained = self.added().filter(|term| !within(term)).filter_map(|term| explained(&term));
+        explained.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
     }
 
     /// Added effects that have to be worth their error.
