@@ -7,7 +7,7 @@ use jointbench_instrument::Kind;
 pub struct VelocityDependence;
 
 /// Speeds that differ less than by this factor are one.
-const SEVERAL: f64 = 1.5;
+const SEVERAL: f64 = 1.2;
 
 static INFO: EffectInfo = EffectInfo {
     id: "velocity_dependence",
@@ -46,5 +46,22 @@ impl Effect for VelocityDependence {
             "excited" => view.map2(Signal::Velocity, Signal::Current, |w, i| w.abs() * i),
             _ => view.map2(Signal::Velocity, Signal::Drive, |w, t| w.abs() * t),
         }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::Signals;
+
+    #[test]
+    fn two_speeds_that_are_a_third_apart_are_two() {
+        let is_seen = |fast: f64| {
+            let velocity: Vec<f64> = (0..400).map(|i| if i < 200 { 9.8 } else { fast }).collect();
+            let mut signals = Signals::new(velocity.len());
+            signals.set(Signal::Velocity, velocity);
+            !VelocityDependence.forms(&View::new(signals.clone(), signals, Vec::new(), vec![0], 0.01)).is_empty()
+        };
+        assert_eq!([10.5, 12.8, 30.0].map(is_seen), [false, true, true]);
     }
 }
