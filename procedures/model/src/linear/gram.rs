@@ -2,6 +2,10 @@
 
 use super::beside::Beside;
 
+/// Where the others have less than this share of what is a column's own, squared, one group of rows decides its factor alone:
+/// a stop of hysteresis that does not slip in any other stretch is a straight line there, but for noise.
+const HARDLY_SHOWN: f64 = 0.05;
+
 /// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
 #[derive(Debug, Clone)]
 pub struct Spd {
@@ -15,6 +19,11 @@ pub struct Spd {
 impl Spd {
     /// Cholesky of a row-major matrix after scaling its diagonal to one. `ridge` is added to the scaled diagonal.
     pub fn new(matrix: &[f64], n: usize, ridge: f64) -> Self {
+        Self::shown(matrix, n, ridge, &vec![0.0; n])
+    }
+
+    /// The same, where a column is left at zero as well that has less than so much of its own beside those before it, squared.
+    pub fn shown(matrix: &[f64], n: usize, ridge: f64, least: &[f64]) -> Self {
         let scale: Vec<f64> =
             (0..n).map(|i| if matrix[i * n + i] > 0.0 { matrix[i * n + i].sqrt().recip() } else { 0.0 }).collect();
         let mut l = vec![0.0; n * n];
@@ -29,7 +38,7 @@ impl Spd {
                     sum -= l[i * n + k] * l[j * n + k];
                 }
                 if i == j {
-                    if sum > 1e-10 {
+                    if sum > (least[i] * scale[i].powi(2)).max(1e-10) {
                         l[i * n + i] = sum.sqrt();
                     } else {
                         dead[i] = true;
@@ -47,6 +56,12 @@ impl Spd {
 
     pub fn is_dead(&self, i: usize) -> bool {
         self.dead[i]
+    }
+
+    /// What each column has of its own beside those before it, squared.
+    pub fn own(&self) -> impl Iterator<Item = f64> {
+        let square = |i: usize| if self.dead[i] { 0.0 } else { (self.l[i * self.n + i] / self.scale[i]).powi(2) };
+        (0..self.n).map(square)
     }
 
     /// L⁻¹·D·b: what makes the squared length of the result bᵀA⁻¹b.
@@ -125,15 +140,16 @@ impl BlockGrams {
         self.sum(0..self.groups)
     }
 
-    /// Squared error of each group when it is predicted from all others.
+    /// Squared error of each group when it is predicted from all others. What these hardly show of a column they do not predict.
     pub fn held_out(&self) -> Vec<f64> {
         let p = self.columns;
         let (xx, xy) = self.total();
+        let least: Vec<f64> = Spd::new(&xx, p, 1e-12).own().map(|own| HARDLY_SHOWN * own).collect();
         (0..self.groups)
             .map(|g| {
                 let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();
                 let side: Vec<f64> = xy.iter().zip(self.xy(g)).map(|(a, b)| a - b).collect();
-                let factors = Spd::new(&rest, p, 1e-12).solve(&side);
+                let factors = Spd::shown(&rest, p, 1e-12, &least).solve(&side);
                 let mut loss = self.yy[g];
                 for a in 0..p {
                     let inner: f64 = (0..p).map(|b| self.xx(g)[a * p + b] * factors[b]).sum();
@@ -169,6 +185,20 @@ mod tests {
         assert!(spd.is_dead(2) && !spd.is_dead(1));
         let x = spd.solve(&[8.0, 5.0, 8.0]);
         assert!((4.0 * x[0] + 2.0 * x[1] - 8.0).abs() < 1e-9 && x[2] == 0.0, "{x:?}");
+    }
+
+    #[test]
+    fn what_only_one_group_shows_the_others_do_not_predict() {
+        // The second column leaves the line in the third group only, but for noise.
+        let x: Vec<f64> = (0..12).map(|i| f64::from(i % 4) - 1.0).collect();
+        let play: Vec<f64> =
+            (0..12).map(|i| x[i] + if i >= 8 { x[i].powi(2) } else { 0.02 * (i as f64 * 2.3).sin() }).collect();
+        let y: Vec<f64> = (0..12).map(|i| x[i] + 0.1 * (i as f64 * 1.7).sin()).collect();
+        let group: Vec<usize> = (0..12).map(|i| i / 4).collect();
+        let of = |columns: &[&[f64]]| BlockGrams::new(columns, &y, &group, 3).held_out();
+        let (with, without) = (of(&[&x, &play]), of(&[&x]));
+        assert!((with[2] - without[2]).abs() < 1e-9, "{with:?} {without:?}");
+        assert!((with[0] - without[0]).abs() > 1e-6, "where the third group is known, the column counts");
     }
 
     #[test]
