@@ -104,6 +104,16 @@ impl Shape<'_> {
         }
     }
 
+    /// A value lies at the edge of what the data can speak about.
+    pub fn is_edge(&self, value: f64) -> bool {
+        self.is_at(value, self.min) || self.is_at(value, self.max)
+    }
+
+    /// A value is as good as one of the ends.
+    pub fn is_at(&self, value: f64, end: f64) -> bool {
+        (value - end).abs() <= 1e-3 * end.abs().max(1e-3 * (self.max - self.min))
+    }
+
     /// It is refined continuously, and not held where it is.
     pub fn is_smooth(&self) -> bool {
         self.min < self.max && matches!(self.search, Search::Smooth | Search::Signed)

@@ -29,6 +29,13 @@ impl<'e> Term<'e> {
         free.into_iter()
     }
 
+    /// A shape parameter that is refined, but for an exponent, lies at the edge of what the data can speak about.
+    pub fn is_at_edge(&self) -> bool {
+        let sudden = self.effect.suddenness();
+        let mut slots = self.form.shape.iter().zip(&self.shape);
+        slots.any(|(shape, value)| shape.is_smooth() && sudden != Some(shape.name) && shape.is_edge(*value))
+    }
+
     /// The factors are physically possible.
     pub fn allows(&self, factors: &[f64]) -> bool {
         allows(self.effect, &self.form, factors)

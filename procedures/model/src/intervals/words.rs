@@ -36,8 +36,7 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
         return (ParameterState::Ok, None);
     };
     let (min, max) = (shape.min, shape.max);
-    let edge = |value: f64, bound: f64| (value - bound).abs() <= 1e-3 * bound.abs().max(1e-3 * (max - min));
-    if edge(slot.value, min) || edge(slot.value, max) {
+    if shape.is_edge(slot.value) {
         let words = format!("lies at the edge of what this data can speak about, {} to {}", say(min), say(max));
         return (ParameterState::AtBound, Some(words));
     }
@@ -45,7 +44,7 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
         return nothing();
     }
     let wide = shape.search == Search::Smooth && ci95[1] > WIDE * ci95[0].abs();
-    if wide || (edge(ci95[0], min) && edge(ci95[1], max)) {
+    if wide || (shape.is_at(ci95[0], min) && shape.is_at(ci95[1], max)) {
         let words = format!("not identified by this run: anything from {} to {} fits", say(ci95[0]), say(ci95[1]));
         return (ParameterState::Unidentified, Some(words));
     }
