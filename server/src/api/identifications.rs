@@ -1,12 +1,14 @@
 //! What a procedure makes of its run.
 
-use super::extract::{Answer, Json, Path};
+use super::extract::{Answer, Json, Path, Query};
 use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
 use crate::view::{Beside, Earlier, Identification};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{Html, IntoResponse};
+use serde::Deserialize;
+use utoipa::IntoParams;
 
 /// Quantities with intervals, figures and a verdict, worked out from the samples by the procedure of the run
 #[utoipa::path(get, path = "/runs/{id}/identification", tag = "runs", params(("id" = i64, Path, description = "Run")),
@@ -29,11 +31,23 @@ pub async fn beside(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Optio
     Ok(Json(lab.beside(id).await?))
 }
 
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct ReportQuery {
+    /// The version of the run's model that is told of; the newest where left out.
+    pub model: Option<i64>,
+}
+
 /// The run as one page to send and to print: result, figures, model, diagnosis, provenance
-#[utoipa::path(get, path = "/runs/{id}/report", tag = "runs", params(("id" = i64, Path, description = "Run")),
+#[utoipa::path(get, path = "/runs/{id}/report", tag = "runs", params(("id" = i64, Path, description = "Run"), ReportQuery),
     responses((status = 200, description = "The page, complete in itself", body = String, content_type = "text/html"), Refusals))]
-pub async fn report(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<impl IntoResponse, Problem> {
-    Ok(([(header::CONTENT_SECURITY_POLICY, REPORT_POLICY)], Html(lab.report(id).await?)))
+pub async fn report(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Query(query): Query<ReportQuery>,
+) -> Result<impl IntoResponse, Problem> {
+    Ok(([(header::CONTENT_SECURITY_POLICY, REPORT_POLICY)], Html(lab.report(id, query.model).await?)))
 }
 
 /// A report carries its own styles, and nothing that runs.

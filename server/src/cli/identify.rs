@@ -38,7 +38,7 @@ pub fn report(arguments: &Report) -> Done {
     let runtime = runtime()?;
     let run = arguments.run;
     let page = match open(&runtime, &arguments.store, false)? {
-        Way::Folder(lab) => runtime.block_on(lab.report(run))?.into_bytes(),
+        Way::Folder(lab) => runtime.block_on(lab.report(run, None))?.into_bytes(),
         Way::Daemon(client) => client.get_bytes(&format!("/runs/{run}/report"))?,
     };
     let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("run-{run}.html")));

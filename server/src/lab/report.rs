@@ -5,8 +5,9 @@ use crate::report::Report;
 use crate::view::Model;
 
 impl Lab {
-    /// Everything that is known of a run: what its procedure makes of it, its newest model and that model's diagnosis.
-    pub async fn report(&self, id: i64) -> Answer<String> {
+    /// Everything that is known of a run: what its procedure makes of it, a model and that model's diagnosis. `model`: one of its
+    /// versions, the newest where left out.
+    pub async fn report(&self, id: i64, model: Option<i64>) -> Answer<String> {
         let run = self.run(id).await?;
         let identification = match self.identification(id).await {
             Ok(found) => Some(found),
@@ -15,9 +16,12 @@ impl Lab {
         };
         let journal = self.events(id, None).await?;
         let notes = journal.into_iter().filter(|event| event.kind == "note").map(|event| event.text).collect();
-        let versions = lineage(self.models(id).await?);
+        let versions = lineage(self.models(id).await?, model);
+        if let (Some(model), true) = (model, versions.is_empty()) {
+            return Err(LabError::NotFound(format!("run {id} has no model {model}")));
+        }
         let diagnosis = match versions.last() {
-            Some(newest) => self.diagnoses(newest.id).await?.pop(),
+            Some(shown) => self.diagnoses(shown.id).await?.pop(),
             None => None,
         };
         let report = Report { run, notes, identification, versions, diagnosis };
@@ -27,9 +31,10 @@ impl Lab {
     }
 }
 
-/// The newest version and its forebears, the oldest first.
-fn lineage(mut versions: Vec<Model>) -> Vec<Model> {
-    let mut line: Vec<Model> = versions.pop().into_iter().collect();
+/// A version, the newest where none is named, and its forebears, the oldest first.
+fn lineage(mut versions: Vec<Model>, model: Option<i64>) -> Vec<Model> {
+    let last = versions.iter().rposition(|version| model.is_none_or(|id| version.id == id));
+    let mut line: Vec<Model> = last.map(|place| versions.remove(place)).into_iter().collect();
     while let Some(parent) = line.last().and_then(|version| version.parent) {
         let Some(place) = versions.iter().position(|version| version.id == parent) else { break };
         line.push(versions.swap_remove(place));

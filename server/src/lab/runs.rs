@@ -81,10 +81,13 @@ impl Lab {
         Ok(RunList { total, runs: records.iter().map(convert::summary).collect(), unclear: None })
     }
 
-    /// The runs that what is understood of a search finds.
+    /// The runs that what is understood of a search finds. A key that is begun takes none away.
     pub async fn runs_while_typing(&self, limit: u32, offset: u32, search: &str) -> Answer<RunList> {
-        let (understood, refused) = Search::understood(search);
-        let found = self.runs(limit, offset, Some(&understood)).await?;
+        let (understood, mut refused) = Search::understood(search);
+        let mut found = self.runs(limit, offset, Some(&understood)).await?;
+        if let (0, None, Some((before, begun))) = (found.total, &refused, Search::before_key(&understood)) {
+            (found, refused) = (self.runs(limit, offset, Some(&before)).await?, Some(begun));
+        }
         Ok(RunList { unclear: refused.map(|fault| fault.to_string()), ..found })
     }
 

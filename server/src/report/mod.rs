@@ -21,9 +21,9 @@ pub struct Report {
     pub notes: Vec<String>,
     /// What its procedure makes of it.
     pub identification: Option<Identification>,
-    /// The newest model version, with its forebears before it.
+    /// The model version that is told of, with its forebears before it.
     pub versions: Vec<Model>,
-    /// Of the newest version.
+    /// Of that version.
     pub diagnosis: Option<Diagnosis>,
 }
 

@@ -53,6 +53,19 @@ impl Search {
         (kept.join(" "), refused)
     }
 
+    /// A search without its last word, where that word may become a key, and what the word may become.
+    pub fn before_key(text: &str) -> Option<(String, StoreError)> {
+        let mut terms = terms(text);
+        let term = terms.pop()?;
+        let begins = term.trim_start_matches('-');
+        let key = KEYS.split(' ').find(|key| !begins.is_empty() && key.starts_with(begins))?;
+        let what = format!("no run has that word; {key} may follow");
+        Some((
+            terms.iter().map(|term| format!("\"{term}\"")).collect::<Vec<_>>().join(" "),
+            StoreError::Search { term, what },
+        ))
+    }
+
     /// ` WHERE …`, with every value bound.
     pub fn push(&self, query: &mut QueryBuilder<Sqlite>) {
         for (i, (without, condition)) in self.0.iter().enumerate() {
@@ -199,6 +212,14 @@ mod tests {
         assert!(refused.unwrap().to_string().contains("rows>"));
         assert_eq!(Search::parse(&understood).unwrap(), Search::parse("oil note:\"two words\"").unwrap());
         assert!(Search::understood("state: procedure: state:comp").1.is_none());
+    }
+
+    #[test]
+    fn a_word_that_may_become_a_key_can_be_left_out() {
+        let (before, told) = Search::before_key("\"note:two words\" -pro").unwrap();
+        assert_eq!(before, "\"note:two words\"");
+        assert!(told.to_string().contains("procedure: may follow"), "{told}");
+        assert!(Search::before_key("oil tag:x").is_none() && Search::before_key("").is_none());
     }
 
     #[test]

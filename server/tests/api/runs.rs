@@ -86,6 +86,10 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
         "the newest version and where it came from"
     );
     assert!(!page.contains("<script") && !page.contains("src="), "complete in itself");
+    let of = |model: &serde_json::Value| daemon.get_raw(&format!("/api/v1/runs/{id}/report?model={model}"));
+    let page = of(&model["id"]).body_mut().read_to_string().unwrap();
+    assert!(!page.contains("direction_offset") && page.contains("noise floor"), "an earlier version and its diagnosis");
+    assert_eq!(of(&json!(99_999)).status(), 404, "of no other run");
 }
 
 #[test]

@@ -91,7 +91,8 @@ export const api = {
 
 export const modelHref = (id: number, format: 'json' | 'c' | 'lut' | 'mujoco' | 'urdf') => `${BASE}/models/${id}/export?format=${format}`;
 
-export const reportHref = (run: number) => `${BASE}/runs/${run}/report`;
+/** `model`: the version that is told of, else the newest. */
+export const reportHref = (run: number, model?: number) => `${BASE}/runs/${run}/report${model ? `?model=${model}` : ''}`;
 
 export function exportHref(run: number, format: 'csv' | 'parquet', stretch: readonly [from_s: number, to_s: number] | null = null): string {
 	const part = stretch ? `&from_s=${stretch[0]}&to_s=${stretch[1]}` : '';
