@@ -41,7 +41,7 @@ export async function applyAndGoBack(page, base, run) {
 	const row = page.locator(`[data-calibration="${run}"]`);
 	await row.getByText('holds').waitFor({ timeout: PATIENCE_MS });
 	await audit(page, 'settings with a calibration');
-	await page.getByRole('button', { name: 'Take brake hysteresis back' }).click();
+	await page.getByRole('button', { name: 'Take back brake hysteresis' }).click();
 	await page.getByRole('button', { name: 'Use the last complete run' }).click();
 	await row.getByRole('button', { name: `Go back to run ${run}` }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'there is no way back to what was applied'));
 	await page.goto(`${base}/log`);
