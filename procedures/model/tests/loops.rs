@@ -4,7 +4,7 @@ mod common;
 
 use common::tables::{meta, scatter};
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
-use jointbench_model::{Discovery, ModelSpec, Options, Parameter, Verdict, discover, fit};
+use jointbench_model::{Discovery, ModelSpec, Options, Parameter, Verdict, diagnose, discover, fit};
 
 /// Currents at which dry contacts slip [A].
 const SLIPS: [f64; 12] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6];
@@ -50,6 +50,14 @@ fn recorded(hold_nm: f64, bends: bool, from: usize) -> RunTable {
 
 fn end(run: &RunTable, most: usize) -> Discovery {
     discover(run, &ModelSpec::baseline(run).unwrap(), &Options::default(), most, |_| {}).unwrap()
+}
+
+#[test]
+fn a_current_is_no_number_of_waves() {
+    let run = run(0.0, false);
+    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    let hysteresis = found.silent.iter().find(|silent| silent.effect == "hysteresis");
+    assert_eq!(hysteresis.map(|silent| &silent.sought), Some(&None), "{:?}", found.silent);
 }
 
 #[test]

@@ -50,7 +50,8 @@ fn given(effect: &dyn Effect, end: &Assembly) -> Option<&'static str> {
 /// The numbers of waves that were tried.
 fn sought(effect: &dyn Effect, end: &Assembly) -> Option<String> {
     let forms = effect.forms(&end.prepared.main.view);
-    let whole = |form: &&Form| form.shape.first().is_some_and(|shape| shape.search == How::Whole);
+    let a_turn = |name: &str| effect.info().parameters.iter().any(|p| p.name == name && p.unit == "1/turn");
+    let whole = |form: &&Form| form.shape.first().is_some_and(|shape| shape.search == How::Whole && a_turn(shape.name));
     let numbers = forms.iter().filter(whole).flat_map(|form| &form.grid).map(|shape| shape[0]);
     let (least, most) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), n| (l.min(n), m.max(n)));
     let waves = if most == 1.0 { "wave" } else { "waves" };
