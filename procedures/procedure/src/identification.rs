@@ -49,9 +49,10 @@ impl Identification {
             let (part, next) = match (state.is_final(), goes_on) {
                 (false, _) => ("The run is not at its end yet", "let it come to its end"),
                 (true, false) => (NOT_AT_ITS_END, "make it again"),
-                (true, true) => {
-                    (NOT_AT_ITS_END, "make the rest of it (jointbench run --continue RUN), or make it again")
-                }
+                (true, true) => (
+                    NOT_AT_ITS_END,
+                    "make the rest of it (“Make the rest” on its page, or jointbench run --continue RUN), or make it again",
+                ),
             };
             let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
             self.summary = match (&self.advice, self.verdict) {

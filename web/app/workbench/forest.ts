@@ -5,6 +5,8 @@ export interface Row {
 	parameter: Parameter;
 	/** Ends of the interval in multiples of the value; `null` where the data gives none. */
 	interval: [number, number] | null;
+	/** What a narrow interval is drawn wider by: a power of ten. */
+	zoom: number;
 	flags: string[];
 }
 
@@ -12,6 +14,9 @@ const SAID: Partial<Record<Parameter['state'], string>> = { at_bound: 'at its bo
 
 /** Pairs that the data can hardly tell apart are flagged from this correlation on. */
 const TRADING = 0.9;
+
+/** As far from the estimate as the scale goes, in multiples of it. */
+export const AROUND = 1.3;
 
 export function forest(parameters: readonly Parameter[], tradeOffs: readonly TradeOff[] = []): Row[] {
 	return parameters.map((parameter) => {
@@ -30,8 +35,9 @@ export function forest(parameters: readonly Parameter[], tradeOffs: readonly Tra
 		else if (state) flags.push(state);
 		if (!known) flags.push('no interval');
 		if (known && low < 0 && high > 0 && !parameter.note) flags.push('may be zero');
-		if (value === 0 || !known) return { parameter, interval: null, flags };
+		if (value === 0 || !known) return { parameter, interval: null, zoom: 1, flags };
 		const ends = [low / value, high / value].sort((a, b) => a - b) as [number, number];
-		return { parameter, interval: ends, flags };
+		const widest = Math.max(1 - ends[0], ends[1] - 1);
+		return { parameter, interval: ends, zoom: 10 ** Math.max(0, Math.floor(Math.log10(AROUND / widest))), flags };
 	});
 }

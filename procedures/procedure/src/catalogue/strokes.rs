@@ -117,7 +117,8 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             flat.push(format!("{suffix} motion (r² {:.2})", line.r2));
         }
         let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95: Option<[f64; 2]>| {
-            let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), title, unit];
+            let title = format!("{title}, {suffix} direction");
+            let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), &title, unit];
             quantity(words, value, ci95)
         };
         quantities.extend([

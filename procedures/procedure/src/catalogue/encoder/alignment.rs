@@ -158,7 +158,7 @@ fn told(found: &[(&Way, Found)]) -> String {
         (0, _) => "Nowhere within reach does the encoder lose its periods.".into(),
         (edges, 0) => format!("The encoder loses its periods on all {edges} ways."),
         (edges, _) => {
-            format!("The encoder loses its periods on {edges} ways, and within reach not on: {}.", names(&kept))
+            format!("The encoder loses its periods on {edges} ways, and keeps them within reach on: {}.", names(&kept))
         }
     }
 }

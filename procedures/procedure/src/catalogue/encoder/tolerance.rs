@@ -69,23 +69,29 @@ impl Judgement {
 /// Each way's last consistent place as a share of the data sheet's tolerance, and where the periods are lost.
 pub fn figure(found: &[(&Way, Found)]) -> Figure {
     let share = |way: &Way, at: f64| at.abs() / way.manufacturing;
-    let last: Vec<f64> = found.iter().map(|(way, found)| share(way, found.good)).collect();
-    // Where they were never lost nobody knows the upper end.
-    let end = |(way, found): &(&Way, Found)| [share(way, found.good), share(way, found.bad.unwrap_or(found.good))];
     let places: Vec<f64> = (0..found.len()).map(|i| i as f64).collect();
+    let [mut lost, mut kept] = [
+        Series::new("periods lost beyond", Mark::Bars, Vec::new(), Vec::new()),
+        Series::new("not lost up to here", Mark::Points, Vec::new(), Vec::new()),
+    ];
+    for (place, (way, found)) in places.iter().zip(found) {
+        let last = share(way, found.good);
+        let of = if found.bad.is_some() { &mut lost } else { &mut kept };
+        of.x.push(*place);
+        of.y.push(last);
+        lost.band.extend(found.bad.map(|bad| [last, share(way, bad)]));
+    }
     Figure {
         name: "tolerance".into(),
         title: "Last consistent place over the tolerance; whiskers end where the periods are lost".into(),
         form: Form::Cartesian,
         x: Axis::names("Way", found.iter().map(|(way, _)| way.title)),
         y: Axis::of("Share of the manufacturing tolerance", ""),
-        series: vec![
-            Series {
-                band: found.iter().map(end).collect(),
-                ..Series::new("measured", Mark::Bars, places.clone(), last)
-            },
-            Series::new("data sheet", Mark::Line, places, vec![1.0; found.len()]),
-        ],
+        series: [lost, kept]
+            .into_iter()
+            .filter(|series| !series.x.is_empty())
+            .chain([Series::new("data sheet", Mark::Line, places, vec![1.0; found.len()])])
+            .collect(),
     }
 }
 

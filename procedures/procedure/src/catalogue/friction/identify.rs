@@ -120,7 +120,8 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
     quantities.extend(named("_negative", "⁻", ", negative direction", &backward, gear));
     let sides = [("positive", Side::of(&points, 1.0, &forward)), ("negative", Side::of(&points, -1.0, &backward))];
     for ((suffix, side), symbol) in sides.iter().zip(["r²⁺", "r²⁻"]) {
-        let words = [&format!("r2_{suffix}"), symbol, "Share of the scatter explained", ""];
+        let title = format!("Share of the scatter explained, {suffix} direction");
+        let words = [&format!("r2_{suffix}"), symbol, &title, ""];
         quantities.push(quantity(words, side.r2, None));
     }
     let differences = [
