@@ -35,6 +35,8 @@ pub struct Exploration<'p> {
     others: Others,
     /// Maps of what the last model leaves.
     pub maps: Maps,
+    /// Nothing shows in them but a zero that wanders over time.
+    wanders: bool,
     pub floor: NoiseFloor,
     pub end_held_out_rms: f64,
     /// Effects of the last model, and what this run cannot tell them from.
@@ -143,9 +145,10 @@ impl<'p> Exploration<'p> {
             advances.last().into_iter().for_each(&mut *on_advance);
         }
         let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn);
+        let wanders = outside::only_wanders(&search, &maps, &residual, prepared, options);
         let floor = floor::noise_floor(prepared, &residual, search.now.contains("hysteresis"));
         let end_held_out_rms = held_out_rms(&advances.last().map_or(&start, |a| &a.after).main);
-        Ok(Self { start, advances, withdrawn, others, maps, floor, end_held_out_rms, ties, upheld, open })
+        Ok(Self { start, advances, withdrawn, others, maps, wanders, floor, end_held_out_rms, ties, upheld, open })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
@@ -179,7 +182,8 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        let shows = outside::structured(&self.maps).is_some() && !outside::is_scatter(&self.maps, &self.floor);
+        let shows =
+            outside::structured(&self.maps).is_some() && !outside::is_scatter(&self.maps, &self.floor, self.wanders);
         if (shows || self.repeats_itself()) && !self.is_negligible() {
             Verdict::UnexplainedStructure
         } else {
@@ -201,7 +205,7 @@ impl<'p> Exploration<'p> {
 
     /// RMS of what whole stretches of motion differ by, where that is what shows over an axis.
     pub fn scatter_rms(&self) -> Option<f64> {
-        outside::is_scatter(&self.maps, &self.floor).then(|| self.maps.between_rms())
+        outside::is_scatter(&self.maps, &self.floor, self.wanders).then(|| self.maps.between_rms())
     }
 
     /// What is left is small beside what was measured, however much of it repeats.

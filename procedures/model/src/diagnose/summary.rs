@@ -90,8 +90,8 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
 fn scatter(found: &Exploration, verdict: Verdict, unit: &str) -> String {
     let said = |rms: f64| {
         format!(
-            " What is left shows over an axis, but hardly comes again in another repeat, and no part of the axis stands out of \
-             what whole stretches of motion scatter by: the zero wanders by {} from one to another.",
+            " What is left shows over an axis, but hardly comes again in another repeat, and is what whole stretches of motion \
+             scatter by: the zero wanders by {} from one to another.",
             figure(rms, unit)
         )
     };

@@ -7,7 +7,7 @@ use crate::linear::dot;
 use crate::maps::Maps;
 use crate::prepare::{Prepared, Problem};
 use crate::report::NoiseFloor;
-use crate::select::{Ground, Search, alone};
+use crate::select::{Ground, Search, Wander, alone};
 use crate::terms::Term;
 
 /// A map must take this share off held-out squared error to be called structure. Over null runs the best map reaches
@@ -31,9 +31,16 @@ pub fn structured(maps: &Maps) -> Option<&str> {
 
 /// What shows over an axis is what whole stretches of motion differ by, a zero that wanders or lies elsewhere after every
 /// reversal: little of it comes again in another repeat, and no part of any axis stands out of that scatter.
-pub fn is_scatter(maps: &Maps, floor: &NoiseFloor) -> bool {
+pub fn is_scatter(maps: &Maps, floor: &NoiseFloor, wanders: bool) -> bool {
     let comes_again = floor.ci95.is_none() || floor.repeatable_share.is_none_or(|share| share > STRUCTURE_SHARE);
-    structured(maps).is_some() && !comes_again && !maps.stand_out()
+    structured(maps).is_some() && !comes_again && (wanders || !maps.stand_out())
+}
+
+/// Nothing shows over any axis but a zero that wanders over time: a little everywhere, and no figure of the model leaps.
+pub fn only_wanders(search: &Search, maps: &Maps, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
+    let Some(wander) = structured(maps).and_then(|_| Wander::of(&search.now, options)) else { return false };
+    let beside = Maps::new(prepared, wander.taken_off(residual), options);
+    structured(&beside).is_none() && !beside.stand_out() && !wander.is_of_events() && !wander.leaps(options)
 }
 
 /// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any

@@ -17,3 +17,4 @@ pub use layout::{enter, lay};
 pub use library::Library;
 pub use rivals::{Rival, alone, is_tie, significance};
 pub use search::{Move, Search, Silence, held_out};
+pub use wander::Wander;
