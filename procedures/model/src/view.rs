@@ -134,6 +134,8 @@ pub struct Constants {
     pub slides: bool,
     /// Torque once per link turn that the measured load does not hold, about: factors of cos and sin [Nm].
     pub weight: Option<[f64; 2]>,
+    /// Rests and reversals of a trajectory are left out, because nothing bends there before it slips.
+    pub turns_left_out: bool,
 }
 
 /// The first sample of a recording, and what a memory brings along from before it.

@@ -3,9 +3,9 @@
 //! Parallel filtering after Gautier 1997: the response and every column pass the same zero-phase filter before one of n
 //! samples is kept. The defaults are those of Janot, Gautier and Brunot 2019 at any sample rate.
 
-use super::weight;
+use super::{reversals, weight};
 use crate::prepare::chunks::Source;
-use crate::prepare::filter::{LowPass, by_recording};
+use crate::prepare::filter::{LowPass, by_recording, derivative};
 use crate::prepare::repeats::{self, Same};
 use crate::prepare::{Prepared, Problem, Reduce, layout, segments};
 use crate::report::Preparation;
@@ -17,12 +17,22 @@ use std::collections::HashSet;
 /// Of a trajectory of more rows than these some are taken.
 const MOST_ROWS: usize = 12_000;
 
+/// Where more rows than this share lie beside a reversal, what is left without them is no trajectory.
+const MOST_NEAR_REVERSALS: f64 = 0.5;
+
 /// Rows for each second that the defaults aim at.
 const ROWS_HZ: f64 = 100.0;
 
 pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result<Prepared, ModelError> {
     let every = options.decimation.unwrap_or(((1.0 / samples.step_s / ROWS_HZ).round() as usize).max(1));
-    let filter = (every > 1).then(|| LowPass::chebyshev(8, 0.05, 0.8 / every as f64));
+    // What the response keeps of fast changes, the acceleration has to keep as well: one filter for all columns, the lower of
+    // the two. The slope of a position has been smoothed before, because its steps would be all that is left of it.
+    let decimating_hz = 0.4 / (every as f64 * samples.step_s);
+    let smooths = !samples.derived_velocity && (every == 1 || samples.cutoff_hz < decimating_hz);
+    let filter = match smooths {
+        true => Some(LowPass::butterworth(4, 2.0 * samples.cutoff_hz * samples.step_s)),
+        false => (every > 1).then(|| LowPass::chebyshev(8, 0.05, 0.8 / every as f64)),
+    };
     // The first and last samples of a recording are where filters and derivatives guess.
     let skip = (50.min(run.len() / (20 * samples.starts.len().max(1)))).max(1);
     let starts = samples.starts.clone();
@@ -40,6 +50,26 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         rests = if rests.is_empty() { back } else { rests.iter().zip(back).map(|(r, b)| *r || b).collect() };
         let one_way = vec![ahead; direction.len()];
         samples.signals.set(Signal::Direction, one_way);
+    }
+    let weight = weight::unmeasured(&samples.signals, &samples.target);
+    let drive = super::drive(&samples.signals, &samples.target);
+    samples.signals.set(Signal::Drive, drive);
+    if smooths {
+        set_slopes(&mut samples);
+    }
+    let points = &samples.signals;
+    let mut view = View::new(points.clone(), points.clone(), Vec::new(), starts.clone(), samples.step_s);
+    view.constants = Constants { weight, ..samples.constants };
+    let mut reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone(), left_out: Vec::new() };
+    if !samples.derived_velocity {
+        let filtered_hz = if every == 1 { samples.cutoff_hz } else { samples.cutoff_hz.min(decimating_hz) };
+        let near = reversals::near(&samples, (1.0 / (filtered_hz * samples.step_s)).ceil() as usize);
+        let near = pick(&near.into_iter().map(f64::from).collect::<Vec<_>>());
+        let are_few = near.iter().sum::<f64>() < MOST_NEAR_REVERSALS * near.len() as f64;
+        if are_few && !reversals::bend(&view, &samples.target, &reduce, &near) {
+            view.constants.turns_left_out = true;
+            rests = near.iter().enumerate().map(|(i, near)| *near > 0.0 || rests.get(i) == Some(&true)).collect();
+        }
     }
     let velocity = without(velocity, &rests);
     let run_of: Vec<usize> =
@@ -66,7 +96,9 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     let repeat: Vec<i64> = taken.iter().map(|row| repeat[*row]).collect();
     let run_of: Vec<usize> = taken.iter().map(|row| run_of[*row]).collect();
     let phase: Vec<usize> = taken.iter().map(|row| phase[*row]).collect();
-    let reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone(), left_out: left_out.clone() };
+    if let Reduce::Decimate { left_out: out, .. } = &mut reduce {
+        out.clone_from(&left_out);
+    }
     let target = reduce.apply(samples.target.clone());
     if target.len() < 24 {
         return Err(ModelError::TooFewSamples { usable: target.len(), needed: 24, what: "filtered rows" });
@@ -105,11 +137,6 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
         repeats_from: repeats_from.into(),
     };
-    let drive = super::drive(&samples.signals, &samples.target);
-    samples.signals.set(Signal::Drive, drive);
-    let points = std::mem::take(&mut samples.signals);
-    let mut view = View::new(points.clone(), points, Vec::new(), starts, samples.step_s);
-    view.constants = Constants { weight: weight::unmeasured(&view.points, &samples.target), ..samples.constants };
     let mut main = Problem {
         view,
         target,
@@ -141,6 +168,16 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         memory: None,
         about,
     })
+}
+
+/// Acceleration and jerk of a velocity that the filter of all columns has yet to smooth.
+fn set_slopes(samples: &mut Source) {
+    let slope =
+        |values: &[f64]| by_recording(values, &samples.starts, |range, v| derivative(&samples.time_s[range], v));
+    let acceleration = slope(samples.signals.find(Signal::Velocity).unwrap_or_default());
+    let jerk = slope(&acceleration);
+    samples.signals.set(Signal::Acceleration, acceleration);
+    samples.signals.set(Signal::Jerk, jerk);
 }
 
 /// The rows that are not left out. Nothing is where `left_out` is empty.

@@ -3,6 +3,7 @@
 mod continuous;
 mod lag;
 mod plateaus;
+mod reversals;
 mod weight;
 
 use super::chunks::Source;
