@@ -220,6 +220,9 @@ pub trait Effect: Sync {
                  other direction as well"
             ));
         }
+        if self.stage() == Stage::Memory && view.constants.turns_left_out {
+            return Some("no contact shows that bends before it slips: rests and reversals are left out".into());
+        }
         if self.forms(view).is_empty() { Some(format!("it would not show: {}", info.looks)) } else { None }
     }
 }

@@ -77,6 +77,11 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
                     as well";
         notes.push(note.into());
     }
+    if prepared.main.view.constants.turns_left_out {
+        let note = "rests and reversals are left out: a joint that sticks holds whatever the torque asks for, and no contact \
+                    shows that bends before it slips";
+        notes.push(note.into());
+    }
     notes.extend(main.terms.iter().filter_map(written));
     let mut instead = main.terms.iter().map(|term| together::instead(term.effect, prepared));
     notes.extend(instead.find(|said| !said.is_empty()).unwrap_or_default());

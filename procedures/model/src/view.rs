@@ -136,6 +136,8 @@ pub struct Constants {
     pub weight: Option<[f64; 2]>,
     /// Rests and reversals of a trajectory are left out, because nothing bends there before it slips.
     pub turns_left_out: bool,
+    /// Moments of which a row tells, after that of the motion in the model [s]: from the position's to the velocity's.
+    pub of_row_s: Option<[f64; 2]>,
 }
 
 /// The first sample of a recording, and what a memory brings along from before it.

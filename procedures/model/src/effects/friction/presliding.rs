@@ -30,8 +30,7 @@ impl Effect for Presliding {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let range = crate::effects::reversal_range(view).filter(|_| !view.constants.turns_left_out);
-        let Some((low, high)) = range else { return Vec::new() };
+        let Some((low, high)) = crate::effects::reversal_range(view) else { return Vec::new() };
         let reach = Shape { name: "theta_p", min: low, max: high, search: Search::Smooth };
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(low, high, 7).into_iter().map(|d| vec![d]).collect();
         let one = |name| Form { name, linear: vec!["tau_p"], shape: vec![reach], grid: grid.clone() };

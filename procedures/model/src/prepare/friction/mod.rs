@@ -64,7 +64,7 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
 
     let measured = run.column("motor_velocity_rad_s");
     let motion = || {
-        let (velocity, smooth_velocity, lag_s) = match measured {
+        let (velocity, smooth_velocity, lag_s, of_row_s) = match measured {
             Some(v) if wanted == Velocity::Aligned => {
                 let torque = smoothed(column("motor_current_a"));
                 let load = run.column("link_torque_nm").map(&smoothed);
@@ -76,14 +76,14 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
                 let moved = moved.map(|(v, lag_s)| (smoothed(&v), v, lag_s));
                 let at_most = (1.0 + options.practical_share) * left(&measured);
                 match moved.filter(|(smooth, _, _)| left(smooth) < at_most) {
-                    Some((smooth, v, lag_s)) => (v, smooth, Some(lag_s)),
-                    None => (v.to_vec(), measured, None),
+                    Some((smooth, v, lag_s)) => (v, smooth, Some(lag_s), Some([0.0, lag_s])),
+                    None => (v.to_vec(), measured, None, lag_s.map(|lag_s| [-lag_s, 0.0])),
                 }
             }
-            Some(v) => (v.to_vec(), smoothed(v), None),
+            Some(v) => (v.to_vec(), smoothed(v), None, None),
             None => {
                 let v = slope(&smoothed(position));
-                (v.clone(), v, None)
+                (v.clone(), v, None, None)
             }
         };
         let slopes = || {
@@ -103,7 +103,7 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
             (Signal::Jerk, jerk),
             (Signal::Direction, direction),
         ];
-        (signals, lag_s)
+        (signals, lag_s, of_row_s)
     };
     let beside = || {
         let gear = run.meta().gear_ratio.unwrap_or(1.0);
@@ -125,8 +125,9 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
         let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
         (signals, torque_nm, segments::numbered(run), segments::integers(run, "repeat"))
     };
-    let ((of_motion, lag_s), (mut signals, target, segment, repeat)) = rayon::join(motion, beside);
+    let ((of_motion, lag_s, of_row_s), (mut signals, target, segment, repeat)) = rayon::join(motion, beside);
     of_motion.into_iter().for_each(|(signal, values)| signals.set(signal, values));
+    let slides = run.meta().motion == Motion::Linear;
     let source = Source {
         signals,
         target,
@@ -137,7 +138,7 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
         segment,
         repeat,
         derived_velocity: measured.is_none(),
-        constants: Constants { slides: run.meta().motion == Motion::Linear, ..Constants::default() },
+        constants: Constants { slides, of_row_s, ..Constants::default() },
         time_s,
     };
     Ok((source, lag_s))

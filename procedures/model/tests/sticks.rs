@@ -1,0 +1,104 @@
+//! A trajectory whose joint sticks at its reversals: there friction is no sign of the speed.
+
+mod common;
+
+use common::tables::{meta, scatter};
+use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
+use jointbench_model::{Diagnosis, ModelSpec, Options, diagnose};
+use std::f64::consts::TAU;
+
+const STEP_S: f64 = 5e-4;
+/// Steps of the simulation for each row.
+const EVERY: usize = 8;
+/// Inertia [kg·m²], dry friction [Nm] and viscous friction [Nm·s/rad].
+const INERTIA: f64 = 1e-4;
+const DRY: f64 = 0.02;
+const VISCOUS: f64 = 5e-5;
+/// What disturbs the joint [Nm].
+const DISTURBANCE: f64 = 2.5e-3;
+/// A drive's estimate of the speed comes later than the position [s].
+const ESTIMATE_S: f64 = 2e-3;
+
+/// A period of the motion in steps of the simulation: 16 s.
+const PERIOD: usize = 32_000;
+
+/// Speed that the controller is asked for [rad/s].
+fn wanted(step: usize) -> f64 {
+    let t = (step % PERIOD) as f64 / PERIOD as f64;
+    let wave = |times: f64, phase: f64| (TAU * times * t + phase).sin();
+    40.0 * (wave(2.0, 0.4) + 0.7 * wave(5.0, 1.9) + 0.6 * wave(11.0, 4.0) + 0.5 * wave(17.0, 2.5))
+}
+
+/// Four times the same motion under a speed controller. The current is read `late` steps after it flowed, and friction bends
+/// over `reach` [rad] before it slips.
+fn moving(late: usize, reach: f64) -> RunTable {
+    let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a repeat";
+    let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
+    let gain = INERTIA * TAU * 18.0;
+    let (mut speed, mut estimate) = (wanted(0), wanted(0));
+    let (mut position, mut sum, mut bent) = (0.0, 0.0, 1.0f64);
+    let mut torques = vec![0.0; late + 1];
+    for i in 0..4 * PERIOD {
+        let wanted = wanted(i);
+        let error = wanted - estimate;
+        sum += error * STEP_S;
+        let torque = gain * (error + TAU * 3.0 * sum) + DISTURBANCE * scatter(i / 40, 2);
+        // Bristles that bend, or dry friction that holds up to its size.
+        let friction = match reach > 0.0 {
+            true => DRY * bent,
+            false => ((torque - VISCOUS * speed) + INERTIA * speed / STEP_S).clamp(-DRY, DRY),
+        };
+        speed += (torque - VISCOUS * speed - friction) * STEP_S / INERTIA;
+        bent = (bent + speed * STEP_S / reach.max(1e-9)).clamp(-1.0, 1.0);
+        position += speed * STEP_S;
+        estimate += (speed - estimate) * STEP_S / ESTIMATE_S;
+        torques.push(torque);
+        if i % EVERY == 0 {
+            let read = torques[torques.len() - 1 - late] + 1e-3 * scatter(i, 5);
+            let velocity = estimate + 0.05 * scatter(i, 7);
+            trace.push_row(&[STEP_S * i as f64, position, velocity, read / 0.08, (i / PERIOD) as f64]);
+        }
+    }
+    let baseline = ["inertia", "coulomb", "viscous"].map(String::from).into();
+    RunTable::new(Meta { gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) }, trace).unwrap()
+}
+
+fn diagnosed(late: usize, reach: f64) -> (Vec<String>, Diagnosis) {
+    let run = moving(late, reach);
+    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    (found.suggestions.iter().map(|s| s.effect.clone()).collect(), found)
+}
+
+#[test]
+fn a_joint_that_sticks_hides_nothing() {
+    let (named, found) = diagnosed(0, 0.0);
+    assert!(named.is_empty(), "{}", found.summary);
+    // 2.0 mNm where the reversals count. What is left beside them is still more than the noise.
+    assert!(found.fit.validation_rms < 5e-4, "{}", found.summary);
+    for (name, truth) in [("j", INERTIA), ("tau_c", DRY), ("c_v", VISCOUS)] {
+        let value = found.fit.parameters.iter().find(|p| p.name == name).unwrap().value;
+        assert!((value / truth - 1.0).abs() < 0.02, "{name}: {value} instead of {truth}");
+    }
+    let why = &found.not_visible.iter().find(|n| n.effect == "presliding").unwrap().why;
+    assert!(why.contains("left out"), "{why}");
+    assert!(found.fit.notes.iter().any(|note| note.contains("reversals are left out")), "{:?}", found.fit.notes);
+}
+
+#[test]
+fn a_late_current_is_named_alone() {
+    let (named, found) = diagnosed(16, 0.0);
+    assert_eq!(named, ["signal_delay"], "{}", found.summary);
+}
+
+/// Nobody knows of which of its two moments a row's torque is.
+#[test]
+fn a_current_between_position_and_velocity_is_not_late() {
+    let (named, found) = diagnosed(2, 0.0);
+    assert!(named.is_empty(), "{}", found.summary);
+}
+
+#[test]
+fn contacts_that_bend_are_seen_at_reversals() {
+    let (named, found) = diagnosed(0, 0.4);
+    assert_eq!(named, ["presliding"], "{}", found.summary);
+}
