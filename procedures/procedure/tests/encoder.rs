@@ -5,7 +5,7 @@ use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, fit};
 use jointbench_procedure::conduct::{ConductFault, conduct};
-use jointbench_procedure::identification::{Form, Identification, Verdict};
+use jointbench_procedure::identification::{Form, Identification, Mark, Verdict};
 use jointbench_procedure::parameter::Values;
 use jointbench_procedure::{
     BenchFacts, Commit, Control, Demand, EventKind, Live, Recorder, RecorderFault, RunState, Safe, procedure,
@@ -340,8 +340,9 @@ fn every_edge_is_within_a_step_of_the_stage_and_the_best_place_is_found() {
     assert!(found.quantity("vertical_negative").is_none() && found.quantity("vertical_positive").is_none());
     check(&found, "best_radial_shift", truth.best_radial_m, 2e-6);
     assert!(found.summary.starts_with("PASS"), "{}", found.summary);
-    let [bars, line] = &found.figures[0].series[..] else { panic!("{:?}", found.figures[0]) };
+    let [bars, unlost, line] = &found.figures[0].series[..] else { panic!("{:?}", found.figures[0]) };
     assert!(bars.y.iter().all(|share| *share >= line.y[0]), "{bars:?}");
+    assert_eq!((unlost.x.len(), &unlost.mark), (2, &Mark::Points), "vertically, both ways: {unlost:?}");
     assert!((bars.band[0][0]..=bars.band[0][1]).contains(&(truth.radial_m[0].abs() / 0.15e-3)), "{bars:?}");
 
     let drawn = &found.figures[1].series;

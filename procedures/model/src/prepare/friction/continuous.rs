@@ -26,9 +26,16 @@ const ROWS_HZ: f64 = 100.0;
 pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result<Prepared, ModelError> {
     let every = options.decimation.unwrap_or(((1.0 / samples.step_s / ROWS_HZ).round() as usize).max(1));
     // What the response keeps of fast changes, the acceleration has to keep as well: one filter for all columns, the lower of
-    // the two. The slope of a position has been smoothed before, because its steps would be all that is left of it.
+    // the two, unless hardly anything is left beside the reversals. The slope of a position has been smoothed before, because
+    // its steps would be all that is left of it.
     let decimating_hz = 0.4 / (every as f64 * samples.step_s);
-    let smooths = !samples.derived_velocity && (every == 1 || samples.cutoff_hz < decimating_hz);
+    let filtered_hz = if every == 1 { samples.cutoff_hz } else { samples.cutoff_hz.min(decimating_hz) };
+    let reach = (1.0 / (filtered_hz * samples.step_s)).ceil() as usize;
+    let near = (!samples.derived_velocity).then(|| reversals::near(&samples, reach));
+    let are_few =
+        |near: &Vec<bool>| (near.iter().filter(|n| **n).count() as f64) < MOST_NEAR_REVERSALS * near.len() as f64;
+    let near = near.filter(are_few);
+    let smooths = near.is_some() && (every == 1 || samples.cutoff_hz < decimating_hz);
     let filter = match smooths {
         true => Some(LowPass::butterworth(4, 2.0 * samples.cutoff_hz * samples.step_s)),
         false => (every > 1).then(|| LowPass::chebyshev(8, 0.05, 0.8 / every as f64)),
@@ -61,12 +68,9 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     let mut view = View::new(points.clone(), points.clone(), Vec::new(), starts.clone(), samples.step_s);
     view.constants = Constants { weight, ..samples.constants };
     let mut reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone(), left_out: Vec::new() };
-    if !samples.derived_velocity {
-        let filtered_hz = if every == 1 { samples.cutoff_hz } else { samples.cutoff_hz.min(decimating_hz) };
-        let near = reversals::near(&samples, (1.0 / (filtered_hz * samples.step_s)).ceil() as usize);
+    if let Some(near) = near {
         let near = pick(&near.into_iter().map(f64::from).collect::<Vec<_>>());
-        let are_few = near.iter().sum::<f64>() < MOST_NEAR_REVERSALS * near.len() as f64;
-        if are_few && !reversals::bend(&view, &samples.target, &reduce, &near) {
+        if !reversals::bend(&view, &samples.target, &reduce, &near) {
             view.constants.turns_left_out = true;
             rests = near.iter().enumerate().map(|(i, near)| *near > 0.0 || rests.get(i) == Some(&true)).collect();
         }
