@@ -102,7 +102,7 @@ fn wandered(seed: u64, step_nm: f64, drift_nm_s: f64, leap_nm: f64) -> (Vec<Stri
 
 #[test]
 fn a_zero_that_wanders_is_no_effect_and_one_that_drifts_is() {
-    // What neighbouring legs have in common counted as so many legs of evidence, and seven of these runs had a drift or an offset.
+    // What neighbouring legs have in common counted as so many legs of evidence, and a drift or an offset was named for it.
     let found: Vec<(Vec<String>, Verdict)> = (0..12).map(|seed| wandered(seed, 0.0005, 0.0, 0.0)).collect();
     let named = found.iter().filter(|(named, _)| !named.is_empty()).count();
     let structure = found.iter().filter(|(_, verdict)| *verdict == Verdict::UnexplainedStructure).count();
