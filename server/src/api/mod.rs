@@ -102,6 +102,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(runs::stop))
         .routes(routes!(runs::abort))
         .routes(routes!(runs::go_on))
+        .routes(routes!(runs::plan))
         .routes(routes!(runs::events))
         .routes(routes!(notes::list, notes::write))
         .routes(routes!(notes::set_tags))

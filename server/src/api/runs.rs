@@ -3,7 +3,7 @@
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::{Problem, Refusals};
 use crate::lab::{Alignment, Caller, Lab};
-use crate::view::{ChannelStatistics, Figure, NewRun, Run, RunEvent, RunList, Samples};
+use crate::view::{ChannelStatistics, Figure, NewRun, Preview, Run, RunEvent, RunList, Samples};
 use axum::Extension;
 use axum::extract::State;
 use jointbench_procedure::Control;
@@ -60,6 +60,13 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
     responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
 pub async fn pause(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Pause, &caller.name).await?))
+}
+
+/// What the run does, step by step, as its dry run told it; of a run that goes on with another, what was left
+#[utoipa::path(get, path = "/runs/{id}/plan", operation_id = "get_plan", tag = "runs", params(("id" = i64, Path, description = "Run")),
+    responses((status = 200, description = "Its steps, in the order of its progress", body = Preview), Refusals))]
+pub async fn plan(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Preview> {
+    Ok(Json(lab.plan_of(id).await?))
 }
 
 /// Goes on after a pause

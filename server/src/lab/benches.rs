@@ -92,10 +92,7 @@ impl Lab {
     /// Dry run. Nothing moves.
     pub async fn preview(&self, bench: &str, id: &str, parameters: &Map<String, Value>) -> Answer<view::Preview> {
         let (bench, plan) = self.plan(bench, id, parameters).await?;
-        let mut preview: view::Preview = super::reread(&plan.preview(&bench.facts()))?;
-        preview.wait_s = bench.description().pace().map(|pace| preview.duration_s / pace);
-        preview.checks.extend(readiness(bench));
-        Ok(preview)
+        previewed(bench, &plan)
     }
 
     pub(super) async fn plan(
@@ -175,6 +172,14 @@ impl Lab {
 }
 
 /// Conditions of a start that the plan does not know.
+/// What a plan does on its bench, with what stands in its way now.
+pub(super) fn previewed(bench: &BenchHandle, plan: &Plan) -> Answer<view::Preview> {
+    let mut preview: view::Preview = super::reread(&plan.preview(&bench.facts()))?;
+    preview.wait_s = bench.description().pace().map(|pace| preview.duration_s / pace);
+    preview.checks.extend(readiness(bench));
+    Ok(preview)
+}
+
 fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
     let status = bench.status();
     let faults = status.faults();

@@ -1,8 +1,9 @@
 //! Runs that go on where an earlier one ended too soon.
 
+use super::benches::previewed;
 use super::{Answer, Lab, LabError};
 use crate::store::RunRecord;
-use crate::view::Run;
+use crate::view::{Preview, Run};
 use jiff::Timestamp;
 use jointbench_instrument::{Meta, RunTable};
 use jointbench_procedure::continuing::{Continues, Done, joined};
@@ -48,6 +49,21 @@ impl Lab {
             None => rest,
         };
         self.launch(bench, rest, by).await
+    }
+
+    /// What a run does, step by step: of one that goes on with another, what restores its history and what was left.
+    pub async fn plan_of(&self, id: i64) -> Answer<Preview> {
+        let record = self.inner.store.run(id).await?;
+        let (bench, plan) = self.plan(&record.bench, &record.procedure, &record.parameters).await?;
+        let plan = match continues(&record)? {
+            Some(before) => {
+                plan.rest(before.run, before.from_step, before.restored_from, &bench.facts()).ok_or_else(|| {
+                    LabError::Invalid(format!("run {id} was planned otherwise than this version plans it"))
+                })?
+            }
+            None => plan,
+        };
+        previewed(bench, &plan)
     }
 
     /// A run behind those that it goes on with, the last first.

@@ -183,6 +183,16 @@ fn what_is_left_of_a_stopped_run_is_made_later_and_both_are_one_measurement() {
     assert_eq!(status, 201, "{rest}");
     let rest = daemon.wait_for_end(rest["id"].as_i64().unwrap());
     assert_eq!(rest["state"], "completed", "{rest}");
+    let (status, plan) = daemon.get(&format!("/api/v1/runs/{}/plan", rest["id"]));
+    assert_eq!(status, 200, "{plan}");
+    let (_, events) = daemon.get(&format!("/api/v1/runs/{}/events", rest["id"]));
+    let made: Vec<_> = events.as_array().unwrap().iter().filter(|event| event["kind"] == "step_started").collect();
+    for event in &made {
+        let step = event["data"]["step"].as_u64().unwrap() as usize;
+        assert_eq!(plan["steps"][step]["label"], event["data"]["label"], "the plan told is the one that is made");
+    }
+    let last = made.last().unwrap()["data"]["step"].as_u64().unwrap() as usize;
+    assert_eq!(last + 1, plan["steps"].as_array().unwrap().len(), "{plan}");
     assert!(rest["rows"].as_u64().unwrap() < whole["rows"].as_u64().unwrap(), "only what was left, and its history");
     let found = |run: &Value| daemon.get(&format!("/api/v1/runs/{}/identification", run["id"])).1;
     let (uninterrupted, resumed) = (found(&whole), found(&rest));

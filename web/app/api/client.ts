@@ -40,6 +40,7 @@ export const api = {
 		ask('post', `/api/v1/runs/{id}/${what}`, { path: { id } }),
 	/** Starts a run that makes what this one has left. */
 	goOn: (id: number) => ask('post', '/api/v1/runs/{id}/continue', { path: { id } }),
+	plan: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/plan', { path: { id } }, signal),
 	events: (id: number, after?: number, signal?: Signal) =>
 		ask('get', '/api/v1/runs/{id}/events', { path: { id }, query: { after } }, signal),
 	notes: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/notes', { path: { id } }, signal),

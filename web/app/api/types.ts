@@ -8,6 +8,7 @@ export type AutopilotStep = Schemas['AutopilotStep'];
 export type Bench = Schemas['Bench'];
 export type ChannelHealth = Schemas['ChannelHealth'];
 export type Channel = Schemas['ChannelInfo'];
+export type ChannelStatistics = Schemas['ChannelStatistics'];
 export type Comparison = Schemas['Comparison'];
 export type Diagnosis = Schemas['Diagnosis'];
 export type Earlier = Schemas['Earlier'];

@@ -1,4 +1,4 @@
-import type { RunEvent, Samples } from '../api/types';
+import type { ChannelStatistics, RunEvent, Samples } from '../api/types';
 
 /** One channel of a run over time. */
 export interface Course {
@@ -58,6 +58,20 @@ export function factTable(facts: readonly Record<string, unknown>[]): { name: st
 		const values = flat.map((one) => one.get(name) ?? '–');
 		return { name, values, differs: new Set(values).size > 1 };
 	});
+}
+
+/**
+ * The mean of a channel side by side. Runs scatter: they differ where their means lie further apart than `least` and than twice
+ * the deviation within any of them.
+ */
+export function meanRow(name: string, found: readonly (Pick<ChannelStatistics, 'mean' | 'deviation'> | undefined)[], least: number) {
+	const means = found.flatMap((one) => one?.mean ?? []);
+	const apart = Math.max(...means) - Math.min(...means);
+	return {
+		name,
+		values: found.map((one) => (one?.mean == null ? '–' : one.mean.toFixed(1))),
+		differs: apart > Math.max(least, ...found.map((one) => 2 * (one?.deviation ?? 0))),
+	};
 }
 
 function flatten(value: unknown, name = ''): [string, string][] {

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
-import { alignCourses, courseOf, factTable, sharedMoments } from './align';
+import { alignCourses, courseOf, factTable, meanRow, sharedMoments } from './align';
 import { completions } from './complete';
 import { against, differ } from './differ';
 import { readMarked, toggleMarked, withBase } from './marked';
@@ -51,6 +51,14 @@ it('shows where settings differ', () => {
 		{ name: 'oil.name', values: ['A', 'B'], differs: true },
 		{ name: 'oil.age_h', values: ['1', '–'], differs: true },
 	]);
+});
+
+it('tells means apart where the runs do not scatter as far', () => {
+	const cold = { mean: 22, deviation: 0.2 };
+	expect(meanRow('temperature', [cold, { mean: 31.04, deviation: 0.4 }, undefined], 1)).toEqual({ name: 'temperature', values: ['22.0', '31.0', '–'], differs: true });
+	expect(meanRow('temperature', [cold, { mean: 22.8, deviation: 0.1 }], 1).differs).toBe(false);
+	expect(meanRow('temperature', [cold, { mean: 26, deviation: 3 }], 1).differs).toBe(false);
+	expect(meanRow('temperature', [cold, { mean: null, deviation: null }], 1).differs).toBe(false);
 });
 
 it('compares at most six runs', () => {
