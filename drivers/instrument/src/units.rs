@@ -56,7 +56,7 @@ pub fn quantity_of(name: &str) -> Option<&str> {
 }
 
 /// Longest first: `_rad_s` before `_s`, `_nm_per_a` before `_a`.
-const SUFFIXES: [(&str, &str); 18] = [
+const SUFFIXES: [(&str, &str); 19] = [
     ("_nm_per_rad", "Nm/rad"),
     ("_nm_rad", "Nm/rad"),
     ("_nm_s", "Nm·s/rad"),
@@ -74,6 +74,7 @@ const SUFFIXES: [(&str, &str); 18] = [
     ("_percent", "%"),
     ("_v", "V"),
     ("_w", "W"),
+    ("_m", "m"),
     ("_s", "s"),
 ];
 

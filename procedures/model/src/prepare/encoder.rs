@@ -2,6 +2,7 @@
 
 use super::chunks::Source;
 use super::repeats::Same;
+use super::unknown::is_pose;
 use super::{Prepared, filter, sample_s, segments, sweeps};
 use crate::view::{Constants, Signal, Signals};
 use crate::{ModelError, Options};
@@ -56,7 +57,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         time_s,
         constants: Constants { pole_pairs: run.meta().pole_pairs, poles: run.meta().poles, ..Constants::default() },
     };
-    sweeps::prepare(run, source, CHUNK_S, &[Same::Value(Signal::Velocity)], options)
+    let poses = source.signals.unknown().filter(|s| matches!(s, Signal::Column(column) if is_pose(column)));
+    let inputs: Vec<Same> = std::iter::once(Signal::Velocity).chain(poses).map(Same::Value).collect();
+    sweeps::prepare(run, source, CHUNK_S, &inputs, options)
 }
 
 /// test − reference, wrapped about its own middle, so that no sample is torn from the others at ±π.

@@ -8,10 +8,15 @@ use jointbench_instrument::units::unit_of;
 /// clock. Over the drive's own effort every scatter of the torque shows.
 const NO_CAUSE: [&str; 9] = ["Nm", "A", "V", "W", "rad", "rad/s", "rad/s²", "s", "ms"];
 
+/// Where a stage stood: set from outside, and no motion of the joint.
+pub fn is_pose(column: &str) -> bool {
+    column.starts_with("stage_")
+}
+
 /// What is left may depend on a column of this name. Not on one without a unit: it may be the response under another
 /// name.
 pub fn may_cause(column: &str) -> bool {
-    unit_of(column).is_some_and(|unit| !NO_CAUSE.contains(&unit))
+    is_pose(column) || unit_of(column).is_some_and(|unit| !NO_CAUSE.contains(&unit))
 }
 
 /// Keeps the columns of a run that nobody knows.
