@@ -19,6 +19,7 @@ mod own;
 mod pieces;
 mod plan;
 pub mod prepare;
+mod quick;
 mod report;
 mod residuals;
 mod scope;

@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, Form, Search};
 use crate::linear::{Basis, Spd, dot};
 use crate::prepare::Problem;
+use rayon::prelude::*;
 
 /// One effect of the model in one form.
 #[derive(Clone)]
@@ -208,7 +209,8 @@ fn slopes(term: &Term, factors: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
         }
         slope
     };
-    problem.reduce.apply_all(term.free().map(slope).collect())
+    let free: Vec<usize> = term.free().collect();
+    problem.reduce.apply_all(free.into_par_iter().map(slope).collect())
 }
 
 struct Reduced {

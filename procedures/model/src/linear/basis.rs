@@ -1,5 +1,7 @@
 //! An orthonormal basis of columns, grown one column at a time.
 
+use multiversion::multiversion;
+
 /// Orthonormal vectors of equal length.
 #[derive(Debug, Clone, Default)]
 pub struct Basis {
@@ -13,6 +15,7 @@ const DEPENDENT: f64 = 1e-10;
 const CLEAN: f64 = 0.5;
 
 /// Σ ab, in double precision whatever the numbers are kept in.
+#[multiversion(targets("x86_64+avx512f+avx512dq", "x86_64+avx2"))]
 pub fn dot<A: Into<f64> + Copy, B: Into<f64> + Copy>(a: &[A], b: &[B]) -> f64 {
     // Eight sums that do not wait for each other let the compiler use whole registers.
     let mut sums = [0.0; 8];

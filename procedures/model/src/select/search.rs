@@ -7,9 +7,15 @@ use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, is_tie, left_by_memor
 use super::scatter::shows_within_blocks;
 use super::wander::Wander;
 use crate::Options;
+use crate::effect::{Effect, Form};
 use crate::linear::{BlockGrams, dot};
 use crate::terms::{Term, Terms};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+/// Effects of a model with their forms and shapes.
+type Laid<'p> = Vec<(&'p dyn Effect, Form<'p>, Vec<f64>)>;
 
 pub enum Move<'p> {
     Added { rival: Box<Rival<'p>>, ties: Vec<&'p str> },
@@ -60,6 +66,8 @@ pub struct Search<'l, 'p> {
     exchanges: usize,
     /// What takes the place of an effect that was just removed.
     instead: Option<Found<'p>>,
+    /// Models that were laid out, without their columns.
+    laid: Mutex<BTreeMap<Vec<&'p str>, Laid<'p>>>,
     /// Something from outside the library was seen: whatever entered now would stand for it.
     pub closed: bool,
 }
@@ -93,6 +101,7 @@ impl<'l, 'p> Search<'l, 'p> {
             left: most,
             exchanges: EXCHANGES,
             instead: None,
+            laid: Mutex::default(),
             closed: false,
         }
     }
@@ -207,8 +216,7 @@ impl<'l, 'p> Search<'l, 'p> {
         now.terms.iter().filter(|term| self.bends(term)).find_map(|given| {
             let out: Vec<&str> = self.withdrawn.iter().copied().chain([given.id()]).chain(but).collect();
             let found = step(&now.without(given.id()), self.library, &out, self.bar())?;
-            let with: Vec<&str> = now.terms.iter().map(Term::id).chain([found.0.term.id()]).collect();
-            let losses = held_out(&lay(now, &with, self.library, self.options));
+            let losses = held_out(&self.lay(now.terms.iter().map(Term::id).chain([found.0.term.id()])));
             let less = 1.0 - losses.iter().sum::<f64>() / than.iter().sum::<f64>();
             (less > self.options.practical_share && !is_tie(&losses, than)).then_some(found)
         })
@@ -221,20 +229,34 @@ impl<'l, 'p> Search<'l, 'p> {
 
     /// The model with one effect more.
     pub fn laid_with(&self, id: &'p str) -> Terms<'p> {
-        let with: Vec<&str> = self.now.terms.iter().map(Term::id).chain([id]).collect();
-        lay(&self.now, &with, self.library, self.options)
+        self.lay(self.now.terms.iter().map(Term::id).chain([id]))
     }
 
     fn laid_without(&self, id: &str) -> Terms<'p> {
-        let rest: Vec<&str> = self.now.terms.iter().map(Term::id).filter(|other| *other != id).collect();
-        lay(&self.now, &rest, self.library, self.options)
+        self.lay(self.now.terms.iter().map(Term::id).filter(|other| *other != id))
+    }
+
+    /// The model of these effects, which is asked for more than once.
+    fn lay(&self, effects: impl Iterator<Item = &'p str>) -> Terms<'p> {
+        let mut effects: Vec<&str> = effects.collect();
+        effects.sort_unstable();
+        let known = |laid: &BTreeMap<Vec<&str>, Laid<'p>>| laid.get(&effects).cloned();
+        if let Some(terms) = known(&self.laid.lock().unwrap_or_else(PoisonError::into_inner)) {
+            let problem = self.now.problem;
+            let terms =
+                terms.into_iter().map(|(effect, form, shape)| Term::new(effect, form, shape, problem)).collect();
+            return Terms { terms, ..self.now.clone() };
+        }
+        let made = lay(&self.now, &effects, self.library, self.options);
+        let shapes = made.terms.iter().map(|term| (term.effect, term.form.clone(), term.shape.clone())).collect();
+        self.laid.lock().unwrap_or_else(PoisonError::into_inner).insert(effects, shapes);
+        made
     }
 
     /// The model is as good with another effect in place of one, of a size that is physically possible.
     pub fn ties(&self, effect: &str, rival: &'p str) -> bool {
         let others = self.now.terms.iter().map(Term::id).filter(|id| *id != effect);
-        let with: Vec<&str> = others.chain([rival]).collect();
-        let other = lay(&self.now, &with, self.library, self.options);
+        let other = self.lay(others.chain([rival]));
         let mut sized = other.terms.iter().zip(other.linear().factors);
         let is_possible = sized.all(|(term, factors)| term.id() != rival || term.allows(&factors));
         // What stands in for an effect that hardly shows in the error leaves the others where it does.

@@ -1,8 +1,10 @@
 //! Stribeck effect.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::quick;
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
+use multiversion::multiversion;
 
 pub struct Stribeck;
 
@@ -22,9 +24,20 @@ static INFO: EffectInfo = EffectInfo {
     needs: &[],
 };
 
-/// exp(−(|ω|/ω_s)^δ)
-pub(super) fn fading(velocity_rad_s: f64, shape: &[f64]) -> f64 {
-    (-(velocity_rad_s.abs() / shape[0]).powf(shape[1])).exp()
+/// exp(−(|ω|/ω_s)^δ)·sign ω of each point
+pub(super) fn fading(view: &View, shape: &[f64]) -> Vec<f64> {
+    let mut out = view.get(Signal::Direction).to_vec();
+    fade(&mut out, view.get(Signal::Velocity), 1.0 / shape[0], shape[1]);
+    out
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq", "x86_64+avx2"))]
+fn fade(column: &mut [f64], velocity_rad_s: &[f64], per_speed: f64, delta: f64) {
+    for (value, w) in column.iter_mut().zip(velocity_rad_s) {
+        // A speed of zero has no logarithm.
+        let power = quick::exp(delta * quick::ln(w.abs() * per_speed + f64::MIN_POSITIVE));
+        *value *= quick::exp(-power);
+    }
 }
 
 /// Speeds and exponents that this data can tell apart: between its slowest motion and a third of its fastest.
@@ -54,7 +67,7 @@ impl Effect for Stribeck {
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        vec![view.map2(Signal::Velocity, Signal::Direction, |w, d| fading(w, shape) * d)]
+        vec![fading(view, shape)]
     }
 
     fn suddenness(&self) -> Option<&'static str> {

@@ -35,7 +35,7 @@ impl Effect for StribeckLoad {
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        let fading = view.map2(Signal::Velocity, Signal::Direction, |w, d| super::stribeck::fading(w, shape) * d);
+        let fading = super::stribeck::fading(view, shape);
         vec![fading.iter().zip(view.get(Signal::Load)).map(|(f, l)| f * l.abs()).collect()]
     }
 
