@@ -7,6 +7,7 @@ use crate::prepare::{Prepared, Problem, Reduce, drive};
 use crate::view::{Signal, Signals, View};
 use jointbench_instrument::Kind;
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// More points of one stretch say little more: what one stretch has in common is not averaged away. Waves over the turn of
 /// an encoder have to be followed.
@@ -44,6 +45,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly, gear: f64
     let mut problem = Problem {
         view,
         target: vec![0.0; rows],
+        sampled: Arc::default(),
         reduce: Reduce::Same,
         blocks: choice.stretches.len(),
         block: laid.block,

@@ -37,7 +37,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     super::unknown::keep(&mut signals, run);
     let source = Source {
         signals,
-        target: column("brake_torque_nm").to_vec(),
+        target: column("brake_torque_nm").to_vec().into(),
         step_s,
         starts: segments::runs(run),
         runs: segments::runs(run),

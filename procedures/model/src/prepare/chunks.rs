@@ -5,12 +5,13 @@ use super::{Problem, Reduce, layout, segments, wavering};
 use crate::view::{Constants, Signal, Signals, View};
 use std::collections::HashSet;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The samples of a run in model quantities.
 pub struct Source {
     pub signals: Signals,
     /// What the model predicts.
-    pub target: Vec<f64>,
+    pub target: Arc<Vec<f64>>,
     pub time_s: Vec<f64>,
     pub step_s: f64,
     /// First samples of recordings.
@@ -92,7 +93,7 @@ impl Source {
         let moved = chunks.iter().map(|c| at(&c.start)..at(&c.start) + c.len()).collect();
         let source = Source {
             signals,
-            target: gather(&self.target),
+            target: gather(&self.target).into(),
             time_s: gather(&self.time_s),
             starts: self.starts.iter().map(at).collect(),
             runs: self.runs.iter().map(at).collect(),
@@ -158,6 +159,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
     let mut problem = Problem {
         view,
         target,
+        sampled: samples.target.clone(),
         reduce: Reduce::Same,
         block,
         blocks,
@@ -191,7 +193,7 @@ mod tests {
         signals.set(Signal::Direction, direction);
         let source = Source {
             signals,
-            target: position.clone(),
+            target: position.clone().into(),
             time_s: (0..n).map(|i| i as f64).collect(),
             step_s: 1.0,
             starts: vec![0],

@@ -46,7 +46,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     super::unknown::keep(&mut signals, run);
     let source = Source {
         signals,
-        target,
+        target: target.into(),
         step_s,
         starts: segments::runs(run),
         runs: segments::runs(run),

@@ -29,6 +29,7 @@ use jointbench_instrument::{Kind, Motion, RunTable};
 pub use repeats::Unlike;
 pub use segments::stretches;
 use std::collections::HashSet;
+use std::sync::Arc;
 pub use unknown::may_cause;
 
 /// What a model is judged on: the response at points with the signals that may explain it.
@@ -37,6 +38,8 @@ pub struct Problem {
     pub view: View,
     /// The response at the rows.
     pub target: Vec<f64>,
+    /// The response at the samples of the view, where rows are means over these; else nothing.
+    pub sampled: Arc<Vec<f64>>,
     /// Columns at points become columns at rows in the way in which the target did.
     pub reduce: Reduce,
     /// Piece of the run to which a row belongs, from 0: long enough to be called independent of the others.

@@ -10,6 +10,7 @@ mod rivals;
 mod scatter;
 mod search;
 mod wander;
+mod waves;
 
 pub use ground::Ground;
 pub use imitated::moved;

@@ -4,6 +4,7 @@ use super::flips::{Null, Score};
 use super::ground::{Ground, Own};
 use super::library::Library;
 use super::scatter;
+use super::waves;
 use crate::Options;
 use crate::effect::Stage;
 use crate::linear::Beside;
@@ -138,11 +139,13 @@ pub fn step<'p>(
             let sse = polish(&mut term, basis, residual, problem);
             let [term] = term;
             let possible = term.allows(&ground.own(&term.columns).factors()) && bar.leaves_possible(now, &term);
-            let possible = possible && !scatter::could_be(&term, now, &ground, bar.kind, options);
+            let possible = possible
+                && !scatter::could_be(&term, now, &ground, bar.kind, options)
+                && !waves::is_none(&term, now, &ground);
             let sse = if possible { sse } else { energy };
             (term, 1.0 - sse / energy)
         })
-        .filter(|(_, share)| *share >= least_share)
+        .filter(|(term, share)| *share >= least_share.max(waves::least_share(term)))
         .collect();
     let sets = std::iter::once([].as_slice()).chain(worth_it.iter().map(|(term, _)| term.columns.as_slice()));
     let beside = Beside::new(&now.columns(), sets, residual, &problem.fold, problem.folds);

@@ -13,6 +13,7 @@ use crate::view::{Constants, Signal, View};
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::RunTable;
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// Of a trajectory of more rows than these some are taken.
 const MOST_ROWS: usize = 12_000;
@@ -103,7 +104,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     if let Reduce::Decimate { left_out: out, .. } = &mut reduce {
         out.clone_from(&left_out);
     }
-    let target = reduce.apply(samples.target.clone());
+    let target = reduce.apply(samples.target.to_vec());
     if target.len() < 24 {
         return Err(ModelError::TooFewSamples { usable: target.len(), needed: 24, what: "filtered rows" });
     }
@@ -144,6 +145,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     let mut main = Problem {
         view,
         target,
+        sampled: Arc::default(),
         reduce,
         block,
         blocks,

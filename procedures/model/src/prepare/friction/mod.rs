@@ -130,7 +130,7 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
     let slides = run.meta().motion == Motion::Linear;
     let source = Source {
         signals,
-        target,
+        target: target.into(),
         step_s,
         starts,
         runs: segments::runs(run),

@@ -1,0 +1,64 @@
+//! What repeats with time at one speed is no wave over the angle, though it looks like one there.
+
+mod common;
+
+use common::tables::{meta, scatter};
+use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use jointbench_model::{ModelSpec, Options, discover};
+use std::f64::consts::TAU;
+
+const STEP_S: f64 = 0.004;
+const ROWS: usize = 220;
+const SPEEDS_RAD_S: [f64; 6] = [2.2, 3.3, 4.9, 7.3, 11.0, 16.4];
+const REPEATS: usize = 10;
+const NOISE_NM: f64 = 0.8e-3;
+
+/// Friction in steps both ways, twice, with a torque of its own: of the motor's angle [rad], the speed [rad/s] and the time
+/// since the step began [s].
+fn named(torque_nm: impl Fn(f64, f64, f64) -> f64) -> Vec<String> {
+    let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
+    let mut trace = Trace::new(names.map(Channel::new).into());
+    let (mut angle, mut at) = (0.0f64, 0);
+    for leg in 0..2 * REPEATS * SPEEDS_RAD_S.len() {
+        let way = if leg % 2 == 0 { 1.0 } else { -1.0 };
+        let velocity = way * SPEEDS_RAD_S[leg / 2 % SPEEDS_RAD_S.len()];
+        for row in 0..ROWS {
+            angle += velocity * STEP_S;
+            let friction = 0.08 * way + 4e-4 * velocity;
+            let torque = friction + torque_nm(angle, velocity, row as f64 * STEP_S) + NOISE_NM * scatter(at, 1);
+            let (segment, repeat) = (leg as f64, (leg / (2 * SPEEDS_RAD_S.len())) as f64);
+            trace.push_row(&[at as f64 * STEP_S, angle, velocity, torque, segment, repeat]);
+            at += 1;
+        }
+    }
+    let mut meta = meta(Kind::Friction);
+    meta.torque_constant_nm_per_a = Some(1.0);
+    let run = RunTable::new(meta, trace).unwrap();
+    let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
+    let found = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
+    found.model[2..].to_vec()
+}
+
+#[test]
+fn counts_that_beat_with_the_samples_are_no_wave() {
+    // 62.5 Hz at the slowest speed: means over 40 ms go up and down as those of 36 waves a turn do, both ways.
+    let beat = |_: f64, velocity: f64, t_s: f64| {
+        if velocity.abs() < 3.0 { 4e-3 * velocity.signum() * (TAU * 62.5 * t_s).cos() } else { 0.0 }
+    };
+    assert_eq!(named(beat), [""; 0]);
+}
+
+#[test]
+fn what_only_one_of_six_speeds_shows_is_no_wave() {
+    let at_one = |angle: f64, velocity: f64, _: f64| {
+        if (4.0..5.5).contains(&velocity.abs()) { 1.5e-3 * (5.0 * angle).cos() } else { 0.0 }
+    };
+    assert_eq!(named(at_one), [""; 0]);
+}
+
+#[test]
+fn waves_over_the_angle_are_found_where_means_hardly_follow() {
+    for order in [5.0, 30.0] {
+        assert_eq!(named(|angle, _, _| 2e-3 * (order * angle).cos()), ["cogging"], "{order} waves a turn");
+    }
+}
