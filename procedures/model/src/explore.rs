@@ -10,6 +10,7 @@ pub use withdrawn::{Withdrawal, Withdrawn};
 
 use crate::assembly::Assembly;
 use crate::intervals::intervals;
+use crate::late::late;
 use crate::maps::Maps;
 use crate::memory::memory;
 use crate::prepare::Prepared;
@@ -132,9 +133,17 @@ impl<'p> Exploration<'p> {
         let upheld = upheld.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
         let withdrawn = withdrawn::all(&search, &taken_back);
         let ties = open_ties(&search, &advances);
+        let may_grow = |now: &Assembly| now.effects.len() < start.effects.len() + most && !search.closed;
         let now = advances.last().map_or(&start, |a| &a.after);
-        if now.effects.len() < start.effects.len() + most
-            && !search.closed
+        if may_grow(now)
+            && let Some((rival, after)) = late(now, options)
+        {
+            let after = after.settled(options)?;
+            advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
+            advances.last().into_iter().for_each(&mut *on_advance);
+        }
+        let now = advances.last().map_or(&start, |a| &a.after);
+        if may_grow(now)
             && let Some(rival) = memory(now, options)
             && let effects = now.effects.iter().map(String::as_str).chain([rival.term.id()]).map(String::from).collect()
             && let after = now.of(now.main.clone(), effects).settled(options)?

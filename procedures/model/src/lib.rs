@@ -12,6 +12,7 @@ mod floor;
 pub mod formula;
 mod heap;
 mod intervals;
+mod late;
 pub mod linear;
 mod maps;
 mod memory;

@@ -1,5 +1,6 @@
 //! A diagnosis in plain sentences.
 
+use crate::effect::{Effect, Stage};
 use crate::explore::{Exploration, Withdrawal, Withdrawn};
 use crate::intervals::IMPOSSIBLE;
 use crate::maps::Maps;
@@ -28,9 +29,13 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         true => String::new(),
         false => format!(" and with all of them to {}", figure(complete.validation_rms, &fit.unit)),
     };
+    let place = match found.start.spec.find(effect).map(Effect::stage) {
+        Ok(Stage::Ramp) => "on ramps",
+        _ => "around reversals",
+    };
     let gain = if with == error {
         format!(
-            "{named} is missing{then}: it acts around reversals; settled motion has a held-out error of {error} with it \
+            "{named} is missing{then}: it acts {place}; settled motion has a held-out error of {error} with it \
              and without it, and {floor}."
         )
     } else {

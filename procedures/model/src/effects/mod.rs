@@ -95,6 +95,11 @@ fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec
     whole_orders(orders, highest, "harmonic", &["a", "b"])
 }
 
+/// A wave whose order is known.
+fn known_order(order: u32) -> Vec<Form<'static>> {
+    whole_orders(order..=order, f64::INFINITY, "harmonic", &["a", "b"])
+}
+
 /// A wave over the whole orders up to the highest.
 fn whole_orders(
     orders: RangeInclusive<u32>,

@@ -3,9 +3,9 @@
 use super::Withdrawn;
 use crate::assembly::Assembly;
 use crate::effect::{Effect, Form, Search as How, Stage};
-use crate::memory;
 use crate::report::{Invisible, LeftOut, Silent};
 use crate::select::{Search, Silence};
+use crate::{late, memory};
 
 #[derive(Default)]
 pub struct Others {
@@ -18,7 +18,8 @@ pub struct Others {
 
 impl Others {
     pub fn of<'p>(end: &Assembly<'p>, search: &Search<'_, 'p>, withdrawn: &[Withdrawn<'p>]) -> Self {
-        let silences: Vec<Silence> = search.silences().into_iter().chain(memory::silences(end)).collect();
+        let silences: Vec<Silence> =
+            search.silences().into_iter().chain(memory::silences(end)).chain(late::silence(end)).collect();
         let mut others = Self::default();
         let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
         for effect in end.spec.known().filter(is_out) {
@@ -64,7 +65,8 @@ fn sought(effect: &dyn Effect, end: &Assembly) -> Option<String> {
 fn invisible(effect: &dyn Effect, end: &Assembly) -> String {
     const ALIKE: &str = "in this data it looks like what the model has already, which takes its place";
     const RAMP: &str = "settled motion does not show it, and on ramps, where the signals of different instruments are not \
-                        aligned, nothing is searched for; name it in the model, or record a trajectory without steps";
+                        aligned, only a torque that is late is looked for, beside an inertia; name it in the model, or record \
+                        a trajectory without steps";
     let prepared = end.prepared;
     let remembered = prepared.memory.as_ref().map(|problem| &problem.view);
     let view = match (end.is_apart(effect), effect.stage()) {

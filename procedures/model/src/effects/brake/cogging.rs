@@ -28,8 +28,11 @@ impl Effect for Cogging {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let orders = view.constants.poles.map_or(1..=60, |p| p..=p);
-        let mut forms = crate::effects::harmonic_form(view, Signal::Position, orders);
+        // The poles that are known are no question of how many waves pass from sample to sample.
+        let mut forms = match (view.constants.poles, view.samples.find(Signal::Position)) {
+            (Some(poles), Some(_)) => crate::effects::known_order(poles),
+            _ => crate::effects::harmonic_form(view, Signal::Position, 1..=60),
+        };
         let excited = forms.iter().map(|f| Form { name: "excited", ..f.clone() }).collect::<Vec<_>>();
         forms.extend(excited);
         forms

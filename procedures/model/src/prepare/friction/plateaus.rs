@@ -18,6 +18,8 @@ const CHUNK_S: f64 = 0.04;
 const MOVING_CHUNK_S: f64 = 0.02;
 /// Of a run of more chunks than these neighbours are averaged: what a plateau says, it says in few of them.
 const MOST_ROWS: usize = 12_000;
+/// So many chunks beside a reversal the change of the acceleration is not asked for.
+const REACH: usize = 3;
 /// Around reversals a long run is judged by some of its pairs of segments.
 const MOST_MOVING_ROWS: usize = 8_000;
 /// How far speed and load may be from the plateau's own middle, as a share of their size.
@@ -193,5 +195,24 @@ fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Pr
     }
     let (samples, chunks) = samples.around(chunks);
     let layout = Layout { chunks, condition: group.clone(), group, phase: None, settled: false, inputs: &[] };
-    Some(problem(&samples, layout))
+    let mut moving = problem(&samples, layout);
+    still_at_turns(&mut moving, REACH * n);
+    Some(moving)
+}
+
+/// Where the direction changes friction jumps, and a torque that is read late jumps late: far more than the change of the
+/// acceleration is worth there. It counts where nothing turns within some samples.
+fn still_at_turns(moving: &mut Problem, reach: usize) {
+    let view = &mut moving.view;
+    let direction = view.samples.find(Signal::Direction).unwrap_or_default();
+    let mut turns = vec![0u32];
+    turns.extend(direction.windows(2).scan(0, |turns, d| {
+        *turns += u32::from(d[0] != d[1]);
+        Some(*turns)
+    }));
+    let at = |sample: usize| turns[sample.min(direction.len().saturating_sub(1))];
+    let turning = |c: &Range<usize>| at(c.start.saturating_sub(reach)) != at(c.end + reach);
+    let jerk = view.get(Signal::Jerk).iter().zip(&view.chunks);
+    let still = jerk.map(|(jerk, chunk)| if turning(chunk) { 0.0 } else { *jerk }).collect();
+    view.points.set(Signal::Jerk, still);
 }
