@@ -1,12 +1,12 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
 // Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
-// both, by keyboard too, take its map away as a file, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; a token made, used and revoked; an observer in a second browser; the software stop by key, and its reset; a search that is still being typed; a foreign table dropped on the page; three runs compared, with their dashes and colours; two runs ticked and opened as one model; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; a brake applied to its bench and gone back on; the log back to its first run;
+// both, by keyboard too, take its map away as a file, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; a token made, used and revoked; an observer in a second browser; the software stop by key, and its reset; a search that is still being typed; a list ordered, held against a run and kept as a view; a foreign table dropped on the page; three runs compared, with their dashes and colours; two runs ticked and opened as one model; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; a brake applied to its bench and gone back on; the log back to its first run;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
-import { askForNone, bringBack, byKeyboard, dashesOf, manyRuns, openTogether, readResults, showEarlier, takeAway, takeMap, countCurves, zoomWhileFollowing } from './looks.mjs';
+import { askForNone, bringBack, byKeyboard, dashesOf, keepView, manyRuns, openTogether, readResults, showEarlier, takeAway, takeMap, countCurves, zoomWhileFollowing } from './looks.mjs';
 import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, FOREIGN, importForeign, loseAndFind, makeRun, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 import { applyAndGoBack, makeAndRevoke } from './settings.mjs';
 
@@ -156,6 +156,7 @@ await tell('walk', async () => {
 	await lost.getByText('there is no run 987654').waitFor({ timeout: 30_000 });
 	await audit(lost, 'a run that is not there');
 	await lost.close();
+	await keepView(page, where.base, run);
 	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
 	await page.getByLabel(`Compare run ${run + 1}`).check();

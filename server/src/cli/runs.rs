@@ -6,6 +6,7 @@ use super::offline::json_out;
 use super::run::is_over;
 use super::serve::runtime;
 use super::transfer::{Way, open};
+use crate::lab::{LabError, Order, RunFilter};
 use crate::view::{RunList, RunSummary, word};
 
 /// Of a run that is not over, in a folder that no daemon has.
@@ -17,13 +18,19 @@ pub fn runs(arguments: &Runs) -> Done {
     let search = arguments.search.join(" ");
     let list: RunList = match open(&runtime, &arguments.store, false)? {
         Way::Folder(lab) => {
-            let mut list = runtime.block_on(lab.runs(arguments.limit, 0, Some(&search)))?;
+            let order =
+                arguments.sort.as_deref().map(Order::parse).transpose().map_err(LabError::from)?.unwrap_or_default();
+            let filter = RunFilter { limit: arguments.limit, offset: 0, search: Some(search.clone()), order };
+            let mut list = runtime.block_on(lab.runs(&filter))?;
             for run in list.runs.iter_mut().filter(|run| !is_over(run.state)) {
                 run.reason = Some(NO_DAEMON.to_owned());
             }
             list
         }
-        Way::Daemon(client) => client.get(&format!("/runs?limit={}&search={}", arguments.limit, encoded(&search)))?,
+        Way::Daemon(client) => {
+            let sort = arguments.sort.as_deref().map(|sort| format!("&sort={}", encoded(sort))).unwrap_or_default();
+            client.get(&format!("/runs?limit={}&search={}{sort}", arguments.limit, encoded(&search)))?
+        }
     };
     if arguments.json {
         return json_out(&list);

@@ -142,7 +142,8 @@ impl Lab {
             (0, Some(run)) => Some(self.inner.store.run(run).await?),
             (0, None) => {
                 let search = Some(format!("procedure:{BRAKE_MODEL} state:completed"));
-                let (_, runs) = self.inner.store.runs(&RunFilter { limit: RECENT, offset: 0, search }).await?;
+                let (_, runs) =
+                    self.inner.store.runs(&RunFilter { limit: RECENT, search, ..RunFilter::default() }).await?;
                 runs.into_iter().find(|run| run.bench == bench)
             }
             (id, _) => Some(self.inner.store.run(id).await?),

@@ -17,7 +17,7 @@ impl Lab {
             Some(run) => vec![store.run(run).await?],
             None => {
                 let search = before.map(|before| format!("id<{before}"));
-                store.runs(&RunFilter { limit: RUNS, offset: 0, search }).await?.1
+                store.runs(&RunFilter { limit: RUNS, search, ..RunFilter::default() }).await?.1
             }
         };
         let end = match before {

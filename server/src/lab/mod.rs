@@ -25,6 +25,7 @@ mod tables;
 mod tokens;
 mod transfer;
 
+pub use crate::store::{Order, RunFilter};
 pub use convert::{bench_view, reread, run_event, safe_view, state_view};
 pub use differences::Alignment;
 pub use error::LabError;

@@ -75,18 +75,18 @@ impl Lab {
         Ok(convert::run(record, status.and_then(|status| status.progress)))
     }
 
-    pub async fn runs(&self, limit: u32, offset: u32, search: Option<&str>) -> Answer<RunList> {
-        let filter = RunFilter { limit, offset, search: search.map(str::to_owned) };
-        let (total, records) = self.inner.store.runs(&filter).await?;
+    pub async fn runs(&self, filter: &RunFilter) -> Answer<RunList> {
+        let (total, records) = self.inner.store.runs(filter).await?;
         Ok(RunList { total, runs: records.iter().map(convert::summary).collect(), unclear: None })
     }
 
     /// The runs that what is understood of a search finds. A key that is begun takes none away.
-    pub async fn runs_while_typing(&self, limit: u32, offset: u32, search: &str) -> Answer<RunList> {
-        let (understood, mut refused) = Search::understood(search);
-        let mut found = self.runs(limit, offset, Some(&understood)).await?;
-        if let (0, None, Some((before, begun))) = (found.total, &refused, Search::before_key(&understood)) {
-            (found, refused) = (self.runs(limit, offset, Some(&before)).await?, Some(begun));
+    pub async fn runs_while_typing(&self, filter: &RunFilter) -> Answer<RunList> {
+        let (understood, mut refused) = Search::understood(filter.search.as_deref().unwrap_or_default());
+        let before = Search::before_key(&understood);
+        let mut found = self.runs(&RunFilter { search: Some(understood), ..filter.clone() }).await?;
+        if let (0, None, Some((before, begun))) = (found.total, &refused, before) {
+            (found, refused) = (self.runs(&RunFilter { search: Some(before), ..filter.clone() }).await?, Some(begun));
         }
         Ok(RunList { unclear: refused.map(|fault| fault.to_string()), ..found })
     }

@@ -109,7 +109,7 @@ impl Lab {
     async fn original_of(&self, kind: &str, trace: &Trace) -> Answer<Option<i64>> {
         let rows = trace.len() as u64;
         let search = Some(format!("kind:{kind} rows={rows}"));
-        let (_, alike) = self.inner.store.runs(&RunFilter { limit: u32::MAX, offset: 0, search }).await?;
+        let (_, alike) = self.inner.store.runs(&RunFilter { limit: u32::MAX, search, ..RunFilter::default() }).await?;
         for run in alike.iter().rev() {
             if self.inner.store.trace(run.id, None, 0..rows).await?.columns() == trace.columns() {
                 return Ok(Some(run.id));

@@ -21,6 +21,8 @@ pub enum StoreError {
     NoRun(RunId),
     #[error("search term {term}: {what}")]
     Search { term: String, what: String },
+    #[error("runs cannot be ordered by {name:?}; they can by {known}, with a minus sign the largest first")]
+    Order { name: String, known: String },
     #[error("there is no model version {0}")]
     NoModel(i64),
     #[error("there is no diagnosis {0}")]

@@ -16,6 +16,7 @@ mod migrations;
 mod models;
 mod notes;
 mod open;
+mod order;
 mod own_effects;
 pub mod pyramid;
 mod records;
@@ -30,6 +31,7 @@ mod view;
 
 pub use error::StoreError;
 pub use kept::Subject;
+pub use order::Order;
 pub use records::{
     AutopilotRecord, CalibrationRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord,
     OwnEffectRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, VersionRecord, View, ViewColumn,

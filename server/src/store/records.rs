@@ -1,5 +1,6 @@
 //! What goes into the store and comes out of it.
 
+use super::Order;
 use jointbench_instrument::Channel;
 use jointbench_procedure::{RunId, RunState, Safe};
 use serde_json::{Map, Value};
@@ -48,13 +49,14 @@ pub struct RunRecord {
     pub model: Option<Value>,
 }
 
-/// Which runs to list. Newest first.
+/// Which runs to list.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RunFilter {
     pub limit: u32,
     pub offset: u32,
     /// In the language of [`super::search`]; upper and lower case are one.
     pub search: Option<String>,
+    pub order: Order,
 }
 
 /// What somebody said about a run.

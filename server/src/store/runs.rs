@@ -84,7 +84,8 @@ impl Store {
         let total: i64 = count.build_query_scalar().fetch_one(&mut *reader).await?;
         let mut page = QueryBuilder::new(TOLD);
         search.push(&mut page);
-        page.push(" ORDER BY id DESC LIMIT ").push_bind(filter.limit).push(" OFFSET ").push_bind(filter.offset);
+        filter.order.push(&mut page);
+        page.push(" LIMIT ").push_bind(filter.limit).push(" OFFSET ").push_bind(filter.offset);
         let rows = page.build().fetch_all(&mut *reader).await?;
         let runs = rows.iter().map(|row| record(row, Vec::new())).collect::<Result<_, _>>()?;
         Ok((total as u64, runs))

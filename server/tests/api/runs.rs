@@ -3,7 +3,7 @@
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon, settings};
 use jointbench::config::BenchDescription;
 use jointbench::daemon::Daemon;
-use jointbench::store::{NewRun, Store};
+use jointbench::store::{NewRun, RunFilter, Store};
 use jointbench_devices::{Joint, MockSettings};
 use serde_json::{Value, json};
 use tokio::runtime::Runtime;
@@ -248,7 +248,11 @@ fn an_interrupted_run_is_ended_secured_and_not_started_again() {
     let run = runtime.block_on(async {
         let daemon = Daemon::start(settings(data.path(), None)).await.unwrap();
         let run = daemon.lab.run(id).await.unwrap();
-        assert_eq!(daemon.lab.runs(10, 0, None).await.unwrap().total, 1, "nothing was started");
+        assert_eq!(
+            daemon.lab.runs(&RunFilter { limit: 10, ..RunFilter::default() }).await.unwrap().total,
+            1,
+            "nothing was started"
+        );
         daemon.stop().await;
         run
     });

@@ -27,7 +27,7 @@ export const api = {
 
 	/** Newest first; of one run, or of the runs before one, where it is named. */
 	log: (query: { run?: number; before?: number }, signal?: Signal) => ask('get', '/api/v1/log', { query }, signal),
-	runs: (query: { limit?: number; offset?: number; search?: string; typing?: boolean }, signal?: Signal) =>
+	runs: (query: { limit?: number; offset?: number; search?: string; sort?: string; typing?: boolean }, signal?: Signal) =>
 		ask('get', '/api/v1/runs', { query }, signal),
 	run: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}', { path: { id } }, signal),
 	identification: (id: number, signal?: Signal) =>

@@ -25,6 +25,13 @@ export function sharedMoments(runs: readonly (readonly Pick<RunEvent, 'text' | '
 	return new Map(everywhere.map((text) => [text, first.map((times) => times.get(text)!)] as const).filter(([, times]) => times.some((at) => at > 0)));
 }
 
+/** The event that was meant by what was typed: itself, or the first that holds these words; `null` for none, `undefined` where there is none. */
+export function momentOf(typed: string, moments: readonly string[]): string | null | undefined {
+	const words = typed.trim().toLowerCase();
+	if (words === '') return null;
+	return moments.find((one) => one.toLowerCase() === words) ?? moments.find((one) => one.toLowerCase().includes(words));
+}
+
 /**
  * All courses on one x, for a plot that has only one: smallest and largest value of each run in each bin, both at the same
  * x, so that a spike is still seen. `null` where a run has nothing.

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { RunSummary } from '../api/types';
-import { readHidden, readViews, runsTable, toggleColumn, toggleView } from './look';
+import { nextSort, ofView, readBase, readHidden, readViews, runsTable, sorted, toggleBase, toggleColumn, toggleView, viewName, viewOf } from './look';
 
 function storage() {
 	const kept = new Map<string, string>();
@@ -17,13 +17,33 @@ it('remembers the columns, and lets the address have the last word', () => {
 	expect(readHidden(null, kept)).toEqual([]);
 });
 
-it('keeps searches and forgets them again', () => {
+it('keeps views and forgets them again', () => {
 	const kept = storage();
-	toggleView('tag:oil -state:failed', kept);
-	toggleView('rows>1000', kept);
-	expect(readViews(kept)).toEqual(['tag:oil -state:failed', 'rows>1000']);
-	toggleView('tag:oil -state:failed', kept);
-	expect(readViews(kept)).toEqual(['rows>1000']);
+	kept.setItem('jointbench.runs.views', 'tag:oil -state:failed');
+	const [old] = readViews(kept);
+	expect(ofView(old!)).toEqual({ search: 'tag:oil -state:failed', sort: null, base: 'none', hide: 'none' });
+	const view = viewOf('rows>1000', '-error', 180, ['bench', 'safe']);
+	toggleView(view, kept);
+	expect(readViews(kept)).toEqual([old, view]);
+	expect(readViews(kept).map(viewName)).toEqual(['tag:oil -state:failed', 'rows>1000 · by error, largest first · against #180 · without bench, safe']);
+	expect(ofView(view)).toEqual({ search: 'rows>1000', sort: '-error', base: '180', hide: 'bench,safe' });
+	toggleView(old!, kept);
+	expect(readViews(kept)).toEqual([view]);
+});
+
+it('orders by a column, the other way round, and no longer', () => {
+	expect([null, '-error', 'error'].map((sort) => nextSort(sort, 'error'))).toEqual(['-error', 'error', null]);
+	expect([null, 'bench', '-bench'].map((sort) => nextSort(sort, 'bench'))).toEqual(['bench', '-bench', null]);
+	expect([sorted('-error', 'error'), sorted('error', 'error'), sorted('error', 'rows'), sorted(null, 'note')]).toEqual(['descending', 'ascending', 'none', null]);
+});
+
+it('remembers the base, and lets the address have the last word', () => {
+	const kept = storage();
+	expect(readBase(null, kept)).toBeNull();
+	expect(toggleBase(null, 7, kept)).toBe('7');
+	expect([readBase(null, kept), readBase('9', kept), readBase('none', kept)]).toEqual([7, 9, null]);
+	expect(toggleBase(7, 7, kept)).toBe('none');
+	expect(readBase(null, kept)).toBeNull();
 });
 
 it('writes the list as a table', () => {

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
-import { alignCourses, courseOf, factTable, meanRow, sharedMoments } from './align';
+import { alignCourses, courseOf, factTable, meanRow, momentOf, sharedMoments } from './align';
 import { completions } from './complete';
 import { against, differ } from './differ';
 import { readMarked, toggleMarked, withBase } from './marked';
@@ -32,6 +32,11 @@ it('aligns by a moment that all runs have', () => {
 	const second = [at(0, 'running', 'state'), at(2.5, 'step'), at(7, 'step 1 done, 9 rows', 'step_finished')];
 	expect([...sharedMoments([first, second])]).toEqual([['step', [4, 2.5]]]);
 	expect(courseOf(samples, 'torque', 2)!.x).toEqual([-2, -1, 0, 1]);
+});
+
+it('finds the event that was meant', () => {
+	const moments = ['step 12: hold', 'step 1', 'Limit torque'];
+	expect(['step 1', 'hold', 'limit', ' ', 'oil'].map((typed) => momentOf(typed, moments))).toEqual(['step 1', 'step 12: hold', 'Limit torque', null, undefined]);
 });
 
 it('tells figures that differ from those that only look different', () => {

@@ -1,4 +1,4 @@
-use super::super::{NewModel, RunFilter, StoreError, Subject};
+use super::super::{NewModel, Order, RunFilter, StoreError, Subject};
 use super::*;
 use jointbench_procedure::Safe;
 use serde_json::{Value, json};
@@ -135,7 +135,7 @@ fn runs_are_found_by_their_words() {
             store.create_run(&NewRun { bench: bench.into(), ..new_run() }).await.unwrap();
         }
         let found = async |search: Option<&str>, limit, offset| {
-            let filter = RunFilter { limit, offset, search: search.map(str::to_owned) };
+            let filter = RunFilter { limit, offset, search: search.map(str::to_owned), ..RunFilter::default() };
             let (total, runs) = store.runs(&filter).await.unwrap();
             (total, runs.into_iter().map(|run| run.id).collect::<Vec<_>>())
         };
@@ -161,7 +161,7 @@ fn runs_are_found_by_field_tag_note_and_number() {
         store.save_note(2, Some(1.5), "smells of ozone").await.unwrap();
         assert_eq!(store.run(2).await.unwrap().note.as_deref(), Some("smells of ozone"), "the last one");
         let found = async |search: &str| {
-            let filter = RunFilter { limit: 9, offset: 0, search: Some(search.to_owned()) };
+            let filter = RunFilter { limit: 9, search: Some(search.to_owned()), ..RunFilter::default() };
             store.runs(&filter).await.unwrap().1.into_iter().map(|run| run.id).collect::<Vec<_>>()
         };
         assert_eq!(found("tag:oil").await, [1]);
@@ -187,6 +187,39 @@ fn runs_are_found_by_field_tag_note_and_number() {
         assert_eq!(store.notes(2).await.unwrap()[1].at_s, Some(1.5));
         assert_eq!(store.tags().await.unwrap(), ["Oil"]);
         assert!(matches!(store.save_note(99, None, "?").await, Err(StoreError::NoRun(99))));
+    });
+}
+
+#[test]
+fn runs_are_ordered_by_what_they_are_asked_to_be() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        store.import(&NewRun { bench: "b".into(), ..new_run() }, &[], rows(0, 500)).await.unwrap();
+        store.import(&NewRun { bench: "c".into(), ..new_run() }, &[], rows(0, 900)).await.unwrap();
+        store.create_run(&NewRun { bench: "a".into(), ..new_run() }).await.unwrap();
+        store.create_run(&NewRun { bench: "a".into(), ..new_run() }).await.unwrap();
+        for (run, validation_rms, coulomb) in [(1, 0.1, 0.07), (1, 0.03, 0.02), (4, 0.02, 0.05)] {
+            let fit = json!({"unit": "Nm", "parameters": [{"effect": "coulomb", "name": "tau_c", "value": coulomb}]});
+            store.save_model(&NewModel { fit, validation_rms, ..model(run, None, &["coulomb"]) }).await.unwrap();
+        }
+        for (asked, ids) in [
+            ("-started", [4, 3, 2, 1]),
+            ("started", [1, 2, 3, 4]),
+            ("bench", [4, 3, 1, 2]),
+            ("-duration", [2, 1, 4, 3]),
+            ("duration", [1, 2, 4, 3]),
+            ("-rows", [2, 1, 4, 3]),
+            ("error", [4, 1, 3, 2]),
+            ("-error", [1, 4, 3, 2]),
+            ("coulomb", [1, 4, 3, 2]),
+        ] {
+            let order = Order::parse(asked).unwrap();
+            let filter = RunFilter { limit: 9, order, ..RunFilter::default() };
+            let found = store.runs(&filter).await.unwrap().1.iter().map(|run| run.id).collect::<Vec<_>>();
+            assert_eq!(found, ids, "{asked}");
+        }
+        let refused = Order::parse("-temp").unwrap_err().to_string();
+        assert!(refused.contains("by \"temp\"; they can by started, state"), "{refused}");
     });
 }
 

@@ -1,0 +1,53 @@
+//! The order of the list of runs.
+
+use super::StoreError;
+use sqlx::{QueryBuilder, Sqlite};
+
+/// What runs can be ordered by, with what it is in the store; error and Coulomb friction are of the last version of a model.
+const COLUMNS: [(&str, &str); 9] = [
+    ("started", "id"),
+    ("state", "state"),
+    ("procedure", "procedure"),
+    ("bench", "bench"),
+    ("duration", "duration_s"),
+    ("rows", "rows"),
+    ("safe", "safe"),
+    ("error", "(SELECT validation_rms FROM models WHERE run = runs_told.id ORDER BY id DESC LIMIT 1)"),
+    (
+        "coulomb",
+        "(SELECT (SELECT p.value ->> '$.value' FROM json_each(models.fit, '$.parameters') AS p \
+         WHERE p.value ->> '$.effect' = 'coulomb') FROM models WHERE run = runs_told.id ORDER BY id DESC LIMIT 1)",
+    ),
+];
+
+/// By which column, and whether the largest comes first. What has no value comes last either way, and among equals the newest
+/// first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Order {
+    column: &'static str,
+    falling: bool,
+}
+
+impl Default for Order {
+    /// Newest first.
+    fn default() -> Self {
+        Self { column: "id", falling: true }
+    }
+}
+
+impl Order {
+    /// `rows`, the smallest first, or `-rows`, the largest first.
+    pub fn parse(text: &str) -> Result<Self, StoreError> {
+        let name = text.strip_prefix('-').unwrap_or(text);
+        match COLUMNS.iter().find(|(known, _)| *known == name) {
+            Some((_, column)) => Ok(Self { column, falling: text.len() > name.len() }),
+            None => Err(StoreError::Order { name: name.to_owned(), known: COLUMNS.map(|(known, _)| known).join(", ") }),
+        }
+    }
+
+    /// ` ORDER BY …`
+    pub fn push(&self, query: &mut QueryBuilder<Sqlite>) {
+        query.push(" ORDER BY ").push(self.column);
+        query.push(if self.falling { " DESC NULLS LAST, id DESC" } else { " ASC NULLS LAST, id DESC" });
+    }
+}
