@@ -93,7 +93,7 @@ impl<'p> Exploration<'p> {
                 Some(made) => made,
                 None => {
                     let residual = search.now.tangent().rest(&search.now.response());
-                    let maps = Maps::new(prepared, swift::without_swift_waves(&search.now, residual.clone()), options);
+                    let maps = maps_of(&search.now, residual.clone(), prepared, options);
                     let axis = outside::structured(&maps);
                     let whole = axis.and_then(|axis| outside::taken_back(&search, &maps, axis, prepared, options));
                     let bump = || Some((outside::bump(&search, &maps, prepared, options)?, Withdrawal::HalfExplains));
@@ -103,9 +103,11 @@ impl<'p> Exploration<'p> {
                         search.withdraw(id)
                     } else {
                         let is_decided = |with: &Terms<'p>, term: &Term<'p>| is_decided(with, term, prepared);
-                        match axis.is_none().then(|| search.imitated(is_decided)).flatten() {
-                            Some(found) if found.is_clear => search.uphold(found.rival),
-                            open => break (maps, residual, open),
+                        let nothing_shows = axis.is_none();
+                        let is_all = |with: &Terms| nothing_shows || leaves_nothing(with, prepared, options);
+                        match search.imitated(is_decided) {
+                            Some(found) if found.is_clear && is_all(&found.with) => search.uphold(found.rival),
+                            open => break (maps, residual, open.filter(|_| nothing_shows)),
                         }
                     }
                 }
@@ -251,6 +253,17 @@ impl Exploration<'_> {
         let parts = parts_without(self.end(), id);
         parts.first().map_or(0.0, |(part, without)| 1.0 - held_out_rms(part) / held_out_rms(without))
     }
+}
+
+/// Maps of what a model leaves.
+fn maps_of(terms: &Terms, residual: Vec<f64>, prepared: &Prepared, options: &Options) -> Maps {
+    Maps::new(prepared, swift::without_swift_waves(terms, residual), options)
+}
+
+/// Nothing of what a model leaves shows over any axis.
+fn leaves_nothing(terms: &Terms, prepared: &Prepared, options: &Options) -> bool {
+    let residual = terms.tangent().rest(&terms.response());
+    outside::structured(&maps_of(terms, residual, prepared, options)).is_none()
 }
 
 fn held_out_rms(terms: &Terms) -> f64 {

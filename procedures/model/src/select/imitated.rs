@@ -45,7 +45,7 @@ impl<'p> Search<'_, 'p> {
             }
         }
         let (present, sse) = (held_out(&self.now), self.now.linear().sse);
-        let remainder = left_by_memory(&self.now);
+        let (remainder, least_share) = (left_by_memory(&self.now), self.bar().least_share(&self.now, sse));
         let is_at_edge = self.added().any(Term::is_at_edge);
         let imitated = alike.into_par_iter().filter_map(|(_, candidate)| {
             let mut near = self.now.clone();
@@ -58,9 +58,11 @@ impl<'p> Search<'_, 'p> {
             let term = with.terms.iter().find(|term| term.id() == candidate.id())?.clone();
             let linear = with.linear();
             let is_possible = with.terms.iter().zip(&linear.factors).all(|(term, factors)| term.allows(factors));
-            // More than this was refused as the remainder of another formula, unless that formula has given way to its edge.
+            // What shows and could be the remainder of another formula was refused, unless that formula has given way to its
+            // edge.
             let share = 1.0 - linear.sse / sse;
-            let is_refused = share > self.options.practical_share && !is_at_edge || share * sse < remainder;
+            let is_remainder = (self.options.practical_share..least_share).contains(&share) && !is_at_edge;
+            let is_refused = is_remainder || share * sse < remainder;
             if !is_possible || is_refused || !self.is_wrong_beside(&with) || !decides(&with, &term) {
                 return None;
             }

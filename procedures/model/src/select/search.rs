@@ -110,7 +110,7 @@ impl<'l, 'p> Search<'l, 'p> {
         step(now, self.library, &self.withdrawn, self.bar())
     }
 
-    fn bar(&self) -> Bar<'_> {
+    pub(super) fn bar(&self) -> Bar<'_> {
         Bar { plain: self.plain, kind: self.library.kind, options: self.options }
     }
 
