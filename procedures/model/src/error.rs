@@ -1,11 +1,12 @@
 //! Why a model cannot be fitted or a run cannot be diagnosed. What the data merely cannot show is a verdict, not an error.
 
 use jointbench_instrument::Kind;
+use jointbench_instrument::spelling::instead;
 
 /// Every message says what to do next.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ModelError {
-    #[error("effect {id} is not known for {kind} runs; known are {}", .known.join(", "))]
+    #[error("effect {id} is not known for {kind} runs; {}", instead(id, &.known.iter().map(String::as_str).collect::<Vec<_>>()))]
     UnknownEffect { id: String, kind: Kind, known: Vec<String> },
     #[error("effect {0} is named twice; name each effect once")]
     TwiceNamed(String),

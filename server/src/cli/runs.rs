@@ -8,6 +8,11 @@ use super::serve::runtime;
 use super::transfer::{Way, open};
 use crate::lab::{LabError, Order, RunFilter};
 use crate::view::{RunList, RunSummary, word};
+use jointbench_model::words;
+
+/// What stands above the list; error and Coulomb friction are of the newest model.
+const HEAD: &str = "  run  started           state        procedure                 bench             duration       rows       error     Coulomb";
+const BENCH: usize = 16;
 
 /// Of a run that is not over, in a folder that no daemon has.
 const NO_DAEMON: &str =
@@ -35,7 +40,10 @@ pub fn runs(arguments: &Runs) -> Done {
     if arguments.json {
         return json_out(&list);
     }
-    list.runs.iter().for_each(|run| println!("{}", line(run)));
+    if !list.runs.is_empty() {
+        println!("{HEAD}");
+    }
+    list.runs.iter().for_each(|run| println!("{}", line(run).trim_end()));
     let shown = list.runs.len() as u64;
     if shown < list.total {
         println!("{shown} of {}: --limit shows more", list.total);
@@ -49,8 +57,18 @@ fn line(run: &RunSummary) -> String {
     let duration = run.duration_s.map(|s| format!("{s:.0} s")).unwrap_or_default();
     let day = run.created_at.get(..16).unwrap_or(&run.created_at).replace('T', " ");
     let reason = run.reason.as_ref().map(|reason| format!("  {reason}")).unwrap_or_default();
-    let (id, state, procedure, bench) = (run.id, word(run.state), &run.procedure, &run.bench);
-    format!("{id:5}  {day}  {state:11}  {procedure:24}  {bench:16}  {duration:>7}  {} rows{reason}", run.rows)
+    let (id, state, procedure, rows) = (run.id, word(run.state), &run.procedure, run.rows);
+    // Of a long path the end tells more.
+    let bench = match run.bench.chars().count().saturating_sub(BENCH) {
+        0 => run.bench.clone(),
+        more => std::iter::once('…').chain(run.bench.chars().skip(more + 1)).collect(),
+    };
+    let error = run.model.as_ref().map(|model| words::figure(model.validation_rms, &model.unit)).unwrap_or_default();
+    let coulomb = run.model.as_ref().and_then(|model| model.coulomb.as_ref());
+    let coulomb = coulomb.map(|one| words::figure(one.value, &one.unit)).unwrap_or_default();
+    format!(
+        "{id:5}  {day}  {state:11}  {procedure:24}  {bench:BENCH$}  {duration:>7}  {rows:>9}  {error:>10}  {coulomb:>10}{reason}"
+    )
 }
 
 /// As it may stand in an address.

@@ -6,6 +6,7 @@ use crate::config::BenchDescription;
 use crate::store::{DiagnosisRecord, EventRecord, ModelRecord, RunRecord, SafetyRecord};
 use crate::view;
 use jiff::Timestamp;
+use jointbench_instrument::Motion;
 use jointbench_instrument::limits::Limited;
 use jointbench_procedure::{Control, EventKind, RunState, Safe};
 use serde::Serialize;
@@ -102,9 +103,14 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
 }
 
 pub(super) fn run(record: RunRecord, progress: Option<view::Progress>) -> view::Run {
+    let motion: Motion = record.meta.get("motion").and_then(|motion| reread(motion).ok()).unwrap_or_default();
+    let channel = |channel| {
+        let told = view::ChannelInfo::from(channel);
+        view::ChannelInfo { unit: told.unit.map(|unit| motion.label(&unit)), ..told }
+    };
     view::Run {
         summary: summary(&record),
-        channels: record.channels.iter().map(view::ChannelInfo::from).collect(),
+        channels: record.channels.iter().map(channel).collect(),
         parameters: record.parameters,
         provenance: record.provenance,
         meta: record.meta,

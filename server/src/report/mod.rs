@@ -5,7 +5,7 @@
 mod figure;
 mod number;
 
-use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict, word};
+use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict, typed, word};
 pub use figure::svg;
 use jointbench_instrument::units::{quantity_of, unit_of};
 use jointbench_model::words;
@@ -176,7 +176,7 @@ fn result(found: &Identification) -> Markup {
             p {
                 "To " (next.why) ": " code {
                     "jointbench run " (next.procedure)
-                    @for (name, value) in &next.parameters { " --set " (name) "=" (value) }
+                    @for (name, value) in &next.parameters { " --set " (name) "=" (typed(value)) }
                 }
             }
         }
@@ -257,6 +257,6 @@ fn plain(value: &Value) -> String {
         Value::Object(items) => {
             items.iter().map(|(name, value)| format!("{name} {}", plain(value))).collect::<Vec<_>>().join(" · ")
         }
-        other => other.to_string(),
+        other => typed(other),
     }
 }

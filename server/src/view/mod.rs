@@ -37,6 +37,14 @@ pub fn finite(value: f64) -> Option<f64> {
 }
 
 /// A state in the word that the API has for it: `safe_verified`.
+/// A value of JSON as a person would type it: whole numbers without a point.
+pub fn typed(value: &serde_json::Value) -> String {
+    match value.as_f64() {
+        Some(number) if number.fract() == 0.0 && number.abs() < 1e15 => format!("{number:.0}"),
+        _ => value.to_string(),
+    }
+}
+
 pub fn word(value: impl serde::Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
 }

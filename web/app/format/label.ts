@@ -73,6 +73,9 @@ export function prose(sentence: string, effects: readonly { id: string; title: s
 	return spoken.charAt(0).toUpperCase() + signed(spoken.slice(1));
 }
 
+/** The end of a path, which tells more than its beginning; names stay whole. */
+export const tail = (name: string): string => (/[\\/]/.test(name) ? `…/${name.split(/[\\/]/).filter(Boolean).slice(-2).join('/')}` : name);
+
 /** Width of a letter of the small print, on average [px]. */
 export const LETTER_PX = 6.1;
 

@@ -64,6 +64,17 @@ export function branches(models: readonly Model[]): Branch[] {
 	return list;
 }
 
+/** What a version's data does not decide: an effect that it added, and any figure that its parent knew. */
+export function undecided(before: Model, after: Model): string[] {
+	const was = new Map(before.fit.parameters.map((one) => [`${one.effect}.${one.name}`, one.state]));
+	const lost = after.fit.parameters.filter((one) => one.state === 'unidentified' && was.get(`${one.effect}.${one.name}`) === 'ok').map((one) => `${one.effect}.${one.name}`);
+	const open = after.added.filter((effect) => {
+		const own = after.fit.parameters.filter((one) => one.effect === effect);
+		return own.length > 0 && own.every((one) => one.state !== 'ok');
+	});
+	return [...open, ...lost];
+}
+
 /** Share of the held-out error that a version took away from its parent; negative where it got worse. */
 export function gain(before: Model, after: Model): number {
 	return before.validation_rms > 0 ? 1 - after.validation_rms / before.validation_rms : 0;

@@ -14,7 +14,7 @@ import { type Side, inOneTurn } from '../residual/points';
 import { selected } from '../residual/selected';
 import { usualAxes } from './ranked';
 import { readRegion } from './region';
-import { childWith, gain, sameData } from './tree';
+import { childWith, gain, sameData, undecided } from './tree';
 import { tries } from './tries.svelte';
 
 /** Less than this is no gain. */
@@ -146,7 +146,10 @@ export function openWorkbench(id: number) {
 		const share = gain(before, after);
 		const unit = after.fit.unit;
 		const figures = `${quantity(before.validation_rms, unit)} → ${quantity(after.validation_rms, unit)}`;
-		if (share > WORTH) return { text: `Held-out error ${kept ? 'fell' : 'would fall'} by ${percent(share)}: ${figures}.`, good: true };
+		const fell = `Held-out error ${kept ? 'fell' : 'would fall'} by ${percent(share)}: ${figures}`;
+		const open = undecided(before, after);
+		if (share > WORTH && open.length > 0) return { text: `${fell}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
+		if (share > WORTH) return { text: `${fell}.`, good: true };
 		const verdict = share < -WORTH ? `The held-out error ${kept ? 'rose' : 'would rise'} by ${percent(-share, 1)}` : `No gain in the held-out error (${percent(-share, 1)})`;
 		return { text: `${verdict}: ${figures}.${kept ? ' Undo with z.' : ''}`, good: false };
 	}

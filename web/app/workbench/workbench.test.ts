@@ -7,7 +7,7 @@ import { readView, writeView } from './lens';
 import { readRegion, strength, writeRegion, writeStretch } from './region';
 import { sharesOf } from '../residual/line';
 import { selected } from '../residual/selected';
-import { branches, chain, childWith, gain, stepName } from './tree';
+import { branches, chain, childWith, gain, stepName, undecided } from './tree';
 import { barsOf, lossesOf, markOf, topOf } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
@@ -54,6 +54,15 @@ describe('the tree of versions', () => {
 			[4, 2],
 			[3, 1],
 		]);
+	});
+
+	it('tells what an added effect leaves undecided', () => {
+		const fitted = (model: Model, states: Record<string, string>) =>
+			({ ...model, fit: { parameters: Object.entries(states).map(([id, state]) => ({ effect: id.split('.')[0], name: id.split('.')[1], state })) } }) as unknown as Model;
+		const before = fitted(models[0]!, { 'coulomb.tau_c': 'ok', 'viscous.c_v': 'unidentified' });
+		const after = (states: Record<string, string>) => undecided(before, fitted(version(6, 1, [], 1, ['bump']), { 'viscous.c_v': 'unidentified', ...states }));
+		expect(after({ 'coulomb.tau_c': 'unidentified', 'bump.a': 'unidentified', 'bump.w': 'at_bound' })).toEqual(['bump', 'coulomb.tau_c']);
+		expect(after({ 'coulomb.tau_c': 'ok', 'bump.a': 'ok', 'bump.w': 'unidentified' })).toEqual([]);
 	});
 
 	it('names what a version did', () => {

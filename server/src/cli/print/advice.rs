@@ -1,5 +1,6 @@
 //! What a person could do next.
 
+use crate::view::typed;
 use jointbench_instrument::Motion;
 use jointbench_model::{Experiment, Fit, Verdict, formula, words};
 
@@ -34,7 +35,7 @@ pub fn own_formula(columns: &[String], fit: &Fit) {
 /// As a command, so that it can be typed.
 pub fn next_run(experiment: Option<&Experiment>) {
     let Some(experiment) = experiment else { return };
-    let set = experiment.parameters.iter().map(|(name, value)| format!(" --set {name}={value}"));
+    let set = experiment.parameters.iter().map(|(name, value)| format!(" --set {name}={}", typed(value)));
     println!();
     println!("what to measure next, on a bench that can do what this run shows: {}", experiment.why);
     if let Some(duration_s) = experiment.expected_duration_s {
