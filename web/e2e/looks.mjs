@@ -188,7 +188,7 @@ export async function keepView(page, base, run) {
 	const link = page.locator('main tbody tr a.mono');
 	const asked = (await (await fetch(`${base}/api/v1/runs?search=state:done&sort=-error&limit=3`)).json()).runs.map(({ id }) => `#${id}`);
 	await page.waitForFunction((first) => document.querySelector('main tbody:last-of-type a.mono')?.textContent === first, asked[0], { timeout: PATIENCE_MS });
-	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).first().click();
+	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
 	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'no column tells the change against the base'));
 	expect((await link.first().innerText()) === `#${run}`, 'the base does not stay at the top of another order');
 	await page.getByText(/^[+−][\d.]+ %$/).first().waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'no run is held against the base'));
@@ -199,7 +199,8 @@ export async function keepView(page, base, run) {
 	await page.getByRole('button', { name: `Show state:done · by error, largest first · against #${run}` }).click();
 	await page.waitForURL((url) => url.searchParams.get('sort') === '-error' && url.searchParams.get('base') === String(run) && url.searchParams.get('search') === 'state:done', { timeout: 5000 }).catch(() => expect(false, `a kept view is not the view that was kept: ${page.url()}`));
 	await page.getByRole('button', { name: 'Forget this view' }).click();
-	await page.goto(`${base}/runs?base=none`);
+	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
+	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ state: 'detached', timeout: PATIENCE_MS });
 }
 
 /** Results in the form that their people expect, each from a run that is short: what is shown of each. */
