@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { axisTitle, cut, label, prose } from './label';
+import { axisTitle, cut, label, linear, prose, tail } from './label';
 
 it('reads the unit from the suffix', () => {
 	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
@@ -25,4 +25,12 @@ it('says ids of a sentence as words', () => {
 it('cuts what has no room', () => {
 	expect(cut('friction ripple', 200)).toBe('friction ripple');
 	expect(cut('friction ripple', 62)).toBe('friction…');
+});
+
+it('reads units as an axis that slides has them', () => {
+	expect(['rad/s', 'Nm', 'Nm/A', 'kg·m²', 'Nm·s/rad', 's'].map(linear)).toEqual(['m/s', 'N', 'N/A', 'kg', 'N·s/m', 's']);
+});
+
+it('keeps the end of a path', () => {
+	expect(['/work/data/emps/run.csv', 'C:\\data\\run.csv', 'joint-a'].map(tail)).toEqual(['…/emps/run.csv', '…/data/run.csv', 'joint-a']);
 });

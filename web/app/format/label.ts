@@ -39,6 +39,9 @@ export function label(column: string, unit?: string | null): Label {
 	return { title: SAID[column] ?? bare.replaceAll('_', ' '), unit: unit ?? suffix?.[1] ?? '' };
 }
 
+/** What a unit reads on an axis that slides. */
+export const linear = (unit: string): string => unit.replace('kg·m²', 'kg').replace('Nm', 'N').replace('rad', 'm');
+
 /** `motor velocity [rad/s]` */
 export function axisTitle(column: string, unit?: string | null): string {
 	const { title, unit: known } = label(column, unit);

@@ -27,6 +27,9 @@ const QUANTITIES = new Map([
 	['°C', 'temperature'],
 	['rad', 'position'],
 	[STAGE, 'stage angle'],
+	['m/s', 'velocity'],
+	['N', 'force'],
+	['m', 'position'],
 ]);
 const ORDER = [...QUANTITIES.keys()];
 
@@ -44,7 +47,8 @@ export function groupsOf(channels: readonly Channel[], rpm = false, model = MODE
 
 function makeGroup(unit: string, names: string[], rpm: boolean, model: string): Group {
 	const titles = unit === MODEL ? ['measured', model] : names.map((name) => label(name).title);
-	const title = QUANTITIES.get(unit) ?? titles.join(', ');
+	// Where a stage stands is told by its ways.
+	const title = (names[0]?.startsWith('stage_') && unit !== STAGE ? null : QUANTITIES.get(unit)) ?? titles.join(', ');
 	const shown = unit === MODEL ? 'Nm' : unit === STAGE ? 'rad' : speedScale(unit, rpm).unit;
 	const curves = titles.map((title, i) => ({ label: title, unit: shown, mark: 'line' as const, ...curveStyle(i) }));
 	return { unit, title: unit ? `${title} [${shown}]` : title, names, curves };
