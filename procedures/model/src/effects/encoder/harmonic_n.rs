@@ -36,6 +36,10 @@ impl Effect for HarmonicN {
         forms
     }
 
+    fn wave(&self) -> Option<Signal> {
+        Some(Signal::Position)
+    }
+
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         view.harmonic(Signal::Position, shape[0]).into()
     }
