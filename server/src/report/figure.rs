@@ -3,20 +3,24 @@
 use crate::view::{Figure, FigureForm, FigureSeries, Mark};
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-/// Okabe and Ito: told apart by every kind of colour vision, and on paper by their dashes.
+/// Okabe and Ito, as the dashboard has them (`tokens.css`): told apart by every kind of colour vision, and on paper by their
+/// dashes.
 const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(230, 159, 0),
-    RGBColor(60, 60, 60),
+    RGBColor(0, 128, 92),
+    RGBColor(176, 87, 138),
+    RGBColor(184, 116, 0),
+    RGBColor(45, 142, 196),
+    RGBColor(20, 25, 29),
 ];
 /// Length and gap of the dashes [px].
 const DASHES: [(i32, i32); 4] = [(0, 0), (8, 4), (3, 3), (12, 3)];
+/// Width of what stands for a series in the legend [px].
+const SAMPLE: i32 = 30;
 const FONT: &str = "sans-serif";
 const WIDTH: u32 = 760;
 const HEIGHT: u32 = 400;
@@ -144,6 +148,7 @@ fn draw(area: &Area, figure: &Figure, series: &[FigureSeries], (x, y): ((f64, f6
     if series.len() > 1 {
         chart
             .configure_series_labels()
+            .legend_area_size(SAMPLE + 6)
             .label_font((FONT, 13))
             .background_style(WHITE.mix(0.8))
             .border_style(BLACK.mix(0.3))
@@ -182,7 +187,9 @@ fn line(chart: &mut Plane, series: &FigureSeries, colour: RGBColor, (dash, gap):
         0 => chart.draw_series(LineSeries::new(places, style))?,
         _ => chart.draw_series(DashedLineSeries::new(places, dash, gap, style))?,
     };
-    drawn.label(&series.label).legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+    let (dash, gap) = if gap == 0 { (SAMPLE, 1) } else { (dash, gap) };
+    let sample = move |(x, y)| DashedPathElement::new([(x, y), (x + SAMPLE, y)], dash, gap, style);
+    drawn.label(&series.label).legend(sample);
     Ok(())
 }
 
@@ -195,7 +202,7 @@ fn points(chart: &mut Plane, series: &FigureSeries, colour: RGBColor) -> Drawn {
     chart
         .draw_series(places.map(|(x, y)| Circle::new((*x, *y), 3, colour.filled())))?
         .label(&series.label)
-        .legend(move |(x, y)| Circle::new((x + 9, y), 3, colour.filled()));
+        .legend(move |(x, y)| Circle::new((x + SAMPLE / 2, y), 3, colour.filled()));
     Ok(())
 }
 
@@ -210,7 +217,7 @@ fn columns(chart: &mut Plane, series: &FigureSeries, colour: RGBColor, (place, c
             bars.map(|(x, y)| Rectangle::new([(left(*x), 0.0), (left(*x) + wide, *y)], colour.mix(0.8).filled())),
         )?
         .label(&series.label)
-        .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 18, y + 5)], colour.mix(0.8).filled()));
+        .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + SAMPLE, y + 5)], colour.mix(0.8).filled()));
     if series.band.len() == series.x.len() {
         let ends = series.x.iter().zip(&series.y).zip(&series.band);
         let middle = |x: f64| left(x) + wide / 2.0;

@@ -231,7 +231,7 @@ fn diagnosed(diagnosis: &Diagnosis) -> Markup {
 fn pairs(values: &Map<String, Value>) -> Markup {
     html! {
         table {
-            @for (name, value) in values {
+            @for (name, value) in values.iter().filter(|(_, value)| !plain(value).is_empty()) {
                 tr { td { (title(name)) } td { (plain(value)) } }
             }
         }
@@ -255,7 +255,11 @@ fn plain(value: &Value) -> String {
             format!("{} (from segment {})", of("procedure").replace('_', " "), of("first_segment"))
         }
         Value::Object(items) => {
-            items.iter().map(|(name, value)| format!("{name} {}", plain(value))).collect::<Vec<_>>().join(" · ")
+            let said = |(name, value): (&String, &Value)| match plain(value) {
+                text if text.is_empty() => None,
+                text => Some(format!("{} {text}", title(name))),
+            };
+            items.iter().filter_map(said).collect::<Vec<_>>().join(" · ")
         }
         other => typed(other),
     }

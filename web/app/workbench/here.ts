@@ -10,8 +10,8 @@ export interface Visit {
 	loadUnknown: boolean;
 }
 
-const VELOCITY = 'motor_velocity_rad_s';
-const LOAD = 'link_torque_nm';
+export const VELOCITY = 'motor_velocity_rad_s';
+export const LOAD = 'link_torque_nm';
 /** Below this share of its rated torque a brake only drags. */
 const LEAST_SHARE = 0.04;
 const ACCELERATION_RAD_S2 = 400;
