@@ -87,7 +87,8 @@ fn unknown(prepared: &Prepared) -> String {
 }
 
 /// 95 % interval of the root: jackknife over pieces, because the pairs of one are not independent of each other, on the
-/// logarithm, because a variance is skew. `None` where a few pieces hold all of it: nobody can say how well it is known then.
+/// logarithm, because a variance is skew. Where a few pieces chance to agree it is what so many independent pairs of normal
+/// noise would scatter by, 2/n in the logarithm of their variance: no noise is known better. `None` where a few pieces hold all of it: nobody can say how well it is known then.
 fn interval(noise: f64, pairs: f64, of_piece: &[(f64, f64)]) -> Option<[f64; 2]> {
     let whole = noise / pairs;
     let without = |(sum, n): &(f64, f64)| ((noise - sum).max(0.0) / (pairs - n).max(1.0)).max(1e-12 * whole);
@@ -95,6 +96,7 @@ fn interval(noise: f64, pairs: f64, of_piece: &[(f64, f64)]) -> Option<[f64; 2]>
     let groups = steps.len().max(2) as f64;
     let spread = (groups - 1.0) / groups * steps.iter().map(|s| s * s).sum::<f64>();
     let t = StudentsT::new(0.0, 1.0, groups - 1.0).map_or(2.0, |t| t.inverse_cdf(0.975));
-    let factor = if whole > 0.0 { (0.5 * t * spread.sqrt()).min(50.0).exp() } else { 1.0 };
+    let reach = (t * spread.sqrt()).max(1.96 * (2.0 / pairs).sqrt());
+    let factor = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
     (factor <= WIDEST).then(|| [whole.sqrt() / factor, whole.sqrt() * factor])
 }
