@@ -10,6 +10,7 @@ use crate::Options;
 use crate::effect::{Effect, Form};
 use crate::linear::{BlockGrams, dot};
 use crate::terms::{Term, Terms};
+use jointbench_instrument::Kind;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -185,6 +186,25 @@ impl<'l, 'p> Search<'l, 'p> {
         sized.find(|(term, factors)| !term.allows(factors)).map(|(term, _)| term.id())
     }
 
+    /// The added effect of friction that drives a given one below zero in the shapes in which all of them ended, as two
+    /// that cancel each other do; of several that without which the model is best.
+    fn cancelling(&self) -> Option<&'p str> {
+        if self.library.kind != Kind::Friction {
+            return None;
+        }
+        let driven = |terms: &Terms<'p>| {
+            let sized = terms.terms.iter().zip(terms.linear().factors);
+            sized.filter(|(term, factors)| self.kept.contains(&term.id()) && !term.allows(factors)).count()
+        };
+        let all = driven(&self.now);
+        let on_trial: Vec<&str> = self.on_trial().map(Term::id).filter(|_| all > 0).collect();
+        let freed = on_trial.into_par_iter().filter_map(|id| {
+            let without = self.laid_without(id);
+            (driven(&without) < all).then(|| (id, held_out(&without).iter().sum::<f64>()))
+        });
+        freed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+    }
+
     /// The added effect that brings least on what was held out, where that is not worth a name: whatever came in since
     /// explains the rest of it. Asked when nothing more can be added, because on the way two effects may mask each other.
     fn idle(&self) -> Option<&'p str> {
@@ -342,7 +362,7 @@ impl<'p> Iterator for Search<'_, 'p> {
         let found = self.instead.take().or_else(|| if self.left > 0 { self.best() } else { None });
         let found = found.filter(|(rival, _)| !stands_in(rival));
         let Some((rival, ties)) = found else {
-            if let Some(id) = self.impossible(&self.now).or_else(|| self.idle()) {
+            if let Some(id) = self.impossible(&self.now).or_else(|| self.cancelling()).or_else(|| self.idle()) {
                 self.withdrawn.push(id);
                 return Some(self.remove(id));
             }
