@@ -57,7 +57,7 @@ pub enum FileFault {
     NoName { number: usize },
     #[error(
         "expected {expected} values as in the line of column names, found {found}{}",
-        if *found == 2 * expected { ": where numbers have commas, semicolons stand between the columns" } else { "" }
+        if found > expected { ": where numbers have commas, semicolons or tabs stand between the columns" } else { "" }
     )]
     Width { expected: usize, found: usize },
     #[error("expected a number, found {}", shown(.found))]

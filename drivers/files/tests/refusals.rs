@@ -56,7 +56,7 @@ fn text_is_refused_where_it_is_wrong() {
     );
     check_refused(
         &with("0,5,1,5,2,5\n"),
-        "run.csv, line 2: expected 3 values as in the line of column names, found 6: where numbers have commas, semicolons \
+        "run.csv, line 2: expected 3 values as in the line of column names, found 6: where numbers have commas, semicolons or tabs \
          stand between the columns",
     );
     check_refused(

@@ -25,7 +25,7 @@ pub enum JoinFault {
     )]
     OtherJoint { number: usize, fact: &'static str, value: String, first: String },
     #[error(
-        "of the runs named, number {number} has {rate_hz:.0} samples a second and the first {first_hz:.0}: record or resample them at one rate"
+        "of the runs named, number {number} has {rate_hz:.0} samples a second and the first {first_hz:.0}: make it again with --set sample_rate_hz={first_hz:.0}, or resample the file"
     )]
     OtherRate { number: usize, rate_hz: f64, first_hz: f64 },
     #[error(

@@ -10,7 +10,9 @@ pub enum ModelError {
     UnknownEffect { id: String, kind: Kind, known: Vec<String> },
     #[error("effect {0} is named twice; name each effect once")]
     TwiceNamed(String),
-    #[error("the model has no effects: name some (--model coulomb,viscous), or give a baseline in the meta file")]
+    #[error(
+        "the model has no effects: name some (--model inertia,coulomb,viscous for friction), or give them as \"baseline\" in the meta file"
+    )]
     EmptyModel,
     #[error(
         "effects of the kind {model} cannot explain this run, which is of the kind {run}: choose effects of that kind"

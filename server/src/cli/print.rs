@@ -286,7 +286,7 @@ pub fn fall(steps: &[(String, f64)], floor: Option<f64>, unit: &str) {
 
 fn prepared(fit: &Fit) -> String {
     let prepared = &fit.preparation;
-    let mut said = format!("{} samples at {:.0} Hz", prepared.samples, prepared.sample_rate_hz);
+    let mut said = format!("{} samples at {} Hz", prepared.samples, (1e3 * prepared.sample_rate_hz).round() / 1e3);
     if let Some(cutoff_hz) = prepared.cutoff_hz {
         said += &format!(", low-pass {cutoff_hz:.1} Hz");
     }

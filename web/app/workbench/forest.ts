@@ -35,7 +35,8 @@ export function forest(parameters: readonly Parameter[], tradeOffs: readonly Tra
 		else if (state) flags.push(state);
 		if (!known) flags.push('no interval');
 		if (known && low < 0 && high > 0 && !parameter.note) flags.push('may be zero');
-		if (value === 0 || !known) return { parameter, interval: null, zoom: 1, flags };
+		// What was chosen among whole numbers is known exactly: there is no interval to draw.
+		if (value === 0 || !known || low === high) return { parameter, interval: null, zoom: 1, flags };
 		const ends = [low / value, high / value].sort((a, b) => a - b) as [number, number];
 		const widest = Math.max(1 - ends[0], ends[1] - 1);
 		return { parameter, interval: ends, zoom: 10 ** Math.max(0, Math.floor(Math.log10(AROUND / widest))), flags };

@@ -168,9 +168,10 @@ it('flags parameters in words', () => {
 		{ value: 2, ci95: [1, 3], state: 'ok' },
 		{ value: -2, ci95: [-5, 1], state: 'at_bound' },
 		{ value: 1, ci95: [null, null], state: 'unidentified' },
+		{ value: 3, ci95: [3, 3], state: 'ok' },
 	] as Parameter[]);
-	expect(rows.map((row) => row.interval)).toEqual([[0.5, 1.5], [-0.5, 2.5], null]);
-	expect(rows.map((row) => row.flags)).toEqual([[], ['at its bound', 'may be zero'], ['not decided by this data', 'no interval']]);
+	expect(rows.map((row) => row.interval)).toEqual([[0.5, 1.5], [-0.5, 2.5], null, null]);
+	expect(rows.map((row) => row.flags)).toEqual([[], ['at its bound', 'may be zero'], ['not decided by this data', 'no interval'], []]);
 	const pair = ['a', 'b'].map((name) => ({ effect: 'e', name, value: 1, ci95: [0.5, 1.5], state: 'ok' })) as Parameter[];
 	const [first] = forest(pair, [{ first: 'e.a', second: 'e.b', correlation: -0.96 }]);
 	expect(first!.flags).toEqual(['ρ −0.96 with e.b']);

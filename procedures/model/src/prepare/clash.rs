@@ -18,6 +18,9 @@ const SAME: f64 = 0.9;
 /// Where a slip of the unit or the sign shows less is enough: much of a motor's torque is friction of which the link knows nothing.
 const SAME_TORQUE: f64 = 0.7;
 
+/// Share of the work that is done against the motion, from which on the motion is not the motor's.
+const DRIVEN: f64 = 0.5;
+
 /// Each in a sentence.
 pub fn clashes(run: &RunTable) -> Vec<String> {
     let gear_ratio = run.meta().gear_ratio.filter(|_| run.meta().motion != Motion::Linear);
@@ -37,7 +40,13 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
     };
     let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
     let torques = (run.kind() == Kind::Friction).then(|| torque_clash(run)).flatten();
-    motions.chain(torques).chain(dead_load(run)).chain(noise(run)).chain(super::reach::beyond(run)).collect()
+    motions
+        .chain(torques)
+        .chain(driven(run))
+        .chain(dead_load(run))
+        .chain(noise(run))
+        .chain(super::reach::beyond(run))
+        .collect()
 }
 
 /// Pieces of the run that do not reach over the end of a recording, with the time that passes in each.
@@ -86,6 +95,26 @@ fn torque_clash(run: &RunTable) -> Option<String> {
             "motor_current_a with the torque constant and the gear ratio is {times:.3} times what link_torque_nm asks \
              for: one of these has another unit or sign"
         )
+    })
+}
+
+/// Without a load that was measured nothing turns a motor both ways: what brakes it in both has another sign.
+fn driven(run: &RunTable) -> Option<String> {
+    let is_alone = run.kind() == Kind::Friction && run.column("link_torque_nm").is_none();
+    let column = |name: &str| run.column(name).filter(|_| is_alone);
+    let (time_s, position, current) = (column("time_s")?, column("motor_position_rad")?, column("motor_current_a")?);
+    let (mut work, mut moved) = ([0.0; 2], [0.0; 2]);
+    for (piece, _) in pieces(time_s) {
+        let way = position[piece.end] - position[piece.start];
+        let done = way * current[piece.clone()].iter().sum::<f64>() / piece.len() as f64;
+        work[usize::from(way < 0.0)] += done;
+        moved[usize::from(way < 0.0)] += done.abs();
+    }
+    let brakes = work.iter().zip(&moved).all(|(work, moved)| *work < -DRIVEN * moved);
+    brakes.then(|| {
+        "motor_current_a works against the motion both ways, as if the joint turned the motor: it or the motion has \
+         another sign"
+            .to_owned()
     })
 }
 
@@ -293,6 +322,9 @@ mod tests {
         let found = told(0.0, 0.0, 0.0);
         assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is noise")), "{found:?}");
         assert_eq!(told(0.03, 0.0, 0.0), Vec::<String>::new(), "friction of a tenth of the noise");
+        let turned = told(-1.0, 0.5, 0.2);
+        assert!(matches!(&turned[..], [one] if one.starts_with("motor_current_a works against")), "{turned:?}");
+        assert_eq!(told(0.2, 1.0, 0.5), Vec::<String>::new(), "a weight that drives now and then");
         assert_eq!(told(0.0, 0.2, 0.0), Vec::<String>::new(), "a wave that comes and goes");
         assert_eq!(told(0.0, 0.0, 0.4), Vec::<String>::new(), "a current that is held");
     }

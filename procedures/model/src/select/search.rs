@@ -7,7 +7,7 @@ use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, is_tie, left_by_memor
 use super::scatter::shows_within_blocks;
 use super::wander::Wander;
 use crate::Options;
-use crate::effect::{Effect, Form};
+use crate::effect::{Effect, Form, Stage};
 use crate::linear::{BlockGrams, dot};
 use crate::terms::{Term, Terms};
 use jointbench_instrument::Kind;
@@ -197,7 +197,8 @@ impl<'l, 'p> Search<'l, 'p> {
             sized.filter(|(term, factors)| self.kept.contains(&term.id()) && !term.allows(factors)).count()
         };
         let all = driven(&self.now);
-        let on_trial: Vec<&str> = self.on_trial().map(Term::id).filter(|_| all > 0).collect();
+        let of_now = self.on_trial().filter(|term| term.effect.stage() != Stage::Memory);
+        let on_trial: Vec<&str> = of_now.map(Term::id).filter(|_| all > 0).collect();
         let freed = on_trial.into_par_iter().filter_map(|id| {
             let without = self.laid_without(id);
             (driven(&without) < all).then(|| (id, held_out(&without).iter().sum::<f64>()))

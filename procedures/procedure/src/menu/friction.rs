@@ -64,7 +64,9 @@ pub fn offer(menu: &mut Menu, run: &RunTable) {
         let before = menu.choices.len();
         for top_rad_s in [1.0, 0.5, 0.25].map(|part| rounded(part * menu.top_rad_s().min(180.0))) {
             if menu.choices.len() == before {
-                let warming = json!({"top_speed_rad_s": top_rad_s, "heat_s": WARMING_S, "cool_s": WARMING_S});
+                let warming = json!({
+                    "top_speed_rad_s": top_rad_s, "heat_s": WARMING_S, "cool_s": WARMING_S, "sample_rate_hz": rate_hz,
+                });
                 menu.offer_warmed("friction_temperature", warming, &warmer_k);
             }
         }

@@ -12,9 +12,21 @@ pub fn print(silent: &[Silent], hidden: &[Invisible], left_out: &[LeftOut], unit
     for effect in left_out {
         println!("left out: {} ({})", effect.effect, effect.why);
     }
-    for effect in hidden {
-        println!("cannot be seen here: {} ({})", effect.effect, effect.why);
+    for (why, effects) in alike(hidden) {
+        println!("cannot be seen here: {} ({why})", effects.join(", "));
     }
+}
+
+/// Effects for each reason, in the order of the first of each.
+fn alike(hidden: &[Invisible]) -> Vec<(&str, Vec<&str>)> {
+    let mut alike: Vec<(&str, Vec<&str>)> = Vec::new();
+    for one in hidden {
+        match alike.iter_mut().find(|(why, _)| *why == one.why) {
+            Some((_, effects)) => effects.push(&one.effect),
+            None => alike.push((&one.why, vec![&one.effect])),
+        }
+    }
+    alike
 }
 
 fn silences(silent: &[Silent], unit: &str) -> Option<String> {

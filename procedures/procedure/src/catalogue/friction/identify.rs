@@ -168,7 +168,8 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
             " Drag that grows with the square of speed explains this run as well; Coulomb friction is {coulomb} then."
         )
     });
-    let is_decided = is_decided && square.is_none();
+    // Figures of a curve over speed are none of a friction that follows something else.
+    let is_decided = is_decided && square.is_none() && rest.is_none();
     let advice = match (&rest, is_decided) {
         _ if square.is_some() => Some(
             "To see which of them the run speaks for, open it in the workbench, or export it and have the file diagnosed \
@@ -232,6 +233,9 @@ pub(super) fn friction_nm(point: &Plateau) -> f64 {
     point.target - point.load_nm
 }
 
+/// A line through speeds that begin beyond this share of the highest would be one through a single speed.
+const SPANNED: f64 = 0.7;
+
 fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let mut series = sides(points, 1.0);
@@ -241,7 +245,12 @@ fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
     let clear = 3.0 * whole.stribeck.as_ref().map_or(0.0, |s| s.speed.0);
     for sign in [1.0, -1.0] {
         let fast = points.iter().filter(|p| p.velocity_rad_s * sign > clear);
-        if let Some(line) = Line::through(&fast.map(|p| (p.velocity_rad_s, friction_nm(p))).collect::<Vec<_>>()) {
+        let fast: Vec<(f64, f64)> = fast.map(|p| (p.velocity_rad_s, friction_nm(p))).collect();
+        let slowest = fast.iter().map(|(speed, _)| speed.abs()).fold(top, f64::min);
+        if slowest > SPANNED * top {
+            continue;
+        }
+        if let Some(line) = Line::through(&fast) {
             let way = if sign > 0.0 { "positive" } else { "negative" };
             let label = format!("line, {way}, r² = {:.4}", line.r2);
             let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
