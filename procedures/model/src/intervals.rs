@@ -79,6 +79,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
             note,
         });
     }
+    words::know_the_small(&mut parameters);
     parameters.extend(found(terms, &linear.residual, motion));
     orders::open(terms, &linear.residual, &mut parameters);
     remanence::open(terms, &mut parameters);

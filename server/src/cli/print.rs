@@ -211,11 +211,15 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
                 format!("error {:+.1} %{} to {}", -100.0 * share, ci95.unwrap_or_default(), words::figure(rms, unit))
             }
         };
-        let together = match several {
-            true => format!(" alone, {:+.1} % beside the others", -100.0 * suggestion.error_reduction_together),
-            false => String::new(),
+        let together = suggestion.error_reduction_together;
+        let beside = format!("{:+.1} % beside the others", -100.0 * together);
+        // What others mask shows only beside them.
+        let gain = match several {
+            true if together > share => format!("error {beside}; alone {gain}"),
+            true => format!("{gain} alone, {beside}"),
+            false => gain,
         };
-        println!("  {}. {}: {gain}{together}, {}", i + 1, suggestion.effect, chance(suggestion));
+        println!("  {}. {}: {gain}, {}", i + 1, suggestion.effect, chance(suggestion));
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
             let [low, high] = parameter.ci95;

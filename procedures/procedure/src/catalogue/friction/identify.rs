@@ -99,6 +99,9 @@ pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
 /// `expected_rad_s` is the Stribeck velocity at the link for which the run was planned.
 pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
     let free = free(run);
+    if ![1.0, -1.0].iter().all(|sign| free.iter().any(|leg| leg.direction == *sign)) {
+        return Err(Unusable::TooLittle("no step without load in each direction is over"));
+    }
     let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
     // A run of hours takes seconds: the directions are looked at beside the whole.
     let (whole, sides) = thread::scope(|scope| {
