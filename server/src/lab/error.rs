@@ -36,7 +36,7 @@ pub enum LabError {
 
 impl LabError {
     pub fn no_run(id: i64) -> Self {
-        LabError::NotFound(format!("there is no run {id}: `jointbench runs` lists those that are there"))
+        LabError::NotFound(format!("there is no run {id}: jointbench runs lists those that are there"))
     }
 
     pub fn no_model(id: i64) -> Self {

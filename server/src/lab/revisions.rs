@@ -99,7 +99,7 @@ impl Lab {
         let table = self.measurement(import.run).await?;
         if fit.kind != table.kind() {
             return Err(LabError::Invalid(format!(
-                "this is a {} model, and run {} is of the kind {}: choose a run of the model's kind (`jointbench runs kind:{}`)",
+                "this is a {} model, and run {} is of the kind {}: choose a run of the model's kind (jointbench runs kind:{})",
                 fit.kind,
                 import.run,
                 table.kind(),

@@ -39,7 +39,7 @@ impl Lab {
             let (name, word) = (bench.name(), if block.stopped { "stopped" } else { "blocked" });
             return Err(LabError::Conflict(format!(
                 "bench {name} is {word}: {}. Look at it, then reset it with a reason: in the dashboard, or \
-                 `jointbench reset {name} --reason '…'`",
+                 with jointbench reset {name} --reason '…'",
                 block.reason
             )));
         }

@@ -142,7 +142,7 @@ fn a_model_that_went_out_comes_into_the_store_again() {
     assert!(said.contains("no store is in jointbench-data: name its folder with --data"), "{said}");
     done(folder.path(), &["import", "run.csv"]);
     let said = refused(&["model", "import", "new.json", "--run", "7"]);
-    assert!(said.contains("new.json: there is no run 7: `jointbench runs` lists"), "{said}");
+    assert!(said.contains("new.json: there is no run 7: jointbench runs lists"), "{said}");
     let told = done(folder.path(), &["model", "import", "new.json", "--run", "1"]);
     assert!(told.starts_with("model 1 of run 1: load_transmission + coulomb + viscous + rub\nerror "), "{told}");
     let kept: Value =

@@ -150,7 +150,7 @@ export function openWorkbench(id: number) {
 		const open = undecided(before, after);
 		if (share > WORTH && open.length > 0) return { text: `${fell}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
 		if (share > WORTH) return { text: `${fell}.`, good: true };
-		if (after.added.length === 0 && Math.abs(share) <= WORTH) return { text: `Without ${after.removed.map(titleOf).join(', ')} the held-out error is the same: ${figures}.`, good: true };
+		if (after.added.length === 0 && Math.abs(share) <= WORTH) return { text: `The held-out error stays: ${figures}.`, good: true };
 		const verdict = share < -WORTH ? `The held-out error ${kept ? 'rose' : 'would rise'} by ${percent(-share, 1)}` : `No gain in the held-out error (${percent(-share, 1)})`;
 		return { text: `${verdict}: ${figures}.${kept ? ' Undo with z.' : ''}`, good: false };
 	}
