@@ -88,7 +88,8 @@ fn unknown(prepared: &Prepared) -> String {
 
 /// 95 % interval of the root: jackknife over pieces, because the pairs of one are not independent of each other, on the
 /// logarithm, because a variance is skew. Where a few pieces chance to agree it is what so many independent pairs of normal
-/// noise would scatter by, 2/n in the logarithm of their variance: no noise is known better. `None` where a few pieces hold all of it: nobody can say how well it is known then.
+/// noise would scatter by, 2/n in the logarithm of their variance: no noise is known better. `None` where a few pieces hold
+/// all of it: nobody can say how well it is known then.
 fn interval(noise: f64, pairs: f64, of_piece: &[(f64, f64)]) -> Option<[f64; 2]> {
     let whole = noise / pairs;
     let without = |(sum, n): &(f64, f64)| ((noise - sum).max(0.0) / (pairs - n).max(1.0)).max(1e-12 * whole);
