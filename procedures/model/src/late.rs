@@ -26,10 +26,8 @@ const POWER: f64 = 0.43;
 
 /// The delay that this run shows beyond the model, with the model that has it.
 pub fn late<'p>(now: &Assembly<'p>, options: &Options) -> Option<(Rival<'p>, Assembly<'p>)> {
-    let (after, factor, half) = with_delay(now)?;
+    let Delayed { after, factor, half, by_s } = with_delay(now)?;
     let moving = after.moving.as_ref()?;
-    let inertia = moving.linear().factors[moving.terms.iter().position(|term| term.id() == INERTIA)?][0];
-    let later_s = -factor / inertia;
     let term = moving.terms.iter().find(|term| term.id() == DELAY)?.clone();
     let without = moving.without(DELAY);
     // A late torque jumps late where the direction changes, and no change of an acceleration is that.
@@ -40,7 +38,7 @@ pub fn late<'p>(now: &Assembly<'p>, options: &Options) -> Option<(Rival<'p>, Ass
     let share = 1.0 - asked(moving.linear().residual) / asked(without.linear().residual);
     let p_value = alone(&term, &Ground::of(&without), options);
     let is_late = factor < -CLEAR * half
-        && later_s > ROWS * moving.problem.view.sample_s
+        && by_s > ROWS * moving.problem.view.sample_s
         && share >= options.practical_share
         && p_value <= options.alpha;
     is_late.then(|| (Rival::alone(term, share, p_value), after))
@@ -48,14 +46,21 @@ pub fn late<'p>(now: &Assembly<'p>, options: &Options) -> Option<(Rival<'p>, Ass
 
 /// The smallest delay that would have been found, where none was and one could have been.
 pub fn silence<'p>(now: &Assembly<'p>) -> Option<Silence<'p>> {
-    let (after, _, half) = with_delay(now)?;
+    let Delayed { after, half, .. } = with_delay(now)?;
     let column = after.moving.as_ref()?.terms.iter().find(|term| term.id() == DELAY)?.columns.first()?.clone();
     let rms = (dot(&column, &column) / column.len() as f64).sqrt();
     Some(Silence { effect: DELAY, detectable_rms: (CLEAR + POWER) * half * rms })
 }
 
-/// The model with a delay on its ramps, the delay's factor and half its 95 % interval.
-fn with_delay<'p>(now: &Assembly<'p>) -> Option<(Assembly<'p>, f64, f64)> {
+/// A model with a delay on its ramps, the delay's factor with half its 95 % interval, and its time.
+struct Delayed<'p> {
+    after: Assembly<'p>,
+    factor: f64,
+    half: f64,
+    by_s: f64,
+}
+
+fn with_delay<'p>(now: &Assembly<'p>) -> Option<Delayed<'p>> {
     let effect = now.spec.find(DELAY).ok().filter(|effect| is_asked(*effect, now))?;
     let effects = now.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
     let after = now.of(now.main.clone(), effects);
@@ -64,7 +69,8 @@ fn with_delay<'p>(now: &Assembly<'p>) -> Option<(Assembly<'p>, f64, f64)> {
     let of = |id: &str| parameters.iter().find(|p| p.effect == id);
     let (inertia, delay) = (of(INERTIA)?, of(DELAY)?);
     let (factor, half) = (delay.value, (delay.ci95[1] - delay.ci95[0]) / 2.0);
-    (inertia.value > 0.0 && half.is_finite()).then_some((after, factor, half))
+    let by_s = -factor / inertia.value;
+    (inertia.value > 0.0 && half.is_finite()).then_some(Delayed { after, factor, half, by_s })
 }
 
 /// Nothing but ramps would show the delay, and the model has an inertia to tell its time by.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::tables::{meta, scatter};
+use common::tables::{friction_in_steps, meta, scatter};
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, discover};
 use std::f64::consts::TAU;
@@ -16,24 +16,10 @@ const NOISE_NM: f64 = 0.8e-3;
 /// Friction in steps both ways, twice, with a torque of its own: of the motor's angle [rad], the speed [rad/s] and the time
 /// since the step began [s].
 fn named(torque_nm: impl Fn(f64, f64, f64) -> f64) -> Vec<String> {
-    let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
-    let mut trace = Trace::new(names.map(Channel::new).into());
-    let (mut angle, mut at) = (0.0f64, 0);
-    for leg in 0..2 * REPEATS * SPEEDS_RAD_S.len() {
-        let way = if leg % 2 == 0 { 1.0 } else { -1.0 };
-        let velocity = way * SPEEDS_RAD_S[leg / 2 % SPEEDS_RAD_S.len()];
-        for row in 0..ROWS {
-            angle += velocity * STEP_S;
-            let friction = 0.08 * way + 4e-4 * velocity;
-            let torque = friction + torque_nm(angle, velocity, row as f64 * STEP_S) + NOISE_NM * scatter(at, 1);
-            let (segment, repeat) = (leg as f64, (leg / (2 * SPEEDS_RAD_S.len())) as f64);
-            trace.push_row(&[at as f64 * STEP_S, angle, velocity, torque, segment, repeat]);
-            at += 1;
-        }
-    }
-    let mut meta = meta(Kind::Friction);
-    meta.torque_constant_nm_per_a = Some(1.0);
-    let run = RunTable::new(meta, trace).unwrap();
+    let run = friction_in_steps(&SPEEDS_RAD_S, REPEATS, ROWS, |now| {
+        let friction = 0.08 * now.velocity.signum() + 4e-4 * now.velocity;
+        friction + torque_nm(now.angle, now.velocity, now.step_s) + NOISE_NM * scatter(now.row, 1)
+    });
     let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
     let found = discover(&run, &spec, &Options::default(), 4, |_| {}).unwrap();
     found.model[2..].to_vec()

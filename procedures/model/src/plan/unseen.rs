@@ -77,10 +77,10 @@ pub fn unseen(model: &Assembly, noise: &Noise, imagined: &[(&Choice, Problem)]) 
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run would show {}, which the data so far could not: {worth} would stand out by at least {} standard \
+            "this run would show {}, which the data so far could not: {worth} would stand out by at least {:.1} standard \
              deviations{}",
             list(&effects),
-            super::in_words(bid.z).replace("more than ", ""),
+            bid.z.min(100.0),
             bid.choice.provided(),
         ),
         expected_z: Some(bid.z),

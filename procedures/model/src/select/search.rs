@@ -192,16 +192,19 @@ impl<'l, 'p> Search<'l, 'p> {
         if self.library.kind != Kind::Friction {
             return None;
         }
-        let driven = |terms: &Terms<'p>| {
+        let impossible = |terms: &Terms<'p>| {
             let sized = terms.terms.iter().zip(terms.linear().factors);
             sized.filter(|(term, factors)| self.kept.contains(&term.id()) && !term.allows(factors)).count()
         };
-        let all = driven(&self.now);
+        let all = impossible(&self.now);
+        if all == 0 {
+            return None;
+        }
         let of_now = self.on_trial().filter(|term| term.effect.stage() != Stage::Memory);
-        let on_trial: Vec<&str> = of_now.map(Term::id).filter(|_| all > 0).collect();
-        let freed = on_trial.into_par_iter().filter_map(|id| {
+        let of_now: Vec<&str> = of_now.map(Term::id).collect();
+        let freed = of_now.into_par_iter().filter_map(|id| {
             let without = self.laid_without(id);
-            (driven(&without) < all).then(|| (id, held_out(&without).iter().sum::<f64>()))
+            (impossible(&without) < all).then(|| (id, held_out(&without).iter().sum::<f64>()))
         });
         freed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
     }

@@ -93,3 +93,34 @@ pub fn meta(kind: Kind) -> Meta {
         ..Meta::default()
     }
 }
+
+/// A row of [`friction_in_steps`].
+pub struct Moment {
+    pub row: usize,
+    pub leg: usize,
+    /// Angle of the motor, rad.
+    pub angle: f64,
+    pub velocity: f64,
+    /// Since the step began.
+    pub step_s: f64,
+}
+
+/// Friction at speeds of the motor, rad/s, both ways and again, each for so many rows at 250 Hz, with a torque of its own.
+pub fn friction_in_steps(speeds: &[f64], repeats: usize, rows: usize, torque_nm: impl Fn(&Moment) -> f64) -> RunTable {
+    const STEP_S: f64 = 0.004;
+    let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
+    let mut trace = Trace::new(names.map(Channel::new).into());
+    let mut angle = 0.0f64;
+    for leg in 0..2 * repeats * speeds.len() {
+        let velocity = if leg % 2 == 0 { 1.0 } else { -1.0 } * speeds[leg / 2 % speeds.len()];
+        for i in 0..rows {
+            angle += velocity * STEP_S;
+            let now = Moment { row: leg * rows + i, leg, angle, velocity, step_s: i as f64 * STEP_S };
+            let (segment, repeat) = (leg as f64, (leg / (2 * speeds.len())) as f64);
+            trace.push_row(&[now.row as f64 * STEP_S, angle, velocity, torque_nm(&now), segment, repeat]);
+        }
+    }
+    let mut meta = meta(Kind::Friction);
+    meta.torque_constant_nm_per_a = Some(1.0);
+    RunTable::new(meta, trace).unwrap()
+}

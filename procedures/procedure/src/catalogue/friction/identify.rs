@@ -250,10 +250,9 @@ fn over_speed(points: &[Plateau], whole: &FreeFriction) -> Figure {
         let fast = points.iter().filter(|p| p.velocity_rad_s * sign > clear);
         let fast: Vec<(f64, f64)> = fast.map(|p| (p.velocity_rad_s, friction_nm(p))).collect();
         let slowest = fast.iter().map(|(speed, _)| speed.abs()).fold(top, f64::min);
-        if slowest > SPANNED * top {
-            continue;
-        }
-        if let Some(line) = Line::through(&fast) {
+        if slowest <= SPANNED * top
+            && let Some(line) = Line::through(&fast)
+        {
             let way = if sign > 0.0 { "positive" } else { "negative" };
             let label = format!("line, {way}, r² = {:.4}", line.r2);
             let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
