@@ -1,17 +1,18 @@
 //! From a model to the model that is left when nothing more can be named.
 
+mod doubts;
+mod silence;
+
+pub use silence::Silence;
+
 use super::ground::Ground;
 use super::layout::lay;
 use super::library::{Candidate, Library};
-use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, is_tie, left_by_memory, step};
-use super::scatter::shows_within_blocks;
-use super::wander::Wander;
+use super::rivals::{Bar, MOST_OF_GAIN, Rival, encompasses, is_tie, step};
 use crate::Options;
-use crate::effect::{Effect, Form, Stage};
-use crate::linear::{BlockGrams, dot};
+use crate::effect::{Effect, Form};
+use crate::linear::BlockGrams;
 use crate::terms::{Term, Terms};
-use jointbench_instrument::Kind;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -25,13 +26,6 @@ pub enum Move<'p> {
 
 /// An effect with what the run cannot tell it from.
 type Found<'p> = (Rival<'p>, Vec<&'p str>);
-
-/// A candidate that was looked for and not found.
-pub struct Silence<'p> {
-    pub effect: &'p str,
-    /// RMS of the smallest one that would have been found with 80 % probability.
-    pub detectable_rms: f64,
-}
 
 /// Held-out squared error of each fold.
 pub fn held_out(terms: &Terms) -> Vec<f64> {
@@ -146,83 +140,6 @@ impl<'l, 'p> Search<'l, 'p> {
         Move::Removed(id)
     }
 
-    /// An added effect in whose place another one makes the model clearly better, with that one: an effect that came first
-    /// because it looks a little like two that are missing. No effect gives way to one that this run cannot tell it from.
-    fn misplaced(&self) -> Option<(&'p str, Found<'p>)> {
-        let losses = held_out(&self.now);
-        let present: f64 = losses.iter().sum();
-        let ids: Vec<&'p str> = self.added().map(Term::id).collect();
-        let alone = self.now.terms.len() <= self.kept.len() + 1;
-        let better = |id: &'p str| {
-            let rest = self.now.without(id);
-            let plain = if alone { None } else { self.step(&rest) };
-            let plain = plain.filter(|(rival, _)| {
-                let clearly = rival.held_out < (1.0 - self.options.practical_share) * present;
-                rival.term.id() != id && clearly && !is_tie(&rival.losses, &losses)
-            });
-            plain.or_else(|| self.behind_bent(&rest, Some(id), &losses)).map(|found| (id, found))
-        };
-        ids.into_par_iter().find_map_first(better)
-    }
-
-    /// The added effect without which the model is as good. What came last has just shown its reason.
-    fn needless(&self) -> Option<&'p str> {
-        let full = self.now.linear().sse;
-        let ids = self.on_trial().map(Term::id).filter(|id| self.last != Some(id));
-        let ids: Vec<&'p str> = ids.collect();
-        let share = |id: &'p str| {
-            let without = self.now.without(id);
-            let share = 1.0 - full / without.linear().sse;
-            // What would need another effect of an impossible size in its place is not needless.
-            (share < self.options.practical_share && self.impossible(&without).is_none()).then_some((id, share))
-        };
-        ids.into_par_iter().filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
-    }
-
-    /// The added effect whose factors are physically impossible in a model.
-    fn impossible(&self, terms: &Terms<'p>) -> Option<&'p str> {
-        let factors = terms.linear().factors;
-        let mut sized = terms.terms.iter().zip(&factors).filter(|(term, _)| !self.kept.contains(&term.id()));
-        sized.find(|(term, factors)| !term.allows(factors)).map(|(term, _)| term.id())
-    }
-
-    /// The added effect of friction that drives a given one below zero in the shapes in which all of them ended, as two
-    /// that cancel each other do; of several that without which the model is best.
-    fn cancelling(&self) -> Option<&'p str> {
-        if self.library.kind != Kind::Friction {
-            return None;
-        }
-        let impossible = |terms: &Terms<'p>| {
-            let sized = terms.terms.iter().zip(terms.linear().factors);
-            sized.filter(|(term, factors)| self.kept.contains(&term.id()) && !term.allows(factors)).count()
-        };
-        let all = impossible(&self.now);
-        if all == 0 {
-            return None;
-        }
-        let of_now = self.on_trial().filter(|term| term.effect.stage() != Stage::Memory);
-        let of_now: Vec<&str> = of_now.map(Term::id).collect();
-        let freed = of_now.into_par_iter().filter_map(|id| {
-            let without = self.laid_without(id);
-            (impossible(&without) < all).then(|| (id, held_out(&without).iter().sum::<f64>()))
-        });
-        freed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
-    }
-
-    /// The added effect that brings least on what was held out, where that is not worth a name: whatever came in since
-    /// explains the rest of it. Asked when nothing more can be added, because on the way two effects may mask each other.
-    fn idle(&self) -> Option<&'p str> {
-        let (present, sse) = (held_out(&self.now).iter().sum::<f64>(), self.now.linear().sse);
-        let on_trial: Vec<&Term<'p>> = self.on_trial().collect();
-        let idle = on_trial.into_par_iter().filter_map(|term| {
-            let without = self.laid_without(term.id());
-            let share = 1.0 - present / held_out(&without).iter().sum::<f64>();
-            let is_remainder = without.linear().sse - sse < left_by_memory(&without);
-            (share < self.options.practical_share || is_remainder).then_some((term.id(), share))
-        });
-        idle.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
-    }
-
     /// What to add next.
     fn best(&self) -> Option<Found<'p>> {
         let plain = self.step(&self.now);
@@ -318,30 +235,9 @@ impl<'l, 'p> Search<'l, 'p> {
         self.now.terms.iter().filter(|t| !self.kept.contains(&t.id()))
     }
 
-    /// An added effect that shows from stretch to stretch of motion only, and there no more than a zero that wanders would.
-    pub fn wandering(&self) -> Option<&'p str> {
-        self.added().next()?;
-        let wander = Wander::of(&self.now, self.options)?;
-        let mut open: Vec<&str> = self.library.candidates.iter().map(Candidate::id).collect();
-        open.dedup();
-        let explained = |term: &&Term<'p>| Some((wander.gain(term, open.len(), self.options)?, term.id()));
-        let within = |term: &&Term<'p>| shows_within_blocks(term, &self.now, self.options);
-        let explained = self.added().filter(|term| !within(term)).filter_map(|term| explained(&term));
-        explained.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
-    }
-
-    /// Added effects that have to be worth their error.
-    fn on_trial(&self) -> impl Iterator<Item = &Term<'p>> {
-        self.added().filter(|term| !self.upheld.contains(&term.id()))
-    }
-
     /// Effects that were withdrawn and stayed out.
     pub fn given_back(&self) -> impl Iterator<Item = &'p str> {
         self.withdrawn.iter().copied().filter(|id| !self.now.contains(id))
-    }
-
-    pub fn silences(&self) -> Vec<Silence<'p>> {
-        silences(&self.now, self.library, &self.withdrawn, self.bar())
     }
 }
 
@@ -377,27 +273,4 @@ impl<'p> Iterator for Search<'_, 'p> {
         };
         Some(self.add(rival, ties))
     }
-}
-
-/// For each effect that is not in the model, its best form and shape: what would have been seen.
-fn silences<'p>(end: &Terms<'p>, library: &Library<'p>, withdrawn: &[&'p str], bar: Bar) -> Vec<Silence<'p>> {
-    let ground = Ground::of(end);
-    let n = end.problem.rows() as f64;
-    let least = bar.least_share(end, ground.energy) * ground.energy;
-    let mut out: Vec<Silence> = Vec::new();
-    let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
-    for candidate in library.candidates.iter().filter(|c| is_out(c.id())) {
-        let own = ground.own(&candidate.columns);
-        let sums = ground.sums(&candidate.columns, &own);
-        // z₀.₉₇₅ + z₀.₈ standard errors of the amplitude, and never less than what is worth a name.
-        let noise = sums.iter().zip(own.squares()).map(|(s, square)| 2.8 * (dot(s, s) / square).sqrt());
-        let Some(noise) = noise.reduce(f64::max) else { continue };
-        // Of the effect itself the model's own columns take their part.
-        let detectable_rms = noise.max(least.sqrt()) / (own.visible * n).sqrt();
-        match out.iter_mut().find(|s| s.effect == candidate.id()) {
-            Some(s) => s.detectable_rms = s.detectable_rms.min(detectable_rms),
-            None => out.push(Silence { effect: candidate.id(), detectable_rms }),
-        }
-    }
-    out
 }
