@@ -6,7 +6,7 @@ use super::files::write;
 use super::serve::runtime;
 use super::transfer::{Way, open};
 use crate::report::with_interval;
-use crate::view::{Identification, Identified, Shown, typed, word};
+use crate::view::{Identification, Identified, Shown, command, word};
 use std::path::PathBuf;
 
 pub fn identify(arguments: &Identify) -> Done {
@@ -60,9 +60,7 @@ pub(super) fn print(found: &Identification) {
     }
     quantities(result);
     if let Some(next) = &found.follow_up {
-        let set: String =
-            next.parameters.iter().map(|(name, value)| format!(" --set {name}={}", typed(value))).collect();
-        println!("\nto {}:\n  jointbench run {}{set}", next.why, next.procedure);
+        println!("\nto {}:\n  {}", next.why, command(&next.procedure, &next.parameters));
     }
 }
 

@@ -5,7 +5,7 @@
 mod figure;
 mod number;
 
-use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict, typed, word};
+use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, Run, Verdict, command, typed, word};
 pub use figure::svg;
 use jointbench_instrument::units::{quantity_of, unit_of};
 use jointbench_model::words;
@@ -174,10 +174,7 @@ fn result(found: &Identification) -> Markup {
         }
         @if let Some(next) = &found.follow_up {
             p {
-                "To " (next.why) ": " code {
-                    "jointbench run " (next.procedure)
-                    @for (name, value) in &next.parameters { " --set " (name) "=" (typed(value)) }
-                }
+                "To " (next.why) ": " code { (command(&next.procedure, &next.parameters)) }
             }
         }
         @for one in &result.figures {

@@ -36,7 +36,6 @@ pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// A state in the word that the API has for it: `safe_verified`.
 /// A value of JSON as a person would type it: whole numbers without a point.
 pub fn typed(value: &serde_json::Value) -> String {
     match value.as_f64() {
@@ -45,6 +44,13 @@ pub fn typed(value: &serde_json::Value) -> String {
     }
 }
 
+/// A run with these settings, as it is typed.
+pub fn command(procedure: &str, parameters: &serde_json::Map<String, serde_json::Value>) -> String {
+    let set = parameters.iter().map(|(name, value)| format!(" --set {name}={}", typed(value)));
+    format!("jointbench run {procedure}{}", set.collect::<String>())
+}
+
+/// A state in the word that the API has for it: `safe_verified`.
 pub fn word(value: impl serde::Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
 }

@@ -1,6 +1,6 @@
 //! What a person could do next.
 
-use crate::view::typed;
+use crate::view::command;
 use jointbench_instrument::Motion;
 use jointbench_model::{Experiment, Fit, Verdict, formula, words};
 
@@ -35,11 +35,10 @@ pub fn own_formula(columns: &[String], fit: &Fit) {
 /// As a command, so that it can be typed.
 pub fn next_run(experiment: Option<&Experiment>) {
     let Some(experiment) = experiment else { return };
-    let set = experiment.parameters.iter().map(|(name, value)| format!(" --set {name}={}", typed(value)));
     println!();
     println!("what to measure next, on a bench that can do what this run shows: {}", experiment.why);
     if let Some(duration_s) = experiment.expected_duration_s {
         println!("  {duration_s:.0} s of the bench at most:");
     }
-    println!("  jointbench run {}{}", experiment.procedure, set.collect::<String>());
+    println!("  {}", command(&experiment.procedure, &experiment.parameters));
 }
