@@ -82,6 +82,7 @@ pub fn written(kind: Kind, term: &Term) -> Result<Vec<Column>, &'static str> {
                 Ok(columns)
             }
             ("friction_ripple", _) => Ok(waves("link_position", " * direction", &orders(term))),
+            ("torque_constant_saturation", "power") => formula("abs(motor_torque) ^ n * motor_torque"),
             ("torque_constant_saturation", _) => formula("motor_torque * motor_torque * motor_torque"),
             ("drift", "settling") => formula("1 - exp(-time / t_d)"),
             ("drift", _) => formula("time"),

@@ -19,10 +19,9 @@ const WARMING_S: f64 = 240.0;
 
 pub fn offer(menu: &mut Menu, run: &RunTable) {
     let bench = menu.bench;
-    let rate_hz = run.rate_hz().round();
     let seed = menu.next_seed();
     let loads = bench.has_brake && bench.has_torque_sensor;
-    let mut ordinary = menu.before("friction", json!({"sample_rate_hz": rate_hz, "order_seed": seed}));
+    let mut ordinary = menu.before("friction", json!({"order_seed": seed}));
     ordinary.entry("repeats").or_insert(json!(2));
     if !loads {
         ordinary.insert("load_levels".into(), json!(1));
@@ -52,8 +51,7 @@ pub fn offer(menu: &mut Menu, run: &RunTable) {
                     json!({
                         "low_speed_rad_s": rounded(low_rad_s), "top_speed_rad_s": rounded(high_rad_s), "speeds": 4, "load": load,
                         "repeats": repeats, "dwell_s": dwell_s, "travel_rad": rounded(room_rad),
-                        "acceleration_rad_s2": acceleration_rad_s2, "sample_rate_hz": rate_hz,
-                        "order_seed": seed,
+                        "acceleration_rad_s2": acceleration_rad_s2, "order_seed": seed,
                     }),
                 );
             }
@@ -64,9 +62,7 @@ pub fn offer(menu: &mut Menu, run: &RunTable) {
         let before = menu.choices.len();
         for top_rad_s in [1.0, 0.5, 0.25].map(|part| rounded(part * menu.top_rad_s().min(180.0))) {
             if menu.choices.len() == before {
-                let warming = json!({
-                    "top_speed_rad_s": top_rad_s, "heat_s": WARMING_S, "cool_s": WARMING_S, "sample_rate_hz": rate_hz,
-                });
+                let warming = json!({"top_speed_rad_s": top_rad_s, "heat_s": WARMING_S, "cool_s": WARMING_S});
                 menu.offer_warmed("friction_temperature", warming, &warmer_k);
             }
         }

@@ -5,6 +5,7 @@ mod laid;
 mod shown;
 
 use crate::catalogue::procedure;
+use crate::parameter::Parameter;
 use crate::plan::BenchFacts;
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::Choice;
@@ -17,7 +18,7 @@ const SHARE_OF_LIMIT: f64 = 0.95;
 /// Runs that could be made next, the ordinary one first. `run`: the one at hand, which gives the sample rate; `parameters`:
 /// what it was made with, where it came from a procedure.
 pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>) -> Vec<Choice> {
-    let mut menu = Menu { bench, parameters, choices: Vec::new() };
+    let mut menu = Menu { bench, parameters, rate_hz: run.rate_hz().round(), choices: Vec::new() };
     match run.kind() {
         Kind::Friction => friction::offer(&mut menu, run),
         Kind::Encoder => encoder(&mut menu),
@@ -30,6 +31,8 @@ pub fn menu(bench: &BenchFacts, run: &RunTable, parameters: &Map<String, Value>)
 struct Menu<'m> {
     bench: &'m BenchFacts,
     parameters: &'m Map<String, Value>,
+    /// Of the run at hand.
+    rate_hz: f64,
     choices: Vec<Choice>,
 }
 
@@ -41,20 +44,21 @@ impl Menu<'_> {
 
     /// The same for one that warms the joint: by so much after so many seconds.
     fn offer_warmed(&mut self, id: &str, parameters: Value, warmer_k: &dyn Fn(f64) -> f64) {
-        let Some(parameters) = parameters.as_object() else { return };
-        if let Some(Ok(plan)) = procedure(id).map(|p| p.plan(parameters, self.bench))
+        let Value::Object(parameters) = parameters else { return };
+        let parameters = self.at_rate(id, parameters);
+        if let Some(Ok(plan)) = procedure(id).map(|p| p.plan(&parameters, self.bench))
             && plan.preview(self.bench).is_allowed()
         {
-            self.choices.push(choice(&plan, parameters, self.bench, warmer_k));
+            self.choices.push(choice(&plan, &parameters, self.bench, warmer_k));
         }
     }
 
     /// The ordinary run as it was made before, but for `changes`. Benches that only a run has shown may not be known well
     /// enough to plan for: it is told all the same, for its repeats.
     fn ordinary(&mut self, id: &str, changes: Value) {
-        let parameters = Value::Object(self.before(id, changes));
-        self.offer(id, parameters.clone());
-        if let (true, Value::Object(parameters)) = (self.choices.is_empty(), parameters) {
+        let parameters = self.at_rate(id, self.before(id, changes));
+        self.offer(id, Value::Object(parameters.clone()));
+        if self.choices.is_empty() {
             let procedure = id.to_owned();
             self.choices.push(Choice { procedure, parameters, duration_s: f64::INFINITY, stretches: Vec::new() });
         }
@@ -65,6 +69,15 @@ impl Menu<'_> {
         let mut parameters = self.parameters.clone();
         parameters.retain(|name, _| procedure(id).is_some_and(|p| p.schema().iter().any(|s| s.name == name)));
         parameters.extend(changes.as_object().cloned().unwrap_or_default());
+        parameters
+    }
+
+    /// Sampled as the run at hand is, or the two could not be looked at together.
+    fn at_rate(&self, id: &str, mut parameters: Map<String, Value>) -> Map<String, Value> {
+        let fits = |p: &&Parameter| p.name == "sample_rate_hz" && (p.min..=p.max).contains(&self.rate_hz);
+        if procedure(id).is_some_and(|p| p.schema().iter().any(|p| fits(&p))) {
+            parameters.insert("sample_rate_hz".into(), json!(self.rate_hz));
+        }
         parameters
     }
 
@@ -152,7 +165,7 @@ mod tests {
             let columns = kind.required_columns();
             let mut trace = Trace::new(columns.iter().copied().map(Channel::new).collect());
             for row in 0..100 {
-                trace.push_row(&vec![0.01 * f64::from(row); columns.len()]);
+                trace.push_row(&vec![0.02 * f64::from(row); columns.len()]);
             }
             let run = RunTable::new(Meta { kind: Some(kind), ..Meta::default() }, trace).unwrap();
             let offered = menu(&BenchFacts::shown_by(&run), &run, &Map::new());
@@ -160,6 +173,7 @@ mod tests {
             for choice in offered {
                 let known = procedure(&choice.procedure).unwrap_or_else(|| panic!("{kind}: {}", choice.procedure));
                 assert_eq!(known.kind(), kind);
+                assert_eq!(choice.parameters.get("sample_rate_hz"), Some(&json!(50.0)), "{}", choice.procedure);
                 Values::parse(known.schema(), &choice.parameters).unwrap();
             }
         }

@@ -1,20 +1,28 @@
 //! Saturation of the torque constant.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 
 pub struct TorqueConstantSaturation;
+
+/// Below it looks like friction that grows with the load, above like a stop.
+const LEAST_POWER: f64 = 1.5;
+const LARGEST_POWER: f64 = 4.0;
 
 static INFO: EffectInfo = EffectInfo {
     id: "torque_constant_saturation",
     kind: Kind::Friction,
     title: "Saturation of the torque constant",
     sentence: "At high current the iron saturates: the motor gives less torque for each ampere, so it seems to need more.",
-    formula: "s·τ³, that is k_m falls by s·τ² at the motor torque τ",
+    formula: "s·τ³, that is k_m falls by s·τ² at the motor torque τ; or s_n·|τ|ⁿ·τ where iron saturates more suddenly or less",
     source: "Hanselman, Brushless Permanent Magnet Motor Design, ch. 4",
     looks: "odd in the motor torque, only at high torque",
-    parameters: &[parameter("s", "1/Nm²", 0.0, f64::INFINITY)],
+    parameters: &[
+        parameter("s", "1/Nm²", 0.0, f64::INFINITY),
+        parameter("s_n", "1/Nmⁿ", 0.0, f64::INFINITY),
+        parameter("n", "1", LEAST_POWER, LARGEST_POWER),
+    ],
     needs: &[],
 };
 
@@ -24,10 +32,15 @@ impl Effect for TorqueConstantSaturation {
     }
 
     fn forms(&self, _: &View) -> Vec<Form<'_>> {
-        vec![Form::linear(&["s"])]
+        let shape = vec![Shape { name: "n", min: LEAST_POWER, max: LARGEST_POWER, search: Search::Smooth }];
+        let grid = vec![vec![3.0]];
+        vec![Form::linear(&["s"]), Form { name: "power", linear: vec!["s_n"], shape, grid }]
     }
 
-    fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
-        vec![view.map(Signal::Drive, |t| t * t * t)]
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
+        vec![match form {
+            "power" => view.map(Signal::Drive, |t| t.abs().powf(shape[0]) * t),
+            _ => view.map(Signal::Drive, |t| t * t * t),
+        }]
     }
 }

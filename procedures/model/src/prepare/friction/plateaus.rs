@@ -107,8 +107,7 @@ pub fn prepare(
     let slowest = plateaus.iter().map(speed).fold(f64::INFINITY, f64::min);
     let settled = || {
         let mut main = problem(&samples, layout);
-        let drive = super::drive(&main.view.points, &main.target);
-        main.view.points.set(Signal::Drive, drive);
+        driven(&mut main);
         main.view.constants.weight = weight::unmeasured(&main.view.points, &main.target);
         main
     };
@@ -143,6 +142,11 @@ pub fn prepare(
         memory,
         about,
     })
+}
+
+fn driven(problem: &mut Problem) {
+    let drive = super::drive(&problem.view.points, &problem.target);
+    problem.view.points.set(Signal::Drive, drive);
 }
 
 /// Plateaus of the same speed, direction and load are one condition.
@@ -196,6 +200,7 @@ fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Pr
     let (samples, chunks) = samples.around(chunks);
     let layout = Layout { chunks, condition: group.clone(), group, phase: None, settled: false, inputs: &[] };
     let mut moving = problem(&samples, layout);
+    driven(&mut moving);
     still_at_turns(&mut moving, REACH * n);
     Some(moving)
 }
