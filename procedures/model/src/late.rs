@@ -15,8 +15,8 @@ const DELAY: &str = "signal_delay";
 /// Divides the delay's factor into its time.
 const INERTIA: &str = "inertia";
 
-/// The factor lies so many half widths of its 95 % interval from zero. Of 519 simulated joints without a delay the torque looked
-/// late on one, by nothing that counts; on thirteen with 9 to 14 ms it came to 2.6 at least.
+/// The factor lies so many half widths of its 95 % interval from zero. On none of 519 simulated joints without a delay
+/// the torque looked late at all; on thirteen with 9 to 14 ms it came to 2.6 at least.
 const CLEAR: f64 = 2.0;
 /// And it is later than so many rows apart: of which moment of its row a reading is nobody knows. Of seven like runs of a mock
 /// bench, each 0.9 to 1.1 rows late, two had it named.

@@ -56,10 +56,10 @@ impl Menu<'_> {
     /// The ordinary run as it was made before, but for `changes`. Benches that only a run has shown may not be known well
     /// enough to plan for: it is told all the same, for its repeats.
     fn ordinary(&mut self, id: &str, changes: Value) {
-        let parameters = self.at_rate(id, self.before(id, changes));
+        let parameters = self.before(id, changes);
         self.offer(id, Value::Object(parameters.clone()));
         if self.choices.is_empty() {
-            let procedure = id.to_owned();
+            let (procedure, parameters) = (id.to_owned(), self.at_rate(id, parameters));
             self.choices.push(Choice { procedure, parameters, duration_s: f64::INFINITY, stretches: Vec::new() });
         }
     }
@@ -74,8 +74,8 @@ impl Menu<'_> {
 
     /// Sampled as the run at hand is, or the two could not be looked at together.
     fn at_rate(&self, id: &str, mut parameters: Map<String, Value>) -> Map<String, Value> {
-        let fits = |p: &&Parameter| p.name == "sample_rate_hz" && (p.min..=p.max).contains(&self.rate_hz);
-        if procedure(id).is_some_and(|p| p.schema().iter().any(|p| fits(&p))) {
+        let fits = |p: &Parameter| p.name == "sample_rate_hz" && (p.min..=p.max).contains(&self.rate_hz);
+        if procedure(id).is_some_and(|p| p.schema().iter().any(fits)) {
             parameters.insert("sample_rate_hz".into(), json!(self.rate_hz));
         }
         parameters

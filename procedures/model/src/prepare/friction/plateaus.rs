@@ -107,7 +107,7 @@ pub fn prepare(
     let slowest = plateaus.iter().map(speed).fold(f64::INFINITY, f64::min);
     let settled = || {
         let mut main = problem(&samples, layout);
-        driven(&mut main);
+        set_drive(&mut main);
         main.view.constants.weight = weight::unmeasured(&main.view.points, &main.target);
         main
     };
@@ -144,7 +144,8 @@ pub fn prepare(
     })
 }
 
-fn driven(problem: &mut Problem) {
+/// What the motor gives belongs to settled motion and to ramps alike.
+fn set_drive(problem: &mut Problem) {
     let drive = super::drive(&problem.view.points, &problem.target);
     problem.view.points.set(Signal::Drive, drive);
 }
@@ -200,7 +201,7 @@ fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Pr
     let (samples, chunks) = samples.around(chunks);
     let layout = Layout { chunks, condition: group.clone(), group, phase: None, settled: false, inputs: &[] };
     let mut moving = problem(&samples, layout);
-    driven(&mut moving);
+    set_drive(&mut moving);
     still_at_turns(&mut moving, REACH * n);
     Some(moving)
 }
