@@ -3,6 +3,7 @@
 use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
+use std::iter;
 
 pub struct TorqueConstantSaturation;
 
@@ -31,10 +32,12 @@ impl Effect for TorqueConstantSaturation {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
+    /// Without a load the torque goes with the speed: any power of it is one more curve over that.
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let shape = vec![Shape { name: "n", min: LEAST_POWER, max: LARGEST_POWER, search: Search::Smooth }];
         let grid = vec![vec![3.0]];
-        vec![Form::linear(&["s"]), Form { name: "power", linear: vec!["s_n"], shape, grid }]
+        let power = Form { name: "power", linear: vec!["s_n"], shape, grid };
+        iter::once(Form::linear(&["s"])).chain(view.bears_load().then_some(power)).collect()
     }
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
