@@ -26,6 +26,17 @@ pub struct Source {
     pub constants: Constants,
 }
 
+/// Speeds this near to a kept one, as a share of it, are the same.
+const EVEN: f64 = 0.05;
+
+/// The middle of the speeds that most of all lie near together.
+fn usual(mut speeds: Vec<f64>) -> f64 {
+    speeds.sort_unstable_by(f64::total_cmp);
+    let near = |low: usize| speeds.partition_point(|v| *v <= speeds[low] * (1.0 + EVEN) / (1.0 - EVEN)) - low;
+    let low = (0..speeds.len()).max_by_key(|low| near(*low));
+    low.map_or(0.0, |low| 0.5 * (speeds[low] + speeds[low + near(low) - 1]))
+}
+
 /// Which samples become rows, and what they have in common.
 pub struct Layout<'a> {
     pub chunks: Vec<Range<usize>>,
@@ -58,17 +69,19 @@ impl Source {
     /// the flanks are still being changed there, whatever the sign of the motion says. A leg that never keeps a speed
     /// stays whole.
     pub fn even_part(&self, leg: &Range<usize>, chunk: usize) -> Range<usize> {
-        const EVEN: f64 = 0.05;
+        /// Of a sine's half wave 0.28 lie so near together.
+        const KEEPS: f64 = 0.4;
         let Some(velocity) = self.signals.find(Signal::Velocity) else { return leg.clone() };
         // A model's file may ask for means over more than there is.
         let chunk = chunk.min(leg.len()).max(1);
         let means: Vec<f64> =
             velocity[leg.clone()].chunks(chunk).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
-        let kept = super::median(means.iter().copied());
-        let is_even = |mean: &f64| (mean - kept).abs() <= EVEN * kept.abs();
+        let kept = usual(means.iter().map(|mean| mean.abs()).collect());
+        let is_even = |mean: &f64| (mean.abs() - kept).abs() <= EVEN * kept;
         let (first, last) = (means.iter().position(is_even), means.iter().rposition(is_even));
+        let even = means.iter().filter(|m| is_even(m)).count() as f64;
         match (first, last) {
-            (Some(first), Some(last)) if 2 * means.iter().filter(|m| is_even(m)).count() >= means.len() => {
+            (Some(first), Some(last)) if even >= KEEPS * means.len() as f64 => {
                 leg.start + (2 * first).min(last) * chunk..(leg.start + (last + 1) * chunk).min(leg.end)
             }
             _ => leg.clone(),
@@ -181,6 +194,37 @@ mod tests {
     use super::*;
     use crate::effects::memory;
 
+    fn source(signals: Signals) -> Source {
+        let n = signals.len();
+        Source {
+            signals,
+            target: vec![0.0; n].into(),
+            time_s: (0..n).map(|i| i as f64).collect(),
+            step_s: 1.0,
+            starts: vec![0],
+            runs: vec![0],
+            cutoff_hz: 0.1,
+            segment: None,
+            repeat: Some(vec![0; n]),
+            derived_velocity: true,
+            constants: Constants::default(),
+        }
+    }
+
+    #[test]
+    fn a_leg_loses_its_ramps_even_where_they_are_longer_than_its_dwell() {
+        let of = |speed: &dyn Fn(f64) -> f64| {
+            let n = 310;
+            let mut signals = Signals::new(n);
+            signals.set(Signal::Velocity, (0..n).map(|i| -speed(i as f64)).collect());
+            source(signals).even_part(&(0..n), 4)
+        };
+        let ramps = |i: f64| 1.8 * (i / 80.0).min((310.0 - i) / 80.0).min(1.0);
+        let even = of(&ramps);
+        assert!((140..=160).contains(&even.start) && (228..=242).contains(&even.end), "{even:?}");
+        assert_eq!(of(&|i| (i / 310.0 * std::f64::consts::PI).sin()), 0..310, "a wave keeps no speed");
+    }
+
     #[test]
     fn a_memory_is_the_same_on_the_samples_around_chunks() {
         // Back and forth, three times, in steps of different length.
@@ -191,19 +235,7 @@ mod tests {
         let mut signals = Signals::new(n);
         signals.set(Signal::Position, position.clone());
         signals.set(Signal::Direction, direction);
-        let source = Source {
-            signals,
-            target: position.clone().into(),
-            time_s: (0..n).map(|i| i as f64).collect(),
-            step_s: 1.0,
-            starts: vec![0],
-            runs: vec![0],
-            cutoff_hz: 0.1,
-            segment: None,
-            repeat: Some(vec![0; n]),
-            derived_velocity: true,
-            constants: Constants::default(),
-        };
+        let source = source(signals);
         let chunks = vec![84..88, 165..169, 210..214];
         let (thin, moved) = source.around(chunks.clone());
         assert!(thin.time_s.len() < 30 && thin.starts == [0], "{:?}", thin.time_s);
