@@ -9,6 +9,11 @@ use std::ops::Range;
 const PIECE_S: f64 = 0.2;
 /// Columns that differ by less may be filtered, late, or have a joint that winds up between them.
 const CLASH: f64 = 1.2;
+/// At speed the angles of motor and link go the same ways but for this share of them, where the link turns by so much [rad].
+const GEAR_CLASH: f64 = 0.01;
+const GEAR_WAY: f64 = 1.0;
+/// Share of the variance in common, below which one of the angles is too coarse to tell.
+const SAME_ANGLE: f64 = 0.999;
 /// Torques of motor and link differ by the gear's efficiency too, and by friction that grows with the load.
 const TORQUE_CLASH: f64 = 2.0;
 /// An angle moves by so much, rad, or it may have been held fast.
@@ -46,6 +51,7 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
         .chain(dead_load(run))
         .chain(noise(run))
         .chain(super::reach::beyond(run))
+        .chain(super::sensors::failed(run))
         .collect()
 }
 
@@ -143,9 +149,29 @@ fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<String> 
         .collect();
     let times = alike(&ways).or_else(|| mostly(&ways))?;
     let tells = !(1.0 / CLASH..=CLASH).contains(&times);
+    if !tells && !is_speed && factor != 1.0 {
+        return other_gear(&ways, factor);
+    }
     tells.then(|| {
         let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
         format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign")
+    })
+}
+
+/// A gear ratio that is a tooth or two beside the right one: what is left of the load with it looks like an effect.
+fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
+    let fast = 0.5 * ways.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
+    // A joint winds up where it turns back.
+    let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
+    let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
+    // The motor's angle is fine beside the link's: its noise makes nothing larger.
+    let found = ratio * bb / ab;
+    let turned = sum(|w| w.1.abs()) / ratio.abs();
+    let tells = ab * ab > SAME_ANGLE * aa * bb && turned > GEAR_WAY && (found / ratio - 1.0).abs() > GEAR_CLASH;
+    tells.then(|| {
+        format!(
+            "gear_ratio is {ratio}, and motor_position_rad goes {found:.2} times as far as link_position_rad: one of them is wrong"
+        )
     })
 }
 
@@ -332,7 +358,9 @@ mod tests {
     #[test]
     fn columns_of_one_motion_agree_or_are_told() {
         assert_eq!(clashes(&run(1.0, 1.0)), Vec::<String>::new());
-        assert_eq!(clashes(&run(1.1, 0.95)), Vec::<String>::new(), "late or filtered");
+        assert_eq!(clashes(&run(1.1, 0.995)), Vec::<String>::new(), "late or filtered");
+        let gear = clashes(&run(1.0, 50.0 / 51.0));
+        assert!(gear.len() == 1 && gear[0].contains("goes 51.00 times as far"), "{gear:?}");
         let rpm = clashes(&run(9.549, 1.0));
         assert!(rpm.len() == 1 && rpm[0].starts_with("motor_velocity_rad_s is 9.5"), "{rpm:?}");
         let degrees = clashes(&run(-1.0, 57.296));

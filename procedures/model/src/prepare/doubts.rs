@@ -7,7 +7,7 @@ const OTHER_RATE: f64 = 1.2;
 
 /// Each in a sentence.
 pub fn doubts(run: &RunTable) -> Vec<String> {
-    [rate(run), gear(run), segments(run)].into_iter().flatten().collect()
+    [rate(run), gear(run), segments(run), super::sensors::spikes(run)].into_iter().flatten().collect()
 }
 
 fn rate(run: &RunTable) -> Option<String> {

@@ -14,6 +14,7 @@ mod past;
 mod reach;
 mod repeats;
 mod segments;
+mod sensors;
 mod stiffness;
 mod sweeps;
 mod unknown;
