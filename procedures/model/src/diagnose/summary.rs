@@ -55,7 +55,7 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         }
         _ => String::new(),
     };
-    format!("{}{gain}{beyond}{}{}", attention(found), open(found), taken_back(found, &fit.unit))
+    format!("{}{gain}{beyond}{}{}", attention(found, Some(complete)), open(found), taken_back(found, &fit.unit))
 }
 
 /// An effect with what this run cannot tell it from: one of them alone would say more than the run knows.
@@ -88,7 +88,13 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
              cannot be decided: {why}."
         ),
     };
-    attention(found) + &said + &scatter(found, verdict, &fit.unit) + &open(found) + &taken_back(found, &fit.unit)
+    // Of a model that is adequate but for it, the sentence itself says so.
+    let of_size = (verdict == Verdict::UnexplainedStructure).then_some(fit);
+    attention(found, of_size)
+        + &said
+        + &scatter(found, verdict, &fit.unit)
+        + &open(found)
+        + &taken_back(found, &fit.unit)
 }
 
 /// Why what shows over an axis is called noise.
@@ -120,18 +126,18 @@ pub fn elsewhere(imitated: &Imitated, is_there: bool) -> String {
 
 const MEND: &str = "Mend that first: what follows is what these columns make of the model. ";
 
-/// What a user has to mend before anything else counts: columns that contradict each other, and what the model takes as given
-/// and the run shows as a constant, which may not have been connected.
-fn attention(found: &Exploration) -> String {
-    let clashes = &found.start.prepared.clashes;
-    let mend = (!clashes.is_empty()).then(|| MEND.to_owned());
-    let clashes = clashes.iter().map(|clash| format!("Attention: {clash}. ")).chain(mend);
+/// What a user has to mend before anything else counts: columns that contradict each other, a size in a fit that contradicts
+/// physics, and what the model takes as given and the run shows as a constant, which may not have been connected.
+fn attention(found: &Exploration, fit: Option<&Fit>) -> String {
+    let wrong: Vec<String> = found.start.prepared.clashes.iter().cloned().chain(fit.and_then(impossible)).collect();
+    let mend = (!wrong.is_empty()).then(|| MEND.to_owned());
+    let wrong = wrong.into_iter().map(|what| format!("Attention: {what}. ")).chain(mend);
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
     let is_dead = |id: &str| spec.find(id).is_ok_and(|e| e.is_given() && e.missing(view).is_none());
     let dead = found.start.hidden.iter().find(|h| is_dead(&h.effect));
     let dead = dead.map(|h| format!("Attention: {}; if something did act there, what follows is wrong. ", h.why));
-    clashes.chain(dead).collect()
+    wrong.chain(dead).collect()
 }
 
 /// How well the run repeats itself, and why an error may be smaller than that.
@@ -214,7 +220,7 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
 }
 
 /// Why the verdict decides nothing: columns that contradict each other carry none, too short a run cannot find fault with a
-/// model, or a size contradicts physics.
+/// model, or a size in `fit`, which has all that can be named, contradicts physics.
 pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Options) -> Option<String> {
     let blocks = found.start.main.problem.blocks;
     // The smallest p-value that flipping the signs of so many blocks can give.
@@ -225,15 +231,16 @@ pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Opt
             Some(format!("{blocks} independent stretches of motion are too few to name anything"))
         }
         Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
-        Verdict::Adequate => {
-            let said = fit.parameters.iter().filter_map(|p| Some((p, p.note.as_ref()?)));
-            let mut impossible = said.filter(|(_, note)| note.starts_with(IMPOSSIBLE));
-            impossible
-                .next()
-                .map(|(p, note)| format!("{} of {} is {}, which {note}", p.name, p.effect, figure(p.value, &p.unit)))
-        }
+        Verdict::Adequate | Verdict::MissingEffect => impossible(fit),
         _ => None,
     }
+}
+
+/// A size that contradicts physics.
+fn impossible(fit: &Fit) -> Option<String> {
+    let mut said = fit.parameters.iter().filter_map(|p| Some((p, p.note.as_ref()?)));
+    let (p, note) = said.find(|(_, note)| note.starts_with(IMPOSSIBLE))?;
+    Some(format!("{} of {} is {}, which {note}", p.name, p.effect, figure(p.value, &p.unit)))
 }
 
 /// What is said of structure, where something that was left out might be it.

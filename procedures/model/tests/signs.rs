@@ -1,0 +1,32 @@
+//! A column with the wrong sign fits as well as the right one. What the model then has to be is impossible, and that is told first.
+
+mod common;
+
+use common::tables::{meta, scatter};
+use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use jointbench_model::{Diagnosis, ModelSpec, Options, diagnose};
+
+/// A brake that saturates, up and down three times, with its torque times `sign`.
+fn brake(sign: f64) -> Diagnosis {
+    let names = ["time_s", "brake_current_a", "brake_torque_nm", "velocity_rad_s", "position_rad", "segment", "repeat"];
+    let mut trace = Trace::new(names.map(Channel::new).into());
+    for row in 0..3600 {
+        let (leg, time) = (row / 300, 0.02 * row as f64);
+        let way = (row % 300) as f64 / 300.0;
+        let current = if leg % 2 == 0 { way } else { 1.0 - way };
+        let torque = 0.1 + 9.0 * (current / 0.6).tanh() + 0.03 * scatter(row, 1);
+        trace.push_row(&[time, current, sign * torque, 5.0, 5.0 * time, leg as f64, (leg / 4) as f64]);
+    }
+    let run = RunTable::new(meta(Kind::Brake), trace).unwrap();
+    diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap()
+}
+
+#[test]
+fn an_impossible_size_is_told_before_the_effect_that_is_named() {
+    let right = brake(1.0);
+    assert_eq!(right.suggestions.first().map(|s| s.effect.as_str()), Some("saturation"), "{}", right.summary);
+    assert_eq!(right.undecided, None);
+    let turned = brake(-1.0);
+    assert!(turned.summary.starts_with("Attention: "), "{}", turned.summary);
+    assert!(turned.undecided.is_some_and(|why| why.contains("lies beyond what is possible")));
+}
