@@ -36,8 +36,8 @@ pub struct Exploration<'p> {
     others: Others,
     /// Maps of what the last model leaves.
     pub maps: Maps,
-    /// Nothing shows in them but a zero that wanders over time.
-    wanders: bool,
+    /// What shows in them is what whole stretches of motion scatter by.
+    scatters: bool,
     pub floor: NoiseFloor,
     pub end_held_out_rms: f64,
     /// Effects of the last model, and what this run cannot tell them from.
@@ -156,10 +156,10 @@ impl<'p> Exploration<'p> {
             advances.last().into_iter().for_each(&mut *on_advance);
         }
         let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn);
-        let wanders = outside::only_wanders(&search, &maps, &residual, prepared, options);
         let floor = floor::noise_floor(prepared, &residual, search.now.contains("hysteresis"));
+        let scatters = outside::is_scatter(&search, &maps, &residual, &floor, prepared, options);
         let end_held_out_rms = held_out_rms(&advances.last().map_or(&start, |a| &a.after).main);
-        Ok(Self { start, advances, withdrawn, others, maps, wanders, floor, end_held_out_rms, ties, upheld, open })
+        Ok(Self { start, advances, withdrawn, others, maps, scatters, floor, end_held_out_rms, ties, upheld, open })
     }
 
     pub fn end(&self) -> &Assembly<'p> {
@@ -193,8 +193,7 @@ impl<'p> Exploration<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
-        let shows =
-            outside::structured(&self.maps).is_some() && !outside::is_scatter(&self.maps, &self.floor, self.wanders);
+        let shows = outside::structured(&self.maps).is_some() && !self.scatters;
         if (shows || self.repeats_itself()) && !self.is_negligible() {
             Verdict::UnexplainedStructure
         } else {
@@ -216,7 +215,7 @@ impl<'p> Exploration<'p> {
 
     /// RMS of what whole stretches of motion differ by, where that is what shows over an axis.
     pub fn scatter_rms(&self) -> Option<f64> {
-        outside::is_scatter(&self.maps, &self.floor, self.wanders).then(|| self.maps.between_rms())
+        self.scatters.then(|| self.maps.between_rms())
     }
 
     /// What is left is small beside what was measured, however much of it repeats.

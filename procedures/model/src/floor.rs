@@ -23,27 +23,21 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> No
     let is_equal = |twins: &&(usize, usize)| remembers || !problem.other_pasts.contains(*twins);
     let twins: Vec<&(usize, usize)> = problem.twins.iter().filter(is_equal).collect();
     if twins.len() < FEWEST {
-        return NoiseFloor { rms: None, ci95: None, source: unknown(prepared), repeatable_share: None };
+        return NoiseFloor { source: unknown(prepared), ..NoiseFloor::default() };
     }
     let (piece, count) = pieces(problem, 1);
-    let mut of_piece = vec![(0.0, 0.0); count];
-    let (mut noise, mut common) = (0.0, 0.0);
+    let mut of_piece = vec![Pairs::default(); count];
+    let mut all = Pairs::default();
     for (a, b) in &twins {
         let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
-        noise += half;
-        common += residual[*a] * residual[*b];
-        for row in [a, b] {
-            let (sum, pairs) = &mut of_piece[piece[*row]];
-            (*sum, *pairs) = (*sum + half, *pairs + 1.0);
-        }
+        let pair = Pairs { noise: half, common: residual[*a] * residual[*b], count: 1.0 };
+        all.add(&pair, 1.0);
+        [a, b].into_iter().for_each(|row| of_piece[piece[*row]].add(&pair, 1.0));
     }
-    let pairs = twins.len() as f64;
-    let variance = noise / pairs;
-    let common = (common / pairs).max(0.0);
-    let total = common + variance;
+    of_piece.retain(|pairs| pairs.count > 0.0);
     NoiseFloor {
-        rms: Some(variance.sqrt()),
-        ci95: interval(noise, pairs, &of_piece),
+        rms: Some((all.noise / all.count).sqrt()),
+        ci95: interval(&all, &of_piece),
         source: format!(
             "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
              different repeats ({})",
@@ -54,8 +48,53 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> No
                 (_, false) => "legs that run alike",
             }
         ),
-        repeatable_share: Some(if total > 0.0 { common / total } else { 0.0 }),
+        repeatable_share: Some(all.share().max(0.0)),
+        repeatable_ci95: Some(share_interval(&all, &of_piece)),
     }
+}
+
+/// Sums over pairs of moments.
+#[derive(Clone, Default)]
+struct Pairs {
+    /// Halves of the squared differences.
+    noise: f64,
+    /// Products.
+    common: f64,
+    count: f64,
+}
+
+impl Pairs {
+    fn add(&mut self, other: &Pairs, times: f64) {
+        self.noise += times * other.noise;
+        self.common += times * other.common;
+        self.count += times * other.count;
+    }
+
+    fn without(&self, piece: &Pairs) -> Pairs {
+        let mut rest = self.clone();
+        rest.add(piece, -1.0);
+        rest
+    }
+
+    /// Of the squared residual, what both of a pair have in common.
+    fn share(&self) -> f64 {
+        let total = self.common.max(0.0) + self.noise;
+        if total > 0.0 { self.common / total } else { 0.0 }
+    }
+}
+
+/// 95 % interval of the share in common: jackknife over pieces.
+fn share_interval(all: &Pairs, of_piece: &[Pairs]) -> [f64; 2] {
+    let whole = all.share();
+    let reach = reach(of_piece.iter().map(|piece| all.without(piece).share() - whole));
+    [(whole - reach).max(0.0), (whole.max(0.0) + reach).min(1.0)]
+}
+
+/// Half of a 95 % interval from what a figure changes by without each piece.
+fn reach(steps: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let groups = steps.len().max(2) as f64;
+    let spread = (groups - 1.0) / groups * steps.map(|step| step * step).sum::<f64>();
+    StudentsT::new(0.0, 1.0, groups - 1.0).map_or(2.0, |t| t.inverse_cdf(0.975)) * spread.sqrt()
 }
 
 /// Why there is no floor.
@@ -90,14 +129,13 @@ fn unknown(prepared: &Prepared) -> String {
 /// logarithm, because a variance is skew. Where a few pieces chance to agree it is what so many independent pairs of normal
 /// noise would scatter by, 2/n in the logarithm of their variance: no noise is known better. `None` where a few pieces hold
 /// all of it: nobody can say how well it is known then.
-fn interval(noise: f64, pairs: f64, of_piece: &[(f64, f64)]) -> Option<[f64; 2]> {
-    let whole = noise / pairs;
-    let without = |(sum, n): &(f64, f64)| ((noise - sum).max(0.0) / (pairs - n).max(1.0)).max(1e-12 * whole);
-    let steps: Vec<f64> = of_piece.iter().filter(|p| p.1 > 0.0).map(|p| (without(p) / whole).ln()).collect();
-    let groups = steps.len().max(2) as f64;
-    let spread = (groups - 1.0) / groups * steps.iter().map(|s| s * s).sum::<f64>();
-    let t = StudentsT::new(0.0, 1.0, groups - 1.0).map_or(2.0, |t| t.inverse_cdf(0.975));
-    let reach = (t * spread.sqrt()).max(1.96 * (2.0 / pairs).sqrt());
+fn interval(all: &Pairs, of_piece: &[Pairs]) -> Option<[f64; 2]> {
+    let whole = all.noise / all.count;
+    let without = |piece: &Pairs| {
+        let rest = all.without(piece);
+        (rest.noise.max(0.0) / rest.count.max(1.0)).max(1e-12 * whole)
+    };
+    let reach = reach(of_piece.iter().map(|piece| (without(piece) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
     let factor = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
     (factor <= WIDEST).then(|| [whole.sqrt() / factor, whole.sqrt() * factor])
 }

@@ -39,13 +39,14 @@ fn four_legs_that_scatter_a_little_have_not_slipped() {
     assert_eq!(slipped.suggestions.first().map(|s| s.effect.as_str()), Some("slip"), "{}", slipped.summary);
 }
 
-/// Three times up and down through the current of a brake at two speeds. Each leg lies elsewhere by as much as a row scatters.
+/// Three times up and down through the current of a brake that warms up, at two speeds. Each leg lies elsewhere by as much as a
+/// row scatters, and what is read remembers a second of its noise.
 fn braked(seed: u64) -> Discovery {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
-    let names = ["time_s", "brake_current_a", "brake_torque_nm", "velocity_rad_s", "position_rad", "segment", "repeat"];
-    let mut trace = Trace::new(names.map(Channel::new).into());
-    let (mut time, mut angle) = (0.0, 0.0);
+    let names = "time_s brake_current_a brake_torque_nm velocity_rad_s position_rad temperature_c segment repeat";
+    let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
+    let (mut time, mut angle, mut slow) = (0.0, 0.0, 0.0);
     for leg in 0..12 {
         let (speed, apart) = ([2.0, 20.0][leg / 2 % 2], 0.007 * normal());
         for i in 0..400 {
@@ -53,8 +54,10 @@ fn braked(seed: u64) -> Discovery {
             angle += 0.02 * speed;
             let way = f64::from(i) / 400.0;
             let current = if leg % 2 == 0 { way } else { 1.0 - way };
-            let torque = 0.05 + 10.0 * current + apart + 0.01 * normal();
-            trace.push_row(&[time, current, torque, speed, angle, leg as f64, (leg / 4) as f64]);
+            slow += -0.02 * slow + 0.002 * normal();
+            let torque = 0.05 + 10.0 * current + apart + slow + 0.01 * normal();
+            let warmth = 25.0 + 0.1 * time;
+            trace.push_row(&[time, current, torque, speed, angle, warmth, leg as f64, (leg / 4) as f64]);
         }
     }
     let run = RunTable::new(Meta { kind: Some(Kind::Brake), ..Meta::default() }, trace).unwrap();

@@ -5,7 +5,8 @@ use crate::Options;
 use crate::effect::Stage;
 use crate::linear::dot;
 use crate::maps::Maps;
-use crate::prepare::{Prepared, Problem};
+use crate::pieces::{legs, pieces};
+use crate::prepare::{Prepared, Problem, stretches};
 use crate::report::NoiseFloor;
 use crate::select::{Ground, Search, Wander, alone};
 use crate::terms::Term;
@@ -30,17 +31,48 @@ pub fn structured(maps: &Maps) -> Option<&str> {
 }
 
 /// What shows over an axis is what whole stretches of motion differ by, a zero that wanders or lies elsewhere after every
-/// reversal: little of it comes again in another repeat, and no part of any axis stands out of that scatter.
-pub fn is_scatter(maps: &Maps, floor: &NoiseFloor, wanders: bool) -> bool {
-    let comes_again = floor.ci95.is_none() || floor.repeatable_share.is_none_or(|share| share > STRUCTURE_SHARE);
-    structured(maps).is_some() && !comes_again && (wanders || !maps.stand_out())
+/// reversal: little of it comes again for sure in another repeat, and no part of any axis stands out of that scatter.
+pub fn is_scatter(
+    search: &Search,
+    maps: &Maps,
+    residual: &[f64],
+    floor: &NoiseFloor,
+    prepared: &Prepared,
+    options: &Options,
+) -> bool {
+    let surely = floor.repeatable_ci95.is_none_or(|[least, _]| least > 0.0);
+    let comes_again = floor.repeatable_share.is_none_or(|share| share > STRUCTURE_SHARE) && surely;
+    if structured(maps).is_none() || comes_again {
+        return false;
+    }
+    let stands_out = || floor.ci95.is_none() || maps.stand_out(false) && within_legs(residual, prepared, options);
+    match Wander::of(&search.now, options) {
+        Some(wander) => {
+            only_wanders(&wander, residual, prepared, options) || floor.ci95.is_some() && !maps.stand_out(true)
+        }
+        None => !stands_out(),
+    }
 }
 
 /// Nothing shows over any axis but a zero that wanders over time: a little everywhere, and no figure of the model leaps.
-pub fn only_wanders(search: &Search, maps: &Maps, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
-    let Some(wander) = structured(maps).and_then(|_| Wander::of(&search.now, options)) else { return false };
+fn only_wanders(wander: &Wander, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
     let beside = Maps::new(prepared, wander.taken_off(residual), options);
-    structured(&beside).is_none() && !beside.stand_out() && !wander.is_of_events() && !wander.leaps(options)
+    structured(&beside).is_none() && !beside.stand_out(true) && !wander.is_of_events() && !wander.leaps(options)
+}
+
+/// Some part of an axis stands out within legs, each with a zero of its own, where they are too few to tell what these scatter by.
+fn within_legs(residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
+    let problem = &prepared.main;
+    let leg = legs(problem);
+    if pieces(problem, 1).0 == leg {
+        return true;
+    }
+    let mut left = residual.to_vec();
+    stretches(&leg).into_iter().for_each(|rows| {
+        let mean = residual[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+        left[rows].iter_mut().for_each(|value| *value -= mean);
+    });
+    Maps::new(prepared, left, options).stand_out(false)
 }
 
 /// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any

@@ -35,6 +35,9 @@ const PAIR_BINS: usize = 12;
 /// Axes that are tried against each other for the picture of what no effect explains.
 const PARTNERS: usize = 5;
 
+/// To call scatter structure takes this share of the error probability of a band: nearly every run has some scatter.
+const SURE: f64 = 0.1;
+
 impl Maps {
     /// `residual` is what the model leaves at the rows of the main problem.
     pub fn new(prepared: &Prepared, residual: Vec<f64>, options: &Options) -> Self {
@@ -88,10 +91,13 @@ impl Maps {
         cell.half_width(self.alpha, self.cells)
     }
 
-    /// Some part of an axis stands out of what the pieces of the run scatter by.
-    pub fn stand_out(&self) -> bool {
-        let mut cells = self.axes.iter().chain(&self.by_direction).flat_map(|map| &map.cells);
-        cells.any(|cell| self.half_width(cell).is_some_and(|half_width| cell.mean.abs() > half_width))
+    /// Some part of an axis stands out of what the pieces of the run scatter by. Over `time`, and over what grows with it, the
+    /// pieces of one part are neighbours, which may resemble each other.
+    pub fn stand_out(&self, time: bool) -> bool {
+        let maps = self.axes.iter().chain(&self.by_direction);
+        let mut cells = maps.filter(|map| time || !map.x.goes_with_time()).flat_map(|map| &map.cells);
+        let half_width = |cell: &Cell| cell.half_width(SURE * self.alpha, self.cells);
+        cells.any(|cell| half_width(cell).is_some_and(|half_width| cell.mean.abs() > half_width))
     }
 
     /// RMS of the means of the pieces, each counted with its rows.

@@ -118,6 +118,19 @@ impl Scale {
         Self::new(name, self.unit.clone(), levels(&values), values)
     }
 
+    /// It is the time, or grew or fell with it nearly always.
+    pub fn goes_with_time(&self) -> bool {
+        const NEARLY: f64 = 0.9;
+        let middle = 0.5 * (self.bin.len() as f64 - 1.0);
+        let mean = self.bin.iter().sum::<usize>() as f64 / self.bin.len() as f64;
+        let (mut tt, mut tb, mut bb) = (0.0, 0.0, 0.0);
+        for (row, bin) in self.bin.iter().enumerate() {
+            let (t, b) = (row as f64 - middle, *bin as f64 - mean);
+            (tt, tb, bb) = (tt + t * t, tb + t * b, bb + b * b);
+        }
+        tb * tb > NEARLY * NEARLY * tt * bb
+    }
+
     fn says_the_same(&self, other: &Self) -> bool {
         let pairs = || self.values.iter().zip(&other.values);
         let range = self.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));

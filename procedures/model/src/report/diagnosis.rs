@@ -65,7 +65,7 @@ pub struct Diagnosis {
 }
 
 /// How well the measurement repeats itself.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct NoiseFloor {
     pub rms: Option<f64>,
     pub ci95: Option<[f64; 2]>,
@@ -73,6 +73,9 @@ pub struct NoiseFloor {
     pub source: String,
     /// Share of the remaining squared error that is the same in every repeat.
     pub repeatable_share: Option<f64>,
+    /// Of that share. Where it reaches to zero, chance may have made it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeatable_ci95: Option<[f64; 2]>,
 }
 
 /// A stretch of an axis (and a direction or a second axis) in which the residual is not noise.
