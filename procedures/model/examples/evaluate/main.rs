@@ -18,12 +18,15 @@ use clap::Parser;
 use options::Asked;
 use score::Table;
 use std::error::Error;
+use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
     jointbench_model::one_heap();
     let asked = Asked::parse();
-    if let Some(folder) = &asked.folder {
-        return show::show(folder);
+    match &asked.folder {
+        Some(folder) if folder.join("meta.json").exists() => return show::show(folder),
+        Some(folder) => return answered(folder, &asked),
+        None => {}
     }
     if asked.wants("hidden") {
         let mut table = Table::new("Hidden effects, simulated", asked.quiet);
@@ -40,11 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if asked.wants("practice")
         && let Some(folder) = common::shared("hidden-effects")
     {
-        let mut table = Table::new("Hidden effects, measurements with a known answer", asked.quiet);
-        for case in score::practice(&folder)?.into_iter().filter(|c| asked.takes(c.family, &c.name)) {
-            table.judge(&case)?;
-        }
-        table.print();
+        answered(&folder, &asked)?;
     }
     if asked.wants("measured")
         && let Some(data) = common::shared("data")
@@ -60,5 +59,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     if asked.wants("speed") {
         speed::measure(asked.case)?;
     }
+    Ok(())
+}
+
+/// Every case of a folder against its answer.
+fn answered(folder: &Path, asked: &Asked) -> Result<(), Box<dyn Error>> {
+    let mut table = Table::new("Hidden effects, measurements with a known answer", asked.quiet);
+    for case in score::practice(folder)?.into_iter().filter(|c| asked.takes(c.family, &c.name)) {
+        table.judge(&case)?;
+    }
+    table.print();
     Ok(())
 }

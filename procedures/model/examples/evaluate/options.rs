@@ -38,7 +38,7 @@ pub struct Asked {
     /// Tables only
     #[arg(long)]
     pub quiet: bool,
-    /// A folder that holds a run: that alone
+    /// A folder that holds a run, or one of such folders with answers: these alone
     pub folder: Option<PathBuf>,
 }
 

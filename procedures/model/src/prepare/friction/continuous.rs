@@ -32,11 +32,10 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     let decimating_hz = 0.4 / (every as f64 * samples.step_s);
     let filtered_hz = if every == 1 { samples.cutoff_hz } else { samples.cutoff_hz.min(decimating_hz) };
     let reach = (1.0 / (filtered_hz * samples.step_s)).ceil() as usize;
-    let near = (!samples.derived_velocity).then(|| reversals::near(&samples, reach));
     let are_few =
         |near: &Vec<bool>| (near.iter().filter(|n| **n).count() as f64) < MOST_NEAR_REVERSALS * near.len() as f64;
-    let near = near.filter(are_few);
-    let smooths = near.is_some() && (every == 1 || samples.cutoff_hz < decimating_hz);
+    let near = reversals::near(&samples, reach).filter(are_few);
+    let smooths = near.is_some() && !samples.derived_velocity && (every == 1 || samples.cutoff_hz < decimating_hz);
     let filter = match smooths {
         true => Some(LowPass::butterworth(4, 2.0 * samples.cutoff_hz * samples.step_s)),
         false => (every > 1).then(|| LowPass::chebyshev(8, 0.05, 0.8 / every as f64)),

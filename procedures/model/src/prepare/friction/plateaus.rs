@@ -36,10 +36,21 @@ pub fn find(samples: &Source, options: &Options) -> Vec<Range<usize>> {
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let load = samples.signals.find(Signal::Load);
     let heaviest = load.map_or(0.0, |l| l.iter().fold(0.0f64, |m, v| m.max(v.abs())));
-    samples.legs().into_par_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, n)).collect()
+    samples
+        .legs()
+        .into_par_iter()
+        .filter_map(|leg| settled(leg, velocity, load, heaviest, (n, n as f64 * samples.step_s)))
+        .collect()
 }
 
-fn settled(leg: Range<usize>, velocity: &[f64], load: Option<&[f64]>, heaviest: f64, n: usize) -> Option<Range<usize>> {
+/// A load that changes by more than the way of the motor can change it winds the joint up, and nothing slips there.
+fn settled(
+    leg: Range<usize>,
+    velocity: &[f64],
+    load: Option<&[f64]>,
+    heaviest: f64,
+    (n, chunk_s): (usize, f64),
+) -> Option<Range<usize>> {
     let means = |signal: &[f64]| -> Vec<f64> {
         signal[leg.clone()].chunks_exact(n).map(|c| c.iter().sum::<f64>() / n as f64).collect()
     };
@@ -60,6 +71,13 @@ fn settled(leg: Range<usize>, velocity: &[f64], load: Option<&[f64]>, heaviest: 
     if let Some(load) = load {
         let load = means(load);
         let held = median(load[late.clone()].iter().copied());
+        let mean = |range: Range<usize>| load[range.clone()].iter().sum::<f64>() / range.len() as f64;
+        let middle = (late.start + late.end) / 2;
+        let way_rad = target.abs() * chunk_s * late.len() as f64 / 2.0;
+        let risen = (mean(middle..late.end) - mean(late.start..middle)).abs();
+        if risen > (SETTLED_SHARE + way_rad) * heaviest {
+            return None;
+        }
         let scatter = 1.5 * median(load[late].iter().map(|v| (v - held).abs()));
         let within = (SETTLED_SHARE * heaviest).max(5.0 * scatter);
         steady.iter_mut().zip(&load).for_each(|(s, l)| *s &= (l - held).abs() <= within);

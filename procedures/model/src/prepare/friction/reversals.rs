@@ -11,15 +11,26 @@ use crate::prepare::{Reduce, median};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
 
-/// Samples of a rest or a reversal, with those `reach` samples beside them.
-pub fn near(samples: &Source, reach: usize) -> Vec<bool> {
+/// The slope of a position hardly scatters: below this share of its peak it rests.
+const RESTS: f64 = 0.003;
+
+/// Samples of a rest or a reversal, with those `reach` samples beside them. `None` where the slope of a position passes through
+/// most reversals within less than that: it is smoothed as the torque is.
+pub fn near(samples: &Source, reach: usize) -> Option<Vec<bool>> {
     let of = |signal| samples.signals.find(signal).unwrap_or_default();
     let (velocity, direction) = (of(Signal::Velocity), of(Signal::Direction));
     let smooth = LowPass::butterworth(4, 2.0 * samples.cutoff_hz * samples.step_s);
     let smooth = by_recording(velocity, &samples.starts, |_, v| smooth.both_ways(v, 12));
     let noise = median(velocity.iter().zip(&smooth).map(|(a, b)| (a - b).abs()));
     let fastest = smooth.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let slow = (2.0 * noise).min(0.02 * fastest);
+    let least = if samples.derived_velocity { RESTS * fastest } else { 0.0 };
+    let slow = (2.0 * noise).min(0.02 * fastest).max(least);
+    let rests = |range: &mut dyn Iterator<Item = usize>| range.take_while(|i| smooth[*i].abs() < slow).count();
+    let turns = (1..velocity.len()).filter(|i| direction[*i] != direction[i - 1]);
+    let longs = turns.map(|i| rests(&mut (0..i).rev()) + rests(&mut (i..velocity.len())));
+    if samples.derived_velocity && 2.0 * median(longs.map(|n| n as f64)) < reach as f64 {
+        return None;
+    }
     let mut near = vec![false; velocity.len()];
     let mut done = 0;
     for i in 1..velocity.len() {
@@ -29,7 +40,7 @@ pub fn near(samples: &Source, reach: usize) -> Vec<bool> {
             done = end;
         }
     }
-    near
+    Some(near)
 }
 
 /// An effect with a memory takes this share of the squared error there, as around the reversals of a run in steps.
@@ -54,11 +65,13 @@ pub fn bend(view: &View, target: &[f64], reduce: &Reduce, near: &[f64]) -> bool 
     let there = |rest: &mut dyn Iterator<Item = f64>| -> f64 { rest.zip(near).map(|(e, near)| near * e * e).sum() };
     let energy = there(&mut rest.iter().copied());
     presliding.forms(view).iter().any(|form| {
-        form.grid.iter().skip(1).any(|shape| {
+        let tried = form.grid.iter().enumerate().map(|(at, shape)| {
             let late = basis.rest(&reduce.apply(presliding.columns(form.name, shape, view).remove(0)));
             let late_nm = factor(&late);
             let left = there(&mut rest.iter().zip(&late).map(|(e, z)| e - late_nm * z));
-            late_nm > LEAST * dry_nm && left < (1.0 - MOST) * energy
-        })
+            (at, late_nm, left)
+        });
+        let best = tried.min_by(|a, b| a.2.total_cmp(&b.2));
+        best.is_some_and(|(at, late_nm, left)| at > 0 && late_nm > LEAST * dry_nm && left < (1.0 - MOST) * energy)
     })
 }
