@@ -50,10 +50,15 @@ const plainUplot: Plugin = {
 	},
 };
 
-/** What no page here has, by the file that it is in: nothing awaits while it is drawn, no error has a place of its own, no markup comes from a server, nothing is preloaded. */
+/** What no page here has, by the file that it is in: nothing awaits while it is drawn or is drawn aside, no error has a place of its own, no class is a list, no style is told twice, no choice is of several, no markup comes from a server, nothing is preloaded. */
 const NEVER: [string, RegExp, string][] = [
 	['reactivity/async.js', /if \(async\.length === 0 && [^]*?(?=\/\*\*\n \* @param \{Blocker)/, 'fn(deriveds);\n}\n'],
 	['blocks/boundary.js', /new Boundary\(.*\);/, 'block(() => void branch(() => children(node)), flags);'],
+	...['batch', 'deriveds', 'sources'].map((file): [string, RegExp, string] => [`reactivity/${file}.js`, /\b\w+\??\.is_fork(?! =)/g, 'false']),
+	['client/runtime.js', /current_batch\?\.is_fork/, 'false'],
+	['shared/attributes.js', /return _?clsx\(value\)/, "return value ?? ''"],
+	['shared/attributes.js', /if \(value\) \{(?=\s+\/\/ strip)/, 'if (false) {'],
+	['bindings/select.js', /\bselect\.multiple\b|entries\.every\(is_selectedcontent_mutation\)|'__defaultValue' in select(?=\) \{)/g, 'false'],
 	['dom/hydration.js', /export let (?=hydrating = false)/, 'export const '],
 	['dom/hydration.js', /hydrating = value;/, ''],
 	['vite/preload-helper.js', /[^]*/, 'export const __vitePreload = (load) => load();'],
