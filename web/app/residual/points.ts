@@ -27,6 +27,36 @@ export function inOneTurn(set: ResidualSet): ResidualSet {
 	return { ...set, axes: set.axes.map((axis) => (axis.name.endsWith('position_rad') ? { ...axis, values: fold(axis.values) } : axis)) };
 }
 
+/**
+ * With the axes along which the diagnosis looks too, and which no column is: how long ago the motion turned, and in friction runs the motor's
+ * torque. Against its own noise the residual would have a slope: at a set point its mean stands, elsewhere what the model makes of it.
+ */
+export function withMore(set: ResidualSet): ResidualSet {
+	const named = (name: string) => set.axes.find((axis) => axis.name === name)?.values;
+	const [time, direction] = [named('time_s'), named('direction')];
+	const more: ResidualSet['axes'] = [];
+	if (time && direction) {
+		let start = 0;
+		const since = time.map((at, i) => {
+			if (i > 0 && direction[i]! > 0 !== direction[i - 1]! > 0) start = i;
+			return at - time[start]!;
+		});
+		more.push({ name: 'time_since_reversal_s', unit: 's', values: since });
+	}
+	if (named('motor_velocity_rad_s')) more.push({ name: 'motor_torque_nm', unit: set.unit, values: set.residual === 'plateau_mean' ? held(set) : set.predicted });
+	return { ...set, axes: [...set.axes, ...more.filter(({ name }) => !named(name))] };
+}
+
+function held({ measured, predicted, held_out, segment }: ResidualSet): number[] {
+	const means = new Map<number, { n: number; mean: number }>();
+	measured.forEach((value, i) => {
+		const one = means.get(segment[i]!) ?? { n: 0, mean: 0 };
+		if (!held_out[i]) one.mean += (value - one.mean) / ++one.n;
+		means.set(segment[i]!, one);
+	});
+	return predicted.map((value, i) => (held_out[i] ? value : means.get(segment[i]!)!.mean));
+}
+
 /** The sign of the motion at each point, from the axis `direction` or from a velocity. */
 export function directionOf(set: ResidualSet): readonly number[] | null {
 	const named = set.axes.find((axis) => axis.name === 'direction');

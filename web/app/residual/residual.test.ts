@@ -6,7 +6,7 @@ import { residualMap } from './map';
 import { reach } from './line';
 import { neverVisited } from './never';
 import { middle, place } from './place';
-import { inOneTurn } from './points';
+import { inOneTurn, withMore } from './points';
 import { half, quantile, score, Sums } from './tally';
 import { wholeBins } from './bins';
 import { deepest, depth } from './tally';
@@ -26,6 +26,16 @@ describe('positions', () => {
 		expect(link!.map((at) => at.toFixed(3))).toEqual(['5.283', '1.000', '0.717']);
 		expect([motor, velocity]).toEqual([[-1, 1, 2], [-9, 9, 9]]);
 	});
+});
+
+it('has the axes along which the diagnosis looks too', () => {
+	const axis = (name: string, values: number[]) => ({ name, unit: '', values });
+	const set = { unit: 'Nm', residual: 'plateau_mean', measured: [5, 6, 7, 8], predicted: [5, 5, 5, 9], segment: [1, 1, 2, 2], held_out: [false, false, false, true], axes: [axis('motor_velocity_rad_s', []), axis('time_s', [0, 1, 3, 4]), axis('direction', [1, 1, -1, -1])] };
+	const more = withMore(set as never).axes.slice(3);
+	expect(more.map(({ name, values }) => [name, values])).toEqual([
+		['time_since_reversal_s', [0, 1, 0, 1]],
+		['motor_torque_nm', [5.5, 5.5, 7, 9]],
+	]);
 });
 
 describe('bins', () => {

@@ -17,7 +17,7 @@ export interface Ranked {
 }
 
 /** Nobody sets these: they run along, and the means of the segments are no set points. */
-const RUNS_ALONG = /^time_s$|^run_order$|^temperature|position/;
+const RUNS_ALONG = /^time|^run_order$|^temperature|position|^motor_torque/;
 
 /** What a friction run is made along. */
 const FRICTION = ['motor_velocity_rad_s', 'link_torque_nm', 'link_position_rad', 'motor_position_rad', 'time_s'];

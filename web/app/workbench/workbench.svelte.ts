@@ -10,7 +10,7 @@ import { readMarked } from '../runs/marked';
 import { router } from '../state/router.svelte';
 import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
-import { type Side, inOneTurn } from '../residual/points';
+import { type Side, inOneTurn, withMore } from '../residual/points';
 import { selected } from '../residual/selected';
 import { usualAxes } from './ranked';
 import { readRegion } from './region';
@@ -66,7 +66,7 @@ export function openWorkbench(id: number) {
 	const other: Model | null = $derived(
 		versions.find((one) => String(one.id) === router.query.get('with') && one.id !== model?.id) ?? null,
 	);
-	const load = async (version: number, signal: AbortSignal) => ({ version, set: inOneTurn(await api.residuals(version, signal)) });
+	const load = async (version: number, signal: AbortSignal) => ({ version, set: withMore(inOneTurn(await api.residuals(version, signal))) });
 	const residuals = resource(() => model?.id ?? null, load);
 	const otherResiduals = resource(() => other?.id ?? null, load);
 	const side = $derived((router.query.get('side') ?? 'both') as Side);
