@@ -42,9 +42,11 @@ export function stepName(model: Model, before?: Model, titleOf = words): string 
 export interface Branch {
 	model: Model;
 	depth: number;
+	/** The first of a branch that leaves the line to its left. */
+	forks: boolean;
 }
 
-/** All versions, children under their parents. Depth grows only where the tree forks, so that a long chain stays flat. */
+/** All versions, each after its parent. What grew from it first stands aside; the newest goes on straight below, so that a long chain stays flat. */
 export function branches(models: readonly Model[]): Branch[] {
 	const known = new Set(models.map((model) => model.id));
 	const children = new Map<number | null, Model[]>();
@@ -56,8 +58,9 @@ export function branches(models: readonly Model[]): Branch[] {
 	const walk = (parent: number | null, depth: number) => {
 		const here = children.get(parent) ?? [];
 		for (const model of here) {
-			list.push({ model, depth });
-			walk(model.id, depth + (here.length > 1 || parent === null ? 1 : 0));
+			const forks = parent !== null && model !== here.at(-1);
+			list.push({ model, depth: depth + Number(forks), forks });
+			walk(model.id, depth + Number(forks));
 		}
 	};
 	walk(null, 0);

@@ -48,11 +48,11 @@ describe('the tree of versions', () => {
 	});
 
 	it('lists children under their parents', () => {
-		expect(branches(models).map(({ model, depth }) => [model.id, depth])).toEqual([
-			[1, 0],
-			[2, 1],
-			[4, 2],
-			[3, 1],
+		expect(branches(models).map(({ model, depth, forks }) => [model.id, depth, forks])).toEqual([
+			[1, 0, false],
+			[2, 1, true],
+			[4, 1, false],
+			[3, 0, false],
 		]);
 	});
 
