@@ -1,4 +1,5 @@
 import uPlot from 'uplot';
+import { spanOf } from '../figure/figure';
 import { colour } from './colour';
 import { type Asked, type View, gestures } from './gestures';
 import { dashes, points } from './marks';
@@ -16,7 +17,7 @@ export interface Curve {
 	/** Custom property of the colour. */
 	stroke: string;
 	dash?: number[];
-	/** Half height of the box that a `dash` stands in: how far repeats scatter about it. */
+	/** Half height of the band about a `chord`, and of the box that a `dash` stands in: how far repeats scatter about it. */
 	spread?: number;
 	/** Its marks stand a little to the right, beside those that they would cover. */
 	aside?: boolean;
@@ -37,6 +38,8 @@ export interface Frame {
 	cursorsAbove?: boolean;
 	/** There is a band about zero: it is in view however far the curves are from it. */
 	banded?: boolean;
+	/** Both axes show the same stretch. */
+	square?: boolean;
 }
 
 /** Behind the curves: stretches of x, and a band of y about zero. */
@@ -68,6 +71,7 @@ export function makeChart(
 ): Chart {
 	let view: View | null = null;
 	let backdrop = NOTHING;
+	let whole: View = [0, 1];
 	let lines: ReturnType<typeof rulers> | null = null;
 	const hands = gestures(asked);
 	/** Points at the ends are drawn whole. */
@@ -79,8 +83,8 @@ export function makeChart(
 			legend: { show: false },
 			padding: [8, 10, 0, 0],
 			scales: {
-				x: { time: false, range: (_u, low, high) => view ?? padded(low, high, marked ? 0.012 : 0) },
-				y: frame.banded ? { range: (_u, low, high) => withBand(low, high, backdrop.band ?? 0) } : {},
+				x: { time: false, range: (_u, low, high) => view ?? (frame.square ? whole : padded(low, high, marked ? 0.012 : 0)) },
+				y: frame.square ? { range: () => view ?? whole } : frame.banded ? { range: (_u, low, high) => withBand(low, high, backdrop.band ?? 0) } : {},
 			},
 			axes: [axis(frame.bareX ? '' : frame.xTitle, frame.bareX), axis(frame.yTitle, false, 58)],
 			series: [{}, ...frame.curves.map((curve) => series(curve, () => backdrop))],
@@ -106,6 +110,7 @@ export function makeChart(
 		draw: (data, next, behind) => {
 			view = next;
 			backdrop = behind;
+			if (frame.square) whole = padded(...spanOf(data.flatMap((one) => [...one] as number[])), 0.02);
 			plot.setData(data, true);
 		},
 		shows: () => ({ x: shown(plot.scales.x), y: shown(plot.scales.y) }),
@@ -151,24 +156,22 @@ function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 	if (curve.mark === 'line') {
 		return { stroke, points: { show: false }, paths: trace(curve.dash, () => backdrop().gaps) };
 	}
-	if (curve.mark === 'chord') return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, paths: chord };
+	const fill = () => `color-mix(in srgb, ${stroke()} 22%, transparent)`;
+	if (curve.mark === 'chord') return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, fill, paths: (u, i) => chord(u, i, curve.spread ?? 0) };
 	if (curve.mark === 'dash') {
 		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashes(u, i, from, to, curve.spread ?? 0, aside());
-		return { stroke, width: 2, points: { show: false }, paths, fill: () => `color-mix(in srgb, ${stroke()} 22%, transparent)` };
+		return { stroke, width: 2, points: { show: false }, paths, fill };
 	}
 	const filled = curve.mark === 'dot';
 	return { stroke, width: 1, fill: stroke, points: { show: false }, paths: (u, i, from, to) => points(u, i, from, to, filled, aside()) };
 }
 
-function chord(u: uPlot, index: number): uPlot.Series.Paths {
-	const path = new Path2D();
+function chord(u: uPlot, index: number, spread: number): uPlot.Series.Paths {
 	const [xs, ys] = [u.data[0]!, u.data[index]!];
-	for (const i of [0, xs.length - 1]) {
-		const at = [u.valToPos(xs[i] ?? 0, 'x', true), u.valToPos(ys[i] ?? 0, 'y', true)] as const;
-		if (i === 0) path.moveTo(...at);
-		else path.lineTo(...at);
-	}
-	return { stroke: path };
+	const last = xs.length - 1;
+	const joined = (corners: [i: number, above: number][]) =>
+		corners.reduce((path, [i, above]) => (path.lineTo(u.valToPos(xs[i] ?? 0, 'x', true), u.valToPos((ys[i] ?? 0) + above, 'y', true)), path), new Path2D());
+	return { stroke: joined([[0, 0], [last, 0]]), fill: joined([[0, spread], [last, spread], [last, -spread], [0, -spread]]) };
 }
 
 function paintBackdrop(u: uPlot, { region, band }: Backdrop): void {

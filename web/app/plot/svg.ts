@@ -46,10 +46,15 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 		const dash = curve.dash?.length ? `stroke-dasharray="${curve.dash.join(' ')}"` : '';
 		if (curve.mark === 'line') return path(joined(points, at, backdrop.gaps), curve.stroke, dash);
 		const seen = at.filter((one) => one !== null);
-		if (curve.mark === 'chord') return path(joined([], [seen[0] ?? null, seen.at(-1) ?? null], []), curve.stroke, dash);
+		const reach = ((curve.spread ?? 0) / (drawing.y[1] - drawing.y[0])) * (foot - HEAD);
+		const band = (d: string) => (reach > 0 ? `<path d="${d}" fill="${ink(curve.stroke)}" fill-opacity="0.22"/>` : '');
+		if (curve.mark === 'chord') {
+			const [from, to] = [seen[0], seen.at(-1)].map((end) => end ?? ([0, 0] as const)) as [readonly [number, number], readonly [number, number]];
+			const edge = ([px, py]: readonly [number, number], by: number) => `${short(px)} ${short(py + by)}`;
+			return band(`M${edge(from, -reach)}L${edge(to, -reach)}L${edge(to, reach)}L${edge(from, reach)}Z`) + path(`M${edge(from, 0)}L${edge(to, 0)}`, curve.stroke, dash);
+		}
 		if (curve.mark === 'dash') {
-			const reach = ((curve.spread ?? 0) / (drawing.y[1] - drawing.y[0])) * (foot - HEAD);
-			const boxes = reach > 0 ? `<path d="${seen.map(([px, py]) => `M${short(px - 5)} ${short(py - reach)}h10v${short(2 * reach)}h-10Z`).join('')}" fill="${ink(curve.stroke)}" fill-opacity="0.22"/>` : '';
+			const boxes = band(seen.map(([px, py]) => `M${short(px - 5)} ${short(py - reach)}h10v${short(2 * reach)}h-10Z`).join(''));
 			return boxes + path(seen.map(([px, py]) => `M${short(px - 5)} ${short(py)}h10`).join(''), curve.stroke, 'stroke-width="2"');
 		}
 		const dots = seen.map(([px, py]) => `M${short(px - 2.5)} ${short(py)}a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0`).join('');
