@@ -47,6 +47,8 @@ export interface Backdrop {
 	gaps: readonly (readonly [number, number])[];
 	region: readonly [number, number] | null;
 	band: number | null;
+	/** Moments of which somebody has written something down. */
+	notes: readonly number[];
 }
 
 export interface Chart {
@@ -59,7 +61,7 @@ export interface Chart {
 	destroy: () => void;
 }
 
-const NOTHING: Backdrop = { gaps: [], region: null, band: null };
+const NOTHING: Backdrop = { gaps: [], region: null, band: null, notes: [] };
 
 /** The one place that knows uPlot. The zoom is ours: data never moves it (uPlot issues 505 and 942). */
 export function makeChart(
@@ -174,7 +176,7 @@ function chord(u: uPlot, index: number, spread: number): uPlot.Series.Paths {
 	return { stroke: joined([[0, 0], [last, 0]]), fill: joined([[0, spread], [last, spread], [last, -spread], [0, -spread]]) };
 }
 
-function paintBackdrop(u: uPlot, { region, band }: Backdrop): void {
+function paintBackdrop(u: uPlot, { region, band, notes }: Backdrop): void {
 	const { left, top, width, height } = u.bbox;
 	const { ctx } = u;
 	ctx.save();
@@ -194,5 +196,10 @@ function paintBackdrop(u: uPlot, { region, band }: Backdrop): void {
 		ctx.fillStyle = colour('--sunk');
 		ctx.fillRect(left, high, width, low - high);
 	}
+	ctx.fillStyle = colour('--ink');
+	for (const at of notes) ctx.fill(flag(u.valToPos(at, 'x', true), top, height, devicePixelRatio));
 	ctx.restore();
 }
+
+/** On the axis, with a hair over the whole height. */
+const flag = (x: number, top: number, height: number, size: number) => new Path2D(`M${x} ${top}h${size / 2}v${height - 8 * size}l${4 * size} ${8 * size}h${-8 * size}l${3.5 * size} ${-8 * size}Z`);

@@ -2,7 +2,7 @@ import { expect, it } from 'vitest';
 import type { Curve } from './chart';
 import { svgOf } from './svg';
 
-const NOTHING = { gaps: [], region: null, band: null };
+const NOTHING = { gaps: [], region: null, band: null, notes: [] };
 const frame = { xTitle: 'time [s]', yTitle: 'a < b [Nm]', x: [0, 10] as [number, number], y: [0, 100] as [number, number], width: 286, height: 170 };
 const curve = (mark: Curve['mark']) => ({ label: 'set', unit: 'Nm', mark, stroke: '--oi-blue' }) as Curve;
 const pathOf = (svg: string) => [...svg.matchAll(/<path d="([^"]+)" fill="none" stroke="--oi-blue"/g)].map((found) => found[1]!)[0]!;

@@ -39,6 +39,7 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 	const behind = [
 		backdrop.region && `<rect x="${short(x(backdrop.region[0]))}" y="${HEAD}" width="${short(Math.max(2, x(backdrop.region[1]) - x(backdrop.region[0])))}" height="${foot - HEAD}" fill="${ink('--accent-wash')}"/>`,
 		backdrop.band !== null && `<rect x="${LEFT}" y="${short(y(backdrop.band))}" width="${right - LEFT}" height="${short(y(-backdrop.band) - y(backdrop.band))}" fill="${ink('--sunk')}"/>`,
+		...backdrop.notes.map((at) => path(`M${short(x(at))} ${HEAD}V${foot - 8}l4 8h-8l4 -8`, '--ink', 'stroke-width="0.5"')),
 	].filter((shape) => shape);
 	const drawn = curves.map((curve, i) => {
 		const points = pointsOf(data[0] ?? [], data[i + 1] ?? [], drawing.x);
