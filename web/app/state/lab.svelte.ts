@@ -50,8 +50,13 @@ class LabState {
 	silence_ms = $derived(Math.max(0, this.now_ms - this.heard_ms));
 	lost = $derived(!this.line || this.silence_ms > STALE_MS);
 
+	/** When the daemon told of a bench, and when samples last came: what is shown of them is as old as that, whatever page was looked at since. */
+	readonly told_ms = new WeakMap<Bench, number>();
+	framed_ms = 0;
+
 	/** A bench as the daemon has just told of it. */
 	put(bench: Bench): void {
+		this.told_ms.set(bench, performance.now());
 		this.benches = renewed(this.benches ?? [], bench);
 	}
 
@@ -84,8 +89,10 @@ class LabState {
 		this.asking = true;
 		this.asked_ms = performance.now();
 		try {
-			this.benches = await api.benches(AbortSignal.timeout(2500));
+			const benches = await api.benches(AbortSignal.timeout(2500));
 			this.hear();
+			for (const bench of benches) this.told_ms.set(bench, this.heard_ms);
+			this.benches = benches;
 		} catch (failure) {
 			// Silence is shown by its age.
 			this.unauthorized = asRefusal(failure).status === 401;
@@ -163,6 +170,7 @@ class LabState {
 	/** However many frames come, plots are drawn once for each picture of the screen, and not at all in a hidden tab. */
 	private takeFrame(frame: Frame): void {
 		this.hear();
+		this.framed_ms = this.heard_ms;
 		this.tape?.push(frame);
 		this.dropped = frame.dropped;
 		this.fresh = true;
