@@ -78,6 +78,15 @@ export function undecided(before: Model, after: Model): string[] {
 	return [...open, ...lost];
 }
 
+/** Less than this is no gain. */
+export const WORTH = 0.005;
+
+/** `± within`: how far chance alone may take the share. */
+export function worded(share: number, within = 0): string {
+	const least = Math.max(WORTH, within);
+	return share > least ? '↓ better' : share < -least ? '↑ worse' : '≈ no gain';
+}
+
 /** Share of the held-out error that a version took away from its parent; negative where it got worse. */
 export function gain(before: Model, after: Model): number {
 	return before.validation_rms > 0 ? 1 - after.validation_rms / before.validation_rms : 0;

@@ -14,11 +14,8 @@ import { type Side, inOneTurn, withMore } from '../residual/points';
 import { selected } from '../residual/selected';
 import { usualAxes } from './ranked';
 import { readRegion } from './region';
-import { childWith, gain, sameData, undecided } from './tree';
+import { WORTH, childWith, gain, sameData, undecided } from './tree';
 import { tries } from './tries.svelte';
-
-/** Less than this is no gain. */
-const WORTH = 0.005;
 
 /** The model of one run, as the workbench works on it. Call while a component is being set up. */
 export function openWorkbench(id: number) {
@@ -109,8 +106,12 @@ export function openWorkbench(id: number) {
 	}
 
 	async function refit(set: string[], parent: Model | null, what: string, anew = false): Promise<void> {
+		const known = versions.length;
 		const next = await version(set, parent, what, anew);
-		if (next) show(next, parent);
+		if (!next) return;
+		// Nothing is kept silently: what gains nothing stands beside, to be kept or dropped.
+		if (parent && parent.id === model?.id && next.added.length > 0 && sameData(parent, next) && gain(parent, next) <= WORTH) return stand(next, versions.length > known);
+		show(next, parent);
 	}
 
 	function show(next: Model, parent: Model | null): void {
@@ -126,8 +127,11 @@ export function openWorkbench(id: number) {
 		if (!from) return;
 		const known = versions.length;
 		const next = await version([...from.effects, effect], from, `Trying ${titleOf(effect)}`);
-		if (!next) return;
-		if (versions.length > known) tries.put(next.id);
+		if (next) stand(next, versions.length > known);
+	}
+
+	function stand(next: Model, made: boolean): void {
+		if (made) tries.put(next.id);
 		beside(next.id);
 		void reveal('beside');
 	}
@@ -151,7 +155,7 @@ export function openWorkbench(id: number) {
 		if (share > WORTH && open.length > 0) return { text: `${fell}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
 		if (share > WORTH) return { text: `${fell}.`, good: true };
 		if (after.added.length === 0 && Math.abs(share) <= WORTH) return { text: `The held-out error stays: ${figures}.`, good: true };
-		const verdict = share < -WORTH ? `The held-out error ${kept ? 'rose' : 'would rise'} by ${percent(-share, 1)}` : `No gain in the held-out error (${percent(-share, 1)})`;
+		const verdict = share < -WORTH ? `The held-out error ${kept ? 'rose' : 'would rise'} by ${percent(-share, 1)}` : `No gain in the held-out error (${percent(-share, 1)})${kept ? '' : ', not kept'}`;
 		return { text: `${verdict}: ${figures}.${kept ? ' Undo with z.' : ''}`, good: false };
 	}
 
