@@ -155,10 +155,8 @@ function axis(title: string, bare = false, size?: number): uPlot.Axis {
 function series(curve: Curve, backdrop: () => Backdrop): uPlot.Series {
 	const stroke = () => colour(curve.stroke);
 	const aside = () => (curve.aside ? ASIDE * devicePixelRatio : 0);
-	if (curve.mark === 'line') {
-		return { stroke, points: { show: false }, paths: trace(curve.dash, () => backdrop().gaps) };
-	}
-	const fill = () => `color-mix(in srgb, ${stroke()} 22%, transparent)`;
+	const fill = () => `color-mix(in srgb, ${stroke()} ${curve.mark === 'line' ? 45 : 22}%, transparent)`;
+	if (curve.mark === 'line') return { stroke, fill, points: { show: false }, paths: trace(curve.dash, () => backdrop().gaps) };
 	if (curve.mark === 'chord') return { stroke, width: 1.5, dash: curve.dash, points: { show: false }, fill, paths: (u, i) => chord(u, i, curve.spread ?? 0) };
 	if (curve.mark === 'dash') {
 		const paths: uPlot.Series.PathBuilder = (u, i, from, to) => dashes(u, i, from, to, curve.spread ?? 0, aside());

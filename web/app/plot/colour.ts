@@ -22,7 +22,7 @@ const CURVES: [string, number[]][] = [
 	['--oi-green', [2, 3]],
 	['--oi-purple', [9, 3, 2, 3]],
 	['--oi-orange', [4, 2]],
-	['--oi-sky', [1, 2]],
+	['--oi-sky', [14, 3]],
 ];
 
 export function curveStyle(i: number): { stroke: string; dash: number[] } {
