@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { cartesian } from './cartesian';
-import { type Figure, type Series, inUnits, reachOf, styles, tableOf } from './figure';
+import { type Figure, type Series, inUnits, magnified, reachOf, styles, tableOf } from './figure';
 import { glyphs, line, ribbon } from './ink';
 import { flow } from './legend';
 import { polar } from './polar';
@@ -112,4 +112,14 @@ it('puts entries of a legend below each other where they do not fit', () => {
 	const { entries, height } = flow(['positive', 'negative', 'model'], 170);
 	expect(entries.map((one) => one.y > 0)).toEqual([false, false, true]);
 	expect(height).toBe(34);
+});
+
+it('draws a small remainder larger, and says how much', () => {
+	const of = (label: string, y: number[]) => ({ label, mark: 'line' as const, x: [0, 1], y });
+	const figure = { name: '', title: '', form: 'cartesian' as const, x: { label: '', unit: '' }, y: { label: '', unit: '' }, series: [of('CW, before', [3, -5]), of('CW, after', [0.1, 0])] };
+	expect(magnified(figure).series.map(({ label, y }) => [label, y])).toEqual([
+		['CW, before', [3, -5]],
+		['CW, after, ×50', [5, 0]],
+	]);
+	expect(magnified({ ...figure, series: [of('before', [3]), of('after', [1])] }).series[1]!.label).toBe('after');
 });

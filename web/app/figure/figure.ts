@@ -83,6 +83,19 @@ export function inUnits(figure: Figure, scaleOf: (unit: string) => { factor: num
 	return { ...figure, x: { ...figure.x, unit: x.unit }, y: { ...figure.y, unit: y.unit }, series };
 }
 
+/** A small remainder beside what it was before would be a flat line or a single bar: it is drawn so many times as large, and says so. */
+export function magnified(figure: Figure): Figure {
+	const along = figure.series.some((one) => one.mark === 'bars') ? 'x' : 'y';
+	if (figure.x.names) return figure;
+	const largest = (word: string) => Math.max(...figure.series.filter((one) => one.label.endsWith(word)).flatMap((one) => one[along].map(Math.abs)));
+	const ratio = largest('before') / largest('after');
+	const power = 10 ** Math.floor(Math.log10(ratio));
+	const factor = power * (ratio < 2 * power ? 1 : ratio < 5 * power ? 2 : 5);
+	if (!(factor >= 5 && factor < Infinity)) return figure;
+	const series = figure.series.map((one) => (one.label.endsWith('after') ? { ...one, label: `${one.label}, ×${factor}`, [along]: one[along].map((value) => value * factor) } : one));
+	return { ...figure, series };
+}
+
 export type Span = readonly [low: number, high: number];
 
 /** From the smallest to the largest number; `[0, 1]` where there is none. */
