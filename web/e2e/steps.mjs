@@ -403,9 +403,11 @@ export async function writeEffect(page, run) {
 	await page.keyboard.type('Walked load');
 	const name = await form.getByLabel('name', { exact: true }).inputValue();
 	expect(name === 'Walked load', `what is typed after opening the own formula goes elsewhere: ${name}`);
+	await form.getByLabel('name', { exact: true }).fill('');
 	await formula.fill('tau = a * direction * abs(load');
 	await form.getByText('character 31').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the mistake is not marked at its character'));
 	expect((await form.locator('mark').count()) === 1, 'nothing is marked in the formula');
+	await form.getByLabel('name', { exact: true }).fill(name);
 	await formula.fill('tau = a * direction * abs(load)');
 	await form.getByRole('button', { name: 'Make a a parameter' }).click();
 	await form.getByRole('button', { name: `Try on run #${run}` }).click();

@@ -20,7 +20,9 @@ describe('an effect of one’s own', () => {
 
 	it('says what is missing before it asks', () => {
 		expect(faultOf(draft)).toBeNull();
-		expect(faultOf({ ...draft, title: '42'.slice(2) })).toMatch(/name/);
+		expect(faultOf({ ...draft, formula: ' ' })).toMatch(/formula/);
+		expect(faultOf({ ...draft, title: '' })).toBeNull();
+		expect(definitionOf({ ...draft, title: '' }, 'friction').id).toBe('unnamed');
 		expect(faultOf({ ...draft, parameters: [{ ...parameterDraft('a'), min: 'few' }] })).toMatch(/^a: /);
 	});
 

@@ -34,7 +34,6 @@ function bound(text: string): number | null {
 
 /** The first thing that the page sees itself, before the daemon is asked. */
 export function faultOf(draft: Draft): string | null {
-	if (idOf(draft.title) === '') return 'Give the effect a name, with letters in it.';
 	if (draft.formula.trim() === '') return 'Write the formula.';
 	for (const p of draft.parameters) {
 		const [min, max] = [bound(p.min), bound(p.max)];
@@ -43,11 +42,12 @@ export function faultOf(draft: Draft): string | null {
 	return null;
 }
 
+/** What has no name yet is checked and tried under one. */
 export function definitionOf(draft: Draft, kind: string): EffectDefinition {
 	return {
-		id: idOf(draft.title),
+		id: idOf(draft.title) || 'unnamed',
 		kind,
-		title: draft.title.trim(),
+		title: draft.title.trim() || 'unnamed',
 		sentence: draft.sentence.trim(),
 		formula: draft.formula,
 		parameters: draft.parameters.map((p) => ({ name: p.name.trim(), unit: p.unit.trim() || '1', min: bound(p.min), max: bound(p.max) })),
