@@ -35,6 +35,10 @@ const FIXED: [RegExp, string][] = [
 	[/events\["setSeries"\][^]*?\n\t};/g, ''],
 	[/function dblClick\([^]*?(?=\n\tfunction syncPxRatio)/g, 'const dblClick = null;'],
 	[/= (linear|points)\(\) ;/g, '= null;'],
+	[/assign\(\{\}, legendOpts, opts\.legend\)/, '{ values: [] }'],
+	[/const markers +=.*|\bmarkers\.\w+ +=.*|(?<=\b[as]v) \|\| num\w+/g, ''],
+	[/(?<=const showCursor = +)cursor\.show/g, 'true'],
+	[/\bcursorOnePt\b(?! =)/g, 'false'],
 	// Dates, and what only other programs call.
 	[/const months = \[[^]*?(?=const onlyWhole)/g, ''],
 	[/const NL = [^]*?(?=\/\/ base 2)/g, ''],
