@@ -4,8 +4,17 @@ import { router } from '../state/router.svelte';
 class Dropped {
 	files: File[] = $state.raw([]);
 
+	/** Files are held over the page. */
+	over = $state(false);
+	private gone: ReturnType<typeof setTimeout> | undefined;
+
 	hold(event: DragEvent): void {
-		if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
+		if (!event.dataTransfer?.types.includes('Files')) return;
+		event.preventDefault();
+		// It is told again and again; nothing tells for sure that it has ended.
+		this.over = true;
+		clearTimeout(this.gone);
+		this.gone = setTimeout(() => (this.over = false), 300);
 	}
 
 	drop(event: DragEvent): void {
