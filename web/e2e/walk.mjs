@@ -86,7 +86,7 @@ await tell('walk', async () => {
 	const held = await page.evaluate(() => document.querySelector('rect.held.here').dataset.held);
 	const said = await tryAndDrop(page);
 	await audit(page, 'the workbench');
-	expect(/↓/.test(said), `the preview should promise a smaller error: ${said}`);
+	expect(/↓ better \(−[\d.]+ ± [\d.]+ %\)/.test(said), `the preview should promise a smaller error, and how sure that is: ${said}`);
 	expect((await readVersion(page)).held === Number(held), 'a try must leave the version at hand alone');
 
 	const card = page.locator('article[data-effect]').first();
@@ -116,6 +116,9 @@ await tell('walk', async () => {
 
 	const own = await writeEffect(page, run);
 	expect(own.held < first.held, `the own effect should make the error fall, but it went from ${first.held} to ${own.held}`);
+	expect((await page.locator('i.forks').count()) > 0, 'the tree of versions does not show where it forks');
+	await page.getByRole('button', { name: 'Parity' }).click();
+	await page.getByText('model = measured, 95 % band').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the parity view has no band of the model'));
 	await audit(page, 'the own effect');
 
 	const opened = await openWorkbench(another, page.url());

@@ -4,7 +4,7 @@ import type uPlot from 'uplot';
 const SPARSE = 600;
 
 /** Pixels of which a dashed line through dense data takes the middle. */
-const STEP = 3;
+const STEP = 2;
 
 /**
  * A line through the points, broken at gaps and at missing values. Dense data becomes its smallest and largest value in each
@@ -62,14 +62,14 @@ function line(u: uPlot, index: number, from: number, to: number, sparse: boolean
 	let [low, high] = [0, 0];
 	let joined = false;
 	let middles: number[] = [];
-	let begun = 0;
+	let [begun, ended] = [0, 0];
 	const put = (px: number, py: number) => {
 		if (joined) path.lineTo(px, py);
 		else path.moveTo(px, py);
 		joined = true;
 	};
 	const settle = () => {
-		if (middles.length) put((begun + column) / 2, middles.reduce((sum, one) => sum + one, 0) / middles.length);
+		if (middles.length) put((begun + ended) / 2, middles.reduce((sum, one) => sum + one, 0) / middles.length);
 		middles = [];
 	};
 	const flush = () => {
@@ -77,8 +77,9 @@ function line(u: uPlot, index: number, from: number, to: number, sparse: boolean
 		const [under, over] = [top + (y1 - low) * ky, top + (y1 - high) * ky];
 		if (band) {
 			band.rect(column, over, 1, under - over);
+			if (column - begun >= STEP * devicePixelRatio) settle();
 			if (middles.push((under + over) / 2) === 1) begun = column;
-			if (column - begun >= (STEP - 1) * devicePixelRatio) settle();
+			ended = column;
 		} else {
 			put(column, under);
 			if (high !== low) put(column, over);
