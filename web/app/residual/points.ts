@@ -29,7 +29,7 @@ export function inOneTurn(set: ResidualSet): ResidualSet {
 
 /**
  * With the axes along which the diagnosis looks too, and which no column is: how long ago the motion turned, and in friction runs the motor's
- * torque. Against its own noise the residual would have a slope: at a set point its mean stands, elsewhere what the model makes of it.
+ * torque. Against its own noise the residual would have a slope: it is the model's, moved to the mean of what was measured in each piece.
  */
 export function withMore(set: ResidualSet): ResidualSet {
 	const named = (name: string) => set.axes.find((axis) => axis.name === name)?.values;
@@ -43,18 +43,17 @@ export function withMore(set: ResidualSet): ResidualSet {
 		});
 		more.push({ name: 'time_since_reversal_s', unit: 's', values: since });
 	}
-	if (named('motor_velocity_rad_s')) more.push({ name: 'motor_torque_nm', unit: set.unit, values: set.residual === 'plateau_mean' ? held(set) : set.predicted });
+	if (named('motor_velocity_rad_s')) more.push({ name: 'motor_torque_nm', unit: set.unit, values: torque(set) });
 	return { ...set, axes: [...set.axes, ...more.filter(({ name }) => !named(name))] };
 }
 
-function held({ measured, predicted, held_out, segment }: ResidualSet): number[] {
-	const means = new Map<number, { n: number; mean: number }>();
-	measured.forEach((value, i) => {
-		const one = means.get(segment[i]!) ?? { n: 0, mean: 0 };
-		if (!held_out[i]) one.mean += (value - one.mean) / ++one.n;
-		means.set(segment[i]!, one);
+function torque({ error, predicted, piece }: ResidualSet): number[] {
+	const means: { n: number; mean: number }[] = [];
+	error.forEach((value, i) => {
+		const one = (means[piece[i]!] ??= { n: 0, mean: 0 });
+		one.mean += (value - one.mean) / ++one.n;
 	});
-	return predicted.map((value, i) => (held_out[i] ? value : means.get(segment[i]!)!.mean));
+	return predicted.map((value, i) => value + means[piece[i]!]!.mean);
 }
 
 /** The sign of the motion at each point, from the axis `direction` or from a velocity. */

@@ -30,11 +30,11 @@ describe('positions', () => {
 
 it('has the axes along which the diagnosis looks too', () => {
 	const axis = (name: string, values: number[]) => ({ name, unit: '', values });
-	const set = { unit: 'Nm', residual: 'plateau_mean', measured: [5, 6, 7, 8], predicted: [5, 5, 5, 9], segment: [1, 1, 2, 2], held_out: [false, false, false, true], axes: [axis('motor_velocity_rad_s', []), axis('time_s', [0, 1, 3, 4]), axis('direction', [1, 1, -1, -1])] };
+	const set = { unit: 'Nm', error: [0, 1, 2, 2], predicted: [5, 5, 5, 9], piece: [0, 0, 1, 1], axes: [axis('motor_velocity_rad_s', []), axis('time_s', [0, 1, 3, 4]), axis('direction', [1, 1, -1, -1])] };
 	const more = withMore(set as never).axes.slice(3);
 	expect(more.map(({ name, values }) => [name, values])).toEqual([
 		['time_since_reversal_s', [0, 1, 0, 1]],
-		['motor_torque_nm', [5.5, 5.5, 7, 9]],
+		['motor_torque_nm', [5.5, 5.5, 7, 11]],
 	]);
 });
 
