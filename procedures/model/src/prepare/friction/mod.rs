@@ -15,7 +15,7 @@ use jointbench_instrument::{Motion, RunTable};
 
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
     let (samples, _) = read(run, options, Velocity::AsMeasured)?;
-    let plateaus = plateaus::find(&samples, options);
+    let plateaus = plateaus::find(&samples, run.meta().gear_ratio.unwrap_or(1.0), options);
     let settled: usize = plateaus.iter().map(|p| p.len()).sum();
     // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
     // many steps does not take them away.

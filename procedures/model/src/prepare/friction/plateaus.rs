@@ -24,6 +24,8 @@ const REACH: usize = 3;
 const MOST_MOVING_ROWS: usize = 8_000;
 /// How far speed and load may be from the plateau's own middle, as a share of their size.
 const SETTLED_SHARE: f64 = 0.04;
+/// From one half of its late part to the other a kept speed changes by less than this share, or by what it scatters by.
+const KEPT_SHARE: f64 = 0.2;
 /// Speed is at least so many times its own scatter, or half of that where it only wavers about its middle: a slow step
 /// over teeth.
 const STEADY: f64 = 5.0;
@@ -31,25 +33,23 @@ const STEADY: f64 = 5.0;
 const WAVERS: usize = 4;
 
 /// The settled stretch of every segment that has one.
-pub fn find(samples: &Source, options: &Options) -> Vec<Range<usize>> {
+pub fn find(samples: &Source, gear_ratio: f64, options: &Options) -> Vec<Range<usize>> {
     let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let load = samples.signals.find(Signal::Load);
     let heaviest = load.map_or(0.0, |l| l.iter().fold(0.0f64, |m, v| m.max(v.abs())));
-    samples
-        .legs()
-        .into_par_iter()
-        .filter_map(|leg| settled(leg, velocity, load, heaviest, (n, n as f64 * samples.step_s)))
-        .collect()
+    let link_s = n as f64 * samples.step_s / gear_ratio.abs();
+    samples.legs().into_par_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, (n, link_s))).collect()
 }
 
-/// A load that changes by more than the way of the motor can change it winds the joint up, and nothing slips there.
+/// A load that changes by more than the way of the link (`link_s` for each rad/s of the motor) can change it winds the joint up,
+/// and nothing slips there.
 fn settled(
     leg: Range<usize>,
     velocity: &[f64],
     load: Option<&[f64]>,
     heaviest: f64,
-    (n, chunk_s): (usize, f64),
+    (n, link_s): (usize, f64),
 ) -> Option<Range<usize>> {
     let means = |signal: &[f64]| -> Vec<f64> {
         signal[leg.clone()].chunks_exact(n).map(|c| c.iter().sum::<f64>() / n as f64).collect()
@@ -66,16 +66,20 @@ fn settled(
     if target.abs() < steady * scatter || target == 0.0 {
         return None;
     }
+    let middle = (late.start + late.end) / 2;
+    let mean = |of: &[f64], range: Range<usize>| of[range.clone()].iter().sum::<f64>() / range.len() as f64;
+    let changes = |of: &[f64]| (mean(of, middle..late.end) - mean(of, late.start..middle)).abs();
+    let by_chance = 3.0 * scatter * (4.0 / late.len() as f64).sqrt();
+    if changes(&speed) > KEPT_SHARE * target.abs() + by_chance {
+        return None;
+    }
     let within = (SETTLED_SHARE * target.abs()).max(5.0 * scatter);
     let mut steady: Vec<bool> = speed.iter().map(|v| (v - target).abs() <= within).collect();
     if let Some(load) = load {
         let load = means(load);
         let held = median(load[late.clone()].iter().copied());
-        let mean = |range: Range<usize>| load[range.clone()].iter().sum::<f64>() / range.len() as f64;
-        let middle = (late.start + late.end) / 2;
-        let way_rad = target.abs() * chunk_s * late.len() as f64 / 2.0;
-        let risen = (mean(middle..late.end) - mean(late.start..middle)).abs();
-        if risen > (SETTLED_SHARE + way_rad) * heaviest {
+        let way_rad = target.abs() * link_s * late.len() as f64 / 2.0;
+        if changes(&load) > (SETTLED_SHARE + way_rad) * heaviest {
             return None;
         }
         let scatter = 1.5 * median(load[late].iter().map(|v| (v - held).abs()));
