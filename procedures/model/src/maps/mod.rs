@@ -36,7 +36,7 @@ const PAIR_BINS: usize = 12;
 const PARTNERS: usize = 5;
 
 /// To call scatter structure takes this share of the error probability of a band: nearly every run has some scatter.
-const SURE: f64 = 0.1;
+const SURE: f64 = 0.3;
 
 impl Maps {
     /// `residual` is what the model leaves at the rows of the main problem.
