@@ -18,12 +18,12 @@ static INFO: EffectInfo = EffectInfo {
     sentence: "The twist depends on how the torque came about: on the way up it lags, on the way down too.",
     formula: "η·z, dz = (1 − z·sign dτ)·dτ/τ_η (Dahl), or a stop dz = dτ/τ_η within ±1, or the mean of four stops with reaches up to τ_η (Maxwell slip); or one of these with one or two more stops",
     source: "Dahl 1968; Al-Bender, Lampaert, Swevers 2005; Ruderman, Bertram, Iwasaki 2014",
-    looks: "loops over torque",
+    looks: "loops over torque, whichever way round they are gone through",
     parameters: &[
-        parameter("eta", "rad", 0.0, f64::INFINITY),
+        parameter("eta", "rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("tau_eta", "Nm", 0.0, f64::INFINITY),
-        parameter("eta_2", "rad", 0.0, f64::INFINITY),
-        parameter("eta_3", "rad", 0.0, f64::INFINITY),
+        parameter("eta_2", "rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("eta_3", "rad", f64::NEG_INFINITY, f64::INFINITY),
     ],
     needs: &[],
 };
