@@ -61,6 +61,9 @@ const FORM_ACCURACY: f64 = 0.002;
 /// An effect that the run does not decide stays where held-out squared error without it is larger by this share.
 const CLEARLY_NEEDED: f64 = 0.1;
 
+/// One that could be nothing at all, whatever its shape, needs more.
+const PLAINLY_NEEDED: f64 = 0.5;
+
 /// So much more error without an effect is no accident, however open its parameters are.
 const UNMISTAKABLE: f64 = 1.0;
 
@@ -333,6 +336,7 @@ fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str
         let more = held_out(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
         let goes = match doubt.of_factors && doubt.of_shape {
             true => more < UNMISTAKABLE,
+            false if doubt.of_size => more < PLAINLY_NEEDED,
             false => (search.closed || doubt.is_there()) && more < CLEARLY_NEEDED,
         };
         goes.then_some((term.id(), more))
