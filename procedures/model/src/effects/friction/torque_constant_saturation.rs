@@ -8,7 +8,7 @@ use std::iter;
 pub struct TorqueConstantSaturation;
 
 /// Below it looks like friction that grows with the load, above like a stop.
-const LEAST_POWER: f64 = 1.5;
+const LEAST_POWER: f64 = 2.0;
 const LARGEST_POWER: f64 = 4.0;
 
 static INFO: EffectInfo = EffectInfo {
