@@ -29,12 +29,12 @@ pub struct Source {
 /// Speeds this near to a kept one, as a share of it, are the same.
 const EVEN: f64 = 0.05;
 
-/// The middle of the speeds that most of all lie near together.
+/// The middle one of the speeds that most of all lie near together.
 fn usual(mut speeds: Vec<f64>) -> f64 {
     speeds.sort_unstable_by(f64::total_cmp);
     let near = |low: usize| speeds.partition_point(|v| *v <= speeds[low] * (1.0 + EVEN) / (1.0 - EVEN)) - low;
     let low = (0..speeds.len()).max_by_key(|low| near(*low));
-    low.map_or(0.0, |low| 0.5 * (speeds[low] + speeds[low + near(low) - 1]))
+    low.map_or(0.0, |low| speeds[low + near(low) / 2])
 }
 
 /// Which samples become rows, and what they have in common.

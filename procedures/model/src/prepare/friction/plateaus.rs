@@ -24,7 +24,7 @@ const REACH: usize = 3;
 const MOST_MOVING_ROWS: usize = 8_000;
 /// How far speed and load may be from the plateau's own middle, as a share of their size.
 const SETTLED_SHARE: f64 = 0.04;
-/// From one half of its late part to the other a kept speed changes by less than this share, or by what it scatters by.
+/// From one half of a settled stretch to the other a kept speed changes by less than this share, or by what it scatters by.
 const KEPT_SHARE: f64 = 0.2;
 /// Speed is at least so many times its own scatter, or half of that where it only wavers about its middle: a slow step
 /// over teeth.
@@ -66,27 +66,29 @@ fn settled(
     if target.abs() < steady * scatter || target == 0.0 {
         return None;
     }
-    let middle = (late.start + late.end) / 2;
-    let mean = |of: &[f64], range: Range<usize>| of[range.clone()].iter().sum::<f64>() / range.len() as f64;
-    let changes = |of: &[f64]| (mean(of, middle..late.end) - mean(of, late.start..middle)).abs();
-    let by_chance = 3.0 * scatter * (4.0 / late.len() as f64).sqrt();
-    if changes(&speed) > KEPT_SHARE * target.abs() + by_chance {
-        return None;
-    }
     let within = (SETTLED_SHARE * target.abs()).max(5.0 * scatter);
     let mut steady: Vec<bool> = speed.iter().map(|v| (v - target).abs() <= within).collect();
-    if let Some(load) = load {
-        let load = means(load);
+    let load = load.map(means);
+    if let Some(load) = &load {
         let held = median(load[late.clone()].iter().copied());
-        let way_rad = target.abs() * link_s * late.len() as f64 / 2.0;
-        if changes(&load) > (SETTLED_SHARE + way_rad) * heaviest {
-            return None;
-        }
-        let scatter = 1.5 * median(load[late].iter().map(|v| (v - held).abs()));
+        let scatter = 1.5 * median(load[late.clone()].iter().map(|v| (v - held).abs()));
         let within = (SETTLED_SHARE * heaviest).max(5.0 * scatter);
-        steady.iter_mut().zip(&load).for_each(|(s, l)| *s &= (l - held).abs() <= within);
+        steady.iter_mut().zip(load).for_each(|(s, l)| *s &= (l - held).abs() <= within);
     }
     let longest = segments::stretches(&steady).into_iter().filter(|r| steady[r.start]).max_by_key(Range::len)?;
+    // Before that it may creep towards its speed.
+    let kept = longest.start.max(late.start).min(longest.end)..longest.end;
+    let changes = |of: &[f64]| {
+        let (first, second) = of[kept.clone()].split_at(kept.len() / 2);
+        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        (mean(second) - mean(first)).abs()
+    };
+    let by_chance = 3.0 * scatter * (4.0 / kept.len() as f64).sqrt();
+    let way_rad = target.abs() * link_s * kept.len() as f64 / 2.0;
+    let winds_up = load.is_some_and(|load| changes(&load) > (SETTLED_SHARE + way_rad) * heaviest);
+    if winds_up || changes(&speed) > KEPT_SHARE * target.abs() + by_chance {
+        return None;
+    }
     // What follows a ramp at once still remembers it.
     let skip = 2 + longest.len() / 20;
     let (start, end) = (longest.start + skip, longest.end.min(speed.len()));
