@@ -81,6 +81,12 @@ export function undecided(before: Model, after: Model): string[] {
 /** Less than this is no gain. */
 export const WORTH = 0.005;
 
+/** What was added to a version and took nothing off its held-out error is nobody's model until it is chosen. */
+export function isIdle(after: Model, models: readonly Model[]): boolean {
+	const before = models.find(({ id }) => id === after.parent);
+	return !!before && after.added.length > 0 && sameData(before, after) && gain(before, after) <= WORTH;
+}
+
 /** `± within`: how far chance alone may take the share. */
 export function worded(share: number, within = 0): string {
 	const least = Math.max(WORTH, within);

@@ -14,7 +14,7 @@ import { type Side, inOneTurn, withMore } from '../residual/points';
 import { selected } from '../residual/selected';
 import { usualAxes } from './ranked';
 import { readRegion } from './region';
-import { WORTH, childWith, gain, sameData, undecided } from './tree';
+import { WORTH, childWith, gain, isIdle, sameData, undecided } from './tree';
 import { tries } from './tries.svelte';
 
 /** The model of one run, as the workbench works on it. Call while a component is being set up. */
@@ -53,7 +53,7 @@ export function openWorkbench(id: number) {
 	/** While the version of the address is awaited, the one that was here stays, and no other takes its place. */
 	let former: Model | null = null;
 	const model: Model | null = $derived(
-		(former = awaited ? former : (named ?? versions.findLast((one) => !tries.has(one.id)) ?? versions.at(-1) ?? null)),
+		(former = awaited ? former : (named ?? versions.findLast((one) => !tries.has(one.id) && !isIdle(one, versions)) ?? versions.at(-1) ?? null)),
 	);
 	/** From now on the address says which version it shows, so that a version made elsewhere does not take its place. */
 	$effect(() => {
@@ -110,7 +110,7 @@ export function openWorkbench(id: number) {
 		const next = await version(set, parent, what, anew);
 		if (!next) return;
 		// Nothing is kept silently: what gains nothing stands beside, to be kept or dropped.
-		if (parent && parent.id === model?.id && next.added.length > 0 && sameData(parent, next) && gain(parent, next) <= WORTH) return stand(next, versions.length > known);
+		if (parent && parent.id === model?.id && isIdle(next, [parent])) return stand(next, versions.length > known);
 		show(next, parent);
 	}
 

@@ -7,7 +7,7 @@ import { readView, writeView } from './lens';
 import { readRegion, strength, writeRegion, writeStretch } from './region';
 import { sharesOf } from '../residual/line';
 import { selected } from '../residual/selected';
-import { branches, chain, childWith, gain, stepName, undecided } from './tree';
+import { branches, chain, childWith, gain, isIdle, stepName, undecided } from './tree';
 import { barsOf, lossesOf, markOf, topOf } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
@@ -54,6 +54,13 @@ describe('the tree of versions', () => {
 			[4, 1, false],
 			[3, 0, false],
 		]);
+	});
+
+	it('knows what was added and brought nothing', () => {
+		const idle = version(5, 4, ['coulomb', 'stribeck', 'load_linear', 'gravity'], 0.999, ['gravity']);
+		const reset = { ...version(6, 4, ['coulomb', 'stribeck'], 4), removed: ['load_linear'] };
+		expect([...models, idle, reset].filter((one) => isIdle(one, [...models, idle, reset])).map(({ id }) => id)).toEqual([5]);
+		expect(isIdle({ ...idle, more_runs: [2] }, models)).toBe(false);
 	});
 
 	it('tells what an added effect leaves undecided', () => {

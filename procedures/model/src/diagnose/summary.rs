@@ -129,15 +129,18 @@ const MEND: &str = "Mend that first: what follows is what these columns make of 
 /// What a user has to mend before anything else counts: columns that contradict each other, a size in a fit that contradicts
 /// physics, and what the model takes as given and the run shows as a constant, which may not have been connected.
 fn attention(found: &Exploration, fit: Option<&Fit>) -> String {
-    let wrong: Vec<String> = found.start.prepared.clashes.iter().cloned().chain(fit.and_then(impossible)).collect();
-    let mend = (!wrong.is_empty()).then(|| MEND.to_owned());
-    let wrong = wrong.into_iter().map(|what| format!("Attention: {what}. ")).chain(mend);
+    let told = |what: &String| format!("Attention: {what}. ");
+    let clashes = &found.start.prepared.clashes;
+    let mend = (!clashes.is_empty()).then(|| MEND.to_owned());
+    let clashes = clashes.iter().map(told).chain(mend);
+    // Its own words say what to look for.
+    let impossible = fit.and_then(impossible).as_ref().map(told);
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
     let is_dead = |id: &str| spec.find(id).is_ok_and(|e| e.is_given() && e.missing(view).is_none());
     let dead = found.start.hidden.iter().find(|h| is_dead(&h.effect));
     let dead = dead.map(|h| format!("Attention: {}; if something did act there, what follows is wrong. ", h.why));
-    wrong.chain(dead).collect()
+    clashes.chain(impossible).chain(dead).collect()
 }
 
 /// How well the run repeats itself, and why an error may be smaller than that.

@@ -8,7 +8,7 @@ use crate::maps::Maps;
 use crate::pieces::{legs, pieces};
 use crate::prepare::{Prepared, Problem, stretches};
 use crate::report::NoiseFloor;
-use crate::select::{Ground, Search, Wander, alone};
+use crate::select::{Ground, Search, Wander, alone, within};
 use crate::terms::Term;
 
 /// A map must take this share off held-out squared error to be called structure. Over null runs the best map reaches
@@ -45,34 +45,27 @@ pub fn is_scatter(
     if structured(maps).is_none() || comes_again {
         return false;
     }
-    let stands_out = || floor.ci95.is_none() || maps.stand_out(false) && within_legs(residual, prepared, options);
+    let is_known = floor.ci95.is_some();
     match Wander::of(&search.now, options) {
-        Some(wander) => {
-            only_wanders(&wander, residual, prepared, options) || floor.ci95.is_some() && !maps.stand_out(true)
-        }
-        None => !stands_out(),
+        Some(wander) => only_wanders(&wander, residual, prepared, options) || is_known && !maps.stand_out(),
+        None => is_known && !(maps.stand_out_beside_time() && stands_out_within_legs(residual, prepared, options)),
     }
 }
 
 /// Nothing shows over any axis but a zero that wanders over time: a little everywhere, and no figure of the model leaps.
 fn only_wanders(wander: &Wander, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
     let beside = Maps::new(prepared, wander.taken_off(residual), options);
-    structured(&beside).is_none() && !beside.stand_out(true) && !wander.is_of_events() && !wander.leaps(options)
+    structured(&beside).is_none() && !beside.stand_out() && !wander.is_of_events() && !wander.leaps(options)
 }
 
-/// Some part of an axis stands out within legs, each with a zero of its own, where they are too few to tell what these scatter by.
-fn within_legs(residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
+/// Where legs are too few to tell what they scatter by, some part of an axis stands out within them, each with a zero of its own.
+fn stands_out_within_legs(residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
     let problem = &prepared.main;
     let leg = legs(problem);
     if pieces(problem, 1).0 == leg {
         return true;
     }
-    let mut left = residual.to_vec();
-    stretches(&leg).into_iter().for_each(|rows| {
-        let mean = residual[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
-        left[rows].iter_mut().for_each(|value| *value -= mean);
-    });
-    Maps::new(prepared, left, options).stand_out(false)
+    Maps::new(prepared, within(residual, &stretches(&leg)), options).stand_out_beside_time()
 }
 
 /// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any

@@ -91,13 +91,21 @@ impl Maps {
         cell.half_width(self.alpha, self.cells)
     }
 
-    /// Some part of an axis stands out of what the pieces of the run scatter by. Over `time`, and over what grows with it, the
-    /// pieces of one part are neighbours, which may resemble each other.
-    pub fn stand_out(&self, time: bool) -> bool {
+    /// Some part of an axis stands out of what the pieces of the run scatter by.
+    pub fn stand_out(&self) -> bool {
+        self.axes.iter().chain(&self.by_direction).any(|map| self.stands_out(map))
+    }
+
+    /// The same of an axis that is not the time and does not grow with it: there the pieces of one part are neighbours, which may
+    /// resemble each other.
+    pub fn stand_out_beside_time(&self) -> bool {
         let maps = self.axes.iter().chain(&self.by_direction);
-        let mut cells = maps.filter(|map| time || !map.x.goes_with_time()).flat_map(|map| &map.cells);
+        maps.filter(|map| !map.x.goes_with_time()).any(|map| self.stands_out(map))
+    }
+
+    fn stands_out(&self, map: &Map) -> bool {
         let half_width = |cell: &Cell| cell.half_width(SURE * self.alpha, self.cells);
-        cells.any(|cell| half_width(cell).is_some_and(|half_width| cell.mean.abs() > half_width))
+        map.cells.iter().any(|cell| half_width(cell).is_some_and(|half_width| cell.mean.abs() > half_width))
     }
 
     /// RMS of the means of the pieces, each counted with its rows.

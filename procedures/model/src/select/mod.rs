@@ -17,5 +17,6 @@ pub use imitated::moved;
 pub use layout::{enter, lay};
 pub use library::Library;
 pub use rivals::{Rival, alone, is_tie, significance};
+pub use scatter::within;
 pub use search::{Move, Search, Silence, held_out};
 pub use wander::Wander;

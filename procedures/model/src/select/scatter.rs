@@ -66,14 +66,7 @@ fn shows_within(
     problem: &Problem,
     options: &Options,
 ) -> bool {
-    let within = |column: &Vec<f64>| {
-        let mut column = column.clone();
-        means(&column, legs)
-            .iter()
-            .zip(legs)
-            .for_each(|(mean, leg)| column[leg.clone()].iter_mut().for_each(|v| *v -= mean));
-        column
-    };
+    let within = |column: &Vec<f64>| within(column, legs);
     let basis = Basis::of(&ground.basis.vectors().iter().map(within).collect::<Vec<_>>());
     let residual = basis.rest(&within(&ground.residual));
     let columns: Vec<Vec<f64>> = own.iter().map(within).collect();
@@ -95,6 +88,15 @@ fn is_small(column: &[f64], residual: &[f64]) -> bool {
     let (square, along) = (dot(column, column), dot(column, residual));
     let left = (dot(residual, residual) - along * along / square).max(0.0) / residual.len() as f64;
     (along / square).abs() < READINGS * left.sqrt()
+}
+
+/// What values differ by from the mean of their leg.
+pub fn within(values: &[f64], legs: &[Range<usize>]) -> Vec<f64> {
+    let mut left = values.to_vec();
+    for (mean, leg) in means(values, legs).into_iter().zip(legs) {
+        left[leg.clone()].iter_mut().for_each(|value| *value -= mean);
+    }
+    left
 }
 
 fn means(values: &[f64], legs: &[Range<usize>]) -> Vec<f64> {
