@@ -30,7 +30,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let complete = report(found.end())?;
     let suggestions = suggestions(&found, &fit, &complete, spec, options)?;
     let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
-    let undecided = summary::undecided(&found, &complete, verdict, options);
+    let undecided = summary::undecided(&found, &[&fit, &complete], verdict, options);
     let start = &found.start.main;
     let of_start = (verdict == Verdict::MissingEffect)
         .then(|| Maps::new(&prepared, start.tangent().rest(&start.response()), options));
@@ -97,7 +97,7 @@ pub fn discover(
     leave_open(&mut fit, &found);
     let verdict = found.end_verdict();
     let structure = structure(&found, verdict);
-    let undecided = summary::undecided(&found, &fit, verdict, options);
+    let undecided = summary::undecided(&found, &[&fit], verdict, options);
     let regions = regions(&found.maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
     Ok(Discovery {
         kind: prepared.kind,

@@ -4,7 +4,7 @@ use crate::effect::{Effect, Stage};
 use crate::explore::{Exploration, Withdrawal, Withdrawn};
 use crate::intervals::IMPOSSIBLE;
 use crate::maps::Maps;
-use crate::report::{Imitated, PairMap, Region, Suggestion, Verdict};
+use crate::report::{Imitated, PairMap, Parameter, Region, Suggestion, Verdict};
 use crate::words::{figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
@@ -55,7 +55,7 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         }
         _ => String::new(),
     };
-    format!("{}{gain}{beyond}{}{}", attention(found, Some(complete)), open(found), taken_back(found, &fit.unit))
+    format!("{}{gain}{beyond}{}{}", attention(found, &[fit, complete]), open(found), taken_back(found, &fit.unit))
 }
 
 /// An effect with what this run cannot tell it from: one of them alone would say more than the run knows.
@@ -71,7 +71,7 @@ fn or_rival(suggestion: &Suggestion) -> String {
 pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Options, is_cut: bool) -> String {
     let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, fit));
     let verdict = found.end_verdict();
-    let said = match (verdict, undecided(found, fit, verdict, options)) {
+    let said = match (verdict, undecided(found, &[fit], verdict, options)) {
         (Verdict::UnexplainedStructure, _) => format!(
             "Structure remains{}: {}; {floor}.",
             match is_cut {
@@ -89,12 +89,8 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
         ),
     };
     // Of a model that is adequate but for it, the sentence itself says so.
-    let of_size = (verdict == Verdict::UnexplainedStructure).then_some(fit);
-    attention(found, of_size)
-        + &said
-        + &scatter(found, verdict, &fit.unit)
-        + &open(found)
-        + &taken_back(found, &fit.unit)
+    let sized: &[&Fit] = if verdict == Verdict::UnexplainedStructure { &[fit] } else { &[] };
+    attention(found, sized) + &said + &scatter(found, verdict, &fit.unit) + &open(found) + &taken_back(found, &fit.unit)
 }
 
 /// Why what shows over an axis is called noise.
@@ -126,15 +122,15 @@ pub fn elsewhere(imitated: &Imitated, is_there: bool) -> String {
 
 const MEND: &str = "Mend that first: what follows is what these columns make of the model. ";
 
-/// What a user has to mend before anything else counts: columns that contradict each other, a size in a fit that contradicts
-/// physics, and what the model takes as given and the run shows as a constant, which may not have been connected.
-fn attention(found: &Exploration, fit: Option<&Fit>) -> String {
+/// What a user has to mend before anything else counts: columns that contradict each other, a size that contradicts physics in all
+/// of the fits, and what the model takes as given and the run shows as a constant, which may not have been connected.
+fn attention(found: &Exploration, fits: &[&Fit]) -> String {
     let told = |what: &String| format!("Attention: {what}. ");
     let clashes = &found.start.prepared.clashes;
     let mend = (!clashes.is_empty()).then(|| MEND.to_owned());
     let clashes = clashes.iter().map(told).chain(mend);
     // Its own words say what to look for.
-    let impossible = fit.and_then(impossible).as_ref().map(told);
+    let impossible = impossible(fits).as_ref().map(told);
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
     let is_dead = |id: &str| spec.find(id).is_ok_and(|e| e.is_given() && e.missing(view).is_none());
@@ -223,8 +219,8 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
 }
 
 /// Why the verdict decides nothing: columns that contradict each other carry none, too short a run cannot find fault with a
-/// model, or a size in `fit`, which has all that can be named, contradicts physics.
-pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Options) -> Option<String> {
+/// model, or a size contradicts physics in all of the fits.
+pub fn undecided(found: &Exploration, fits: &[&Fit], verdict: Verdict, options: &Options) -> Option<String> {
     let blocks = found.start.main.problem.blocks;
     // The smallest p-value that flipping the signs of so many blocks can give.
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
@@ -234,15 +230,22 @@ pub fn undecided(found: &Exploration, fit: &Fit, verdict: Verdict, options: &Opt
             Some(format!("{blocks} independent stretches of motion are too few to name anything"))
         }
         Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
-        Verdict::Adequate | Verdict::MissingEffect => impossible(fit),
+        Verdict::Adequate | Verdict::MissingEffect => impossible(fits),
         _ => None,
     }
 }
 
-/// A size that contradicts physics.
-fn impossible(fit: &Fit) -> Option<String> {
-    let mut said = fit.parameters.iter().filter_map(|p| Some((p, p.note.as_ref()?)));
-    let (p, note) = said.find(|(_, note)| note.starts_with(IMPOSSIBLE))?;
+/// A size that contradicts physics in all of the fits: beside a curve that came in for it, what is left of a line may well turn.
+fn impossible(fits: &[&Fit]) -> Option<String> {
+    let is_impossible = |p: &&Parameter| p.note.as_ref().is_some_and(|note| note.starts_with(IMPOSSIBLE));
+    let in_fit = |fit: &Fit, of: &Parameter| {
+        let mut impossible = fit.parameters.iter().filter(is_impossible);
+        impossible.any(|p| (&p.effect, &p.name) == (&of.effect, &of.name))
+    };
+    let (last, others) = fits.split_last()?;
+    let mut impossible = last.parameters.iter().filter(is_impossible);
+    let p = impossible.find(|p| others.iter().all(|fit| in_fit(fit, p)))?;
+    let note = p.note.as_deref().unwrap_or_default();
     Some(format!("{} of {} is {}, which {note}", p.name, p.effect, figure(p.value, &p.unit)))
 }
 
