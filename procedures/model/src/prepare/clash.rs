@@ -1,7 +1,6 @@
 //! Columns that tell the same motion or torque in different units or signs: what is fitted to them is wrong, however well it
 //! fits.
 
-use crate::linear::{Basis, dot};
 use jointbench_instrument::{Kind, Motion, RunTable};
 use std::ops::Range;
 
@@ -14,14 +13,10 @@ const GEAR_CLASH: f64 = 0.01;
 const GEAR_WAY: f64 = 1.0;
 /// Share of the variance in common, below which one of the angles is too coarse to tell.
 const SAME_ANGLE: f64 = 0.999;
-/// Torques of motor and link differ by the gear's efficiency too, and by friction that grows with the load.
-const TORQUE_CLASH: f64 = 2.0;
 /// An angle moves by so much, rad, or it may have been held fast.
 const WAY: f64 = 0.1;
 /// Share of the variance in common, below which the columns do not tell the same at all.
 const SAME: f64 = 0.9;
-/// Where a slip of the unit or the sign shows less is enough: much of a motor's torque is friction of which the link knows nothing.
-const SAME_TORQUE: f64 = 0.7;
 
 /// Share of the work that is done against the motion, from which on the motion is not the motor's.
 const DRIVEN: f64 = 0.5;
@@ -44,7 +39,7 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
         Kind::Brake => &[("velocity_rad_s", "position_rad", 1.0)],
     };
     let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
-    let torques = (run.kind() == Kind::Friction).then(|| torque_clash(run)).flatten();
+    let torques = (run.kind() == Kind::Friction).then(|| super::carried::clash(run)).flatten();
     motions
         .chain(torques)
         .chain(driven(run))
@@ -56,51 +51,12 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
 }
 
 /// Pieces of the run that do not reach over the end of a recording, with the time that passes in each.
-fn pieces(time_s: &[f64]) -> impl Iterator<Item = (Range<usize>, f64)> {
+pub(super) fn pieces(time_s: &[f64]) -> impl Iterator<Item = (Range<usize>, f64)> {
     let step_s = super::sample_s(time_s);
     let n = ((PIECE_S / step_s) as usize).max(1);
     (0..time_s.len().saturating_sub(n)).step_by(n).filter_map(move |start| {
         let passed_s = time_s[start + n] - time_s[start];
         (passed_s > 0.0 && passed_s < 2.0 * n as f64 * step_s).then_some((start..start + n, passed_s))
-    })
-}
-
-/// What the load asks of the motor beside friction and inertia should be the link's torque over the gear ratio.
-fn torque_clash(run: &RunTable) -> Option<String> {
-    let column = |name: &str| run.column(name);
-    let (time_s, position) = (column("time_s")?, column("motor_position_rad")?);
-    let (current, load) = (column("motor_current_a")?, column("link_torque_nm")?);
-    let per_link = run.meta().torque_constant_nm_per_a? * run.meta().gear_ratio.unwrap_or(1.0);
-    let (mut velocity, mut torque, mut link) = (Vec::new(), Vec::new(), Vec::new());
-    for (piece, passed_s) in pieces(time_s) {
-        let mean = |values: &[f64]| values[piece.clone()].iter().sum::<f64>() / piece.len() as f64;
-        velocity.push((position[piece.end] - position[piece.start]) / passed_s);
-        torque.push(per_link * mean(current));
-        link.push(mean(load));
-    }
-    let n = velocity.len();
-    let change = |i: usize| velocity[(i + 1).min(n - 1)] - velocity[i.saturating_sub(1)];
-    let beside = Basis::of(&[
-        vec![1.0; n],
-        velocity.iter().map(|v| v.signum()).collect(),
-        (0..n).map(change).collect(),
-        velocity.clone(),
-    ]);
-    let (torque, link) = (beside.rest(&torque), beside.rest(&link));
-    let (tt, tl, ll) = (dot(&torque, &torque), dot(&torque, &link), dot(&link, &link));
-    // Neither side's noise makes it larger.
-    let times = (tt / ll).sqrt().copysign(tl);
-    let near = |unit: f64| (1.0 / TORQUE_CLASH..=TORQUE_CLASH).contains(&(times.abs() / unit));
-    let agree = times > 0.0 && near(1.0);
-    // At rest a motor pushes against its own friction, and a sensor that bears no load follows loosely by some hundredth of it.
-    let slips = [1e3, 1e-3].into_iter().any(near) || times < 0.0 && near(1.0);
-    let common = tl * tl / (tt * ll);
-    let tells = !agree && common > if slips { SAME_TORQUE } else { SAME };
-    tells.then(|| {
-        format!(
-            "motor_current_a with the torque constant and the gear ratio is {times:.3} times what link_torque_nm asks \
-             for: one of these has another unit or sign"
-        )
     })
 }
 
@@ -257,46 +213,6 @@ mod tests {
         }
         let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(50.0), ..Meta::default() };
         RunTable::new(meta, trace).unwrap()
-    }
-
-    #[test]
-    fn a_load_that_the_motor_does_not_carry_is_told() {
-        let rubbing = |current_scale: f64, load_scale: f64, rub_nm: f64| {
-            let names = ["time_s", "motor_position_rad", "motor_current_a", "link_torque_nm"];
-            let mut trace = Trace::new(names.map(Channel::new).to_vec());
-            for i in 0..4000 {
-                let t = 0.01 * f64::from(i);
-                let (q, v) = (30.0 * (0.5 * t).sin(), (0.5 * t).cos());
-                let link = 40.0 * (0.31 * t).sin();
-                let torque = 0.02 * v.signum() + 0.03 * v + link / 50.0 * (1.0 + 0.3 * (v * link).signum());
-                let torque = torque + rub_nm * v.signum() * (7.0 * q).sin();
-                trace.push_row(&[t, q, current_scale * torque / 0.05, load_scale * link]);
-            }
-            let meta = Meta {
-                kind: Some(Kind::Friction),
-                gear_ratio: Some(50.0),
-                torque_constant_nm_per_a: Some(0.05),
-                ..Meta::default()
-            };
-            clashes(&RunTable::new(meta, trace).unwrap())
-        };
-        let loaded = |current_scale, load_scale| rubbing(current_scale, load_scale, 0.0);
-        assert_eq!(loaded(1.0, 1.0), Vec::<String>::new(), "a gear that loses three tenths");
-        assert_eq!(loaded(1.0, 0.0), Vec::<String>::new(), "a sensor that shows nothing");
-        let told = |scale, load| matches!(&loaded(scale, load)[..], [one] if one.starts_with("motor_current_a with"));
-        assert!(told(1000.0, 1.0) && told(-1.0, 1.0) && told(1.0, 1000.0) && told(1.0, -1.0));
-        assert!(told(20.0, 1.0), "another gear ratio");
-        assert_eq!(
-            rubbing(1.0, 0.01, 1.2),
-            Vec::<String>::new(),
-            "a sensor without a load, which shows what shakes it"
-        );
-        assert_eq!(
-            rubbing(1.0, 1.0, 1.2),
-            Vec::<String>::new(),
-            "a fifth of the torque is friction that the link cannot know"
-        );
-        assert_eq!((rubbing(1000.0, 1.0, 1.2).len(), rubbing(-1.0, 1.0, 1.2).len()), (1, 1));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! From a run table to problems: response and view at points, cut into blocks that can be called independent.
 
 mod brake;
+mod carried;
 mod chunks;
 mod clash;
 mod doubts;
