@@ -1,15 +1,16 @@
 //! The dashboard's files, from the binary itself.
 
 use super::problem::Problem;
+use crate::lab::Lab;
 use axum::body::Body;
-use axum::extract::Request;
+use axum::extract::{Request, State};
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use jointbench_ui::Asset;
 
 /// A file of the dashboard, or its page for every other address.
-pub async fn serve(request: Request) -> Response {
+pub async fn serve(State(lab): State<Lab>, request: Request) -> Response {
     if !request.method().is_safe() {
         return Problem::no_route(request.uri().path()).into_response();
     }
@@ -17,8 +18,19 @@ pub async fn serve(request: Request) -> Response {
     match jointbench_ui::asset(path) {
         Some(asset) => answer(asset, &request),
         None if path.starts_with("assets/") => Problem::no_route(request.uri().path()).into_response(),
-        None => answer(jointbench_ui::page(), &request),
+        None => answer(page(lab.tokens().are_needed()), &request),
     }
+}
+
+/// Where a token is needed the page says so, and a browser without one asks for it before it is refused anything.
+fn page(asks: bool) -> Asset {
+    let mut page = jointbench_ui::page();
+    if asks {
+        let text = String::from_utf8_lossy(&page.bytes).replacen("<html", "<html data-token", 1);
+        page.bytes = text.into_bytes().into();
+        page.sha256 += "-token";
+    }
+    page
 }
 
 fn answer(asset: Asset, request: &Request) -> Response {

@@ -158,7 +158,11 @@ pub fn router(lab: Lab) -> Router {
     rest.route("/api", get(health::no_such_route))
         .route("/api/{*rest}", any(health::no_such_route))
         .method_not_allowed_fallback(health::no_such_method)
-        .fallback_service(any(dashboard::serve).layer(CompressionLayer::new().quality(CompressionLevel::Best)))
+        .fallback_service(
+            any(dashboard::serve)
+                .with_state(lab.clone())
+                .layer(CompressionLayer::new().quality(CompressionLevel::Best)),
+        )
         .with_state(lab.clone())
         .layer(middleware::from_fn_with_state(lab, door::guard))
         .layer(middleware::from_fn(size::take_in))

@@ -1,6 +1,7 @@
 //! Errors as they leave over HTTP: RFC 9457 problem documents. The one `From` decides the HTTP meaning of a refusal.
 
 use crate::lab::LabError;
+use crate::view::Place;
 use axum::extract::Request;
 use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
 use axum::http::{StatusCode, header};
@@ -43,20 +44,6 @@ pub struct Problem {
 
 /// Kind of what no waiting will change.
 const OVER: &str = "over";
-
-/// A mistake in a text that a user wrote.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Place {
-    /// `formula`, `parameters` or `id`.
-    pub field: String,
-    pub text: String,
-    /// Characters before the mistake.
-    pub position: u64,
-    /// Characters of the mistake; 0 where something is missing.
-    pub length: u64,
-    /// What is wrong there, without the rest of the sentence.
-    pub message: String,
-}
 
 impl Problem {
     pub fn new(status: StatusCode, kind: &str, title: &str, detail: impl Into<String>) -> Self {
@@ -123,13 +110,7 @@ impl From<LabError> for Problem {
                 ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "file_refused", "The file is refused", detail)
             },
             LabError::Formula(fault) => Self {
-                place: Some(Box::new(Place {
-                    field: fault.field.to_owned(),
-                    text: fault.text,
-                    position: fault.position as u64,
-                    length: fault.length as u64,
-                    message: fault.message,
-                })),
+                place: Some(Box::new((*fault).into())),
                 ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "formula", "The formula is wrong", detail)
             },
             LabError::Conflict(_) => Self::new(StatusCode::CONFLICT, "conflict", "Not at this moment", detail),

@@ -22,7 +22,7 @@ pub struct RunQuery {
     /// Words, and terms such as `kind:friction`, `tag:oil`, `-state:failed`, `duration>2min`, `after:2026-01-31`; all must hold.
     pub search: Option<String>,
     /// By what they are ordered: `started`, `state`, `procedure`, `bench`, `duration`, `rows`, `safe`, `error` (held out, of the
-    /// newest model) or `coulomb`; with a minus sign the largest first. Newest first where left out.
+    /// last version of the model that is not idle) or `coulomb`; with a minus sign the largest first. Newest first where left out.
     pub sort: Option<String>,
     /// The search is still being typed: terms that are not understood are left out, and told, instead of refused.
     pub typing: bool,

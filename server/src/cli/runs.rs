@@ -10,7 +10,7 @@ use crate::lab::{LabError, Order, RunFilter};
 use crate::view::{RunList, RunSummary, word};
 use jointbench_model::words;
 
-/// What stands above the list; error and Coulomb friction are of the newest model.
+/// What stands above the list; error and Coulomb friction are of the last version that is not idle.
 const HEAD: &str = "  run  started           state        procedure                 bench             duration       rows       error     Coulomb";
 const BENCH: usize = 16;
 

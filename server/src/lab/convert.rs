@@ -174,6 +174,7 @@ pub(super) fn model(record: ModelRecord) -> Result<view::Model, LabError> {
         validation_rms: record.validation_rms,
         rms: record.rms,
         noise_floor_rms: record.noise_floor_rms,
+        idle: record.idle,
         by: record.by,
         created_at: record.created_at,
         options: record.options,

@@ -37,6 +37,15 @@ impl Lab {
 
     /// What a formula means, and what it comes to on a run.
     pub async fn check_effect(&self, trial: &EffectTrial) -> Answer<EffectCheck> {
+        match self.reading(trial).await {
+            Err(LabError::Formula(fault)) if trial.typing => {
+                Ok(EffectCheck { mistake: Some((*fault).into()), ..EffectCheck::default() })
+            }
+            read => read,
+        }
+    }
+
+    async fn reading(&self, trial: &EffectTrial) -> Answer<EffectCheck> {
         let own = parse(&trial.effect)?;
         if let Some(run) = trial.columns_of.or(trial.run) {
             let none = self.inner.store.trace(run, None, 0..0).await?;
@@ -45,7 +54,8 @@ impl Lab {
         }
         let name = |p: &usize| own.definition().parameters[*p].name.clone();
         let mut check = EffectCheck {
-            effect: Effect { definition: Some(reread(own.definition())?), ..effect_view(&own.info()) },
+            effect: Some(Effect { definition: Some(reread(own.definition())?), ..effect_view(&own.info()) }),
+            mistake: None,
             doubt: own.doubt().map(|fault| fault.to_string()),
             linear: own.formula().columns.iter().map(|(p, _)| name(p)).collect(),
             shape: own.formula().shape.iter().map(name).collect(),

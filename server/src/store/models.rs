@@ -23,6 +23,7 @@ fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
         rms: row.try_get("rms")?,
         validation_rms: row.try_get("validation_rms")?,
         noise_floor_rms: row.try_get("noise_floor_rms")?,
+        idle: row.try_get("idle")?,
         options: json(row, "options")?,
         by: row.try_get("who")?,
         created_at: row.try_get("created_at")?,
@@ -49,9 +50,9 @@ impl Store {
         let without = |these: &[String], those: &[String]| {
             these.iter().filter(|effect| !those.contains(effect)).cloned().collect::<Vec<String>>()
         };
-        let row = sqlx::query(
+        let id = sqlx::query_scalar(
             "INSERT INTO models (run, more_runs, excluded, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
-             noise_floor_rms, options, who, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING *",
+             noise_floor_rms, options, who, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
         )
         .bind(new.run)
         .bind(serde_json::to_string(&new.more_runs)?)
@@ -71,18 +72,18 @@ impl Store {
         .bind(now())
         .fetch_one(&self.writer)
         .await?;
-        record(&row)
+        self.model(id).await
     }
 
     pub async fn model(&self, id: i64) -> Result<ModelRecord, StoreError> {
-        let row = sqlx::query("SELECT * FROM models WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
+        let row = sqlx::query("SELECT * FROM models_told WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
         record(&row.ok_or(StoreError::NoModel(id))?)
     }
 
-    /// The last version of a kind that was fitted to another run of a bench.
+    /// The last version of a kind that was fitted to another run of a bench and is not idle.
     pub async fn last_model(&self, bench: &str, kind: &str, but: RunId) -> Result<Option<ModelRecord>, StoreError> {
-        let asked = "SELECT models.* FROM models JOIN runs ON runs.id = models.run \
-            WHERE runs.bench = ? AND models.kind = ? AND models.run <> ? ORDER BY models.id DESC LIMIT 1";
+        let asked = "SELECT model.* FROM models_told AS model JOIN runs ON runs.id = model.run \
+            WHERE runs.bench = ? AND model.kind = ? AND model.run <> ? AND NOT idle ORDER BY model.id DESC LIMIT 1";
         let row = sqlx::query(asked).bind(bench).bind(kind).bind(but).fetch_optional(&self.readers).await?;
         row.as_ref().map(record).transpose()
     }
@@ -90,8 +91,10 @@ impl Store {
     /// All versions of a run, oldest first: parents before their children.
     pub async fn models(&self, run: RunId) -> Result<Vec<ModelRecord>, StoreError> {
         exists(&mut *self.readers.acquire().await?, run).await?;
-        let rows =
-            sqlx::query("SELECT * FROM models WHERE run = ? ORDER BY id").bind(run).fetch_all(&self.readers).await?;
+        let rows = sqlx::query("SELECT * FROM models_told WHERE run = ? ORDER BY id")
+            .bind(run)
+            .fetch_all(&self.readers)
+            .await?;
         rows.iter().map(record).collect()
     }
 

@@ -3,7 +3,7 @@
 use super::StoreError;
 use sqlx::{QueryBuilder, Sqlite};
 
-/// What runs can be ordered by, with what it is in the store; error and Coulomb friction are of the last version of a model.
+/// What runs can be ordered by, with what it is in the store; error and Coulomb friction are of the version that is told.
 const COLUMNS: [(&str, &str); 9] = [
     ("started", "id"),
     ("state", "state"),
@@ -12,11 +12,14 @@ const COLUMNS: [(&str, &str); 9] = [
     ("duration", "duration_s"),
     ("rows", "rows"),
     ("safe", "safe"),
-    ("error", "(SELECT validation_rms FROM models WHERE run = runs_told.id ORDER BY id DESC LIMIT 1)"),
+    (
+        "error",
+        "(SELECT validation_rms FROM models_told WHERE run = runs_told.id AND NOT idle ORDER BY id DESC LIMIT 1)",
+    ),
     (
         "coulomb",
-        "(SELECT (SELECT p.value ->> '$.value' FROM json_each(models.fit, '$.parameters') AS p \
-         WHERE p.value ->> '$.effect' = 'coulomb') FROM models WHERE run = runs_told.id ORDER BY id DESC LIMIT 1)",
+        "(SELECT (SELECT p.value ->> '$.value' FROM json_each(models_told.fit, '$.parameters') AS p \
+         WHERE p.value ->> '$.effect' = 'coulomb') FROM models_told WHERE run = runs_told.id AND NOT idle ORDER BY id DESC LIMIT 1)",
     ),
 ];
 

@@ -129,6 +129,7 @@ pub struct ModelRecord {
     pub rms: f64,
     pub validation_rms: f64,
     pub noise_floor_rms: Option<f64>,
+    pub idle: bool,
     pub options: Map<String, Value>,
     pub by: Option<String>,
     pub created_at: String,

@@ -89,6 +89,8 @@ pub struct Model {
     pub validation_rms: f64,
     pub rms: f64,
     pub noise_floor_rms: Option<f64>,
+    /// It has added effects to its parent and takes less than half a percent off the error held out.
+    pub idle: bool,
     /// Who made it: name of the token, or `local`.
     pub by: Option<String>,
     #[schema(format = DateTime)]

@@ -61,12 +61,45 @@ pub struct EffectTrial {
     /// Further runs of the same joint, looked at together with the first.
     #[serde(default)]
     pub more_runs: Vec<i64>,
+    /// The formula is still being typed: a mistake in it is told in the answer, instead of refused.
+    #[serde(default)]
+    pub typing: bool,
+}
+
+/// A mistake in a text that a user wrote.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Place {
+    /// `formula`, `parameters` or `id`.
+    pub field: String,
+    pub text: String,
+    /// Characters before the mistake.
+    pub position: u64,
+    /// Characters of the mistake; 0 where something is missing.
+    pub length: u64,
+    /// What is wrong there, without the rest of the sentence.
+    pub message: String,
+}
+
+impl From<jointbench_model::FormulaFault> for Place {
+    fn from(fault: jointbench_model::FormulaFault) -> Self {
+        Self {
+            field: fault.field.to_owned(),
+            text: fault.text,
+            position: fault.position as u64,
+            length: fault.length as u64,
+            message: fault.message,
+        }
+    }
 }
 
 /// What a formula means.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct EffectCheck {
-    pub effect: Effect,
+    /// `null` where there is a mistake.
+    pub effect: Option<Effect>,
+    /// Of a formula that is still being typed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mistake: Option<Place>,
     /// Where units contradict each other, which changes no figure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,

@@ -25,6 +25,10 @@ fn a_foreign_page_may_neither_change_nor_listen() {
     }
 }
 
+fn page(daemon: &TestDaemon) -> String {
+    daemon.get_raw("/").body_mut().read_to_string().unwrap()
+}
+
 #[test]
 fn beyond_loopback_the_token_opens_the_api() {
     let daemon = TestDaemon::start_with(None, |settings| {
@@ -32,6 +36,7 @@ fn beyond_loopback_the_token_opens_the_api() {
         settings.token = Some("correct horse".into());
         settings.read_token = Some("looking horse".into());
     });
+    assert!(page(&daemon).contains("data-token"), "the page asks for a token before it is refused");
     let (status, problem) = daemon.get("/api/v1/bench");
     assert_eq!((status, problem["type"].as_str()), (401, Some("urn:jointbench:unauthorized")));
     assert_eq!(daemon.get_with("/api/v1/bench", &[("authorization", "Bearer wrong horse")]).0, 401);
@@ -119,6 +124,7 @@ fn tokens_are_made_listed_and_revoked_by_whoever_may_do_everything_and_nobody_is
 #[test]
 fn a_daemon_that_asks_for_no_token_lets_everybody_in_and_knows_who_gives_one() {
     let daemon = TestDaemon::start();
+    assert!(!page(&daemon).contains("data-token"));
     let (_, made) = daemon.post("/api/v1/tokens", r#"{"name": "wall screen", "access": "read"}"#);
     assert_eq!(made["made_by"], "local", "{made}");
     let bearer = format!("Bearer {}", made["secret"].as_str().unwrap());

@@ -58,6 +58,9 @@ fn a_wrong_formula_is_refused_at_its_character() {
         ] {
             let (status, problem) = daemon.post(path, &body(rub(formula)).to_string());
             assert_eq!(status, 422, "{problem}");
+            let typing = json!({"effect": rub(formula), "typing": true}).to_string();
+            let (status, told) = daemon.post("/api/v1/effects/check", &typing);
+            assert_eq!((status, &told["mistake"]), (200, &problem["place"]), "{told}");
             assert_eq!(problem["type"], "urn:jointbench:formula");
             assert_eq!(problem["place"]["position"], position, "{problem}");
             assert_eq!((&problem["place"]["length"], &problem["place"]["text"]), (&length.into(), &formula.into()));

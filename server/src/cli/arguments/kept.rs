@@ -14,7 +14,7 @@ pub struct Runs {
     /// At most so many
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     pub limit: u32,
-    /// started, state, procedure, bench, duration, rows, safe, error (held out, of the newest model) or coulomb; --sort=-error
+    /// started, state, procedure, bench, duration, rows, safe, error (held out, of the last version not idle) or coulomb; --sort=-error
     /// begins with the largest [default: newest first]
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     pub sort: Option<String>,

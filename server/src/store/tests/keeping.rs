@@ -251,7 +251,8 @@ fn model_versions_are_a_tree() {
         let other = store.create_run(&new_run()).await.unwrap();
         let root = store.save_model(&model(run, None, &["coulomb", "viscous"])).await.unwrap();
         let left = store.save_model(&model(run, Some(root.id), &["coulomb", "viscous", "stribeck"])).await.unwrap();
-        let right = store.save_model(&model(run, Some(root.id), &["coulomb", "load_linear"])).await.unwrap();
+        let right = NewModel { validation_rms: 0.012, ..model(run, Some(root.id), &["coulomb", "load_linear"]) };
+        let right = store.save_model(&right).await.unwrap();
         assert_eq!((root.added, root.removed), (vec!["coulomb".into(), "viscous".into()], vec![]));
         assert_eq!((&left.added, &left.removed), (&vec!["stribeck".into()], &vec![]));
         assert_eq!((&right.added, &right.removed), (&vec!["load_linear".into()], &vec!["viscous".into()]));
@@ -267,6 +268,14 @@ fn model_versions_are_a_tree() {
             (&told["id"], &told["unit"], &told["coulomb"]["value"]),
             (&json!(right.id), &json!("Nm"), &json!(0.03))
         );
+        let grown = |validation_rms| NewModel {
+            validation_rms,
+            ..model(run, Some(right.id), &["coulomb", "load_linear", "gravity"])
+        };
+        let better = store.save_model(&NewModel { more_runs: vec![other], ..grown(0.012) }).await.unwrap();
+        let idle = store.save_model(&grown(0.01199)).await.unwrap();
+        assert!(!right.idle && !better.idle && idle.idle, "other data is no reason to call a version idle");
+        assert_eq!(store.run(run).await.unwrap().model.unwrap()["id"], better.id);
         assert_eq!(store.run(other).await.unwrap().model, None);
 
         let astray = store.save_model(&model(other, Some(root.id), &[])).await.unwrap_err();
