@@ -59,7 +59,7 @@ export const api = {
 
 	effects: (kind?: string, signal?: Signal) => ask('get', '/api/v1/effects', { query: { kind } }, signal),
 	formulas: (kind: string, signal?: Signal) => ask('get', '/api/v1/formulas/{kind}', { path: { kind } }, signal),
-	checkEffect: (trial: { effect: EffectDefinition; run?: number; columns_of?: number }, signal?: Signal) =>
+	checkEffect: (trial: { effect: EffectDefinition; run?: number; columns_of?: number; typing?: boolean }, signal?: Signal) =>
 		ask('post', '/api/v1/effects/check', { body: trial }, signal),
 	defineEffect: (effect: EffectDefinition) => ask('post', '/api/v1/effects', { body: effect }),
 	forgetEffect: (kind: string, id: string) =>
@@ -92,7 +92,7 @@ export const api = {
 
 export const modelHref = (id: number, format: 'json' | 'c' | 'lut' | 'mujoco' | 'urdf') => `${BASE}/models/${id}/export?format=${format}`;
 
-/** `model`: the version that is told of, else the newest. */
+/** `model`: the version that is told of, else the one in use. */
 export const reportHref = (run: number, model?: number) => `${BASE}/runs/${run}/report${model ? `?model=${model}` : ''}`;
 
 export function exportHref(run: number, format: 'csv' | 'parquet', stretch: readonly [from_s: number, to_s: number] | null = null): string {

@@ -62,6 +62,9 @@ export function percent(share: number, digits = 0): string {
 	return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS)} %`;
 }
 
+/** `+0.3 %`, `−83 %`: by which share something has grown. */
+export const change = (share: number) => (share >= 0 ? '+' : '') + percent(share, Math.abs(share) < 0.1 ? 1 : 0);
+
 /** `1 step`, `1,204 steps` */
 export function counted(n: number, one: string): string {
 	return `${n.toLocaleString('en')} ${one}${n === 1 ? '' : 's'}`;

@@ -1,4 +1,4 @@
-import { figure, percent } from '../format/number';
+import { change, figure } from '../format/number';
 
 /** A figure that several runs give, each with what is known of its interval. */
 export interface Given {
@@ -9,10 +9,8 @@ export interface Given {
 /** Change against the base: `+17 %`, or as a number, times `factor`, where the base may be zero. */
 export function against(base: Given | null, one: Given | null, factor = 1): string {
 	if (!base || !one || base.value === 0) return '';
-	const change = one.value - base.value;
-	const share = change / Math.abs(base.value);
-	const said = Math.abs(base.value) < (half(base) ?? 0) ? figure(change * factor, 2) : percent(share, Math.abs(share) < 0.1 ? 1 : 0);
-	return `${change >= 0 ? '+' : ''}${said}`;
+	const grown = one.value - base.value;
+	return Math.abs(base.value) < (half(base) ?? 0) ? `${grown >= 0 ? '+' : ''}${figure(grown * factor, 2)}` : change(grown / Math.abs(base.value));
 }
 
 function half({ ci95 }: Given): number | null {

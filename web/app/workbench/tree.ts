@@ -44,6 +44,8 @@ export interface Branch {
 	depth: number;
 	/** The first of a branch that leaves the line to its left. */
 	forks: boolean;
+	/** Nothing grew from it. */
+	ends: boolean;
 }
 
 /** All versions, each after its parent. What grew from it first stands aside; the newest goes on straight below, so that a long chain stays flat. */
@@ -59,7 +61,7 @@ export function branches(models: readonly Model[]): Branch[] {
 		const here = children.get(parent) ?? [];
 		for (const model of here) {
 			const forks = parent !== null && model !== here.at(-1);
-			list.push({ model, depth: depth + Number(forks), forks });
+			list.push({ model, depth: depth + Number(forks), forks, ends: !children.has(model.id) });
 			walk(model.id, depth + Number(forks));
 		}
 	};
@@ -80,12 +82,6 @@ export function undecided(before: Model, after: Model): string[] {
 
 /** Less than this is no gain. */
 export const WORTH = 0.005;
-
-/** What was added to a version and took nothing off its held-out error is nobody's model until it is chosen. */
-export function isIdle(after: Model, models: readonly Model[]): boolean {
-	const before = models.find(({ id }) => id === after.parent);
-	return !!before && after.added.length > 0 && sameData(before, after) && gain(before, after) <= WORTH;
-}
 
 /** `± within`: how far chance alone may take the share. */
 export function worded(share: number, within = 0): string {

@@ -2,7 +2,7 @@ import { untrack } from 'svelte';
 import { api } from '../api/client';
 import { type Refusal, asRefusal } from '../api/problem';
 import type { Exclusion, Model, Run } from '../api/types';
-import { percent, quantity } from '../format/number';
+import { change, quantity } from '../format/number';
 import { words } from '../format/label';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
@@ -14,7 +14,7 @@ import { type Side, inOneTurn, withMore } from '../residual/points';
 import { selected } from '../residual/selected';
 import { usualAxes } from './ranked';
 import { readRegion } from './region';
-import { WORTH, childWith, gain, isIdle, sameData, undecided } from './tree';
+import { WORTH, childWith, gain, sameData, undecided, worded } from './tree';
 import { tries } from './tries.svelte';
 
 /** The model of one run, as the workbench works on it. Call while a component is being set up. */
@@ -53,7 +53,7 @@ export function openWorkbench(id: number) {
 	/** While the version of the address is awaited, the one that was here stays, and no other takes its place. */
 	let former: Model | null = null;
 	const model: Model | null = $derived(
-		(former = awaited ? former : (named ?? versions.findLast((one) => !tries.has(one.id) && !isIdle(one, versions)) ?? versions.at(-1) ?? null)),
+		(former = awaited ? former : (named ?? versions.findLast((one) => !tries.has(one.id) && !one.idle) ?? versions.at(-1) ?? null)),
 	);
 	/** From now on the address says which version it shows, so that a version made elsewhere does not take its place. */
 	$effect(() => {
@@ -110,7 +110,7 @@ export function openWorkbench(id: number) {
 		const next = await version(set, parent, what, anew);
 		if (!next) return;
 		// Nothing is kept silently: what gains nothing stands beside, to be kept or dropped.
-		if (parent && parent.id === model?.id && isIdle(next, [parent])) return stand(next, versions.length > known);
+		if (next.idle && parent?.id === model?.id) return stand(next, versions.length > known);
 		show(next, parent);
 	}
 
@@ -119,6 +119,7 @@ export function openWorkbench(id: number) {
 		router.set({ model: next.id, with: null, region: null, side: null, zoom: null }, parent === null ? 'replace' : 'push');
 		undone = [];
 		notice = parent ? told(parent, next) : null;
+		if (notice?.good === false) void reveal('said');
 	}
 
 	/** Fits with the effect and shows the answer beside the version at hand, which stays where it is. */
@@ -145,18 +146,18 @@ export function openWorkbench(id: number) {
 
 	const beside = (version: number | null) => router.set({ with: version }, 'push');
 
+	/** In the words of a version beside. Of what is only tried it says what the data does not decide; the rest stands there. */
 	function told(before: Model, after: Model, kept = true): { text: string; good: boolean } | null {
 		if (!sameData(before, after)) return null;
 		const share = gain(before, after);
-		const unit = after.fit.unit;
-		const figures = `${quantity(before.validation_rms, unit)} → ${quantity(after.validation_rms, unit)}`;
-		const fell = `Held-out error ${kept ? 'fell' : 'would fall'} by ${percent(share)}: ${figures}`;
-		const open = undecided(before, after);
-		if (share > WORTH && open.length > 0) return { text: `${fell}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
-		if (share > WORTH) return { text: `${fell}.`, good: true };
-		if (after.added.length === 0 && Math.abs(share) <= WORTH) return { text: `The held-out error stays: ${figures}.`, good: true };
-		const verdict = share < -WORTH ? `The held-out error ${kept ? 'rose' : 'would rise'} by ${percent(-share, 1)}` : `No gain in the held-out error (${percent(-share, 1)})${kept ? '' : ', not kept'}`;
-		return { text: `${verdict}: ${figures}.${kept ? ' Undo with z.' : ''}`, good: false };
+		const open = share > WORTH ? undecided(before, after) : [];
+		if (!kept && open.length === 0) return null;
+		const stays = after.added.length === 0 && Math.abs(share) <= WORTH;
+		const [was, is] = [before, after].map((one) => quantity(one.validation_rms, one.fit.unit));
+		const said = `Held-out error ${was} → ${is}: ${stays ? '≈ as before' : worded(share)} (${change(-share)})`;
+		if (open.length > 0) return { text: `${said}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
+		const good = stays || share > WORTH;
+		return { text: `${said}.${good ? '' : ' Undo with z.'}`, good };
 	}
 
 	const standing = $derived.by(() => {

@@ -7,7 +7,7 @@ import { readView, writeView } from './lens';
 import { readRegion, strength, writeRegion, writeStretch } from './region';
 import { sharesOf } from '../residual/line';
 import { selected } from '../residual/selected';
-import { branches, chain, childWith, gain, isIdle, stepName, undecided } from './tree';
+import { branches, chain, childWith, gain, stepName, undecided } from './tree';
 import { barsOf, lossesOf, markOf, topOf } from './waterfall';
 
 const version = (id: number, parent: number | null, effects: string[], held: number, added: string[] = []): Model =>
@@ -48,19 +48,12 @@ describe('the tree of versions', () => {
 	});
 
 	it('lists children under their parents', () => {
-		expect(branches(models).map(({ model, depth, forks }) => [model.id, depth, forks])).toEqual([
-			[1, 0, false],
-			[2, 1, true],
-			[4, 1, false],
-			[3, 0, false],
+		expect(branches(models).map(({ model, depth, forks, ends }) => [model.id, depth, forks, ends])).toEqual([
+			[1, 0, false, false],
+			[2, 1, true, false],
+			[4, 1, false, true],
+			[3, 0, false, true],
 		]);
-	});
-
-	it('knows what was added and brought nothing', () => {
-		const idle = version(5, 4, ['coulomb', 'stribeck', 'load_linear', 'gravity'], 0.999, ['gravity']);
-		const reset = { ...version(6, 4, ['coulomb', 'stribeck'], 4), removed: ['load_linear'] };
-		expect([...models, idle, reset].filter((one) => isIdle(one, [...models, idle, reset])).map(({ id }) => id)).toEqual([5]);
-		expect(isIdle({ ...idle, more_runs: [2] }, models)).toBe(false);
 	});
 
 	it('tells what an added effect leaves undecided', () => {
