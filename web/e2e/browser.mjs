@@ -31,8 +31,8 @@ export async function open({ base, executablePath }, context = {}) {
 
 function watch(page, base, faults) {
 	page.on('console', (message) => {
-		// Chromium calls every refusal an error; that a half-written formula or an empty file is refused is what is looked for.
-		if (/\/(effects\/check|runs\/import)$/.test(message.location().url) && /status of 422/.test(message.text())) return;
+		// Chromium calls every refusal an error; that an empty file is refused is what is looked for.
+		if (/\/runs\/import$/.test(message.location().url) && /status of 422/.test(message.text())) return;
 		if (message.type() === 'error') faults.push(`console: ${message.text()} (${message.location().url})`);
 	});
 	page.on('pageerror', (error) => faults.push(`exception: ${error.message}`));

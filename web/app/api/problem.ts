@@ -1,4 +1,4 @@
-import type { Place, Problem } from './types';
+import type { Problem } from './types';
 
 /** What a page shows when a request failed: the daemon's problem document, or why there is none. */
 export class Refusal extends Error {
@@ -6,8 +6,6 @@ export class Refusal extends Error {
 	readonly title: string;
 	readonly line: number | null;
 	readonly column: string | null;
-	/** The mistake in a text that a person wrote. */
-	readonly place: Place | null;
 
 	constructor(problem: Partial<Problem>) {
 		super(problem.detail || problem.title || 'the daemon gave no reason');
@@ -15,7 +13,6 @@ export class Refusal extends Error {
 		this.title = problem.title ?? 'Refused';
 		this.line = problem.line ?? null;
 		this.column = problem.column ?? null;
-		this.place = problem.place ?? null;
 	}
 
 	/** Nobody answered: worth waiting for, nothing to correct. */

@@ -1,6 +1,7 @@
 import { api } from '../api/client';
 import { connectLive } from '../api/live';
 import { asRefusal } from '../api/problem';
+import { token } from '../api/token';
 import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
 import type { Frame } from '../api/frame';
 import { chase } from '../plot/chase';
@@ -34,8 +35,8 @@ class LabState {
 	/** Raised when an autopilot made a step or ended. */
 	autopilots = $state(0);
 	line = $state(false);
-	/** The daemon wants a token that it was not given. */
-	unauthorized = $state(false);
+	/** The daemon wants a token that it was not given: its page says so where it asks for one. */
+	unauthorized = $state(!token() && 'token' in document.documentElement.dataset);
 	heard_ms = $state(performance.now());
 	now_ms = $state(performance.now());
 	/** Samples of the run that is on. The columns grow in place; `frames` tells of it. */
@@ -61,6 +62,7 @@ class LabState {
 	}
 
 	start(): () => void {
+		if (this.unauthorized) return this.leave;
 		const hangUp = connectLive({
 			message: (message) => this.take(message),
 			frame: (frame) => this.takeFrame(frame),
