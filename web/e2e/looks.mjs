@@ -2,7 +2,8 @@
 import { readFileSync } from 'node:fs';
 import { audit } from './audit.mjs';
 import { expect } from './browser.mjs';
-import { dropFiles, makeRun, readVersion } from './steps.mjs';
+import { dropFiles } from './files.mjs';
+import { makeRun, readVersion } from './steps.mjs';
 
 const PATIENCE_MS = 60_000;
 
@@ -51,10 +52,13 @@ export async function zoomWhileFollowing(page, base) {
 	await page.keyboard.type('walked by');
 	await page.keyboard.press('Enter');
 	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: 5000 }).catch(() => expect(false, 'Enter does not keep a note'));
+	await page.locator('ol:focus').waitFor({ timeout: 5000 }).catch(() => expect(false, 'Enter in a note loses the focus'));
 	await page.goto(`${base}/?bench=${bench}`);
 	const health = page.locator('section', { has: page.getByRole('heading', { name: 'Channel health' }) });
 	await health.locator('tbody tr', { hasText: 'motor velocity' }).waitFor({ timeout: 10_000 }).catch(() => expect(false, 'the channels of a run that is on are not told'));
-	await fetch(`${base}/api/v1/runs/${id}/abort`, { method: 'POST' });
+	await page.goto(`${base}/runs/${id}`);
+	for (const name of [/^Abort/, 'Yes, abort']) await page.getByRole('button', { name }).press('Enter');
+	await page.locator('h1:focus').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'the end of a run that is aborted loses the focus'));
 }
 
 /** Looks closer at a plot and chooses a cell of the residual map, by keyboard alone; what the map says of the cell. */

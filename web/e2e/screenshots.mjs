@@ -5,7 +5,8 @@
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { expect, open, settings, tell } from './browser.mjs';
-import { BARE, chooseForeign, flyAndStop, FOREIGN, makeRun, measureNext, readVersion, startRun, toAnotherVersion, UNDECIDED, watchRun } from './steps.mjs';
+import { chooseForeign, FOREIGN } from './files.mjs';
+import { BARE, flyAndStop, makeRun, measureNext, readVersion, startRun, toAnotherVersion, UNDECIDED, watchRun } from './steps.mjs';
 
 const where = settings('usage: node web/e2e/screenshots.mjs http://127.0.0.1:8080 [path/to/chromium]');
 const folder = process.env.JB_SCREENS ?? fileURLToPath(new URL('../../docs/screens', import.meta.url));

@@ -7,7 +7,8 @@ import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
 import { askForNone, bringBack, byKeyboard, dashesOf, keepView, manyRuns, openTogether, readResults, showEarlier, takeAway, takeMap, countCurves, zoomWhileFollowing } from './looks.mjs';
-import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, FOREIGN, importForeign, loseAndFind, makeRun, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
+import { FOREIGN, importForeign } from './files.mjs';
+import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, loseAndFind, makeRun, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 import { applyAndGoBack, makeAndRevoke } from './settings.mjs';
 
 const where = settings('usage: node web/e2e/walk.mjs http://127.0.0.1:8080 [path/to/chromium]');
