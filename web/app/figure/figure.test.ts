@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { cartesian } from './cartesian';
-import { type Figure, type Series, inUnits, magnified, reachOf, styles, tableOf } from './figure';
+import { type Figure, type Series, inUnits, magnification, magnified, reachOf, styles, tableOf } from './figure';
 import { glyphs, line, ribbon } from './ink';
 import { flow } from './legend';
 import { polar } from './polar';
@@ -114,12 +114,21 @@ it('puts entries of a legend below each other where they do not fit', () => {
 	expect(height).toBe(34);
 });
 
-it('draws a small remainder larger, and says how much', () => {
-	const of = (label: string, y: number[]) => ({ label, mark: 'line' as const, x: [0, 1], y });
-	const figure = { name: '', title: '', form: 'cartesian' as const, x: { label: '', unit: '' }, y: { label: '', unit: '' }, series: [of('CW, before', [3, -5]), of('CW, after', [0.1, 0])] };
-	expect(magnified(figure).series.map(({ label, y }) => [label, y])).toEqual([
+it('draws a small remainder larger, in all figures alike, and says how much', () => {
+	const of = (label: string, y: number[], mark: Series['mark'] = 'line') => series(label, mark, [0, 1], y, y.map((value) => [value, value]));
+	const turn = figure({ series: [of('CW, before', [3, -5]), of('CW, after', [0.1, 0])] });
+	const harmonics = figure({ x: { label: '', unit: '', names: ['1×', '2×'] }, series: [of('before', [4, 1], 'bars'), of('after', [0.03, 0.02], 'bars'), of('noise', [0.01, 0.01])] });
+	const whole = figure({ series: [of('before', [3]), of('after', [1])] });
+	expect([magnification([turn, harmonics, whole]), magnification([whole])]).toEqual([50, Infinity]);
+	expect(magnified(turn, 50).series.map(({ label, y }) => [label, y])).toEqual([
 		['CW, before', [3, -5]],
 		['CW, after, ×50', [5, 0]],
 	]);
-	expect(magnified({ ...figure, series: [of('before', [3]), of('after', [1])] }).series[1]!.label).toBe('after');
+	expect(magnified(harmonics, 50).series.map(({ label, y, band }) => [label, y[0], band![0]![1]])).toEqual([
+		['before', 4, 4],
+		['after, ×50', 1.5, 1.5],
+		['noise', 0.01, 0.01],
+		['noise, ×50', 0.5, 0.5],
+	]);
+	expect(magnified(whole, 50)).toBe(whole);
 });

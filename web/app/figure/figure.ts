@@ -83,17 +83,32 @@ export function inUnits(figure: Figure, scaleOf: (unit: string) => { factor: num
 	return { ...figure, x: { ...figure.x, unit: x.unit }, y: { ...figure.y, unit: y.unit }, series };
 }
 
-/** A small remainder beside what it was before would be a flat line or a single bar: it is drawn so many times as large, and says so. */
-export function magnified(figure: Figure): Figure {
-	const along = figure.series.some((one) => one.mark === 'bars') ? 'x' : 'y';
-	if (figure.x.names) return figure;
-	const largest = (word: string) => Math.max(...figure.series.filter((one) => one.label.endsWith(word)).flatMap((one) => one[along].map(Math.abs)));
+/** Along which axis it is told what was before and what is after. */
+const told = ({ series, x }: Figure) => (!x.names && series.some((one) => one.mark === 'bars') ? 'x' : 'y');
+
+function room(figure: Figure): number {
+	const largest = (word: string) => Math.max(...figure.series.filter((one) => one.label.endsWith(word)).flatMap((one) => one[told(figure)].map(Math.abs)));
 	const ratio = largest('before') / largest('after');
 	const power = 10 ** Math.floor(Math.log10(ratio));
 	const factor = power * (ratio < 2 * power ? 1 : ratio < 5 * power ? 2 : 5);
-	if (!(factor >= 5 && factor < Infinity)) return figure;
-	const series = figure.series.map((one) => (one.label.endsWith('after') ? { ...one, label: `${one.label}, ×${factor}`, [along]: one[along].map((value) => value * factor) } : one));
-	return { ...figure, series };
+	return factor >= 5 && factor < Infinity ? factor : 1;
+}
+
+/** A small remainder beside what it was before would be a flat line or a single bar: so many times as large it is drawn, in all figures that have room for it. */
+export const magnification = (figures: readonly Figure[]) => Math.min(...figures.map(room).filter((factor) => factor > 1));
+
+/** The figure with what is after `factor` times as large. A line that bars are held against is there for both. */
+export function magnified(figure: Figure, factor: number): Figure {
+	if (room(figure) < factor) return figure;
+	const along = told(figure);
+	const large = (one: Series): Series => ({
+		...one,
+		label: `${one.label}, ×${factor}`,
+		[along]: one[along].map((value) => value * factor),
+		band: along === 'y' ? one.band?.map((ends) => ends.map((end) => end * factor)) : one.band,
+	});
+	const both = figure.x.names ? figure.series.filter(({ mark }) => mark === 'line') : [];
+	return { ...figure, series: [...figure.series.map((one) => (one.label.endsWith('after') ? large(one) : one)), ...both.map(large)] };
 }
 
 export type Span = readonly [low: number, high: number];
