@@ -4,6 +4,7 @@
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
+mod detectable;
 mod made;
 mod measured;
 mod null;
@@ -55,6 +56,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     if asked.wants("power") {
         power::measure(&asked)?;
+    }
+    if asked.wants("detectable") {
+        detectable::measure(&asked)?;
     }
     if asked.wants("speed") {
         speed::measure(asked.case)?;

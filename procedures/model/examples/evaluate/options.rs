@@ -4,13 +4,14 @@ use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
 
-const PARTS: [&str; 7] = ["hidden", "removed", "practice", "measured", "null", "power", "speed"];
+const PARTS: [&str; 8] = ["hidden", "removed", "practice", "measured", "null", "power", "detectable", "speed"];
 
 /// Measures the diagnosis, as docs/diagnosis.md reports it.
 ///
 /// hidden: machines with hidden effects, simulated here. removed: one effect taken out of their complete models.
 /// practice: measurements with a known answer from beside the repository. measured: measurements made by others, beside
-/// what is asked of each. null: runs with nothing hidden. power: weak effects. speed: seconds and memory.
+/// what is asked of each. null: runs with nothing hidden. power: weak effects. detectable: effects of the size from which
+/// they are said to be found. speed: seconds and memory.
 #[derive(Parser)]
 #[command(name = "evaluate")]
 pub struct Asked {
@@ -20,7 +21,7 @@ pub struct Asked {
     /// Rounds over all effects of all families
     #[arg(long, default_value_t = 3)]
     pub rounds: u64,
-    /// Null runs, and runs for each weak effect: a tenth of it
+    /// Null runs, and runs for each weak or just detectable effect: a tenth of it
     #[arg(long, default_value_t = 400)]
     pub count: u64,
     /// Number of the first round, null run or weak effect: other numbers are other machines and other noise

@@ -7,7 +7,7 @@ use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, diagnose, discover};
 use std::error::Error;
 
-const EFFECTS: [&str; 7] = [
+pub const EFFECTS: [&str; 7] = [
     "stribeck",
     "direction_offset",
     "viscous_asymmetry",
@@ -33,7 +33,7 @@ pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
         let mut power = Power::default();
         for (e, effect) in EFFECTS.iter().enumerate() {
             for i in (asked.first..).take(asked.count as usize / 10) {
-                let run = run(effect, size, &mut Dice::new(700_000 + 1000 * e as u64 + i));
+                let run = run(effect, Rms::Beside(size * NOISE_NM), &mut Dice::new(700_000 + 1000 * e as u64 + i));
                 let found = one(effect, &run, &mut power)?;
                 if !asked.quiet && found != [*effect] {
                     println!("{effect} {i} at {size}: {}", found.join("+"));
@@ -74,9 +74,17 @@ const ROWS: usize = 200;
 const STEP_S: f64 = 0.004;
 const GEAR: f64 = 60.0;
 
+/// How much of an effect is in a run [Nm].
+#[derive(Clone, Copy)]
+pub enum Rms {
+    /// Beside what dry and viscous friction can take of it.
+    Beside(f64),
+    Whole(f64),
+}
+
 /// Nine speeds both ways at three loads, twice, in random order: 108 steps of 200 samples. AR(1) noise with a
 /// correlation of 0.85; every step has its own offset, tilt and dry friction, a tenth of the noise each.
-fn run(effect: &str, size: f64, dice: &mut Dice) -> RunTable {
+pub fn run(effect: &str, size: Rms, dice: &mut Dice) -> RunTable {
     let speeds: Vec<f64> = (0..9).map(|i| 2.5 * 1.6f64.powi(i)).collect();
     let fastest = speeds[8];
     let slow = fastest * dice.size(0.03, 0.08);
@@ -106,7 +114,7 @@ fn run(effect: &str, size: f64, dice: &mut Dice) -> RunTable {
                     "viscous_asymmetry" => speed,
                     "viscous_quadratic" => side * speed * speed,
                     "load_linear" => side * load,
-                    "temperature_viscous" => side * speed * (-0.01 * warmth).exp(),
+                    "temperature_viscous" => side * speed * (-0.01 * warmth).exp_m1(),
                     _ => (angle / GEAR).cos(),
                 });
                 let values = [time, angle, side * speed, angle / GEAR, side * load, 25.0 + warmth, segment, repeat];
@@ -115,8 +123,11 @@ fn run(effect: &str, size: f64, dice: &mut Dice) -> RunTable {
             segment += 1.0;
         }
     }
-    let beside = left_over(shape.clone(), &columns[2]);
-    let factor = size * NOISE_NM / (beside.iter().map(|b| b * b).sum::<f64>() / beside.len() as f64).sqrt();
+    let (size, counts) = match size {
+        Rms::Beside(size) => (size, &left_over(shape.clone(), &columns[2])),
+        Rms::Whole(size) => (size, &shape),
+    };
+    let factor = size / (counts.iter().map(|b| b * b).sum::<f64>() / counts.len() as f64).sqrt();
     // More friction near standstill and under load; the others have either sign.
     let sign = if ["stribeck", "load_linear"].contains(&effect) { 1.0 } else { dice.sign() };
     let current = torque.iter().zip(&shape).map(|(t, s)| (t + sign * factor * s) / 0.08).collect();

@@ -7,6 +7,11 @@
 use crate::linear::{Spd, dot};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+/// Of the scatter of an effect's sums so much at least is noise, or a form with fewer columns shows it.
+const OWN_SCATTER: f64 = 0.25;
 
 /// One signed sum for each block, whitened so that their squared total is the studentised score.
 pub struct Score {
@@ -42,6 +47,19 @@ impl Score {
         normal_scale(total, self.parts.len())
     }
 
+    /// How many times as large as what noise brings its factor has to be for `z`, where `deciding` equal groups would decide it
+    /// as well as these do: by [`Score::z`], whose scatter holds the effect itself, or a single one by its jackknife.
+    pub fn needed(&self, z: f64, deciding: f64) -> f64 {
+        if self.parts.len() == 1 {
+            let t = StudentsT::new(0.0, 1.0, deciding - 1.0);
+            return t.map_or(f64::INFINITY, |t| -t.inverse_cdf(0.5 * Normal::standard().sf(z)));
+        }
+        let k = self.parts.len() as f64;
+        let spread = 2.0 / (9.0 * k);
+        let chi2 = k * (z * spread.sqrt() + 1.0 - spread).powi(3);
+        (chi2 / (1.0 - chi2 / deciding).max(OWN_SCATTER)).sqrt()
+    }
+
     fn z_flipped(&self, signs: &[f64]) -> f64 {
         let total: f64 = self.parts.iter().map(|p| dot(p, signs).powi(2)).sum();
         normal_scale(total, self.parts.len())
@@ -63,23 +81,51 @@ pub struct Null {
 }
 
 impl Null {
-    pub fn new(scores: &[Score], flips: usize, seed: u64) -> Self {
+    pub fn new(scores: &[&Score], flips: usize, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let groups = scores.iter().flat_map(|s| &s.parts).map(Vec::len).max().unwrap_or(0);
-        let mut signs = vec![1.0; groups];
-        let mut largest: Vec<f64> = (0..flips)
-            .map(|_| {
-                signs.iter_mut().for_each(|s| *s = if random.random::<bool>() { 1.0 } else { -1.0 });
-                scores.iter().map(|s| s.z_flipped(&signs)).fold(f64::NEG_INFINITY, f64::max)
-            })
-            .collect();
+        let signs: Vec<f64> = (0..flips * groups).map(|_| if random.random::<bool>() { 1.0 } else { -1.0 }).collect();
+        let largest_of = |signs: &[f64]| scores.iter().map(|s| s.z_flipped(signs)).fold(f64::NEG_INFINITY, f64::max);
+        let mut largest: Vec<f64> = signs.par_chunks(groups.max(1)).map(largest_of).collect();
         largest.sort_by(f64::total_cmp);
         Self { largest }
+    }
+
+    /// The score that this share of flips stays below.
+    pub fn quantile(&self, share: f64) -> f64 {
+        self.largest.get((share * self.largest.len() as f64) as usize).copied().unwrap_or(f64::INFINITY)
     }
 
     /// Share of flips whose largest score is as large.
     pub fn p_value(&self, z: f64) -> f64 {
         let below = self.largest.partition_point(|l| *l < z);
         (1 + self.largest.len() - below) as f64 / (1 + self.largest.len()) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums of one column over many groups, which are nothing in total.
+    fn sums(groups: usize, turn: f64) -> Vec<f64> {
+        let noise = |g: usize| (turn * (g * g) as f64).sin();
+        let mean = (0..groups).map(noise).sum::<f64>() / groups as f64;
+        (0..groups).map(|g| noise(g) - mean).collect()
+    }
+
+    #[test]
+    fn a_factor_that_is_so_many_times_its_noise_reaches_the_score() {
+        for columns in [1, 3] {
+            let noise: Vec<Vec<f64>> = (0..columns).map(|c| sums(1000, 1.0 + c as f64)).collect();
+            let first = &noise[0];
+            let times = Score::new(&noise).needed(3.0, 1000.0);
+            // The first column's sums, moved until their total is so many of their standard errors.
+            let each = times * dot(first, first).sqrt() / 1000.0;
+            let mut moved = noise.clone();
+            moved[0].iter_mut().for_each(|s| *s += each);
+            let z = Score::new(&moved).z();
+            assert!((z - 3.0).abs() < 0.1, "{columns} columns: {times} times gives a score of {z}");
+        }
     }
 }

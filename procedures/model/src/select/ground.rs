@@ -117,6 +117,16 @@ impl Ground {
         Some(Normal::standard().inverse_cdf(1.0 - chance.max(1e-15))).filter(|z| z.is_finite())
     }
 
+    /// How many equal groups would decide the factors of these columns as well as these do.
+    pub fn deciding(&self, columns: &[Vec<f32>]) -> Option<f64> {
+        let squares = |column: &Vec<f32>| {
+            let rest = self.basis.rest(&column.iter().copied().map(f64::from).collect::<Vec<_>>());
+            products(&rest, &rest, &self.groups)
+        };
+        let of = |squares: Vec<f64>| squares.iter().sum::<f64>().powi(2) / dot(&squares, &squares);
+        columns.iter().map(squares).map(of).reduce(f64::min).filter(|groups| *groups > 1.0)
+    }
+
     pub fn score<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Own) -> Score {
         Score::new(&self.sums(columns, own))
     }

@@ -2,10 +2,15 @@
 
 use super::Search;
 use crate::linear::dot;
+use crate::select::flips::{Null, Score};
 use crate::select::ground::Ground;
-use crate::select::library::Library;
+use crate::select::library::{Candidate, Library};
 use crate::select::rivals::Bar;
 use crate::terms::Terms;
+use rayon::prelude::*;
+
+/// z₀.₈: four of five factors are larger than their own less so many standard errors.
+const POWER: f64 = 0.84;
 
 /// A candidate that was looked for and not found.
 pub struct Silence<'p> {
@@ -20,25 +25,65 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-/// For each effect that is not in the model, its best form and shape: what would have been seen.
+/// For each effect that is not in the model what would have been seen of it: in the form that is hardest to see, at the shape
+/// in the middle of those looked for.
 fn silences<'p>(end: &Terms<'p>, library: &Library<'p>, withdrawn: &[&'p str], bar: Bar) -> Vec<Silence<'p>> {
     let ground = Ground::of(end);
     let n = end.problem.rows() as f64;
     let least = bar.least_share(end, ground.energy) * ground.energy;
-    let mut out: Vec<Silence> = Vec::new();
     let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
-    for candidate in library.candidates.iter().filter(|c| is_out(c.id())) {
-        let own = ground.own(&candidate.columns);
-        let sums = ground.sums(&candidate.columns, &own);
-        // z₀.₉₇₅ + z₀.₈ standard errors of the amplitude, and never less than what is worth a name.
-        let noise = sums.iter().zip(own.squares()).map(|(s, square)| 2.8 * (dot(s, s) / square).sqrt());
-        let Some(noise) = noise.reduce(f64::max) else { continue };
-        // Of the effect itself the model's own columns take their part.
-        let detectable_rms = noise.max(least.sqrt()) / (own.visible * n).sqrt();
-        match out.iter_mut().find(|s| s.effect == candidate.id()) {
-            Some(s) => s.detectable_rms = s.detectable_rms.min(detectable_rms),
-            None => out.push(Silence { effect: candidate.id(), detectable_rms }),
+    let candidates: Vec<&Candidate> = library.candidates.iter().filter(|c| is_out(c.id())).collect();
+    let looked_for: Vec<Looked> = candidates.into_par_iter().filter_map(|c| Looked::new(c, &ground)).collect();
+    let scores: Vec<&Score> = looked_for.iter().map(|looked| &looked.score).collect();
+    let clear = Null::new(&scores, bar.options.flips, bar.options.seed).quantile(1.0 - bar.options.alpha);
+    let found = |looked: &&Looked| {
+        let clear =
+            ground.deciding(&looked.candidate.columns).map_or(f64::INFINITY, |by| looked.score.needed(clear, by));
+        ((clear * looked.noise).max(least.sqrt()) / looked.noise + POWER) * looked.scatter() / n.sqrt()
+    };
+    let middles: Vec<&Looked> = looked_for.chunk_by(Looked::is_formed_as).filter_map(Looked::middle).collect();
+    let rms: Vec<f64> = middles.par_iter().map(found).collect();
+    let mut out: Vec<Silence> = Vec::new();
+    for (looked, detectable_rms) in middles.into_iter().zip(rms) {
+        let effect = looked.candidate.id();
+        match out.iter_mut().find(|s| s.effect == effect) {
+            Some(s) => s.detectable_rms = s.detectable_rms.max(detectable_rms),
+            None => out.push(Silence { effect, detectable_rms }),
         }
     }
     out
+}
+
+/// What the rows tell of a candidate.
+struct Looked<'a, 'p> {
+    candidate: &'a Candidate<'p>,
+    score: Score,
+    /// What its factor scatters by, as the square root of what that explains.
+    noise: f64,
+    /// Of the effect itself the model's own columns take the rest.
+    visible: f64,
+}
+
+impl<'a, 'p> Looked<'a, 'p> {
+    fn new(candidate: &'a Candidate<'p>, ground: &Ground) -> Option<Self> {
+        let own = ground.own(&candidate.columns);
+        let sums = ground.sums(&candidate.columns, &own);
+        let noise = sums.iter().zip(own.squares()).map(|(s, square)| (dot(s, s) / square).sqrt()).reduce(f64::max)?;
+        Some(Self { candidate, score: Score::new(&sums), noise, visible: own.visible })
+    }
+
+    fn is_formed_as(&self, other: &Self) -> bool {
+        self.candidate.id() == other.candidate.id() && self.candidate.form.name == other.candidate.form.name
+    }
+
+    /// The same of the whole effect.
+    fn scatter(&self) -> f64 {
+        self.noise / self.visible.sqrt()
+    }
+
+    fn middle(shapes: &[Self]) -> Option<&Self> {
+        let mut shapes: Vec<&Self> = shapes.iter().collect();
+        shapes.sort_by(|a, b| a.scatter().total_cmp(&b.scatter()));
+        shapes.get(shapes.len() / 2).copied()
+    }
 }
