@@ -1,4 +1,4 @@
-// Accessibility of the page as it stands, by axe-core; through the debugger, so that the page's own policy stays as strict as it is.
+// Accessibility of the page as it stands, light and dark, by axe-core; through the debugger, so that the page's own policy stays as strict as it is.
 import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
 import { expect } from './browser.mjs';
@@ -8,8 +8,15 @@ const source = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe
 export async function audit(page, name) {
 	if (!(await page.evaluate('typeof axe === "object"'))) await page.evaluate(source);
 	const found = await page.evaluate(async () => {
-		const { violations } = await axe.run(document, { resultTypes: ['violations'] });
-		return violations.map(({ id, help, nodes }) => `${id}: ${help}; ${nodes.slice(0, 3).map((node) => `${node.html.slice(0, 160)} ${node.any[0]?.message ?? ''}`).join(' | ')}`);
+		const { dataset } = document.documentElement;
+		const now = dataset.theme;
+		const violations = [];
+		for (const theme of ['light', 'dark']) {
+			dataset.theme = theme;
+			violations.push(...(await axe.run(document, { resultTypes: ['violations'] })).violations.map((one) => ({ ...one, theme })));
+		}
+		dataset.theme = now;
+		return violations.map(({ id, help, nodes, theme }) => `${theme}: ${id}: ${help}; ${nodes.slice(0, 3).map((node) => `${node.html.slice(0, 160)} ${node.any[0]?.message ?? ''}`).join(' | ')}`);
 	});
 	expect(found.length === 0, `${name} breaks rules of accessibility:\n  ${found.join('\n  ')}`);
 }

@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import { audit } from './audit.mjs';
 import { expect } from './browser.mjs';
 import { dropFiles } from './files.mjs';
-import { makeRun, readVersion } from './steps.mjs';
+import { jumpsOf, makeRun, readVersion } from './steps.mjs';
 
 const PATIENCE_MS = 60_000;
 
@@ -53,6 +53,19 @@ export async function zoomWhileFollowing(page, base) {
 	await page.keyboard.press('Enter');
 	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: 5000 }).catch(() => expect(false, 'Enter does not keep a note'));
 	await page.locator('ol:focus').waitFor({ timeout: 5000 }).catch(() => expect(false, 'Enter in a note loses the focus'));
+	const box = await plot.boundingBox();
+	const followed = page.url();
+	await page.mouse.move(box.x + box.width * 0.3, box.y + 50);
+	await page.mouse.down();
+	await page.mouse.move(box.x + box.width * 0.7, box.y + 50, { steps: 4 });
+	await page.mouse.up();
+	await page.waitForURL(/view=-?[\d.]+:/, { timeout: 5000 }).catch(() => expect(false, 'a drag chooses no stretch'));
+	await plot.dblclick();
+	await page.waitForURL(followed, { timeout: 5000 }).catch(() => expect(false, `one double click does not go back to what was followed: ${page.url()}`));
+	await page.keyboard.press('0');
+	await page.waitForURL(/view=all/, { timeout: 5000 });
+	const all = await picture();
+	await page.waitForFunction((before) => document.querySelector('main figure canvas').toDataURL() !== before, all, { timeout: 5000 }).catch(() => expect(false, 'all of a run that is on does not grow'));
 	await page.goto(`${base}/?bench=${bench}`);
 	const health = page.locator('section', { has: page.getByRole('heading', { name: 'Channel health' }) });
 	await health.locator('tbody tr', { hasText: 'motor velocity' }).waitFor({ timeout: 10_000 }).catch(() => expect(false, 'the channels of a run that is on are not told'));
@@ -155,7 +168,7 @@ export async function dashesOf(page, address) {
 	const inks = (figure) => figure.locator('[stroke^="var(--oi"]').evaluateAll((drawn) => [...new Set(drawn.map((one) => one.getAttribute('stroke')))]);
 	const [above, below] = [await inks(plot), await inks(page.locator('[data-figure=difference]'))];
 	expect(below.join() === above.slice(1).join(), `the difference is drawn in ${below.join()}, its runs above in ${above.join()}`);
-	return { legend, missing: legend.filter((dash) => !painted.includes(dash.split(' ').map((n) => (n ? n * ratio : '')).join(' '))) };
+	return { jumps: await jumpsOf(page), legend, missing: legend.filter((dash) => !painted.includes(dash.split(' ').map((n) => (n ? n * ratio : '')).join(' '))) };
 }
 
 /** The list of ten thousand runs (told to the page in the daemon's place): how many rows exist, and how long the jump to the last takes. */

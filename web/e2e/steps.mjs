@@ -161,7 +161,7 @@ export async function tryAndDrop(page) {
 }
 
 /** How far things have jumped on this page since it was opened, by what nobody did. */
-const jumpsOf = (page) => page.evaluate(() => new Promise((ok) => {
+export const jumpsOf = (page) => page.evaluate(() => new Promise((ok) => {
 	new PerformanceObserver((list) => ok(list.getEntries().reduce((sum, one) => sum + (one.hadRecentInput ? 0 : one.value), 0))).observe({ type: 'layout-shift', buffered: true });
 	setTimeout(() => ok(0), 1000);
 }));
@@ -181,7 +181,7 @@ export async function openWorkbench(another, address) {
 	return jumps;
 }
 
-/** The page of a daemon without any run: what it says, how far things jump while it loads, and what it may load at all. */
+/** The page of a daemon without any run: what it says, how far things jump while it loads, and what it may load at all. Its demo run is made. */
 export async function firstUse(page, base) {
 	const answer = await page.goto(base);
 	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
@@ -191,6 +191,11 @@ export async function firstUse(page, base) {
 	const started = page.waitForRequest((request) => request.method() === 'POST' && request.url().endsWith('/runs'), { timeout: 1000 });
 	await page.locator('.fields input').first().press('Enter');
 	expect(await started.then(() => false, () => true), 'Enter in a field starts the bench, which only its button may');
+	await page.goto(`${base}/live`);
+	await page.getByRole('link', { name: 'Make a demo run' }).click();
+	await page.getByRole('button', { name: 'Make a demo run' }).click();
+	await page.waitForURL(/\/runs\/\d+/, { timeout: 30_000 }).catch(() => expect(false, 'the demo run does not start where it is pressed'));
+	await page.getByRole('link', { name: 'Open in the workbench' }).waitFor({ timeout: RUN_MS });
 	return { jumps, policy: answer.headers()['content-security-policy'] ?? '' };
 }
 

@@ -163,15 +163,20 @@ await tell('walk', async () => {
 	await keepView(page, where.base, run);
 	await importForeign(page, where.base, FOREIGN);
 	await page.getByLabel(`Compare run ${run}`).check();
+	const third = page.getByLabel(`Compare run ${run + 3}`);
+	const stood = (await third.boundingBox()).y;
 	await page.getByLabel(`Compare run ${run + 1}`).check();
-	await page.getByLabel(`Compare run ${run + 3}`).check();
+	await page.locator('.uplot').first().waitFor({ timeout: 30_000 });
+	expect((await third.boundingBox()).y === stood, 'a comparison pushes the list away');
+	await third.check();
 	await page.getByRole('heading', { name: 'Compare 3 runs' }).waitFor({ timeout: 30_000 });
 	await page.locator('.uplot').first().waitFor({ timeout: 30_000 });
 	await audit(page, 'the comparison');
 
 	const beside = await another();
 	await zoomWhileFollowing(beside, where.base);
-	const { legend, missing } = await dashesOf(beside, page.url());
+	const { legend, missing, jumps: shift } = await dashesOf(beside, page.url());
+	expect(shift < 0.1, `the comparison jumps while it opens, by ${shift}`);
 	expect(legend.length === 3 && new Set(legend).size === 3 && missing.length === 0, `colour alone keeps lines apart: ${JSON.stringify({ legend, missing })}`);
 	await openTogether(beside, where.base, [run + 1, run]);
 	const { rows, jump_ms } = await manyRuns(beside, where.base);

@@ -94,7 +94,7 @@ export function makeChart(
 				...hands.cursor,
 				points: { size: 6 },
 				y: false,
-				sync: frame.sync ? { key: frame.sync, setSeries: false, scales: ['x', null] } : undefined,
+				sync: frame.sync ? { key: frame.sync, setSeries: false, scales: ['x', null], filters: { pub: (what) => what === 'mousemove' } } : undefined,
 			},
 			hooks: {
 				...hands.hooks,
@@ -147,7 +147,7 @@ function axis(title: string, bare = false, size?: number): uPlot.Axis {
 		ticks: { stroke: () => colour('--line'), width: 1, size: 4 },
 		gap: 4,
 		size: bare ? 8 : (size ?? 28),
-		space: size ? 26 : 60,
+		space: size ? 24 : 60,
 		values: (_u, splits) => splits.map((tick) => (bare ? '' : tickText(tick))),
 	};
 }

@@ -67,7 +67,7 @@ export function askSoFar(running: () => number | null) {
 		get busy() {
 			return busy;
 		},
-		get refused() {
+		get error() {
 			return refused;
 		},
 	};

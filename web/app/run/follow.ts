@@ -1,6 +1,6 @@
 import type { Hand, View } from '../plot/gestures';
 
-/** What a live plot shows: the newest `width_s` seconds, or a stretch that stands still. */
+/** What a live plot shows: the newest `width_s` seconds, all so far where they are infinite, or a stretch that stands still. */
 export type Look = { follow: true; width_s: number } | { follow: false; view: View | null };
 
 /** The look after a person's hand on the plot. Zooming keeps following with a new width; the others hold still. */
@@ -11,17 +11,20 @@ export function afterHand(look: Look, asked: View | null, hand: Hand): Look {
 }
 
 export function viewOf(look: Look, newest_s: number): View | null {
-	return look.follow ? [newest_s - look.width_s, newest_s] : look.view;
+	if (!look.follow) return look.view;
+	if (look.width_s < Infinity) return [newest_s - look.width_s, newest_s];
+	return newest_s > 0 ? [0, newest_s] : null;
 }
 
 /** `follow:10` or `from:to`, for the address. */
 export function writeLook(look: Look): string {
-	if (look.follow) return `follow:${Number(look.width_s.toPrecision(4))}`;
-	return look.view ? look.view.map((edge) => Number(edge.toPrecision(7))).join(':') : 'all';
+	if (look.follow && look.width_s < Infinity) return `follow:${Number(look.width_s.toPrecision(4))}`;
+	return !look.follow && look.view ? look.view.map((edge) => Number(edge.toPrecision(7))).join(':') : 'all';
 }
 
 export function readLook(text: string | null, live: boolean): Look {
 	if (text === null) return live ? { follow: true, width_s: 10 } : { follow: false, view: null };
+	if (text === 'all' && live) return { follow: true, width_s: Infinity };
 	const [first = '', second = ''] = text.split(':');
 	if (first === 'follow' && Number(second) > 0) return live ? { follow: true, width_s: Number(second) } : { follow: false, view: null };
 	const [from, to] = [Number(first), Number(second)];

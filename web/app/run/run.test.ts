@@ -21,6 +21,7 @@ describe('following the live end', () => {
 
 	it('survives in the address', () => {
 		for (const text of ['follow:7.5', '12.5:30', 'all']) expect(writeLook(readLook(text, true))).toBe(text);
+		expect(viewOf(readLook('all', true), 40), 'all of a run that is on is what there is by now').toEqual([0, 40]);
 		expect(readLook('nonsense', true)).toEqual({ follow: false, view: null });
 		expect(readLook(null, false)).toEqual({ follow: false, view: null });
 		expect(readLook('follow:7.5', false), 'nothing is followed once the run is over').toEqual({ follow: false, view: null });

@@ -58,7 +58,7 @@ export function stretchOf(run: () => Run, live: () => boolean, look: () => Look)
 			return first != null && last != null && first < last ? [first, last] : null;
 		},
 		/** Why there is nothing to show. */
-		get refused() {
+		get error() {
 			return stored && !history.data ? history.error : null;
 		},
 		get gaps() {

@@ -1,16 +1,18 @@
 import { axisTitle, label } from '../format/label';
 import { speedScale, spokenSpeeds } from '../format/speed';
 import type { Scale } from '../format/number';
+import { router } from './router.svelte';
 
 const KEPT = 'jointbench.speed';
 
-/** Whether speeds are read in rad/s or in rpm, kept by the browser. What is sent and stored stays in rad/s. */
+/** Whether speeds are read in rad/s or in rpm: as the address says, or as this browser was left. What is sent and stored stays in rad/s. */
 class Speed {
-	rpm = $state(localStorage.getItem(KEPT) === 'rpm');
+	private kept = $state(localStorage.getItem(KEPT));
+	rpm = $derived((router.query.get('speed') ?? this.kept) === 'rpm');
 
 	toggle(): void {
-		this.rpm = !this.rpm;
-		localStorage.setItem(KEPT, this.rpm ? 'rpm' : 'rad/s');
+		localStorage.setItem(KEPT, (this.kept = this.rpm ? 'rad/s' : 'rpm'));
+		router.set({ speed: this.kept });
 	}
 
 	scale(unit: string): Scale {

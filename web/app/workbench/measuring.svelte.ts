@@ -1,6 +1,6 @@
 import { untrack } from 'svelte';
 import { api } from '../api/client';
-import { type Refusal, asRefusal } from '../api/problem';
+import { deed } from '../state/deed.svelte';
 import { asked } from '../autopilot/flight';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
@@ -8,8 +8,7 @@ import type { Bench } from './workbench.svelte';
 
 /** The run that a diagnosis asks for: started here, followed, and its answer shown. Call while a component is being set up. */
 export function measuring(bench: Bench) {
-	let refused: Refusal | null = $state.raw(null);
-	let starting = $state(false);
+	const begun = deed();
 	/** The flight that this page began, with the version that asked for it. */
 	let mine: { flight: number; from: number } | null = $state.raw(null);
 	const flights = resource(
@@ -31,16 +30,12 @@ export function measuring(bench: Bench) {
 	});
 
 	async function start(): Promise<void> {
-		if (diagnosis === null || !where || !bench.model || starting) return;
-		starting = true;
-		refused = null;
-		try {
-			mine = { flight: (await api.experiment(diagnosis, where.name)).id, from: bench.model.id };
+		const from = bench.model?.id;
+		if (diagnosis === null || !where || from === undefined) return;
+		await begun.act(async () => {
+			mine = { flight: (await api.experiment(diagnosis, where.name)).id, from };
 			lab.autopilots += 1;
-		} catch (failure) {
-			refused = asRefusal(failure);
-		}
-		starting = false;
+		});
 	}
 
 	return {
@@ -52,10 +47,10 @@ export function measuring(bench: Bench) {
 			return flight;
 		},
 		get starting() {
-			return starting;
+			return begun.busy;
 		},
-		get refused() {
-			return refused;
+		get error() {
+			return begun.error;
 		},
 	};
 }

@@ -1,0 +1,26 @@
+import { type Refusal, asRefusal } from '../api/problem';
+
+/** What a person does: one thing at a time, and why the last was refused. */
+export function deed() {
+	let busy = $state(false);
+	let error: Refusal | null = $state.raw(null);
+	return {
+		get busy() {
+			return busy;
+		},
+		get error() {
+			return error;
+		},
+		async act(work: () => Promise<unknown>): Promise<void> {
+			if (busy) return;
+			busy = true;
+			error = null;
+			try {
+				await work();
+			} catch (failure) {
+				error = asRefusal(failure);
+			}
+			busy = false;
+		},
+	};
+}
