@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { axisTitle, cut, label, linear, prose, tail } from './label';
+import { axisTitle, cut, inLines, label, linear, prose, tail } from './label';
 
 it('reads the unit from the suffix', () => {
 	expect(label('motor_velocity_rad_s')).toEqual({ title: 'motor velocity', unit: 'rad/s' });
@@ -33,4 +33,10 @@ it('reads units as an axis that slides has them', () => {
 
 it('keeps the end of a path', () => {
 	expect(['/data/emps/run.csv', 'C:\\data\\run.csv', 'joint-a'].map(tail)).toEqual(['…/emps/run.csv', '…/data/run.csv', 'joint-a']);
+});
+
+it('breaks a label that has no room between its words', () => {
+	expect(inLines('+ Coulomb', 100)).toEqual(['+ Coulomb']);
+	expect(inLines('+ Load-dependent friction', 100)).toEqual(['+ Load-dependent', 'friction']);
+	expect(inLines('+ Transmissionlosses', 60)).toEqual(['+ Transm…']);
 });

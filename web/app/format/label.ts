@@ -87,3 +87,9 @@ export function cut(text: string, width_px: number): string {
 	const letters = Math.max(2, Math.floor(width_px / LETTER_PX));
 	return text.length <= letters ? text : `${text.slice(0, letters - 1).trimEnd()}…`;
 }
+
+/** The same in two lines, broken between words. */
+export function inLines(text: string, width_px: number): string[] {
+	const end = text.lastIndexOf(' ', width_px / LETTER_PX);
+	return cut(text, width_px) === text || end < 3 ? [cut(text, width_px)] : [text.slice(0, end), cut(text.slice(end + 1), width_px)];
+}
