@@ -1,5 +1,5 @@
 /** The address is the view: which page, of what, and how it is set. Pure; the router holds the present one. */
-export type Page = 'bench' | 'live' | 'run' | 'runs' | 'workbench' | 'log' | 'settings' | 'lost';
+export type Page = 'bench' | 'live' | 'run' | 'runs' | 'workbench' | 'alignment' | 'log' | 'settings' | 'lost';
 
 export interface Route {
 	page: Page;
@@ -13,7 +13,7 @@ export function parseRoute(path: string): Route {
 	const whole = run === null || (Number.isInteger(run) && run > 0);
 	if (rest.length || !whole) return { page: 'lost', run: null };
 	if (first === '' && run === null) return { page: 'bench', run };
-	if (run === null && (first === 'live' || first === 'log' || first === 'settings')) return { page: first, run };
+	if (run === null && (first === 'live' || first === 'alignment' || first === 'log' || first === 'settings')) return { page: first, run };
 	if (first === 'runs') return { page: run === null ? 'runs' : 'run', run };
 	if (first === 'workbench') return { page: 'workbench', run };
 	return { page: 'lost', run: null };
