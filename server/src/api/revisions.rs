@@ -109,7 +109,9 @@ pub async fn export(
         ExportFormat::Lut => "text/csv; charset=utf-8",
         ExportFormat::Mujoco | ExportFormat::Urdf => "application/xml",
     };
-    let name = format!("attachment; filename=\"model-{id}.{}\"", format.extension());
+    // Two kinds of XML of one model are two files.
+    let extension = if matches!(query.format, ExportFormat::Urdf) { "urdf" } else { format.extension() };
+    let name = format!("attachment; filename=\"model-{id}.{extension}\"");
     Ok(([(header::CONTENT_TYPE, media_type.to_owned()), (header::CONTENT_DISPOSITION, name)], text).into_response())
 }
 

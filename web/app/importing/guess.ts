@@ -43,6 +43,9 @@ const UNIT_WORDS: [RegExp, string][] = [
 	[/(^|[\s_[(])(us|µs)\b/i, 'µs'],
 ];
 
+/** A temperature, whatever it is called: `T` is no time there. */
+const WARM = /(deg|°)c\b/i;
+
 const TAIL = /[[(].*[\])]|[_\s](rad_s|rad|deg_s|degs?|nm|mnm|ncm|ma|a|ms|us|s|rpm|turns?|revs?|c|v)$/gi;
 const bare = (header: string) => header.replace(TAIL, '').toLowerCase().replace(/[^a-z0-9]/g, '');
 
@@ -58,7 +61,7 @@ export function guess({ required, optional }: Kind, headers: readonly string[]):
 		[...required, ...optional].map((column) => {
 			const units = unitsOf(column);
 			if (headers.includes(column)) return [column, { from: column, unit: units[0]!.name }];
-			const from = headers.find((header) => !taken.has(header) && ALIASES[column]?.test(bare(header))) ?? '';
+			const from = headers.find((header) => !taken.has(header) && (WARM.test(header) ? column === 'temperature_c' : ALIASES[column]?.test(bare(header)))) ?? '';
 			if (from) taken.add(from);
 			return [column, { from, unit: unitIn(from, units) }];
 		}),

@@ -22,6 +22,12 @@ describe('the mapping of a foreign table', () => {
 		for (const load of ['load', 'Load [Nm]', 'load_nm', 'Last']) expect(guess(friction, [load])['link_torque_nm']!.from).toBe(load);
 	});
 
+	it('tells a temperature from a time by its unit', () => {
+		const mapping = guess(friction, ['t [s]', 'T [degC]']);
+		expect([mapping['time_s']!.from, mapping['temperature_c']!.from]).toEqual(['t [s]', 'T [degC]']);
+		expect(guess(friction, ['T_°C'])['time_s']!.from).toBe('');
+	});
+
 	it('becomes what the daemon understands', () => {
 		const { map, scale } = instructions(mapping);
 		expect(map).toContain('motor_current_a=Iq [A]');
