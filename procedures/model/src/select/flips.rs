@@ -96,7 +96,7 @@ impl Null {
         self.largest.get((share * self.largest.len() as f64) as usize).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// Share of flips whose largest score is as large.
+    /// Share of flips whose largest score is as large: all, where no candidate has anything of its own.
     pub fn p_value(&self, z: f64) -> f64 {
         let below = self.largest.partition_point(|l| *l < z);
         (1 + self.largest.len() - below) as f64 / (1 + self.largest.len()) as f64
@@ -127,5 +127,12 @@ mod tests {
             let z = Score::new(&moved).z();
             assert!((z - 3.0).abs() < 0.1, "{columns} columns: {times} times gives a score of {z}");
         }
+    }
+
+    #[test]
+    fn what_has_nothing_of_its_own_is_chance() {
+        assert_eq!(Null::new(&[&Score::new(&[])], 499, 0).p_value(5.0), 1.0);
+        let noise = Score::new(&[sums(50, 1.0)]);
+        assert_eq!(Null::new(&[&noise], 499, 0).p_value(50.0), 0.002);
     }
 }
