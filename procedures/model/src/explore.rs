@@ -158,7 +158,7 @@ impl<'p> Exploration<'p> {
             advances.push(Advance { added: Some(rival), removed: None, ties: Vec::new(), after });
             advances.last().into_iter().for_each(&mut *on_advance);
         }
-        let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn);
+        let others = Others::of(advances.last().map_or(&start, |a| &a.after), &search, &withdrawn, &ties);
         let floor = floor::noise_floor(prepared, &residual, search.now.contains("hysteresis"));
         let scatters = outside::is_scatter(&search, &maps, &residual, &floor, prepared, options);
         let end_held_out_rms = held_out_rms(&advances.last().map_or(&start, |a| &a.after).main);

@@ -91,6 +91,18 @@ fn a_formula_that_is_not_needed_stays_silent() {
 }
 
 #[test]
+fn a_formula_that_the_library_has_is_told_as_its_twin() {
+    let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 7 }
+        .run(|m| (0.03 + 0.06 * m.load.abs() / 50.0) * m.velocity.signum() + 1.5e-4 * m.velocity);
+    let twin = "twin: tau = a * abs(load) * sign(velocity); a [1] 0..1";
+    let found = diagnose(&run, &spec(&run, &[], twin), &Options::default()).unwrap();
+    let first = &found.suggestions[0];
+    assert_eq!((first.effect.as_str(), first.confounded_with.contains(&"twin".into())), ("load_linear", true));
+    let told = found.not_visible.iter().find(|n| n.effect == "twin").unwrap();
+    assert!(told.why.starts_with("load_linear is in the model in its place"), "{}", told.why);
+}
+
+#[test]
 fn a_shape_may_be_negative() {
     let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 6 }
         .run(|m| 0.03 * m.velocity.signum() + 1.5e-4 * m.velocity + 0.02 * ((m.velocity + 15.0) / 9.0).tanh());

@@ -17,7 +17,13 @@ pub struct Others {
 }
 
 impl Others {
-    pub fn of<'p>(end: &Assembly<'p>, search: &Search<'_, 'p>, withdrawn: &[Withdrawn<'p>]) -> Self {
+    /// `ties`: what is in the model, and what this run cannot tell it from.
+    pub fn of<'p>(
+        end: &Assembly<'p>,
+        search: &Search<'_, 'p>,
+        withdrawn: &[Withdrawn<'p>],
+        ties: &[(&'p str, &'p str)],
+    ) -> Self {
         let silences: Vec<Silence> =
             search.silences().into_iter().chain(memory::silences(end)).chain(late::silence(end)).collect();
         let mut others = Self::default();
@@ -35,7 +41,9 @@ impl Others {
                     sought,
                 });
             } else {
-                others.invisible.push(Invisible { effect: id.into(), why: invisible(effect, end) });
+                let tied = ties.iter().find(|(_, rival)| *rival == id);
+                let why = tied.map_or_else(|| invisible(effect, end), |(named, _)| cannot_tell(named));
+                others.invisible.push(Invisible { effect: id.into(), why });
             }
         }
         others
@@ -60,6 +68,10 @@ fn sought(effect: &dyn Effect, end: &Assembly) -> Option<String> {
         true => Some(format!("{least} to {most} {waves} a turn")),
         false => least.is_finite().then(|| format!("{least} {waves} a turn")),
     }
+}
+
+fn cannot_tell(named: &str) -> String {
+    format!("{named} is in the model in its place, and this run cannot tell them apart")
 }
 
 fn invisible(effect: &dyn Effect, end: &Assembly) -> String {
