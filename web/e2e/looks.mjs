@@ -218,6 +218,12 @@ export async function keepView(page, base, run) {
 	await page.getByRole('button', { name: 'Forget this view' }).click();
 	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
 	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ state: 'detached', timeout: PATIENCE_MS });
+	for (const [name, text] of [[`Tags of run ${run}, by commas`, 'walked, golden'], [`Note on run ${run}`, 'walked on it']]) {
+		await page.getByRole('button', { name }).click();
+		await page.keyboard.type(text);
+		await page.keyboard.press('Enter');
+	}
+	for (const said of [page.getByRole('link', { name: 'golden' }), page.getByText('walked on it')]) await said.first().waitFor({ timeout: 5000 }).catch(() => expect(false, 'a tag or a note that is written in the list is not kept'));
 }
 
 /** Results in the form that their people expect, each from a run that is short: what is shown of each. */
@@ -238,8 +244,22 @@ export async function readResults(page, base, asked) {
 		shown.push(procedure);
 		runs.push({ procedure, run });
 	}
+	await readAlignment(page, base, runs.filter(({ procedure }) => procedure.startsWith('encoder')));
 	await readCampaign(page, base, runs.slice(0, 2));
 	return shown;
+}
+
+/** The page of a bench's encoders: the newest result of each procedure, by key from anywhere. */
+async function readAlignment(page, base, runs) {
+	const [one] = runs;
+	if (!one) return;
+	const { bench } = await (await fetch(`${base}/api/v1/runs/${one.run}`)).json();
+	await page.goto(`${base}/?bench=${bench}`);
+	await page.getByRole('heading', { name: 'Devices' }).waitFor({ timeout: PATIENCE_MS });
+	await page.keyboard.press('5');
+	for (const { run } of runs) await page.getByRole('link', { name: `run #${run}` }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, `run ${run} is not among the encoder results of ${bench}`));
+	await page.waitForFunction((count) => document.querySelectorAll('[data-result] [data-figure]').length > count && !document.querySelector('.unknown'), runs.length, { timeout: PATIENCE_MS });
+	await audit(page, 'the encoder results');
 }
 
 /** The result of a campaign (told to the page in the daemon's place, of what two runs have found): a line for each part, which opens by key, and stays open behind its address. */

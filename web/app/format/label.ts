@@ -91,5 +91,6 @@ export function cut(text: string, width_px: number): string {
 /** The same in two lines, broken between words. */
 export function inLines(text: string, width_px: number): string[] {
 	const end = text.lastIndexOf(' ', width_px / LETTER_PX);
-	return cut(text, width_px) === text || end < 3 ? [cut(text, width_px)] : [text.slice(0, end), cut(text.slice(end + 1), width_px)];
+	const short = cut(text, width_px);
+	return short === text || end < 3 ? [short] : [text.slice(0, end), cut(text.slice(end + 1), width_px)];
 }

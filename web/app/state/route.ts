@@ -1,6 +1,10 @@
 /** The address is the view: which page, of what, and how it is set. Pure; the router holds the present one. */
 export type Page = 'bench' | 'live' | 'run' | 'runs' | 'workbench' | 'alignment' | 'log' | 'settings' | 'lost';
 
+/** The pages that are a press away, in the order of their keys. */
+export const TABS = ['Bench', 'Live', 'Workbench', 'Runs', 'Alignment', 'Log', 'Settings'];
+export const hrefOf = (tab: string): string => (tab === TABS[0] ? '/' : `/${tab.toLowerCase()}`);
+
 export interface Route {
 	page: Page;
 	/** Run of the page, where it has one. */

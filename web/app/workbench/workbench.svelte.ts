@@ -86,15 +86,13 @@ export function openWorkbench(id: number) {
 
 	const titleOf = (effect: string) => effects.data?.find((one) => one.id === effect)?.title ?? words(effect);
 
-	/** A version with these effects. A set that was fitted before from the same parent needs no new fit. */
-	async function version(set: string[], parent: Model | null, what: string, anew = false): Promise<Model | null> {
+	/** One fit at a time; what it makes is one of the versions. */
+	async function fitted(what: string, fit: () => Promise<Model>): Promise<Model | null> {
 		if (busy !== null) return null;
-		const known = anew ? undefined : childWith(versions, parent, set);
-		if (known) return known;
 		busy = what;
 		refused = null;
 		try {
-			const made = await api.fit(id, set, parent ?? undefined);
+			const made = await fit();
 			models.put([...versions.filter((one) => one.id !== made.id), made]);
 			return made;
 		} catch (failure) {
@@ -103,6 +101,13 @@ export function openWorkbench(id: number) {
 		} finally {
 			busy = null;
 		}
+	}
+
+	/** A version with these effects. A set that was fitted before from the same parent needs no new fit. */
+	async function version(set: string[], parent: Model | null, what: string, anew = false): Promise<Model | null> {
+		if (busy !== null) return null;
+		const known = anew ? undefined : childWith(versions, parent, set);
+		return known ?? fitted(what, () => api.fit(id, set, parent ?? undefined));
 	}
 
 	async function refit(set: string[], parent: Model | null, what: string, anew = false): Promise<void> {
@@ -172,18 +177,10 @@ export function openWorkbench(id: number) {
 	/** The same effects fitted to other data; without `excluded` it looks away where this version does. */
 	async function refitOn(more: number[], what: string, excluded?: Exclusion[], told?: string): Promise<void> {
 		const from = model;
-		if (!from || busy !== null) return;
-		busy = what;
-		refused = null;
-		try {
-			const made = await api.fit(id, from.effects, { id: from.id, more_runs: more }, excluded);
-			models.put([...versions.filter((one) => one.id !== made.id), made]);
-			show(made, from);
-			if (told) notice = { text: `${told} Undo with z.`, good: true };
-		} catch (failure) {
-			refused = asRefusal(failure);
-		}
-		busy = null;
+		const made = from && (await fitted(what, () => api.fit(id, from.effects, { id: from.id, more_runs: more }, excluded)));
+		if (!made) return;
+		show(made, from);
+		if (told) notice = { text: `${told} Undo with z.`, good: true };
 	}
 	const others = $derived(model?.more_runs ?? []);
 	/** Runs that the address wants in the data too: once, then it names the version. */
@@ -310,7 +307,7 @@ export function openWorkbench(id: number) {
 		get notice() {
 			return trying && model && other ? told(model, other, false) : (notice ?? standing);
 		},
-		get refused() {
+		get error() {
 			return refused;
 		},
 		/** The number of a version in the address that this run does not have. */
