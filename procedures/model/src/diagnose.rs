@@ -10,7 +10,9 @@ use crate::fit::{report, written};
 use crate::linear::dot;
 use crate::maps::{Maps, yardstick};
 use crate::prepare::{Prepared, prepare};
-use crate::report::{Diagnosis, Discovery, Experiment, PairMap, Parameter, Region, Step, Suggestion, Verdict};
+use crate::report::{
+    Diagnosis, Discovery, Evidence, Experiment, PairMap, Parameter, Region, Step, Suggestion, Verdict,
+};
 use crate::select::held_out;
 use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options, together};
@@ -187,19 +189,21 @@ fn suggestions(
         let instead = together::instead(rival.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|said| format!(" {said}.")).collect();
         let why = format!("{} {evidence}{tie}{also}", info.sentence);
-        out.push(Suggestion {
+        let suggestion = Suggestion {
             effect: id.into(),
             validation_rms: with.validation_rms,
             error_reduction: reduction,
             error_reduction_ci95: (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten(),
             bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
             p_value: rival.p_value,
+            evidence: Evidence::default(),
             p_at_most: rival.p_value * (options.flips + 1) as f64 <= 1.001,
             error_reduction_together: found.lost_without(rival.term.id()),
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
             confounded_with,
             why,
-        });
+        };
+        out.push(suggestion.judged());
     }
     Ok(out)
 }

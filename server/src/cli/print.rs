@@ -5,8 +5,8 @@ mod maps;
 mod others;
 
 use jointbench_model::{
-    Comparison, Diagnosis, Discovery, Evaluation, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState, Region,
-    ResidualKind, Suggestion, words,
+    Comparison, Diagnosis, Discovery, Evaluation, Evidence, Fit, NoiseFloor, Parameter, ParameterPair, ParameterState,
+    Region, ResidualKind, Suggestion, words,
 };
 pub use maps::print as maps;
 use std::path::Path;
@@ -233,7 +233,8 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
 fn chance(suggestion: &Suggestion) -> String {
     let bic = suggestion.bic_change.map(|change| format!(", ΔBIC {change:+.0}"));
     let sign = if suggestion.p_at_most { '≤' } else { '=' };
-    format!("p {sign} {:.3}{}", suggestion.p_value, bic.unwrap_or_default())
+    let weak = if suggestion.evidence == Evidence::Weak { ", weak evidence" } else { "" };
+    format!("p {sign} {:.3}{}{weak}", suggestion.p_value, bic.unwrap_or_default())
 }
 
 /// A whole number that was chosen has no width, and neither has what the run cannot show.

@@ -23,6 +23,18 @@ pub enum Verdict {
     UnexplainedStructure,
 }
 
+/// How sure it is that an effect is missing, and whether it matters.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Evidence {
+    #[default]
+    Strong,
+    /// Sure, and less than 5 % of the held-out error.
+    Small,
+    /// It may be missing: chance would name one in more than 1 % of such runs, or its interval reaches to nothing.
+    Weak,
+}
+
 /// A kept diagnosis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Diagnosis {
@@ -120,6 +132,9 @@ pub struct Suggestion {
     pub error_reduction_together: f64,
     /// Family-wise, from sign flips of whole blocks.
     pub p_value: f64,
+    #[serde(default)]
+    #[schema(required = true)]
+    pub evidence: Evidence,
     /// No flip scored as high: the chance is `p_value` at most.
     #[serde(default)]
     pub p_at_most: bool,

@@ -42,12 +42,9 @@ export function around({ from, to }: { from: number; to: number }, low: number, 
 	return [middle - half, middle + half];
 }
 
-export type Strength = 'STRONG' | 'WEAK' | "CAN'T TELL APART";
+export type Strength = 'STRONG' | 'SMALL' | 'WEAK' | "CAN'T TELL APART";
 
 /** One word for the evidence; the figures stand beside it. */
-export function strength(suggestion: Pick<Suggestion, 'error_reduction' | 'error_reduction_together' | 'p_value' | 'confounded_with'>): Strength {
-	if (suggestion.confounded_with.length > 0) return "CAN'T TELL APART";
-	// Effects that mask each other show little alone.
-	const reduction = Math.max(suggestion.error_reduction, suggestion.error_reduction_together ?? 0);
-	return suggestion.p_value < 0.01 && reduction >= 0.05 ? 'STRONG' : 'WEAK';
+export function strength({ evidence, confounded_with }: Pick<Suggestion, 'evidence' | 'confounded_with'>): Strength {
+	return confounded_with.length > 0 ? "CAN'T TELL APART" : (evidence.toUpperCase() as Strength);
 }

@@ -4,7 +4,7 @@ use crate::effect::{Effect, Stage};
 use crate::explore::{Exploration, Withdrawal, Withdrawn};
 use crate::intervals::IMPOSSIBLE;
 use crate::maps::Maps;
-use crate::report::{Imitated, PairMap, Parameter, Region, Suggestion, Verdict};
+use crate::report::{Evidence, Imitated, PairMap, Parameter, Region, Suggestion, Verdict};
 use crate::words::{figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
@@ -29,19 +29,21 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         true => String::new(),
         false => format!(" and with all of them to {}", figure(complete.validation_rms, &fit.unit)),
     };
+    let is = match suggestions.iter().all(|s| s.evidence == Evidence::Weak) {
+        true => "may be missing, and the evidence is weak",
+        false => "is missing",
+    };
     let place = match found.start.spec.find(effect).map(Effect::stage) {
         Ok(Stage::Ramp) => "on ramps",
         _ => "around reversals",
     };
     let gain = if with == error {
         format!(
-            "{named} is missing{then}: it acts {place}; settled motion has a held-out error of {error} with it \
+            "{named} {is}{then}: it acts {place}; settled motion has a held-out error of {error} with it \
              and without it, and {floor}."
         )
     } else {
-        format!(
-            "{named} is missing{then}: with {effect} the held-out error falls from {error} to {with}{all}; {floor}."
-        )
+        format!("{named} {is}{then}: with {effect} the held-out error falls from {error} to {with}{all}; {floor}.")
     };
     let beyond = match found.end_verdict() {
         Verdict::UnexplainedStructure => {

@@ -8,8 +8,8 @@ mod residuals;
 
 pub use comparison::{Comparison, ParameterPair, Wider};
 pub use diagnosis::{
-    Diagnosis, Discovery, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, Region, Silent, Step, Suggestion,
-    Verdict,
+    Diagnosis, Discovery, Evidence, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, Region, Silent, Step,
+    Suggestion, Verdict,
 };
 pub use fit::{
     Evaluation, Fit, GivenConstant, Parameter, ParameterState, Preparation, ResidualKind, Scope, SignalRange, Term,
