@@ -99,6 +99,9 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
 
 fn column_names(record: &ByteRecord) -> Result<Vec<String>, FileFault> {
     let names: Vec<String> = record.iter().map(|field| String::from_utf8_lossy(field).trim().to_owned()).collect();
+    if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+        return Err(FileFault::NoNames);
+    }
     match names.iter().position(String::is_empty) {
         Some(place) => Err(FileFault::NoName { number: place + 1 }),
         None => Ok(names),

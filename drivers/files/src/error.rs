@@ -56,6 +56,10 @@ pub enum FileFault {
     #[error("column {number} has no name: expected a name with its unit, such as time_s")]
     NoName { number: usize },
     #[error(
+        "numbers stand where the line of column names is expected: write it above them, such as time_s,motor_position_rad"
+    )]
+    NoNames,
+    #[error(
         "expected {expected} values as in the line of column names, found {found}{}",
         if found > expected { ": where numbers have commas, semicolons or tabs stand between the columns" } else { "" }
     )]

@@ -68,6 +68,11 @@ fn text_is_refused_where_it_is_wrong() {
         "run.csv, line 1: column 2 has no name: expected a name with its unit, such as time_s",
     );
     check_refused(
+        b"0,1.5,2\n0.004,1.6,2\n",
+        "run.csv, line 1: numbers stand where the line of column names is expected: write it above them, such as \
+         time_s,motor_position_rad",
+    );
+    check_refused(
         b"time_s,note\n0,Dr\xe4hen\n",
         "run.csv, line 2: expected text in UTF-8, found the byte 0xe4: save the table as UTF-8",
     );

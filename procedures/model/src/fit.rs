@@ -9,6 +9,7 @@ use crate::report::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as T
 use crate::select::held_out;
 use crate::terms::{Term, Terms};
 use crate::view::View;
+use crate::words::figure;
 use crate::{ModelError, ModelSpec, Options, ResidualKind, effects, together};
 use jointbench_instrument::RunTable;
 
@@ -82,6 +83,7 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
                     shows that bends before it slips";
         notes.push(note.into());
     }
+    notes.extend(parameters.iter().find(|p| p.effect == "inertia").and_then(|p| another_inertia(p, prepared)));
     notes.extend(main.terms.iter().filter_map(written));
     let mut instead = main.terms.iter().map(|term| together::instead(term.effect, prepared));
     notes.extend(instead.find(|said| !said.is_empty()).unwrap_or_default());
@@ -106,6 +108,22 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         scope: Some(scope),
     })
 }
+
+/// Settled motion hardly accelerates, and much of that little is how its velocity scatters.
+fn another_inertia(fitted: &Parameter, prepared: &Prepared) -> Option<String> {
+    let stated = prepared.main.view.constants.rotor_inertia.filter(|_| prepared.main.settled)?;
+    ((fitted.value / stated - 1.0).abs() > AS_STATED).then(|| {
+        let say = |inertia: f64| figure(inertia, &fitted.unit);
+        format!(
+            "the inertia is {} here and {} in the set-up: settled motion hardly accelerates; believe a trajectory",
+            say(fitted.value),
+            say(stated)
+        )
+    })
+}
+
+/// A fitted inertia within this share of the stated one agrees with it.
+const AS_STATED: f64 = 0.1;
 
 /// The formula that an effect has in this data, where that is not the one of the library.
 pub fn written(term: &Term) -> Option<String> {

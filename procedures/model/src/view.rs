@@ -130,6 +130,8 @@ impl Signals {
 pub struct Constants {
     pub pole_pairs: Option<u32>,
     pub poles: Option<u32>,
+    /// As the set-up states it [kg·m²].
+    pub rotor_inertia: Option<f64>,
     /// The axis slides: nothing repeats with its angle.
     pub slides: bool,
     /// Torque once per link turn that the measured load does not hold, about: factors of cos and sin [Nm].

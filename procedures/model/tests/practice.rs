@@ -96,3 +96,17 @@ fn a_brake_decides_the_bands_of_its_hysteresis() {
     let open: Vec<&str> = bands.filter(|p| p.state != ParameterState::Ok).map(|p| p.name.as_str()).collect();
     assert!(open.len() <= 1, "{open:?}");
 }
+
+#[test]
+fn an_inertia_that_settled_motion_hardly_shows_is_held_against_the_set_up() {
+    let Some(folder) = shared("hidden-effects") else { return };
+    let run = read(&folder.join("friction-load_linear"));
+    let told = |run: &RunTable| fit(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap();
+    let found = told(&run);
+    let note = found.notes.iter().find(|note| note.contains("in the set-up")).unwrap();
+    assert!(note.starts_with("the inertia is 1.36e-5 kg·m² here and 4.48e-5 kg·m² in the set-up"), "{note}");
+    let inertia = found.parameters.iter().find(|p| p.effect == "inertia").unwrap().value;
+    let meta = jointbench_instrument::Meta { rotor_inertia_kg_m2: Some(inertia), ..run.meta().clone() };
+    let agreed = told(&RunTable::new(meta, run.trace().clone()).unwrap());
+    assert_eq!(agreed.notes.iter().find(|note| note.contains("in the set-up")), None);
+}

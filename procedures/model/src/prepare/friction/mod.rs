@@ -138,7 +138,12 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
         segment,
         repeat,
         derived_velocity: measured.is_none(),
-        constants: Constants { slides, of_row_s, ..Constants::default() },
+        constants: Constants {
+            slides,
+            of_row_s,
+            rotor_inertia: run.meta().rotor_inertia_kg_m2,
+            ..Constants::default()
+        },
         time_s,
     };
     Ok((source, lag_s))
