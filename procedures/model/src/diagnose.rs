@@ -189,21 +189,22 @@ fn suggestions(
         let instead = together::instead(rival.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|said| format!(" {said}.")).collect();
         let why = format!("{} {evidence}{tie}{also}", info.sentence);
-        let suggestion = Suggestion {
+        let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
+        let together = found.lost_without(id);
+        out.push(Suggestion {
             effect: id.into(),
             validation_rms: with.validation_rms,
             error_reduction: reduction,
-            error_reduction_ci95: (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten(),
+            error_reduction_ci95: reduction_ci95,
             bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
             p_value: rival.p_value,
-            evidence: Evidence::default(),
+            evidence: Evidence::of(rival.p_value, reduction, reduction_ci95, together),
             p_at_most: rival.p_value * (options.flips + 1) as f64 <= 1.001,
-            error_reduction_together: found.lost_without(rival.term.id()),
+            error_reduction_together: together,
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
             confounded_with,
             why,
-        };
-        out.push(suggestion.judged());
+        });
     }
     Ok(out)
 }

@@ -326,9 +326,8 @@ fn is_decided<'p>(with: &Terms<'p>, term: &Term<'p>, prepared: &Prepared) -> boo
 }
 
 /// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Where it
-/// decides neither, something else may show in its place: there it has to take half of the error away, and a third where it could be
-/// nothing whatever its shape. Beside structure from
-/// outside the library no size is decided: a part of that may be in it.
+/// decides neither, something else may show in its place: there it has to take half of the error away, and a third where it
+/// could be nothing whatever its shape. Beside structure from outside the library no size is decided: a part of that may be in it.
 fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
     let present: f64 = held_out(&search.now).iter().sum();

@@ -109,6 +109,9 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
     })
 }
 
+/// A fitted inertia within this share of the stated one agrees with it.
+const AS_STATED: f64 = 0.1;
+
 /// Settled motion hardly accelerates, and much of that little is how its velocity scatters.
 fn another_inertia(fitted: &Parameter, prepared: &Prepared) -> Option<String> {
     let stated = prepared.main.view.constants.rotor_inertia.filter(|_| prepared.main.settled)?;
@@ -121,9 +124,6 @@ fn another_inertia(fitted: &Parameter, prepared: &Prepared) -> Option<String> {
         )
     })
 }
-
-/// A fitted inertia within this share of the stated one agrees with it.
-const AS_STATED: f64 = 0.1;
 
 /// The formula that an effect has in this data, where that is not the one of the library.
 pub fn written(term: &Term) -> Option<String> {

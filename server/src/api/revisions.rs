@@ -109,9 +109,7 @@ pub async fn export(
         ExportFormat::Lut => "text/csv; charset=utf-8",
         ExportFormat::Mujoco | ExportFormat::Urdf => "application/xml",
     };
-    // Two kinds of XML of one model are two files.
-    let extension = if matches!(query.format, ExportFormat::Urdf) { "urdf" } else { format.extension() };
-    let name = format!("attachment; filename=\"model-{id}.{extension}\"");
+    let name = format!("attachment; filename=\"model-{id}.{}\"", format.extension());
     Ok(([(header::CONTENT_TYPE, media_type.to_owned()), (header::CONTENT_DISPOSITION, name)], text).into_response())
 }
 

@@ -42,7 +42,12 @@ impl Others {
                 });
             } else {
                 let tied = ties.iter().find(|(_, rival)| *rival == id);
-                let why = tied.map_or_else(|| invisible(effect, end), |(named, _)| cannot_tell(named));
+                let why = match tied {
+                    Some((named, _)) => {
+                        format!("{named} is in the model in its place, and this run cannot tell them apart")
+                    }
+                    None => invisible(effect, end),
+                };
                 others.invisible.push(Invisible { effect: id.into(), why });
             }
         }
@@ -68,10 +73,6 @@ fn sought(effect: &dyn Effect, end: &Assembly) -> Option<String> {
         true => Some(format!("{least} to {most} {waves} a turn")),
         false => least.is_finite().then(|| format!("{least} {waves} a turn")),
     }
-}
-
-fn cannot_tell(named: &str) -> String {
-    format!("{named} is in the model in its place, and this run cannot tell them apart")
 }
 
 fn invisible(effect: &dyn Effect, end: &Assembly) -> String {

@@ -3,6 +3,7 @@
 use super::clash::pieces;
 use crate::linear::{Basis, dot};
 use jointbench_instrument::RunTable;
+use std::ops::Range;
 
 /// Torques of motor and link differ by the gear's efficiency too, and by friction that grows with the load.
 const TORQUE_CLASH: f64 = 2.0;
@@ -21,16 +22,20 @@ pub fn clash(run: &RunTable) -> Option<String> {
     let (time_s, position) = (column("time_s")?, column("motor_position_rad")?);
     let (current, load) = (column("motor_current_a")?, column("link_torque_nm")?);
     let per_link = run.meta().torque_constant_nm_per_a? * run.meta().gear_ratio.unwrap_or(1.0);
-    let all: Vec<Piece> = pieces(time_s)
-        .map(|(piece, passed_s)| {
-            let mean = |values: &[f64]| values[piece.clone()].iter().sum::<f64>() / piece.len() as f64;
-            let velocity = (position[piece.end] - position[piece.start]) / passed_s;
-            Piece { velocity, change: 0.0, motor_nm: per_link * mean(current), link_nm: mean(load) }
-        })
-        .collect();
-    let n = all.len();
-    let change = |i: usize| all[(i + 1).min(n - 1)].velocity - all[i.saturating_sub(1)].velocity;
-    let all: Vec<Piece> = (0..n).map(|i| Piece { change: change(i), ..all[i] }).collect();
+    let (ranges, velocity): (Vec<_>, Vec<f64>) = pieces(time_s)
+        .map(|(piece, passed_s)| (piece.clone(), (position[piece.end] - position[piece.start]) / passed_s))
+        .unzip();
+    let last = velocity.len().saturating_sub(1);
+    let piece = |(i, range): (usize, Range<usize>)| {
+        let mean = |values: &[f64]| values[range.clone()].iter().sum::<f64>() / range.len() as f64;
+        Piece {
+            velocity: velocity[i],
+            change: velocity[(i + 1).min(last)] - velocity[i.saturating_sub(1)],
+            motor_nm: per_link * mean(current),
+            link_nm: mean(load),
+        }
+    };
+    let all: Vec<Piece> = ranges.into_iter().enumerate().map(piece).collect();
     let (torque, link) = beside_motion(&all);
     let (tt, tl, ll) = (dot(&torque, &torque), dot(&torque, &link), dot(&link, &link));
     // Neither side's noise makes it larger.
@@ -50,7 +55,6 @@ pub fn clash(run: &RunTable) -> Option<String> {
 }
 
 /// Means over a piece of the run, and by how much the velocity changes around it.
-#[derive(Clone, Copy)]
 struct Piece {
     velocity: f64,
     change: f64,

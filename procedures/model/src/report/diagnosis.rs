@@ -112,6 +112,19 @@ const UNLIKELY: f64 = 0.01;
 const SMALL: f64 = 0.05;
 const MASKED: f64 = 2.0;
 
+impl Evidence {
+    /// From the figures of a suggestion.
+    pub fn of(p_value: f64, alone: f64, ci95: Option<[f64; 2]>, together: f64) -> Self {
+        // Effects that mask each other show little alone.
+        let may_be_nothing = together <= MASKED * alone && ci95.is_some_and(|[low, _]| low <= 0.0);
+        match () {
+            () if p_value > UNLIKELY || may_be_nothing => Self::Weak,
+            () if alone.max(together) < SMALL => Self::Small,
+            () => Self::Strong,
+        }
+    }
+}
+
 /// One missing effect with its evidence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Suggestion {
@@ -142,22 +155,6 @@ pub struct Suggestion {
     /// Effects that explain this data as well.
     pub confounded_with: Vec<String>,
     pub why: String,
-}
-
-impl Suggestion {
-    /// What its figures say.
-    pub fn judged(self) -> Self {
-        let (alone, together) = (self.error_reduction, self.error_reduction_together);
-        // Effects that mask each other show little alone.
-        let is_masked = together > MASKED * alone;
-        let may_be_nothing = !is_masked && self.error_reduction_ci95.is_some_and(|[low, _]| low <= 0.0);
-        let evidence = match () {
-            () if self.p_value > UNLIKELY || may_be_nothing => Evidence::Weak,
-            () if alone.max(together) < SMALL => Evidence::Small,
-            () => Evidence::Strong,
-        };
-        Self { evidence, ..self }
-    }
 }
 
 /// A run that would decide what this one leaves open.
@@ -274,28 +271,11 @@ mod tests {
 
     #[test]
     fn evidence_is_as_strong_as_its_figures() {
-        let of = |reduction: f64, ci95: Option<[f64; 2]>, together: f64, p_value: f64| {
-            let suggestion = Suggestion {
-                effect: "stribeck".into(),
-                validation_rms: 1.0,
-                error_reduction: reduction,
-                error_reduction_ci95: ci95,
-                bic_change: None,
-                error_reduction_together: together,
-                p_value,
-                evidence: Evidence::default(),
-                p_at_most: false,
-                parameters: Vec::new(),
-                confounded_with: Vec::new(),
-                why: String::new(),
-            };
-            suggestion.judged().evidence
-        };
-        assert_eq!(of(0.3, Some([0.2, 0.4]), 0.3, 0.002), Evidence::Strong);
-        assert_eq!(of(0.3, Some([0.2, 0.4]), 0.3, 0.03), Evidence::Weak);
-        assert_eq!(of(0.15, Some([-0.01, 0.3]), 0.16, 0.002), Evidence::Weak);
-        assert_eq!(of(0.01, Some([-0.01, 0.03]), 0.3, 0.002), Evidence::Strong, "masked by another");
-        assert_eq!(of(0.02, Some([0.01, 0.03]), 0.02, 0.002), Evidence::Small);
-        assert_eq!(of(0.3, None, 0.0, 0.002), Evidence::Strong, "where the RMS does not look");
+        assert_eq!(Evidence::of(0.002, 0.3, Some([0.2, 0.4]), 0.3), Evidence::Strong);
+        assert_eq!(Evidence::of(0.03, 0.3, Some([0.2, 0.4]), 0.3), Evidence::Weak);
+        assert_eq!(Evidence::of(0.002, 0.15, Some([-0.01, 0.3]), 0.16), Evidence::Weak);
+        assert_eq!(Evidence::of(0.002, 0.01, Some([-0.01, 0.03]), 0.3), Evidence::Strong, "masked by another");
+        assert_eq!(Evidence::of(0.002, 0.02, Some([0.01, 0.03]), 0.02), Evidence::Small);
+        assert_eq!(Evidence::of(0.002, 0.3, None, 0.0), Evidence::Strong, "where the RMS does not look");
     }
 }

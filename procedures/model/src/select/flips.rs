@@ -9,6 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use std::borrow::Borrow;
 
 /// Of the scatter of an effect's sums so much at least is noise, or a form with fewer columns shows it.
 const OWN_SCATTER: f64 = 0.25;
@@ -54,9 +55,7 @@ impl Score {
             let t = StudentsT::new(0.0, 1.0, deciding - 1.0);
             return t.map_or(f64::INFINITY, |t| -t.inverse_cdf(0.5 * Normal::standard().sf(z)));
         }
-        let k = self.parts.len() as f64;
-        let spread = 2.0 / (9.0 * k);
-        let chi2 = k * (z * spread.sqrt() + 1.0 - spread).powi(3);
+        let chi2 = chi2_scale(z, self.parts.len());
         (chi2 / (1.0 - chi2 / deciding).max(OWN_SCATTER)).sqrt()
     }
 
@@ -75,17 +74,25 @@ fn normal_scale(chi2: f64, k: usize) -> f64 {
     ((chi2 / k).cbrt() - (1.0 - spread)) / spread.sqrt()
 }
 
+/// What [`normal_scale`] makes `z` of.
+fn chi2_scale(z: f64, k: usize) -> f64 {
+    let k = k as f64;
+    let spread = 2.0 / (9.0 * k);
+    k * (z * spread.sqrt() + 1.0 - spread).powi(3)
+}
+
 /// The largest score of all for each flip, in rising order.
 pub struct Null {
     largest: Vec<f64>,
 }
 
 impl Null {
-    pub fn new(scores: &[&Score], flips: usize, seed: u64) -> Self {
+    pub fn new(scores: &[impl Borrow<Score> + Sync], flips: usize, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let groups = scores.iter().flat_map(|s| &s.parts).map(Vec::len).max().unwrap_or(0);
+        let groups = scores.iter().flat_map(|s| &s.borrow().parts).map(Vec::len).max().unwrap_or(0);
         let signs: Vec<f64> = (0..flips * groups).map(|_| if random.random::<bool>() { 1.0 } else { -1.0 }).collect();
-        let largest_of = |signs: &[f64]| scores.iter().map(|s| s.z_flipped(signs)).fold(f64::NEG_INFINITY, f64::max);
+        let largest_of =
+            |signs: &[f64]| scores.iter().map(|s| s.borrow().z_flipped(signs)).fold(f64::NEG_INFINITY, f64::max);
         let mut largest: Vec<f64> = signs.par_chunks(groups.max(1)).map(largest_of).collect();
         largest.sort_by(f64::total_cmp);
         Self { largest }
@@ -131,8 +138,8 @@ mod tests {
 
     #[test]
     fn what_has_nothing_of_its_own_is_chance() {
-        assert_eq!(Null::new(&[&Score::new(&[])], 499, 0).p_value(5.0), 1.0);
+        assert_eq!(Null::new(&[Score::new(&[])], 499, 0).p_value(5.0), 1.0);
         let noise = Score::new(&[sums(50, 1.0)]);
-        assert_eq!(Null::new(&[&noise], 499, 0).p_value(50.0), 0.002);
+        assert_eq!(Null::new(&[noise], 499, 0).p_value(50.0), 0.002);
     }
 }

@@ -214,7 +214,7 @@ fn family_wise(columns: &[Vec<f64>], mut scores: Vec<Score>, ground: &Ground, op
     let own = ground.score(columns, &ground.own(columns));
     let z = own.z().max(ground.jackknife_z(columns).unwrap_or(f64::NEG_INFINITY));
     scores.push(own);
-    Null::new(&scores.iter().collect::<Vec<_>>(), options.flips, options.seed).p_value(z)
+    Null::new(&scores, options.flips, options.seed).p_value(z)
 }
 
 /// Two models tie where the difference of their held-out errors is not larger than its own scatter over the folds.

@@ -56,7 +56,8 @@ impl Format {
             Format::Json => "json",
             Format::C => "h",
             Format::Table => "csv",
-            Format::Mujoco | Format::Urdf => "xml",
+            Format::Mujoco => "xml",
+            Format::Urdf => "urdf",
         }
     }
 }
