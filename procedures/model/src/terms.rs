@@ -4,18 +4,20 @@ use crate::effect::{Columns, Effect, Form, Search};
 use crate::linear::{Basis, Spd, dot};
 use crate::prepare::Problem;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// One effect of the model in one form.
 #[derive(Clone)]
 pub struct Term<'e> {
     pub effect: &'e dyn Effect,
-    pub form: Form<'e>,
+    pub form: Arc<Form<'e>>,
     pub shape: Vec<f64>,
     pub columns: Columns,
 }
 
 impl<'e> Term<'e> {
-    pub fn new(effect: &'e dyn Effect, form: Form<'e>, shape: Vec<f64>, problem: &Problem) -> Self {
+    pub fn new(effect: &'e dyn Effect, form: impl Into<Arc<Form<'e>>>, shape: Vec<f64>, problem: &Problem) -> Self {
+        let form = form.into();
         let columns = columns(effect, form.name, &shape, problem);
         Self { effect, form, shape, columns }
     }
@@ -108,7 +110,7 @@ impl<'p> Terms<'p> {
     pub fn held(&self, id: &str) -> Self {
         let mut held = self.clone();
         for term in held.terms.iter_mut().filter(|t| t.id() == id) {
-            for (shape, value) in term.form.shape.iter_mut().zip(&term.shape) {
+            for (shape, value) in Arc::make_mut(&mut term.form).shape.iter_mut().zip(&term.shape) {
                 (shape.min, shape.max) = (*value, *value);
             }
         }

@@ -90,10 +90,13 @@ impl Null {
     pub fn new(scores: &[impl Borrow<Score> + Sync], flips: usize, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let groups = scores.iter().flat_map(|s| &s.borrow().parts).map(Vec::len).max().unwrap_or(0);
-        let signs: Vec<f64> = (0..flips * groups).map(|_| if random.random::<bool>() { 1.0 } else { -1.0 }).collect();
-        let largest_of =
-            |signs: &[f64]| scores.iter().map(|s| s.borrow().z_flipped(signs)).fold(f64::NEG_INFINITY, f64::max);
-        let mut largest: Vec<f64> = signs.par_chunks(groups.max(1)).map(largest_of).collect();
+        // A byte each: as numbers, all of them would be as large as columns of the run.
+        let flips: Vec<bool> = (0..flips * groups).map(|_| !random.random::<bool>()).collect();
+        let largest_of = |flips: &[bool]| {
+            let signs: Vec<f64> = flips.iter().map(|flipped| if *flipped { -1.0 } else { 1.0 }).collect();
+            scores.iter().map(|s| s.borrow().z_flipped(&signs)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let mut largest: Vec<f64> = flips.par_chunks(groups.max(1)).map(largest_of).collect();
         largest.sort_by(f64::total_cmp);
         Self { largest }
     }

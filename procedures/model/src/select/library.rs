@@ -8,11 +8,12 @@ use crate::report::Invisible;
 use crate::terms::Term;
 use jointbench_instrument::Kind;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// An effect in one form at one shape.
 pub struct Candidate<'e> {
     pub effect: &'e dyn Effect,
-    pub form: Form<'e>,
+    pub form: Arc<Form<'e>>,
     pub shape: Vec<f64>,
     /// In single precision: they are many, and choose only where to look closer.
     pub columns: Vec<Vec<f32>>,
@@ -62,7 +63,7 @@ impl<'e> Library<'e> {
                 library.invisible.push(Invisible { effect: effect.info().id.into(), why });
                 continue;
             }
-            for form in effect.forms(&problem.view) {
+            for form in effect.forms(&problem.view).into_iter().map(Arc::new) {
                 library.candidates.par_extend(form.grid.par_chunks(ABREAST).flat_map_iter(|shapes| {
                     let at_points = shapes.iter().map(|shape| effect.columns(form.name, shape, &problem.view));
                     let at_points: Vec<Columns> = at_points.collect();

@@ -14,10 +14,10 @@ use crate::effect::{Effect, Form};
 use crate::linear::BlockGrams;
 use crate::terms::{Term, Terms};
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Effects of a model with their forms and shapes.
-type Laid<'p> = Vec<(&'p dyn Effect, Form<'p>, Vec<f64>)>;
+type Laid<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
 
 pub enum Move<'p> {
     Added { rival: Box<Rival<'p>>, ties: Vec<&'p str> },
