@@ -78,7 +78,10 @@ impl<'p> Exploration<'p> {
     ) -> Result<Self, ModelError> {
         let start = Assembly::new(prepared, spec, options)?;
         let library = Library::new(spec, &prepared.main, prepared.stages());
-        let mut advances: Vec<Advance> = given::advance(&start, &library, options).into_iter().collect();
+        // Of columns that cannot be right every effect is made up.
+        let most = if prepared.clashes.void.is_empty() { most } else { 0 };
+        let given = (most > 0).then(|| given::advance(&start, &library, options)).flatten();
+        let mut advances: Vec<Advance> = given.into_iter().collect();
         advances.iter().for_each(&mut *on_advance);
         let begin = advances.first().map_or(&start, |a| &a.after);
         let left = most.saturating_sub(advances.len());

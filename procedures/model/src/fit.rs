@@ -67,7 +67,7 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
     terms.sort_by_key(|t| order(&t.effect));
 
     let target = &prepared.main.target;
-    let mut notes: Vec<String> = prepared.clashes.iter().chain(&prepared.doubts).cloned().collect();
+    let mut notes: Vec<String> = prepared.clashes.all().chain(&prepared.doubts).cloned().collect();
     notes.extend(assembly.hidden.iter().map(|h| format!("{} is not visible in this data: {}", h.effect, h.why)));
     if assembly.effects.iter().any(|e| e == "direction_offset") {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());

@@ -2,9 +2,10 @@
 
 mod common;
 
+use common::bench::{Moment, Staircase};
 use common::tables::{friction_in_steps, scatter};
 use jointbench_instrument::{Kind, RunTable};
-use jointbench_model::{ModelSpec, Options, Verdict, discover};
+use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover};
 
 const SPEEDS_RAD_S: [f64; 13] = [0.8, 1.2, 1.8, 2.7, 4.1, 6.1, 9.1, 13.7, 20.5, 30.8, 46.1, 69.2, 103.8];
 
@@ -30,5 +31,21 @@ fn a_hump_over_the_speed_is_structure() {
         assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{speed} rad/s: {}", found.summary);
         // Once viscous_sublinear and viscous_quadratic were named, with Coulomb friction below zero between them.
         assert_eq!(found.model, ["coulomb", "viscous"], "{speed} rad/s, {seed}");
+    }
+}
+
+#[test]
+fn a_hump_that_few_speeds_show_is_structure_too() {
+    for seed in 1..4 {
+        // Of ten speeds one lies on it: held out with all its repeats, no other speed would tell of it.
+        let bench = Staircase { noise_nm: 2e-3, scatter_nm: 2e-4, seed };
+        let run = bench.run_at(&[0.0], |m: Moment| {
+            let hump = 4e-3 * (-0.5 * ((m.velocity.abs() - 20.3) / 4.0).powi(2)).exp();
+            m.velocity.signum() * (0.02 + 1.5e-4 * m.velocity.abs() + hump)
+        });
+        let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
+        let found = diagnose(&run, &spec, &Options::default()).unwrap();
+        assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{seed}: {}", found.summary);
+        assert!(found.shows_over.iter().any(|axis| axis.contains("velocity")), "{:?}", found.shows_over);
     }
 }

@@ -5,7 +5,7 @@ mod common;
 use common::bench::{Moment, Staircase};
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
 use jointbench_model::{
-    Choice, Diagnosis, ModelSpec, Open, Options, Stretch, Verdict, diagnose, discover, fit, next_run,
+    Choice, Diagnosis, ModelSpec, Open, Options, OwnEffect, Stretch, Verdict, diagnose, discover, fit, next_run,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -35,8 +35,11 @@ fn a_run_without_repeats_decides_nothing_where_nothing_is_missing() {
     assert_eq!(diagnosed(&run).undecided, None);
     let found = diagnosed(&without_repeats(&run));
     assert_eq!(found.verdict, Verdict::Adequate, "{}", found.summary);
-    assert!(found.undecided.is_some_and(|why| why.contains("no repeats")));
+    assert!(found.undecided.as_ref().is_some_and(|why| why.contains("no repeats")));
     assert!(found.summary.contains("cannot be decided"), "{}", found.summary);
+    let menu = [strokes("slow", &[0.5, 1.0], 0.0, 1.0), strokes("as fast", &SPEEDS, 0.0, 1.0)];
+    let again = next_run(&without_repeats(&run), &Open::from(&found), &menu, &Options::default()).unwrap().experiment;
+    assert_eq!(again.map(|e| e.procedure).as_deref(), Some("as fast"), "the nearest to the run at hand");
 }
 
 fn diagnosed(run: &RunTable) -> Diagnosis {
@@ -87,11 +90,21 @@ fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
         "{}",
         repeats.why
     );
-    let decided = next_run(&first, &open, &[same.clone(), other.clone()], &Options::default()).unwrap();
+    let menu = [same, other];
+    let decided = next_run(&first, &open, &menu, &Options::default()).unwrap();
     assert_eq!(decided.in_vain, None, "a run does");
-    let next = ask(&[same, other]).unwrap();
+    let next = ask(&menu).unwrap();
     assert_eq!(next.procedure, "other", "{}", next.why);
     assert!(next.expected_z.unwrap() > 4.0 && next.separates.iter().any(|e| e == "load_quadratic"), "{}", next.why);
+
+    // What the user wrote is the named effect once more: it hides no rival that a run tells.
+    let formula = if open.ties[0].0 == "load_linear" { "abs(load)" } else { "load^2" };
+    let twin = OwnEffect::inline(Kind::Friction, &format!("twin: tau = mu * {formula} * sign(velocity); mu")).unwrap();
+    let mut with_twin = Open { own: vec![twin], ..open.clone() };
+    with_twin.ties[0].1.push("twin".into());
+    let spared = next_run(&first, &with_twin, &menu, &Options::default()).unwrap().experiment.unwrap();
+    assert_eq!((&spared.procedure, spared.expected_z), (&next.procedure, next.expected_z), "{}", spared.why);
+    assert!(spared.why.ends_with(&format!("tell {} from twin", open.ties[0].0)), "{}", spared.why);
 
     let both = first.join(vec![bench(2).run_at(&[12.0], with_square_of_load)]).unwrap();
     let after = diagnosed(&both);

@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::bench::Staircase;
 use common::tables::{meta, scatter};
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
 use jointbench_model::{Diagnosis, ModelSpec, Options, diagnose};
@@ -29,4 +30,26 @@ fn an_impossible_size_is_told_before_the_effect_that_is_named() {
     let turned = brake(-1.0);
     assert!(turned.summary.starts_with("Attention: "), "{}", turned.summary);
     assert!(turned.undecided.is_some_and(|why| why.contains("lies beyond what is possible")));
+}
+
+#[test]
+fn nothing_is_named_of_columns_that_cannot_be_right() {
+    let bench = Staircase { noise_nm: 2e-3, scatter_nm: 2e-4, seed: 1 };
+    let run = bench.run(|m| m.velocity.signum() * (0.03 + 4e-4 * m.load * m.load) + 2e-4 * m.velocity);
+    let named = |sign: f64| {
+        let channels = run.trace().channels().to_vec();
+        let columns = channels.iter().map(|c| {
+            let factor = if c.name == "motor_current_a" { sign } else { 1.0 };
+            run.column(&c.name).unwrap().iter().map(|v| factor * v).collect()
+        });
+        let trace = Trace::from_columns(channels.clone(), columns.collect());
+        let run = RunTable::new(run.meta().clone(), trace).unwrap();
+        let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous").unwrap();
+        diagnose(&run, &spec, &Options::default()).unwrap()
+    };
+    assert!(!named(1.0).suggestions.is_empty());
+    let turned = named(-1.0);
+    assert_eq!(turned.suggestions.len(), 0, "{}", turned.summary);
+    assert!(turned.summary.contains("no effect is named before"), "{}", turned.summary);
+    assert_eq!(turned.undecided.as_deref(), Some("its columns contradict each other"));
 }

@@ -48,7 +48,7 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
     let beyond = match found.end_verdict() {
         Verdict::UnexplainedStructure => {
             let them = if more.is_empty() { "it" } else { "them" };
-            let shown = found.maps.structure(found.start.prepared);
+            let shown = found.maps.structure();
             format!(
                 " Even with {them} structure remains that {}: {}.",
                 unexplained(found),
@@ -123,14 +123,16 @@ pub fn elsewhere(imitated: &Imitated, is_there: bool) -> String {
 }
 
 const MEND: &str = "Mend that first: what follows is what these columns make of the model. ";
+const MEND_ALL: &str =
+    "Mend that first: no effect is named before, and what follows is what these columns make of the model. ";
 
 /// What a user has to mend before anything else counts: columns that contradict each other, a size that contradicts physics in all
 /// of the fits, and what the model takes as given and the run shows as a constant, which may not have been connected.
 fn attention(found: &Exploration, fits: &[&Fit]) -> String {
     let told = |what: &String| format!("Attention: {what}. ");
     let clashes = &found.start.prepared.clashes;
-    let mend = (!clashes.is_empty()).then(|| MEND.to_owned());
-    let clashes = clashes.iter().map(told).chain(mend);
+    let mend = (!clashes.is_empty()).then(|| if clashes.void.is_empty() { MEND } else { MEND_ALL }.to_owned());
+    let clashes = clashes.all().map(told).chain(mend);
     // Its own words say what to look for.
     let impossible = impossible(fits).as_ref().map(told);
     let spec = found.start.spec;

@@ -44,7 +44,7 @@ impl Maps {
         let problem = &prepared.main;
         let (piece, _) = pieces(problem, 1);
         let scales = scales(prepared);
-        let map = |x: &Scale, y: Option<&Scale>| Map::new(x.clone(), y.cloned(), problem, &piece, &residual);
+        let map = |x: &Scale, y: Option<&Scale>| Map::new(x.clone(), y.cloned(), &piece, &residual);
         let axes: Vec<Map> = scales.iter().map(|s| map(s, None)).collect();
         let known = ["link_torque_nm", "brake_current_a", "temperature_c"];
         let unknown: Vec<&str> = problem.view.points.unknown().map(|s| prepared.column_name(s)).collect();
@@ -130,7 +130,7 @@ impl Maps {
 
     /// The residual over the two axes where it shows most: of the pairs among the most telling axes, the one whose
     /// means take most off held-out rows.
-    pub fn structure(&self, prepared: &Prepared) -> Option<PairMap> {
+    pub fn structure(&self) -> Option<PairMap> {
         // An axis is as telling as its map, or as its map by direction: what one direction hides from the other cancels alone.
         let telling = |axis: &Map| {
             let sides = self.by_direction.iter().filter(|m| m.x.name == axis.x.name);
@@ -145,7 +145,7 @@ impl Maps {
             let partners = ranked[i + 1..].iter().map(|m| &m.x);
             // The sign of the velocity is no second axis beside the velocity.
             for y in partners.chain(direction.filter(|_| !a.x.name.contains("velocity"))) {
-                let pair = self.pair(&a.x, y, prepared);
+                let pair = self.pair(&a.x, y);
                 cells += pair.cells.len();
                 if best.as_ref().is_none_or(|b| pair.removable > b.removable) {
                     best = Some(pair);
@@ -155,9 +155,9 @@ impl Maps {
         best.map(|m| self.public_pair(&m, cells))
     }
 
-    fn pair(&self, x: &Scale, y: &Scale, prepared: &Prepared) -> Map {
+    fn pair(&self, x: &Scale, y: &Scale) -> Map {
         // An angle keeps its fine bins beside two directions: what it hides is narrow.
         let x = if y.bins.len() > 2 { x.coarse(PAIR_BINS) } else { x.clone() };
-        Map::new(x, Some(y.coarse(PAIR_BINS)), &prepared.main, &self.piece, &self.residual)
+        Map::new(x, Some(y.coarse(PAIR_BINS)), &self.piece, &self.residual)
     }
 }

@@ -10,12 +10,14 @@ mod unseen;
 use crate::assembly::Assembly;
 use crate::prepare::{Prepared, prepare};
 use crate::report::{Diagnosis, Discovery, Experiment, Verdict};
+use crate::view::Signal;
 use crate::words::list;
 use crate::{ModelError, ModelSpec, Options, OwnEffect, together};
 use design::{Noise, Side};
 use imagine::imagine;
 use jointbench_instrument::{Motion, RunTable};
 use serde_json::{Map, Value};
+use std::cmp::Ordering;
 
 /// Rivals count as separated where their predictions are this many standard deviations apart.
 const SEPARATED_Z: f64 = 4.0;
@@ -157,16 +159,33 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     };
     let mut in_vain = Vec::new();
     for (effect, rivals) in &open.ties {
-        let mut specs = Vec::new();
-        for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
+        let instead = |rival: &String| {
             let effects: Vec<String> = open.model.iter().map(|e| if e == effect { rival } else { e }.clone()).collect();
-            specs.push(spec(&effects)?);
+            spec(&effects)
+        };
+        // One that no run tells from it keeps no other from being told.
+        let (mut apart, mut alike) = (Vec::new(), Vec::new());
+        for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
+            let is_told = decided(&[instead(rival)?])?.is_some();
+            if is_told { &mut apart } else { &mut alike }.push(rival.clone());
         }
-        if let Some(bid) = decided(&specs)? {
-            let tells = format!("{effect} from {}", list(rivals));
-            return Ok(told(bid, &tells, std::iter::once(effect).chain(rivals)).into());
+        let all = apart.iter().map(instead).collect::<Result<Vec<_>, _>>()?;
+        let vain = (!alike.is_empty()).then(|| format!("{effect} from {}", list(&alike)));
+        let bid = match decided(&all)? {
+            None if !apart.is_empty() => {
+                apart.truncate(1);
+                decided(&all[..1])?
+            }
+            bid => bid,
+        };
+        if let Some(bid) = bid {
+            let tells = format!("{effect} from {}", list(&apart));
+            let mut next = told(bid, &tells, std::iter::once(effect).chain(&apart));
+            next.why
+                .extend(vain.map(|vain| format!("; no run within what this bench may do is expected to tell {vain}")));
+            return Ok(next.into());
         }
-        in_vain.push(format!("{effect} from {}", list(rivals)));
+        in_vain.extend(vain);
     }
     let next = if let Some(effect) = &open.imitated
         && let Some(bid) = decided(&[with_all.with(effect)?])?
@@ -177,7 +196,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     {
         Some(told(bid, &format!("{effect} from a drift over time"), [&effect]))
     } else if !open.has_noise_floor
-        && let Some(choice) = menu.first()
+        && let Some(choice) = nearest(menu, &prepared)
     {
         Some(again(choice))
     } else if open.has_structure {
@@ -262,12 +281,32 @@ fn in_words(z: f64) -> String {
     if z < 100.0 { format!("{z:.1}") } else { "more than 100".to_owned() }
 }
 
-/// The ordinary run, for its repeats.
+/// So much of a speed or load is as good as all of it.
+const NEARLY: f64 = 0.9;
+
+/// The choice that comes nearest to the fastest of the run at hand, then to its largest load; of equals the first, which is the
+/// ordinary one.
+fn nearest<'m>(menu: &'m [Choice], prepared: &Prepared) -> Option<&'m Choice> {
+    let points = &prepared.main.view.points;
+    let largest = |signal| points.find(signal).map_or(0.0, |of| of.iter().fold(0.0f64, |most, v| most.max(v.abs())));
+    let (fastest, heaviest) = (largest(Signal::Velocity), prepared.load_scale * largest(Signal::Load));
+    let share = |choice: &Choice, of: fn(&Stretch) -> f64, all: f64| {
+        let most = choice.stretches.iter().fold(0.0f64, |most, stretch| most.max(of(stretch).abs()));
+        if all > 0.0 { (most / (NEARLY * all)).min(1.0) } else { 1.0 }
+    };
+    let covered =
+        |choice: &Choice| (share(choice, |s| s.velocity_rad_s, fastest), share(choice, |s| s.load_nm, heaviest));
+    menu.iter().rev().max_by(|a, b| covered(a).partial_cmp(&covered(b)).unwrap_or(Ordering::Equal))
+}
+
+/// A run that could be made anew, for its repeats.
 fn again(choice: &Choice) -> Experiment {
     Experiment {
         procedure: choice.procedure.clone(),
         parameters: choice.parameters.clone(),
-        why: "without repeats of the same profile nobody knows how small the error can become".into(),
+        why: "without repeats of the same profile nobody knows how small the error can become; the run at hand made once \
+              more, with its repeats numbered, would tell it too"
+            .into(),
         expected_z: None,
         expected_duration_s: choice.duration_s.is_finite().then_some(choice.duration_s),
         separates: Vec::new(),

@@ -2,6 +2,7 @@
 //! fits.
 
 use jointbench_instrument::{Kind, Motion, RunTable};
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Ways are taken over pieces of this length: short enough for a reversal, long enough for coarse encoders.
@@ -22,17 +23,33 @@ const SAME: f64 = 0.9;
 const DRIVEN: f64 = 0.5;
 
 /// Each in a sentence.
-pub fn clashes(run: &RunTable) -> Vec<String> {
+#[derive(Debug, Clone, Default)]
+pub struct Clashes {
+    /// Whatever is fitted to these columns means nothing: no effect is named.
+    pub void: Vec<String>,
+    pub others: Vec<String>,
+}
+
+impl Clashes {
+    pub fn all(&self) -> impl Iterator<Item = &String> {
+        self.void.iter().chain(&self.others)
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.all().next().is_none()
+    }
+}
+
+pub fn clashes(run: &RunTable) -> Clashes {
     let gear_ratio = run.meta().gear_ratio.filter(|_| run.meta().motion != Motion::Linear);
+    let gear = gear_ratio.unwrap_or(f64::NAN);
     let pairs: &[(&str, &str, f64)] = match run.kind() {
-        Kind::Friction => &[
-            ("motor_velocity_rad_s", "motor_position_rad", 1.0),
-            ("link_position_rad", "motor_position_rad", gear_ratio.unwrap_or(f64::NAN)),
-        ],
-        Kind::Stiffness => &[
-            ("link_velocity_rad_s", "link_position_rad", 1.0),
-            ("link_position_rad", "motor_position_rad", gear_ratio.unwrap_or(f64::NAN)),
-        ],
+        Kind::Friction => {
+            &[("motor_velocity_rad_s", "motor_position_rad", 1.0), ("link_position_rad", "motor_position_rad", gear)]
+        }
+        Kind::Stiffness => {
+            &[("link_velocity_rad_s", "link_position_rad", 1.0), ("link_position_rad", "motor_position_rad", gear)]
+        }
         Kind::Encoder => {
             &[("velocity_rad_s", "reference_position_rad", 1.0), ("test_position_rad", "reference_position_rad", 1.0)]
         }
@@ -40,14 +57,15 @@ pub fn clashes(run: &RunTable) -> Vec<String> {
     };
     let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
     let torques = (run.kind() == Kind::Friction).then(|| super::carried::clash(run)).flatten();
-    motions
-        .chain(torques)
-        .chain(driven(run))
-        .chain(dead_load(run))
-        .chain(noise(run))
-        .chain(super::reach::beyond(run))
-        .chain(super::sensors::failed(run))
-        .collect()
+    let gears = pairs.iter().filter_map(|(one, other, factor)| other_gear(run, one, other, *factor));
+    Clashes {
+        void: motions.chain(torques).chain(driven(run)).chain(noise(run)).chain(too_fast(run)).collect(),
+        others: gears
+            .chain(dead_load(run))
+            .chain(super::reach::beyond(run))
+            .chain(super::sensors::failed(run))
+            .collect(),
+    }
 }
 
 /// Pieces of the run that do not reach over the end of a recording, with the time that passes in each.
@@ -90,7 +108,16 @@ fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<String> 
             return Some(told);
         }
     }
-    let ways: Vec<(f64, f64)> = pieces(time_s)
+    let times = times(&ways(time_s, a, b, is_speed, factor))?;
+    (!(1.0 / CLASH..=CLASH).contains(&times)).then(|| {
+        let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
+        format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign")
+    })
+}
+
+/// How far `factor · one` and `other` go in each piece of a run.
+fn ways(time_s: &[f64], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> Vec<(f64, f64)> {
+    pieces(time_s)
         .map(|(Range { start, end }, passed_s)| {
             let way = match is_speed {
                 // By the trapezoidal rule.
@@ -102,20 +129,21 @@ fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<String> 
             };
             (way, b[end] - b[start])
         })
-        .collect();
-    let times = alike(&ways).or_else(|| mostly(&ways))?;
-    let tells = !(1.0 / CLASH..=CLASH).contains(&times);
-    if !tells && !is_speed && factor != 1.0 {
-        return other_gear(&ways, factor);
-    }
-    tells.then(|| {
-        let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
-        format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign")
-    })
+        .collect()
+}
+
+/// How many times as far the first goes, where they go alike at all.
+fn times(ways: &[(f64, f64)]) -> Option<f64> {
+    alike(ways).or_else(|| mostly(ways))
 }
 
 /// A gear ratio that is a tooth or two beside the right one: what is left of the load with it looks like an effect.
-fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
+fn other_gear(run: &RunTable, one: &str, other: &str, ratio: f64) -> Option<String> {
+    if one.ends_with("_rad_s") || ratio == 1.0 {
+        return None;
+    }
+    let ways = ways(run.column("time_s")?, run.column(one)?, run.column(other)?, false, ratio);
+    times(&ways).filter(|times| (1.0 / CLASH..=CLASH).contains(times))?;
     let fast = 0.5 * ways.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
     // A joint winds up where it turns back.
     let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
@@ -155,6 +183,18 @@ fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
     let middle = super::median(times.iter().copied());
     let near = times.iter().filter(|t| (*t / middle - 1.0).abs() < NEAR).count();
     (near as f64 > MOST * ways.len() as f64).then_some(middle)
+}
+
+/// An encoder that turns by more than a turn between two samples: nobody knows where it was.
+fn too_fast(run: &RunTable) -> Option<String> {
+    let angle = run.column("reference_position_rad").filter(|_| run.kind() == Kind::Encoder)?;
+    let step = super::median(angle.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
+    (step > TAU).then(|| {
+        format!(
+            "reference_position_rad goes on by {:.3} turns from one sample to the next: it has another unit, or was sampled too slowly",
+            step / TAU
+        )
+    })
 }
 
 /// A load that is the same in every sample, and not zero: no sensor tells that.
@@ -203,6 +243,10 @@ mod tests {
     use super::*;
     use jointbench_instrument::{Channel, Meta, Trace};
 
+    fn said(run: &RunTable) -> Vec<String> {
+        clashes(run).all().cloned().collect()
+    }
+
     fn run(velocity_scale: f64, link_scale: f64) -> RunTable {
         let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "link_position_rad", "motor_current_a"];
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
@@ -224,9 +268,7 @@ mod tests {
                 let [a, b, c] = row(t);
                 trace.push_row(&[t, a, b, c]);
             }
-            clashes(
-                &RunTable::new(Meta { kind: Some(kind), gear_ratio: Some(50.0), ..Meta::default() }, trace).unwrap(),
-            )
+            said(&RunTable::new(Meta { kind: Some(kind), gear_ratio: Some(50.0), ..Meta::default() }, trace).unwrap())
         };
         let encoder = ["time_s", "reference_position_rad", "test_position_rad", "temperature_c"];
         let turn = |a: f64| (a + 3.0).rem_euclid(std::f64::consts::TAU) - 3.0;
@@ -259,7 +301,7 @@ mod tests {
                 trace.push_row(&[t, q, friction_a * v.signum() + gravity_a * q.cos() + held_a + scatter(i)]);
             }
             let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(1.0), ..Meta::default() };
-            clashes(&RunTable::new(meta, trace).unwrap())
+            said(&RunTable::new(meta, trace).unwrap())
         };
         let found = told(0.0, 0.0, 0.0);
         assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is noise")), "{found:?}");
@@ -273,13 +315,13 @@ mod tests {
 
     #[test]
     fn columns_of_one_motion_agree_or_are_told() {
-        assert_eq!(clashes(&run(1.0, 1.0)), Vec::<String>::new());
-        assert_eq!(clashes(&run(1.1, 0.995)), Vec::<String>::new(), "late or filtered");
-        let gear = clashes(&run(1.0, 50.0 / 51.0));
+        assert_eq!(said(&run(1.0, 1.0)), Vec::<String>::new());
+        assert_eq!(said(&run(1.1, 0.995)), Vec::<String>::new(), "late or filtered");
+        let gear = said(&run(1.0, 50.0 / 51.0));
         assert!(gear.len() == 1 && gear[0].contains("goes 51.00 times as far"), "{gear:?}");
-        let rpm = clashes(&run(9.549, 1.0));
+        let rpm = said(&run(9.549, 1.0));
         assert!(rpm.len() == 1 && rpm[0].starts_with("motor_velocity_rad_s is 9.5"), "{rpm:?}");
-        let degrees = clashes(&run(-1.0, 57.296));
+        let degrees = said(&run(-1.0, 57.296));
         assert!(
             degrees.len() == 2 && degrees[0].contains("is -1.00") && degrees[1].contains("57.296 times"),
             "{degrees:?}"

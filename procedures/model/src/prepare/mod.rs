@@ -26,6 +26,7 @@ use crate::report::{GivenConstant, Preparation};
 use crate::view::{Signal, View};
 use crate::{ModelError, Options, ResidualKind};
 pub use brake::drive;
+use clash::Clashes;
 use filter::LowPass;
 use jointbench_instrument::{Kind, Motion, RunTable};
 pub use repeats::Unlike;
@@ -128,7 +129,7 @@ pub struct Prepared {
     /// Facts of the set-up that made signals or the response of the columns.
     pub constants: Vec<GivenConstant>,
     /// Columns that contradict each other, in sentences.
-    pub clashes: Vec<String>,
+    pub clashes: Clashes,
     /// What the facts lack or have wrong, in sentences.
     pub doubts: Vec<String>,
     pub about: Preparation,
@@ -191,7 +192,7 @@ impl Prepared {
 pub fn attention(run: &RunTable) -> Vec<String> {
     match run.len() < SHORTEST {
         true => Vec::new(),
-        false => clash::clashes(run).into_iter().chain(doubts::doubts(run)).collect(),
+        false => clash::clashes(run).all().cloned().chain(doubts::doubts(run)).collect(),
     }
 }
 

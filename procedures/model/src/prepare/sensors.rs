@@ -18,6 +18,9 @@ const CLIPPED_SHARE: f64 = 0.003;
 const ALONE: f64 = 25.0;
 const ALONE_RANGE: f64 = 0.15;
 const AGREE: f64 = 0.2;
+/// Where the speed before and after so many samples differs by this share of the largest, a drive pushes: its pulse is no fault.
+const BESIDE: usize = 5;
+const PUSHED: f64 = 0.02;
 
 /// The columns of measured torque and current, in which noise never rests, and the angle that says whether the run goes on.
 fn columns(kind: Kind) -> (&'static [&'static str], &'static str) {
@@ -87,9 +90,15 @@ fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], ang
 
 /// Samples that stand alone, in a sentence.
 pub fn spikes(run: &RunTable) -> Option<String> {
-    let (names, _) = columns(run.kind());
-    let time_s = run.column("time_s")?;
-    names.iter().find_map(|name| {
+    let (torques, angle) = columns(run.kind());
+    let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
+    let way = |i: usize, j: usize| angle[j.min(angle.len() - 1)] - angle[i];
+    let fastest = (BESIDE..angle.len()).map(|i| way(i - BESIDE, i).abs()).fold(0.0, f64::max);
+    let is_pushed = |i: usize| {
+        let before = way((i - 1).saturating_sub(BESIDE), i - 1);
+        (way(i + 1, i + 1 + BESIDE) - before).abs() > PUSHED * fastest
+    };
+    torques.iter().chain(&["motor_velocity_rad_s", "velocity_rad_s", "temperature_c"]).find_map(|name| {
         let values = run.column(name)?;
         let usual = super::median(values.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
         let (low, high) = middle_of(values);
@@ -97,7 +106,8 @@ pub fn spikes(run: &RunTable) -> Option<String> {
             let (before, here, after) = (values[i - 1], values[*i], values[i + 1]);
             let off = (here - before).abs().min((here - after).abs());
             let one_side = (here - before) * (here - after) > 0.0;
-            one_side && off > (ALONE * usual).max(ALONE_RANGE * (high - low)) && (after - before).abs() < AGREE * off
+            let is_alone = one_side && (after - before).abs() < AGREE * off;
+            is_alone && off > (ALONE * usual).max(ALONE_RANGE * (high - low)) && !is_pushed(*i)
         };
         let found: Vec<usize> = (1..values.len().saturating_sub(1)).filter(alone).collect();
         let first = *found.first()?;
@@ -152,6 +162,26 @@ mod tests {
         assert!(matches!(&stuck[..], [one] if one.contains("from 4.000 s to 4.396 s")), "{stuck:?}");
         let spiked = spikes(&run(|i, current| if i % 997 == 500 { 6.0 } else { current })).unwrap_or_default();
         assert!(spiked.starts_with("motor_current_a has 4 samples that stand alone, the first at 2.000 s"), "{spiked}");
+    }
+
+    #[test]
+    fn a_pulse_that_begins_a_step_is_no_spike() {
+        let names = ["time_s", "motor_position_rad", "motor_current_a", "temperature_c"];
+        let told = |pulse: f64, warmest: f64| {
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            let mut position = 0.0;
+            for i in 0..4000u32 {
+                let (step, at) = (i / 400, i % 400);
+                let speed = f64::from(1 + step);
+                position += 0.004 * speed;
+                let noise = 0.01 * (12.9898 * f64::from(i)).sin();
+                let current = 0.2 + 0.02 * speed + noise + if at == 0 { pulse } else { 0.0 };
+                trace.push_row(&[0.004 * f64::from(i), position, current, if i == 1234 { warmest } else { 25.0 }]);
+            }
+            spikes(&RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap())
+        };
+        assert_eq!(told(3.0, 25.0), None);
+        assert!(told(3.0, 1e30).is_some_and(|told| told.starts_with("temperature_c has one sample")));
     }
 
     #[test]

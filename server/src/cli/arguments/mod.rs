@@ -303,16 +303,16 @@ pub struct Preparation {
     #[arg(long, value_name = "KIND", value_parser = ["raw", "plateau_mean"])]
     pub residual: Option<String>,
     /// Corner of the zero-phase low-pass filter [Hz]
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub cutoff_hz: Option<f64>,
     /// Keep one of so many samples
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub decimation: Option<usize>,
     /// Length of the pieces that plateaus are averaged over [s]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub chunk_s: Option<f64>,
     /// Family-wise error that is accepted for everything that is shown
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     pub alpha: Option<f64>,
 }
 
