@@ -1,5 +1,6 @@
 /** Runs that are compared, as the address carries them: `compare=12,9`. More than six curves cannot be told apart. */
 export const MOST = 6;
+export const TO_COMPARE = `2 to ${MOST} runs can be compared`;
 
 export function readMarked(text: string | null): number[] {
 	const ids = (text ?? '').split(',').map(Number);
