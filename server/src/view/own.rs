@@ -12,7 +12,7 @@ pub struct EffectDefinition {
     /// Lower case letters, digits and underscores; not an id of the library.
     pub id: String,
     pub kind: String,
-    /// `tau = …` for friction and brake, `error = …` for encoder, `torsion = …` for stiffness.
+    /// `tau = …` for friction and brake, `error = …` for encoder, `torsion = …` for stiffness; what stands right of it is enough.
     pub formula: String,
     pub parameters: Vec<DefinedParameter>,
     #[serde(default)]

@@ -41,11 +41,16 @@ pub struct Formula {
 impl Formula {
     /// `units` are those of the parameters.
     pub(crate) fn parse(kind: Kind, text: &str, parameters: &[&str], units: &[&str]) -> Result<Self, Mistake> {
-        let ((left, at), tree) = syntax::equation(text)?;
         let wanted = left_hand_side(kind);
-        if left != wanted {
-            return Err(Mistake::new(at, format!("a formula of {kind} runs begins with {wanted} =, not {left} =")));
-        }
+        let tree = if is_bare(text, wanted, parameters) {
+            syntax::right_hand_side(text)?
+        } else {
+            let ((left, at), tree) = syntax::equation(text)?;
+            if left != wanted {
+                return Err(Mistake::new(at, format!("a formula of {kind} runs begins with {wanted} =, not {left} =")));
+            }
+            tree
+        };
         let whole = Expression::resolve(tree, kind, parameters)?;
         let factors = factors::factors(&whole, parameters.len());
         if let Some(alone) = factors.alone {
@@ -76,6 +81,12 @@ impl Formula {
     pub fn uses(&self, parameter: usize) -> bool {
         self.shape.contains(&parameter) || self.columns.iter().any(|(p, _)| *p == parameter)
     }
+}
+
+/// Only what stands right of the equals sign was written, which can mean nothing else.
+pub(crate) fn is_bare(text: &str, left: &str, parameters: &[&str]) -> bool {
+    let begun = text.split(|c: char| !c.is_alphanumeric() && c != '_').find(|word| !word.is_empty());
+    !text.contains('=') && !text.trim().is_empty() && (begun != Some(left) || parameters.contains(&left))
 }
 
 fn has_signal(e: &Expression) -> bool {

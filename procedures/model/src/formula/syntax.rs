@@ -43,12 +43,23 @@ pub enum Operator {
 
 /// `left = expression`: the left-hand side with its place, and the tree of the other.
 pub fn equation(text: &str) -> Result<((String, Range<usize>), Node), Mistake> {
-    if text.len() > LONGEST {
-        return Err(Mistake::new(LONGEST..text.len(), format!("a formula has at most {LONGEST} characters")));
-    }
+    check_length(text)?;
     let left = preceded(multispace0, name.with_span().context(expected("the left-hand side, such as tau")));
     let equals = preceded(multispace0, '=').context(expected("= after the left-hand side"));
     whole((terminated(left, equals), tree), text, "an operator or the end was expected")
+}
+
+/// What stands right of the equals sign, written by itself.
+pub fn right_hand_side(text: &str) -> Result<Node, Mistake> {
+    check_length(text)?;
+    tree_of(text)
+}
+
+fn check_length(text: &str) -> Result<(), Mistake> {
+    match text.len() > LONGEST {
+        true => Err(Mistake::new(LONGEST..text.len(), format!("a formula has at most {LONGEST} characters"))),
+        false => Ok(()),
+    }
 }
 
 /// An expression by itself, such as a unit.

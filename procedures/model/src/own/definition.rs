@@ -1,7 +1,7 @@
 //! What a user writes down about an effect: the same object in TOML, in JSON and inside a fit.
 
 use crate::effects;
-use crate::formula::{Formula, FormulaFault, Function, Mistake, signals};
+use crate::formula::{Formula, FormulaFault, Function, Mistake, is_bare, left_hand_side, signals};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub struct Definition {
     /// Lower case letters, digits and underscores; not an id of the library.
     pub id: String,
     pub kind: Kind,
-    /// The quantity that models of the kind predict, `=`, and a formula over signals and parameters.
+    /// The quantity that models of the kind predict, `=`, and a formula over signals and parameters; that alone is enough.
     pub formula: String,
     pub parameters: Vec<OwnParameter>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -50,6 +50,15 @@ fn one() -> String {
 }
 
 impl Definition {
+    /// With the left-hand side, where the formula was written without: files, exports and pages show it whole.
+    pub(super) fn whole(mut self) -> Self {
+        let (left, names) = (left_hand_side(self.kind), self.parameters.iter().map(|p| p.name.as_str()));
+        if is_bare(&self.formula, left, &names.collect::<Vec<_>>()) {
+            self.formula = format!("{left} = {}", self.formula.trim());
+        }
+        self
+    }
+
     /// The formula, if everything makes sense.
     pub(super) fn check(&self) -> Result<Formula, FormulaFault> {
         self.check_id().map_err(|m| m.found(&self.id, "id", &self.id))?;

@@ -175,6 +175,9 @@ impl TryFrom<Definition> for OwnEffect {
     type Error = FormulaFault;
 
     fn try_from(definition: Definition) -> Result<Self, FormulaFault> {
+        // A mistake stands at its character of what was written.
+        definition.check()?;
+        let definition = definition.whole();
         let formula = definition.check()?;
         let parameters = definition.parameters.iter().map(OwnParameter::info).collect();
         let optional = |s: &&NamedSignal| {

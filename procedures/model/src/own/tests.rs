@@ -67,6 +67,19 @@ fn every_mistake_of_the_short_form_stands_at_its_character() {
 }
 
 #[test]
+fn a_formula_without_its_left_hand_side_is_kept_with_it() {
+    let short = "rub: a * tanh(velocity / w0) * abs(load); a [1] 0..1; w0 [rad/s] 0.1..10 start 1..5";
+    assert_eq!(OwnEffect::inline(Kind::Friction, short).unwrap(), rub());
+    let torsion = OwnEffect::inline(Kind::Stiffness, "soft: k * load; k [rad/Nm]").unwrap();
+    assert_eq!(torsion.definition().formula, "torsion = k * load");
+    let tau = OwnEffect::inline(Kind::Friction, "x: tau * velocity; tau [Nm*s/rad]").unwrap();
+    assert_eq!(tau.definition().formula, "tau = tau * velocity");
+    check_mistake("rub: a * §velocty; a", "did you mean velocity");
+    check_mistake("rub: a * (load§; a", "closing bracket");
+    check_mistake("rub: tau §* load; a", "= after the left-hand side");
+}
+
+#[test]
 fn the_caret_stands_below_the_mistake() {
     let fault = OwnEffect::inline(Kind::Friction, "rub: tau = a * velocty; a").unwrap_err();
     assert_eq!(fault.marked(), "rub: tau = a * velocty; a\n               ^^^^^^^");
