@@ -6,7 +6,7 @@ use crate::store::OwnEffectRecord;
 use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage, FormulaSignal, LiveMessage};
 use jointbench_instrument::Kind;
 use jointbench_model::formula::{self, Function};
-use jointbench_model::{Definition, Effect as _, ModelSpec, Options, OwnEffect};
+use jointbench_model::{Definition, Effect as _, ModelSpec, Options, OwnEffect, TradeOff};
 
 impl Lab {
     pub async fn effects(&self, kind: Option<&str>) -> Answer<Vec<Effect>> {
@@ -61,6 +61,7 @@ impl Lab {
             shape: own.formula().shape.iter().map(name).collect(),
             signals: own.formula().signals.iter().map(|s| s.name.to_owned()).collect(),
             parameters: Vec::new(),
+            like: Vec::new(),
         };
         if let Some(run) = trial.run {
             let runs: Vec<i64> = std::iter::once(run).chain(trial.more_runs.iter().copied()).collect();
@@ -68,6 +69,7 @@ impl Lab {
             let effects = table.meta().baseline.iter().cloned().chain([own.id().to_owned()]);
             let spec = ModelSpec::with_own(table.kind(), effects, vec![own.clone()])?;
             let fit = blocking(move || jointbench_model::fit(&table, &spec, &Options::default())).await?;
+            check.like = trading(own.id(), &fit.trade_offs);
             let found: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == own.id()).collect();
             check.parameters = reread(&found)?;
         }
@@ -117,6 +119,21 @@ impl Lab {
     }
 }
 
+/// The other effects of which the data decides only a combination with this one, each once.
+fn trading(own: &str, pairs: &[TradeOff]) -> Vec<String> {
+    let effects =
+        |pair: &TradeOff| [&pair.first, &pair.second].map(|name| name.split('.').next().unwrap_or_default().to_owned());
+    let other = |[first, second]: [String; 2]| match (first == own, second == own) {
+        (true, false) => Some(second),
+        (false, true) => Some(first),
+        _ => None,
+    };
+    let mut others: Vec<String> = pairs.iter().map(effects).filter_map(other).collect();
+    others.sort();
+    others.dedup();
+    others
+}
+
 fn parse(definition: &EffectDefinition) -> Answer<OwnEffect> {
     find_kind(&definition.kind)?;
     let definition: Definition = reread(definition)?;
@@ -134,4 +151,19 @@ fn view(record: &OwnEffectRecord) -> Answer<Effect> {
         version: Some(record.version),
         ..effect_view(&read(record)?.info())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_effect_is_told_with_what_it_trades_off_with() {
+        let pair =
+            |first: &str, second: &str| TradeOff { first: first.into(), second: second.into(), correlation: 0.99 };
+        let pairs = [pair("rub.a", "coulomb.tau_c"), pair("viscous.c_v", "rub.a"), pair("rub.a", "rub.w0")];
+        let others =
+            [pair("coulomb.tau_c", "rub.b"), pair("stribeck.tau_s", "viscous.c_v"), pair("rubber.a", "drift.d")];
+        assert_eq!(trading("rub", &[&pairs[..], &others[..]].concat()), ["coulomb", "viscous"]);
+    }
 }

@@ -111,6 +111,9 @@ pub struct EffectCheck {
     pub signals: Vec<String>,
     /// The effect's parameters on the run; empty where none was named.
     pub parameters: Vec<FittedParameter>,
+    /// Effects of the baseline from which the run cannot tell it: of the two it decides only a combination.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub like: Vec<String>,
 }
 
 /// A signal that a formula may name.
