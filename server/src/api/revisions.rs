@@ -102,14 +102,14 @@ pub async fn export(
     Query(query): Query<ModelExportQuery>,
 ) -> Result<Response, Problem> {
     let format = Format::from(query.format);
-    let text = lab.export_model(id, format).await?;
+    let (run, text) = lab.export_model(id, format).await?;
     let media_type = match query.format {
         ExportFormat::Json => "application/json",
         ExportFormat::C => "text/x-c; charset=utf-8",
         ExportFormat::Lut => "text/csv; charset=utf-8",
         ExportFormat::Mujoco | ExportFormat::Urdf => "application/xml",
     };
-    let name = format!("attachment; filename=\"model-{id}.{}\"", format.extension());
+    let name = format!("attachment; filename=\"run-{run}-model-{id}.{}\"", format.extension());
     Ok(([(header::CONTENT_TYPE, media_type.to_owned()), (header::CONTENT_DISPOSITION, name)], text).into_response())
 }
 

@@ -87,8 +87,10 @@ impl Lab {
         reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)
     }
 
-    pub async fn export_model(&self, model: i64, format: Format) -> Answer<String> {
-        Ok(export(&self.fit(model).await?, format)?)
+    /// With the run that it was fitted to.
+    pub async fn export_model(&self, model: i64, format: Format) -> Answer<(i64, String)> {
+        let record = self.inner.store.model(model).await?;
+        Ok((record.run, export(&reread(&record.fit)?, format)?))
     }
 
     /// Keeps an exported model as a version of a run. Its numbers stay as they are; its errors are those on the run.

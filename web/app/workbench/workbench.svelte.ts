@@ -268,6 +268,10 @@ export function openWorkbench(id: number) {
 		get other() {
 			return other;
 		},
+		/** How files of the version at hand are called. */
+		get file() {
+			return `run-${id}-model-${model?.id}`;
+		},
 		/** Residuals of the version beside, where both versions hold the same samples. */
 		get otherSet() {
 			const [mine, theirs] = [residuals.data, otherResiduals.data];
