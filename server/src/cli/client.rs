@@ -32,6 +32,11 @@ impl Client {
         format!("{}{path}", self.base.trim_end_matches("/api/v1"))
     }
 
+    /// A daemon is there, whatever it says.
+    pub fn is_answered(&self) -> bool {
+        self.agent.get(format!("{}/health", self.base)).call().is_ok()
+    }
+
     pub fn get<T: DeserializeOwned>(&self, path: &str) -> Result<T, Exit> {
         self.json(&self.get_bytes(path)?)
     }

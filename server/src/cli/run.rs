@@ -133,9 +133,21 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     }
     match arguments.wait || arguments.junit.is_some() || !arguments.require.is_empty() {
         // The arguments were good: from here on it is the run that fails.
-        true => wait(client, id).map_err(|exit| Exit::failed(format!("run {id} is lost from sight: {}", exit.said))),
+        true => wait(client, id).map_err(|exit| lost(id, client.is_answered(), &exit.said)),
         false => Ok(run),
     }
+}
+
+/// What is known of a run whose daemon has gone, and of one that cannot be asked for any more.
+fn lost(id: i64, is_answered: bool, said: &str) -> Exit {
+    Exit::failed(match is_answered {
+        true => format!("run {id} is lost from sight: {said}"),
+        false => format!(
+            "run {id}: the daemon has ended or does not answer any more, so that nothing more is known of the run here. The daemon \
+             brings the bench into its safe state, not this command: as it ends, or, where it was killed, when it is started again \
+             (jointbench serve). Then see how the run ended: `jointbench runs id:{id}`"
+        ),
+    })
 }
 
 fn new_run(client: &Client, arguments: &Arguments) -> Result<NewRun, Exit> {
@@ -279,6 +291,13 @@ mod tests {
         assert_eq!(parameters["repeats"], 3);
         assert_eq!(parameters["note"], "warm oil");
         assert_eq!(super::parameters(&["repeats".to_owned()]).unwrap_err().code, 2);
+    }
+
+    #[test]
+    fn of_a_run_whose_daemon_has_gone_it_is_said_what_is_known() {
+        let (gone, refused) = (lost(7, false, "no daemon answers"), lost(7, true, "a token is needed"));
+        assert!(gone.code == 1 && gone.said.contains("safe state") && gone.said.contains("jointbench runs id:7"));
+        assert_eq!((refused.code, refused.said.as_str()), (1, "run 7 is lost from sight: a token is needed"));
     }
 
     #[test]
