@@ -43,8 +43,8 @@ impl Identification {
     }
 
     /// The same, made of this run, which is in this state: a run that did not come to its end has not shown what it was made
-    /// for, whatever its part says. `goes_on`: what is left of it may be made later.
-    pub fn of_run(mut self, run: RunId, state: RunState, goes_on: bool) -> Self {
+    /// for, whatever its part says. `goes_on`: what is left of it may be made later. `step`: where it ended, such as `step 3 of 41`.
+    pub fn of_run(mut self, run: RunId, state: RunState, goes_on: bool, step: Option<&str>) -> Self {
         if state != RunState::Completed {
             let (part, next) = match (state.is_final(), goes_on) {
                 (false, _) => ("The run is not at its end yet", "let it come to its end"),
@@ -54,13 +54,20 @@ impl Identification {
                     "make the rest of it (“Make the rest” on its page, or jointbench run --continue RUN), or make it again",
                 ),
             };
+            let ended = step.map(|step| format!(" in {step}")).unwrap_or_default();
             let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
             self.summary = match (&self.advice, self.verdict) {
                 // Nothing has failed while samples still come.
                 (Some(lacking), Verdict::Failed) if !state.is_final() => {
                     format!("Not yet: {}.", without_remedy(lacking))
                 }
-                _ => format!("{part} ({state}), this is what its part says:{gap}{}", self.summary),
+                (Some(lacking), Verdict::Failed) => {
+                    format!(
+                        "{part} ({state}{ended}), and of its part nothing can be identified: {}.",
+                        without_remedy(lacking)
+                    )
+                }
+                _ => format!("{part} ({state}{ended}), this is what its part says:{gap}{}", self.summary),
             };
             // What a part lacks is no fault of how the run was planned.
             self.advice = Some(next.to_owned());
@@ -198,7 +205,7 @@ mod tests {
     fn what_to_do_next_can_be_typed() {
         let said = |state, goes_on| {
             let made = Identification::failed("Too few steps.", "look closer (jointbench export RUN)");
-            made.of_run(12, state, goes_on).advice.unwrap()
+            made.of_run(12, state, goes_on, None).advice.unwrap()
         };
         assert_eq!(said(RunState::Completed, true), "look closer (jointbench export 12)");
         assert!(said(RunState::Stopped, true).contains("jointbench run --continue 12"));
@@ -208,7 +215,9 @@ mod tests {
 
     #[test]
     fn what_is_lacking_is_no_failure_while_the_run_is_on() {
-        let said = |lacking: &str, state| Identification::failed("Nothing.", lacking).of_run(12, state, true).summary;
+        let said = |lacking: &str, state| {
+            Identification::failed("Nothing.", lacking).of_run(12, state, true, Some("step 3 of 41")).summary
+        };
         let few = "too few samples: 12 usable in motion, at least 40 are needed; record a longer run";
         assert_eq!(
             said(few, RunState::Running),
@@ -218,13 +227,17 @@ mod tests {
             said("too few speeds were held: make the run to its end", RunState::Paused),
             "Not yet: too few speeds were held."
         );
-        assert!(said(few, RunState::Aborted).ends_with("this is what its part says: Nothing."));
+        assert_eq!(
+            said(few, RunState::Aborted),
+            "The run did not come to its end (aborted in step 3 of 41), and of its part nothing can be identified: \
+             too few samples: 12 usable in motion, at least 40 are needed."
+        );
     }
 
     #[test]
     fn a_number_below_zero_has_a_minus_and_a_command_stays_as_it_is() {
         let text = "A shift of -0.150 mm (-3 to -1), in run-12.csv: jointbench run x --set shift=-2 from 5-7.";
         let said = "A shift of −0.150 mm (−3 to −1), in run-12.csv: jointbench run x --set shift=-2 from 5-7.";
-        assert_eq!(Identification::failed(text, "").of_run(12, RunState::Completed, true).summary, said);
+        assert_eq!(Identification::failed(text, "").of_run(12, RunState::Completed, true, None).summary, said);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::benches::previewed;
 use super::{Answer, Lab, LabError};
-use crate::store::RunRecord;
+use crate::store::{EventRecord, RunRecord};
 use crate::view::{Preview, Run};
 use jiff::Timestamp;
 use jointbench_instrument::{Meta, RunTable};
@@ -64,6 +64,20 @@ impl Lab {
             None => plan,
         };
         previewed(bench, &plan)
+    }
+
+    /// In which of its steps a run ended: `step 3 of 41`, or `step 3` where it cannot be planned any more.
+    pub(super) async fn last_step(&self, id: i64) -> Answer<Option<String>> {
+        let events = self.inner.store.events(id, 0).await?;
+        let begun = |event: &EventRecord| event.data.get("step").and_then(serde_json::Value::as_u64);
+        let Some(step) = events.iter().filter(|event| event.kind == "step_started").filter_map(begun).next_back()
+        else {
+            return Ok(None);
+        };
+        // Planning may ask what an earlier run has found, and so comes by here.
+        let steps =
+            Box::pin(self.plan_of(id)).await.map(|plan| format!(" of {}", plan.steps.len())).unwrap_or_default();
+        Ok(Some(format!("step {}{steps}", step + 1)))
     }
 
     /// A run behind those that it goes on with, the last first.

@@ -4,6 +4,7 @@ use super::calibrations::applies;
 use super::{Answer, Lab, LabError, reread};
 use crate::store::Subject;
 use crate::view::{Earlier, FollowUp, Identification, Quantity};
+use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -73,12 +74,14 @@ impl Lab {
         let values = Values::parse(procedure.schema(), &record.parameters)
             .map_err(|fault| LabError::Invalid(format!("run {id} was made by another version: {fault}")))?;
         let table = self.measurement(id).await?;
+        let cut = record.state.is_final() && record.state != RunState::Completed;
+        let step = if cut { self.last_step(id).await? } else { None };
         let runs = self.together(id).await?;
         let mut found = tokio::task::spawn_blocking(move || procedure.identify(&values, &table))
             .await
             .map_err(|fault| LabError::Internal(format!("the identification of run {id} failed: {fault}")))?
             .ok_or_else(none)?
-            .of_run(id, record.state, procedure.goes_on().is_ok());
+            .of_run(id, record.state, procedure.goes_on().is_ok(), step.as_deref());
         if let [before @ .., last] = runs.as_slice()
             && !before.is_empty()
         {
