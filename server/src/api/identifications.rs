@@ -35,7 +35,7 @@ pub async fn beside(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Optio
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReportQuery {
-    /// The version of the run's model that is told of; the last that is not idle where left out.
+    /// The version of the run's model that is told of; the last that is neither idle nor only tried where left out.
     pub model: Option<i64>,
 }
 

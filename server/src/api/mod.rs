@@ -122,6 +122,7 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(own_effects::language))
         .routes(routes!(models::list, models::create))
         .routes(routes!(models::get))
+        .routes(routes!(models::keep))
         .routes(routes!(revisions::compare))
         .routes(routes!(revisions::worth))
         .routes(routes!(revisions::with_effect))

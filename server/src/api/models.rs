@@ -34,7 +34,14 @@ pub async fn create(
     Extension(caller): Extension<Caller>,
     Json(new): Json<NewModel>,
 ) -> Created<Model> {
-    created(lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude, &caller.name).await?)
+    created(lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude, new.tried, &caller.name).await?)
+}
+
+/// Keeps a version that was only tried, or that gained next to nothing, as one of the run's
+#[utoipa::path(post, path = "/models/{id}/keep", operation_id = "keep_model", tag = "models", params(("id" = i64, Path, description = "Model version")),
+    responses((status = 200, description = "The version", body = Model), Refusals))]
+pub async fn keep(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Model> {
+    Ok(Json(lab.keep_model(id, &caller.name).await?))
 }
 
 #[derive(Debug, Clone, Deserialize, IntoParams)]

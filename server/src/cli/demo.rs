@@ -135,7 +135,7 @@ async fn measure(lab: &Lab) -> Result<Run, Exit> {
 /// Baseline, diagnosis, best effect, again: through the same calls as the dashboard.
 async fn improve(lab: &Lab, run: &Run) -> Result<Improved, Exit> {
     let meta: jointbench_instrument::Meta = reread(&run.meta)?;
-    let mut versions = vec![lab.create_model(&[run.summary.id], &meta.baseline, None, None, LOCAL).await?];
+    let mut versions = vec![lab.create_model(&[run.summary.id], &meta.baseline, None, None, false, LOCAL).await?];
     loop {
         let model = &versions[versions.len() - 1];
         let diagnosis = lab.diagnose(model.id).await?.finding;
@@ -154,7 +154,7 @@ async fn improve(lab: &Lab, run: &Run) -> Result<Improved, Exit> {
         println!();
         println!("   → add {} and fit again", best.effect);
         let effects: Vec<String> = model.effects.iter().cloned().chain([best.effect.clone()]).collect();
-        let next = lab.create_model(&[run.summary.id], &effects, Some(model.id), None, LOCAL).await?;
+        let next = lab.create_model(&[run.summary.id], &effects, Some(model.id), None, false, LOCAL).await?;
         versions.push(next);
     }
 }

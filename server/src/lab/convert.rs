@@ -175,6 +175,7 @@ pub(super) fn model(record: ModelRecord) -> Result<view::Model, LabError> {
         rms: record.rms,
         noise_floor_rms: record.noise_floor_rms,
         idle: record.idle,
+        tried: record.tried,
         by: record.by,
         created_at: record.created_at,
         options: record.options,

@@ -19,6 +19,7 @@ impl Lab {
         effects: &[String],
         parent: Option<i64>,
         exclude: Option<Vec<Exclusion>>,
+        tried: bool,
         by: &str,
     ) -> Answer<Model> {
         let Some((&run, more_runs)) = runs.split_first() else {
@@ -74,6 +75,7 @@ impl Lab {
             validation_rms: checked.validation_rms,
             noise_floor_rms,
             options: chosen,
+            tried,
             fit: reread(&fit)?,
             by: by.to_owned(),
         };
@@ -93,6 +95,13 @@ impl Lab {
             "model fitted"
         );
         self.hub().tell(LiveMessage::Model { run, model: record.id });
+        convert::model(record)
+    }
+
+    /// Makes a version that was only tried, or that is idle, one of the run's.
+    pub async fn keep_model(&self, id: i64, by: &str) -> Answer<Model> {
+        let record = self.inner.store.keep_model(id, by).await?;
+        self.hub().tell(LiveMessage::Model { run: record.run, model: id });
         convert::model(record)
     }
 

@@ -228,7 +228,7 @@ impl Pilot {
             Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
             None => None,
         };
-        let model = self.lab.create_model(&self.runs, effects, parent, None, &self.by).await?;
+        let model = self.lab.create_model(&self.runs, effects, parent, None, false, &self.by).await?;
         let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
         let found = self.diagnosed(&model, step).await?;
         Ok((model, found))
@@ -236,7 +236,7 @@ impl Pilot {
 
     async fn add(&mut self, before: &Model, best: &Suggestion) -> Answer<(Model, Finding)> {
         let effects: Vec<String> = before.effects.iter().cloned().chain([best.effect.clone()]).collect();
-        let model = self.lab.create_model(&self.runs, &effects, Some(before.id), None, &self.by).await?;
+        let model = self.lab.create_model(&self.runs, &effects, Some(before.id), None, false, &self.by).await?;
         let tied = match best.confounded_with.as_slice() {
             [] => String::new(),
             rivals => format!(" (these runs cannot tell it from {})", rivals.join(", ")),

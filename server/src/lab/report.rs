@@ -6,7 +6,7 @@ use crate::view::Model;
 
 impl Lab {
     /// Everything that is known of a run: what its procedure makes of it, a model and that model's diagnosis. `model`: one of its
-    /// versions, the last that is not idle where left out.
+    /// versions, the last that is neither idle nor only tried where left out.
     pub async fn report(&self, id: i64, model: Option<i64>) -> Answer<String> {
         let run = self.run(id).await?;
         let identification = match self.identification(id).await {
@@ -31,9 +31,10 @@ impl Lab {
     }
 }
 
-/// A version, the last that is not idle where none is named, and its forebears, the oldest first.
+/// A version, the last that is neither idle nor only tried where none is named, and its forebears, the oldest first.
 fn lineage(mut versions: Vec<Model>, model: Option<i64>) -> Vec<Model> {
-    let last = versions.iter().rposition(|version| model.map_or(!version.idle, |id| version.id == id));
+    let last =
+        versions.iter().rposition(|version| model.map_or(!version.idle && !version.tried, |id| version.id == id));
     let mut line: Vec<Model> = last.map(|place| versions.remove(place)).into_iter().collect();
     while let Some(parent) = line.last().and_then(|version| version.parent) {
         let Some(place) = versions.iter().position(|version| version.id == parent) else { break };

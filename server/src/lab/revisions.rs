@@ -125,6 +125,7 @@ impl Lab {
             validation_rms: held.rms,
             noise_floor_rms: None,
             options: reread(&Options::default())?,
+            tried: false,
             fit: reread(&kept)?,
             by: by.to_owned(),
         };

@@ -24,6 +24,7 @@ fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
         validation_rms: row.try_get("validation_rms")?,
         noise_floor_rms: row.try_get("noise_floor_rms")?,
         idle: row.try_get("idle")?,
+        tried: row.try_get("tried")?,
         options: json(row, "options")?,
         by: row.try_get("who")?,
         created_at: row.try_get("created_at")?,
@@ -52,7 +53,7 @@ impl Store {
         };
         let id = sqlx::query_scalar(
             "INSERT INTO models (run, more_runs, excluded, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
-             noise_floor_rms, options, who, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
+             noise_floor_rms, options, who, created_at, made_to_try) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
         )
         .bind(new.run)
         .bind(serde_json::to_string(&new.more_runs)?)
@@ -70,8 +71,17 @@ impl Store {
         .bind(serde_json::to_string(&new.options)?)
         .bind(&new.by)
         .bind(now())
+        .bind(new.tried)
         .fetch_one(&self.writer)
         .await?;
+        self.model(id).await
+    }
+
+    /// Makes a version that was only tried, or that is idle, one of the run's.
+    pub async fn keep_model(&self, id: i64, by: &str) -> Result<ModelRecord, StoreError> {
+        self.model(id).await?;
+        let keep = sqlx::query("INSERT OR IGNORE INTO models_kept (model, who, created_at) VALUES (?, ?, ?)");
+        keep.bind(id).bind(by).bind(now()).execute(&self.writer).await?;
         self.model(id).await
     }
 
@@ -80,10 +90,10 @@ impl Store {
         record(&row.ok_or(StoreError::NoModel(id))?)
     }
 
-    /// The last version of a kind that was fitted to another run of a bench and is not idle.
+    /// The last version of a kind that was fitted to another run of a bench, is not idle and not only tried.
     pub async fn last_model(&self, bench: &str, kind: &str, but: RunId) -> Result<Option<ModelRecord>, StoreError> {
         let asked = "SELECT model.* FROM models_told AS model JOIN runs ON runs.id = model.run \
-            WHERE runs.bench = ? AND model.kind = ? AND model.run <> ? AND NOT idle ORDER BY model.id DESC LIMIT 1";
+            WHERE runs.bench = ? AND model.kind = ? AND model.run <> ? AND NOT idle AND NOT tried ORDER BY model.id DESC LIMIT 1";
         let row = sqlx::query(asked).bind(bench).bind(kind).bind(but).fetch_optional(&self.readers).await?;
         row.as_ref().map(record).transpose()
     }

@@ -14,12 +14,12 @@ const COLUMNS: [(&str, &str); 9] = [
     ("safe", "safe"),
     (
         "error",
-        "(SELECT validation_rms FROM models_told WHERE run = runs_told.id AND NOT idle ORDER BY id DESC LIMIT 1)",
+        "(SELECT validation_rms FROM models_told WHERE run = runs_told.id AND NOT idle AND NOT tried ORDER BY id DESC LIMIT 1)",
     ),
     (
         "coulomb",
         "(SELECT (SELECT p.value ->> '$.value' FROM json_each(models_told.fit, '$.parameters') AS p \
-         WHERE p.value ->> '$.effect' = 'coulomb') FROM models_told WHERE run = runs_told.id AND NOT idle ORDER BY id DESC LIMIT 1)",
+         WHERE p.value ->> '$.effect' = 'coulomb') FROM models_told WHERE run = runs_told.id AND NOT idle AND NOT tried ORDER BY id DESC LIMIT 1)",
     ),
 ];
 

@@ -109,6 +109,8 @@ pub struct NewModel {
     pub validation_rms: f64,
     pub noise_floor_rms: Option<f64>,
     pub options: Map<String, Value>,
+    /// Made to see what it would do: nobody's model until a person keeps it.
+    pub tried: bool,
     pub by: String,
 }
 
@@ -130,6 +132,7 @@ pub struct ModelRecord {
     pub validation_rms: f64,
     pub noise_floor_rms: Option<f64>,
     pub idle: bool,
+    pub tried: bool,
     pub options: Map<String, Value>,
     pub by: Option<String>,
     pub created_at: String,

@@ -11,14 +11,14 @@ use serde_json::{Map, Value};
 use sqlx::sqlite::SqliteRow;
 use sqlx::{QueryBuilder, Row, SqliteConnection};
 
-/// Runs as they are told, with their tags, their last note and the last version of their model that is not idle.
+/// Runs as they are told, with their tags, their last note and the last version of their model that is not idle and not only tried.
 const TOLD: &str = "SELECT runs_told.*, \
     (SELECT json_group_array(tag) FROM (SELECT tag FROM tags WHERE run = runs_told.id ORDER BY tag)) AS tags, \
     (SELECT text FROM notes WHERE run = runs_told.id ORDER BY id DESC LIMIT 1) AS note, \
     (SELECT json_object('id', id, 'validation_rms', validation_rms, 'noise_floor_rms', noise_floor_rms, \
         'unit', json_extract(fit, '$.unit'), \
         'coulomb', (SELECT json(p.value) FROM json_each(models_told.fit, '$.parameters') AS p WHERE p.value ->> '$.effect' = 'coulomb')) \
-        FROM models_told WHERE run = runs_told.id AND NOT idle ORDER BY id DESC LIMIT 1) AS model \
+        FROM models_told WHERE run = runs_told.id AND NOT idle AND NOT tried ORDER BY id DESC LIMIT 1) AS model \
     FROM runs_told";
 
 /// Now, as it is written in the store.

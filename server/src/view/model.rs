@@ -48,6 +48,9 @@ pub struct NewModel {
     /// Stretches that the fit must not look at; those of the parent where left out.
     #[serde(default)]
     pub exclude: Option<Vec<Exclusion>>,
+    /// Only to see what it would do: the version is nobody's model until it is kept.
+    #[serde(default)]
+    pub tried: bool,
 }
 
 /// A stretch of a measurement that a model version was not fitted to.
@@ -89,8 +92,12 @@ pub struct Model {
     pub validation_rms: f64,
     pub rms: f64,
     pub noise_floor_rms: Option<f64>,
-    /// It has added effects to its parent and takes less than half a percent off the error held out.
+    /// It has added effects to its parent and takes less than half a percent off the error held out, and nobody has kept it.
     pub idle: bool,
+    /// It was made to see what it would do, and nobody has kept it.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub tried: bool,
     /// Who made it: name of the token, or `local`.
     pub by: Option<String>,
     #[schema(format = DateTime)]

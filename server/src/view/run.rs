@@ -58,7 +58,7 @@ pub struct RunSummary {
     /// The last note.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
-    /// The last version of the run's model that is not idle.
+    /// The last version of the run's model that is neither idle nor only tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<LastModel>,
 }

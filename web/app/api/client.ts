@@ -1,5 +1,5 @@
 import { ask } from './ask';
-import type { EffectDefinition, Exclusion, NewAutopilot } from './types';
+import type { EffectDefinition, NewAutopilot, NewModel } from './types';
 
 export const BASE = '/api/v1';
 
@@ -66,8 +66,8 @@ export const api = {
 		ask('delete', '/api/v1/effects/{kind}/{id}', { path: { kind, id } }),
 	models: (run: number, signal?: Signal) => ask('get', '/api/v1/models', { query: { run } }, signal),
 	/** Without `exclude` the version looks away where its parent does. */
-	fit: (run: number, effects: string[], parent?: { id: number; more_runs: number[] }, exclude?: Exclusion[]) =>
-		ask('post', '/api/v1/models', { body: { run, effects, parent: parent?.id, more_runs: parent?.more_runs, exclude } }),
+	fit: (asked: NewModel) => ask('post', '/api/v1/models', { body: asked }),
+	keepModel: (id: number) => ask('post', '/api/v1/models/{id}/keep', { path: { id } }),
 	/** What the effect would add to the prediction, at each point of the residuals. */
 	withEffect: (id: number, effect: string, signal?: Signal) => ask('get', '/api/v1/models/{id}/with/{effect}', { path: { id, effect } }, signal),
 	worth: (id: number, signal?: Signal) => ask('get', '/api/v1/models/{id}/worth', { path: { id } }, signal),

@@ -24,6 +24,7 @@ export type LiveMessage = Schemas['LiveMessage'];
 export type LogEntry = Schemas['LogEntry'];
 export type Model = Schemas['Model'];
 export type NewAutopilot = Schemas['NewAutopilot'];
+export type NewModel = Schemas['NewModel'];
 export type Note = Schemas['Note'];
 export type Parameter = Schemas['FittedParameter'];
 export type Place = Schemas['Place'];

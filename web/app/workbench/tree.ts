@@ -28,6 +28,9 @@ export function sameData(one: Model, other: Model): boolean {
 	return one.run === other.run && one.more_runs.join() === other.more_runs.join() && away(one) === away(other);
 }
 
+/** Only tried, or of next to no gain, and kept by nobody: no page shows it as the run's model. */
+export const isAside = ({ tried, idle }: Model): boolean => tried || idle;
+
 /** What a version did to its parent, in a few words. */
 export function stepName(model: Model, before?: Model, titleOf = words): string {
 	if (model.parent == null) return 'start';

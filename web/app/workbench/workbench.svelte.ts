@@ -7,6 +7,7 @@ import { words } from '../format/label';
 import { lab } from '../state/lab.svelte';
 import { resource } from '../state/resource.svelte';
 import { readMarked } from '../runs/marked';
+import { role } from '../state/role.svelte';
 import { router } from '../state/router.svelte';
 import { reveal } from '../ui/reveal';
 import { isFinal } from '../ui/states';
@@ -14,8 +15,7 @@ import { type Side, inOneTurn, withMore } from '../residual/points';
 import { selected } from '../residual/selected';
 import { usualAxes } from './ranked';
 import { readRegion } from './region';
-import { WORTH, childWith, gain, sameData, undecided, worded } from './tree';
-import { tries } from './tries.svelte';
+import { WORTH, childWith, gain, isAside, sameData, undecided, worded } from './tree';
 
 /** The model of one run, as the workbench works on it. Call while a component is being set up. */
 export function openWorkbench(id: number) {
@@ -53,7 +53,7 @@ export function openWorkbench(id: number) {
 	/** While the version of the address is awaited, the one that was here stays, and no other takes its place. */
 	let former: Model | null = null;
 	const model: Model | null = $derived(
-		(former = awaited ? former : (named ?? versions.findLast((one) => !tries.has(one.id) && !one.idle) ?? versions.at(-1) ?? null)),
+		(former = awaited ? former : (named ?? versions.findLast((one) => !isAside(one)) ?? versions.at(-1) ?? null)),
 	);
 	/** From now on the address says which version it shows, so that a version made elsewhere does not take its place. */
 	$effect(() => {
@@ -104,23 +104,22 @@ export function openWorkbench(id: number) {
 	}
 
 	/** A version with these effects. A set that was fitted before from the same parent needs no new fit. */
-	async function version(set: string[], parent: Model | null, what: string, anew = false): Promise<Model | null> {
+	async function version(set: string[], parent: Model, what: string, { anew = false, tried = false } = {}): Promise<Model | null> {
 		if (busy !== null) return null;
 		const known = anew ? undefined : childWith(versions, parent, set);
-		return known ?? fitted(what, () => api.fit(id, set, parent ?? undefined));
+		return known ?? fitted(what, () => api.fit({ run: id, effects: set, parent: parent.id, more_runs: parent.more_runs, tried }));
 	}
 
-	async function refit(set: string[], parent: Model | null, what: string, anew = false): Promise<void> {
-		const known = versions.length;
-		const next = await version(set, parent, what, anew);
+	async function refit(set: string[], parent: Model, what: string, anew = false): Promise<void> {
+		const next = await version(set, parent, what, { anew });
 		if (!next) return;
 		// Nothing is kept silently: what gains nothing stands beside, to be kept or dropped.
-		if (next.idle && parent?.id === model?.id) return stand(next, versions.length > known);
-		show(next, parent);
+		if (next.idle && parent.id === model?.id) return stand(next);
+		await show(next, parent);
 	}
 
-	function show(next: Model, parent: Model | null): void {
-		tries.keep(next.id);
+	async function show(next: Model, parent: Model | null): Promise<void> {
+		if (isAside(next) && !role.observing && !(await fitted('Keeping', () => api.keepModel(next.id)))) return;
 		router.set({ model: next.id, with: null, region: null, side: null, zoom: null }, parent === null ? 'replace' : 'push');
 		undone = [];
 		notice = parent ? told(parent, next) : null;
@@ -131,13 +130,11 @@ export function openWorkbench(id: number) {
 	async function attempt(effect: string): Promise<void> {
 		const from = model;
 		if (!from) return;
-		const known = versions.length;
-		const next = await version([...from.effects, effect], from, `Trying ${titleOf(effect)}`);
-		if (next) stand(next, versions.length > known);
+		const next = await version([...from.effects, effect], from, `Trying ${titleOf(effect)}`, { tried: true });
+		if (next) stand(next);
 	}
 
-	function stand(next: Model, made: boolean): void {
-		if (made) tries.put(next.id);
+	function stand(next: Model): void {
 		beside(next.id);
 		void reveal('beside');
 	}
@@ -170,16 +167,16 @@ export function openWorkbench(id: number) {
 		const said = before && model ? told(before, model) : null;
 		return said?.good ? null : said;
 	});
-	const trying = $derived(other !== null && other.parent === model?.id && tries.has(other.id));
+	const trying = $derived(other !== null && other.parent === model?.id && isAside(other));
 	/** What columns suggest that contradict each other is no advice. */
 	const contradicts = $derived(diagnosis.data?.undecided?.includes('columns contradict') ?? false);
 
 	/** The same effects fitted to other data; without `excluded` it looks away where this version does. */
 	async function refitOn(more: number[], what: string, excluded?: Exclusion[], told?: string): Promise<void> {
 		const from = model;
-		const made = from && (await fitted(what, () => api.fit(id, from.effects, { id: from.id, more_runs: more }, excluded)));
+		const made = from && (await fitted(what, () => api.fit({ run: id, effects: from.effects, parent: from.id, more_runs: more, exclude: excluded })));
 		if (!made) return;
-		show(made, from);
+		await show(made, from);
 		if (told) notice = { text: `${told} Undo with z.`, good: true };
 	}
 	const others = $derived(model?.more_runs ?? []);
@@ -210,7 +207,10 @@ export function openWorkbench(id: number) {
 		model && refit([...new Set([...model.effects, effect])], model, `Refitting with ${titleOf(effect)}`, true);
 	const remove = (effect: string) =>
 		model && refit(model.effects.filter((one) => one !== effect), model, `Refitting without ${titleOf(effect)}`);
-	const begin = (set: string[]) => refit(set, null, 'Fitting the first model');
+	async function begin(set: string[]): Promise<void> {
+		const made = await fitted('Fitting the first model', () => api.fit({ run: id, effects: set }));
+		if (made) await show(made, null);
+	}
 
 	/** Back to the version that this one grew from. Nothing is lost: every version keeps its address. */
 	function undo(): void {
@@ -249,7 +249,7 @@ export function openWorkbench(id: number) {
 		exclude,
 		include,
 		/** Makes the version beside the one at hand the one at hand. */
-		keep: () => other && model && show(other, model),
+		keep: () => other && model && void show(other, model),
 		remove,
 		begin,
 		join,

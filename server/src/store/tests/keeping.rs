@@ -239,6 +239,7 @@ fn model(run: RunId, parent: Option<i64>, effects: &[&str]) -> NewModel {
         validation_rms: 0.0125,
         noise_floor_rms: None,
         options: json!({"decimation": 10}).as_object().unwrap().clone(),
+        tried: false,
         by: "Anna".into(),
     }
 }
@@ -277,6 +278,14 @@ fn model_versions_are_a_tree() {
         assert!(!right.idle && !better.idle && idle.idle, "other data is no reason to call a version idle");
         assert_eq!(store.run(run).await.unwrap().model.unwrap()["id"], better.id);
         assert_eq!(store.run(other).await.unwrap().model, None);
+        let tried = store.save_model(&NewModel { tried: true, ..grown(0.004) }).await.unwrap();
+        assert!(tried.tried && !tried.idle && store.run(run).await.unwrap().model.unwrap()["id"] == better.id);
+        for id in [tried.id, idle.id, idle.id] {
+            let kept = store.keep_model(id, "lab").await.unwrap();
+            assert!(!kept.tried && !kept.idle);
+        }
+        assert_eq!(store.run(run).await.unwrap().model.unwrap()["id"], tried.id);
+        assert!(matches!(store.keep_model(77, "lab").await, Err(StoreError::NoModel(77))));
 
         let astray = store.save_model(&model(other, Some(root.id), &[])).await.unwrap_err();
         assert!(matches!(astray, StoreError::OtherRun { .. }), "{astray}");
