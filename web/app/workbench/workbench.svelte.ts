@@ -181,15 +181,17 @@ export function openWorkbench(id: number) {
 	}
 	const others = $derived(model?.more_runs ?? []);
 	/** Runs that the address wants in the data too: once, then it names the version. */
+	const wanted = () => readMarked(router.query.get('more')).filter((one) => one !== id);
+	const together = (more: number[]) => `Fitting run #${[id, ...more].join(' and #')} together`;
 	$effect(() => {
-		const more = readMarked(router.query.get('more')).filter((one) => one !== id);
+		const more = wanted();
 		if (!model || busy !== null || !more.length) return;
 		const from = model;
 		untrack(() => {
 			router.set({ more: null });
 			const known = versions.find((one) => one.effects.join() === from.effects.join() && one.more_runs.join() === more.join());
 			if (known) router.set({ model: known.id });
-			else void refitOn(more, `Fitting run #${[id, ...more].join(' and #')} together`);
+			else void refitOn(more, together(more));
 		});
 	});
 	const join = (more: number) => refitOn([...others, more], `Fitting run #${more} with the others`);
@@ -207,8 +209,11 @@ export function openWorkbench(id: number) {
 		model && refit([...new Set([...model.effects, effect])], model, `Refitting with ${titleOf(effect)}`, true);
 	const remove = (effect: string) =>
 		model && refit(model.effects.filter((one) => one !== effect), model, `Refitting without ${titleOf(effect)}`);
+	/** With all runs of the address at once: where they do not go together, none is left with a version that nobody asked for. */
 	async function begin(set: string[]): Promise<void> {
-		const made = await fitted('Fitting the first model', () => api.fit({ run: id, effects: set }));
+		const more = wanted();
+		router.set({ more: null });
+		const made = await fitted(more.length ? together(more) : 'Fitting the first model', () => api.fit({ run: id, effects: set, more_runs: more }));
 		if (made) await show(made, null);
 	}
 
