@@ -97,6 +97,7 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
         by: record.provenance.get("by").and_then(Value::as_str).map(str::to_owned),
         tags: record.tags.clone(),
         note: record.note.clone(),
+        verdict: record.verdict.as_ref().and_then(|verdict| reread(verdict).ok()),
         // Figures of a model that cannot be read any more are none.
         model: record.model.as_ref().and_then(|model| reread(model).ok()),
     }

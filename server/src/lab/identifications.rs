@@ -2,8 +2,9 @@
 
 use super::calibrations::applies;
 use super::{Answer, Lab, LabError, reread};
+use crate::bench::BenchHandle;
 use crate::store::Subject;
-use crate::view::{Earlier, FollowUp, Identification, Quantity};
+use crate::view::{Earlier, FollowUp, Identification, Quantity, word};
 use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;
@@ -88,13 +89,34 @@ impl Lab {
             let before: Vec<String> = before.iter().map(i64::to_string).collect();
             found.summary = format!("Runs {} and {last} together: {}", before.join(", "), found.summary);
         }
-        Ok(Identification {
+        let found = Identification {
             run: id,
             applies: applies(&record.procedure),
             procedure: record.procedure,
             software: concat!("jointbench ", env!("CARGO_PKG_VERSION")).to_owned(),
             follow_up: procedure.follow_up(&found).map(|next| reread(&next)).transpose()?,
             result: reread(&found)?,
-        })
+        };
+        let verdict = word(found.result.verdict);
+        // Without it the result stands all the same.
+        if record.state.is_final()
+            && record.verdict.as_ref() != Some(&verdict)
+            && let Err(fault) = self.inner.store.keep_verdict(id, &verdict).await
+        {
+            tracing::warn!(run.id = id, %fault, "what came of the run is not kept for the list of runs");
+        }
+        Ok(found)
+    }
+
+    /// Has the list of runs say what came of a run, once it is over: who looks there has not asked for the result.
+    pub(super) fn judge_at_its_end(&self, bench: &BenchHandle, run: i64) {
+        let (lab, bench) = (self.clone(), bench.clone());
+        tokio::spawn(async move {
+            let gone = bench.watch().wait_for(|_| !bench.is_busy()).await.is_err();
+            // A procedure that makes nothing of its run, or not of this one, is no fault.
+            if !gone && let Err(fault) = lab.identification(run).await {
+                tracing::debug!(run.id = run, %fault, "no result of the run");
+            }
+        });
     }
 }

@@ -55,6 +55,7 @@ impl Lab {
         let procedure = plan.procedure;
         tracing::info!(run.id = run, bench = bench.name(), procedure, by, planned_s = plan.duration_s(), "run queued");
         claim.start(run, plan)?;
+        self.judge_at_its_end(bench, run);
         self.run(run).await
     }
 

@@ -45,6 +45,8 @@ pub struct RunRecord {
     pub tags: Vec<String>,
     /// The last one.
     pub note: Option<String>,
+    /// What its procedure makes of it, where that was worked out.
+    pub verdict: Option<String>,
     /// Figures of the last version, as the list tells them.
     pub model: Option<Value>,
 }

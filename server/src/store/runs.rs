@@ -11,9 +11,10 @@ use serde_json::{Map, Value};
 use sqlx::sqlite::SqliteRow;
 use sqlx::{QueryBuilder, Row, SqliteConnection};
 
-/// Runs as they are told, with their tags, their last note and the last version of their model that is not idle and not only tried.
+/// Runs as they are told, with their tags, their last note, what came of them and the last version of their model that is not idle and not only tried.
 const TOLD: &str = "SELECT runs_told.*, \
     (SELECT json_group_array(tag) FROM (SELECT tag FROM tags WHERE run = runs_told.id ORDER BY tag)) AS tags, \
+    (SELECT verdict FROM verdicts WHERE run = runs_told.id) AS verdict, \
     (SELECT text FROM notes WHERE run = runs_told.id ORDER BY id DESC LIMIT 1) AS note, \
     (SELECT json_object('id', id, 'validation_rms', validation_rms, 'noise_floor_rms', noise_floor_rms, \
         'unit', json_extract(fit, '$.unit'), \
@@ -51,6 +52,7 @@ fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreErr
         meta: json(row, "meta")?,
         tags: json(row, "tags")?,
         note: row.try_get("note")?,
+        verdict: row.try_get("verdict")?,
         model: row.try_get::<Option<&str>, _>("model")?.map(serde_json::from_str).transpose()?,
         channels,
     })
@@ -65,6 +67,13 @@ impl Store {
     /// A run that is queued.
     pub async fn create_run(&self, new: &NewRun) -> Result<RunId, StoreError> {
         insert_run(&mut *self.writer.acquire().await?, new).await
+    }
+
+    /// What the procedure makes of a run that is over, in a word.
+    pub async fn keep_verdict(&self, run: RunId, verdict: &str) -> Result<(), StoreError> {
+        let keep = sqlx::query("INSERT OR REPLACE INTO verdicts (run, verdict) VALUES (?, ?)");
+        keep.bind(run).bind(verdict).execute(&self.writer).await?;
+        Ok(())
     }
 
     pub async fn run(&self, run: RunId) -> Result<RunRecord, StoreError> {

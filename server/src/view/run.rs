@@ -1,6 +1,6 @@
 //! Runs, their journal and their samples.
 
-use super::FittedParameter;
+use super::{FittedParameter, Identified};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -58,6 +58,9 @@ pub struct RunSummary {
     /// The last note.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
+    /// What the procedure makes of it, as soon as that is worked out after its end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Identified>,
     /// The last version of the run's model that is neither idle nor only tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<LastModel>,
