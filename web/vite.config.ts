@@ -39,6 +39,16 @@ const FIXED: [RegExp, string][] = [
 	[/const markers +=.*|\bmarkers\.\w+ +=.*|(?<=\b[as]v) \|\| num\w+/g, ''],
 	[/(?<=const showCursor = +)cursor\.show/g, 'true'],
 	[/\bcursorOnePt\b(?! =)/g, 'false'],
+	// Every column has a value or a gap at each x; points are drawn by paths; no curve is faded, cut by another or in the background; no label is turned.
+	[/if \(cursor\.dataIdx == null\) \{[^]*?\n\t\}\n/, 'cursor.dataIdx = (_self, _series, idx) => idx;\n'],
+	[/\{\s+let _gaps = s\._paths[^]*?drawPath\(i, true\);\s+\}\s+\}/, ''],
+	[/(?<=function drawPath\(si, _points\) \{\s+let s = )_points \? series\[si\]\.points : /, ''],
+	[/_points && fillStyle == null|(?<=if \()_points|series\.some\(s => s\._focus\) && [^;]+|ctxAlpha != (s\.alpha|_ctxAlpha)/g, 'false'],
+	[/!_points/, 'true'],
+	[/if \(bandClip\) \{[^]*?\n\t\t\}\n\t\telse \{/, '{'],
+	[/ \|\| bandClip/g, ''],
+	[/axis\.rotate\(self, values, i, _space\)|axis\._rotate \* -PI\/180/g, '0'],
+	[/if \(opts\.title\) \{[^]*?\n\t\}\n/, ''],
 	// Dates, and what only other programs call.
 	[/const months = \[[^]*?(?=const onlyWhole)/g, ''],
 	[/const NL = [^]*?(?=\/\/ base 2)/g, ''],
