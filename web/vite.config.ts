@@ -48,7 +48,10 @@ const FIXED: [RegExp, string][] = [
 	[/if \(bandClip\) \{[^]*?\n\t\t\}\n\t\telse \{/, '{'],
 	[/ \|\| bandClip/g, ''],
 	[/axis\.rotate\(self, values, i, _space\)|axis\._rotate \* -PI\/180/g, '0'],
-	[/if \(opts\.title\) \{[^]*?\n\t\}\n/, ''],
+	[/if \(opts\.title\) \{[^]*?\n\t\}\n|\(opts\.plugins \|\| \[\]\)[^]*?\n\t\}\);/g, ''],
+	// Each scale stands by itself, and what is drawn with the mouse in one plot is not drawn in another.
+	[/\b(sc|wsc|scaleOpts)\.from != null|(?<=if \()src != null(?=\) \{\s+let \[xKey)/g, 'false'],
+	[/\b(sc|wsc)\.from == null/g, 'true'],
 	// Dates, and what only other programs call.
 	[/const months = \[[^]*?(?=const onlyWhole)/g, ''],
 	[/const NL = [^]*?(?=\/\/ base 2)/g, ''],
