@@ -1,5 +1,6 @@
 import type { paths } from '../../gen/schema';
 import { Refusal, asRefusal } from './problem';
+import { entry } from '../state/entry.svelte';
 import { role } from '../state/role.svelte';
 import { authorization } from './token';
 
@@ -32,7 +33,13 @@ export async function request(href: string, { headers, ...rest }: RequestInit = 
 		throw new Refusal({ title: 'Not by an observer', detail: role.barred, status: 403 });
 	}
 	try {
-		const answer = await fetch(href, { ...rest, headers: { ...headers, ...authorization() } });
+		const send = () => fetch(href, { ...rest, headers: { ...headers, ...authorization() } });
+		let answer = await send();
+		// What was pressed goes on with the token that is asked for; a stop that comes late is none.
+		while (answer.status === 401 && rest.method && rest.method !== 'GET' && !href.endsWith('/stop')) {
+			await entry.ask();
+			answer = await send();
+		}
 		if (answer.ok) return answer;
 		throw new Refusal({ title: answer.statusText || 'Refused', ...problemOf(await answer.text()), status: answer.status });
 	} catch (failure) {

@@ -1,12 +1,12 @@
 import { api } from '../api/client';
 import { connectLive } from '../api/live';
 import { asRefusal } from '../api/problem';
-import { token } from '../api/token';
 import type { Bench, Channel, LiveMessage, Progress, RunEvent, RunState } from '../api/types';
 import type { Frame } from '../api/frame';
 import { chase } from '../plot/chase';
 import { Tape } from '../plot/tape';
 import { renewed } from './benches';
+import { entry } from './entry.svelte';
 import { role } from './role.svelte';
 
 /** With nothing heard for so long, the page asks. */
@@ -35,8 +35,6 @@ class LabState {
 	/** Raised when an autopilot made a step or ended. */
 	autopilots = $state(0);
 	line = $state(false);
-	/** The daemon wants a token that it was not given: its page says so where it asks for one. */
-	unauthorized = $state(!token() && 'token' in document.documentElement.dataset);
 	heard_ms = $state(performance.now());
 	now_ms = $state(performance.now());
 	/** Samples of the run that is on. The columns grow in place; `frames` tells of it. */
@@ -62,22 +60,19 @@ class LabState {
 	}
 
 	start(): () => void {
-		if (this.unauthorized) return this.leave;
 		const hangUp = connectLive({
 			message: (message) => this.take(message),
 			frame: (frame) => this.takeFrame(frame),
 			line: (up) => this.setLine(up),
 		});
 		const clock = setInterval(() => this.tick(), 250);
-		this.leave = () => {
+		void this.ask();
+		return () => {
 			hangUp();
 			clearInterval(clock);
+			this.line = false;
 		};
-		void this.ask();
-		return this.leave;
 	}
-
-	private leave = () => {};
 
 	private tick(): void {
 		this.now_ms = performance.now();
@@ -97,9 +92,7 @@ class LabState {
 			this.benches = benches;
 		} catch (failure) {
 			// Silence is shown by its age.
-			this.unauthorized = asRefusal(failure).status === 401;
-			// The page begins anew with a token.
-			if (this.unauthorized) this.leave();
+			entry.wanted ||= asRefusal(failure).status === 401;
 		}
 		this.asking = false;
 	}
