@@ -49,6 +49,20 @@ fn a_run_has_one_first_version_however_many_pages_open_it() {
 }
 
 #[test]
+fn what_is_only_tried_is_nobodys_version_until_it_is_kept() {
+    let Two { daemon, run, bare, better } = two_versions();
+    let listed = || daemon.get(&format!("/api/v1/runs?search=id:{run}")).1["runs"][0]["model"]["id"].clone();
+    let asked = json!({"run": run, "effects": better["effects"], "parent": bare["id"], "tried": true});
+    let (status, tried) = daemon.post("/api/v1/models", &asked.to_string());
+    assert_eq!((status, &tried["tried"], listed()), (201, &json!(true), better["id"].clone()), "{tried}");
+    let (status, kept) = daemon.post(&format!("/api/v1/models/{}/keep", tried["id"]), "");
+    assert_eq!((status, &kept["tried"], listed()), (200, &json!(false), tried["id"].clone()), "{kept}");
+    let file = daemon.get_raw(&format!("/api/v1/models/{}/export?format=json", kept["id"]));
+    let name = file.headers()["content-disposition"].to_str().unwrap();
+    assert!(name.contains(&format!("run-{run}-model-{}.json", kept["id"])), "{name}");
+}
+
+#[test]
 fn two_versions_stand_side_by_side() {
     let Two { daemon, run, bare, better } = two_versions();
     let (status, found) = daemon.get(&format!("/api/v1/models/{}/compare/{}", bare["id"], better["id"]));

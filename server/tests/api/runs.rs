@@ -164,7 +164,7 @@ fn a_run_can_be_paused_resumed_and_stopped_and_the_bench_has_one_run() {
     assert_eq!(daemon.post(&format!("{run}/stop"), "").0, 409, "a run that is over cannot be steered");
     let (_, found) = daemon.get(&format!("{run}/identification"));
     assert_ne!(found["verdict"], "identified", "a part is not the whole: {found}");
-    assert!(found["summary"].as_str().unwrap().contains("(stopped)"), "{found}");
+    assert!(found["summary"].as_str().unwrap().contains("(stopped in step 1 of "), "{found}");
 }
 
 #[test]
