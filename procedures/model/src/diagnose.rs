@@ -230,7 +230,7 @@ fn regions(maps: &Maps, fit: &Fit, found: &Exploration, is_adequate: bool) -> Ve
 }
 
 fn structure(found: &Exploration, verdict: Verdict) -> Option<PairMap> {
-    (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure())?
+    (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(&found.start.prepared.main))?
 }
 
 /// The columns that the summary names, where structure remains.

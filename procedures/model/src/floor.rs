@@ -1,11 +1,13 @@
 //! How well the measurement repeats itself, from rows that should be equal but for noise.
 
 use crate::pieces::pieces;
-use crate::prepare::Prepared;
+use crate::prepare::{Prepared, Problem};
 use crate::report::NoiseFloor;
+use crate::view::Signal;
 use crate::words::{figure, spoken};
 use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::f64::consts::TAU;
 
 /// An interval that reaches this many times as far tells nothing.
 const WIDEST: f64 = 3.0;
@@ -40,17 +42,38 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> No
         ci95: interval(&all, &of_piece),
         source: format!(
             "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
-             different repeats ({})",
+             different repeats ({}{})",
             twins.len(),
             match (prepared.about.repeats_from.as_str(), prepared.main.settled || prepared.kind == Kind::Friction) {
                 ("column", _) => "as numbered",
                 (_, true) => "found by the period of the motion",
                 (_, false) => "legs that run alike",
+            },
+            if is_at_other_angles(problem) {
+                "; at other angles, so that what depends on the angle counts as noise"
+            } else {
+                ""
             }
         ),
         repeatable_share: Some(all.share().max(0.0)),
         repeatable_ci95: Some(share_interval(&all, &of_piece)),
     }
+}
+
+/// The repeats of a speed begin at other angles of the link: what depends on the angle is not the same in them.
+pub fn is_at_other_angles(problem: &Problem) -> bool {
+    /// Of the RMS difference of two angles that have nothing to do with each other.
+    const SHARE: f64 = 0.2;
+    let Some(link) = problem.view.points.find(Signal::Link).filter(|link| link.len() == problem.rows()) else {
+        return false;
+    };
+    let apart = |(a, b): &(usize, usize)| {
+        let d = link[*a] - link[*b];
+        (d - (d / TAU).round() * TAU).powi(2)
+    };
+    let count = problem.twins.len().max(1) as f64;
+    let square = problem.twins.iter().map(apart).sum::<f64>() / count;
+    problem.settled && !problem.view.constants.slides && square > SHARE * SHARE * TAU * TAU / 12.0
 }
 
 /// Sums over pairs of moments.

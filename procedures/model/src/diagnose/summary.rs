@@ -2,6 +2,7 @@
 
 use crate::effect::{Effect, Stage};
 use crate::explore::{Exploration, Withdrawal, Withdrawn};
+use crate::floor::is_at_other_angles;
 use crate::intervals::IMPOSSIBLE;
 use crate::maps::Maps;
 use crate::report::{Evidence, Imitated, PairMap, Parameter, Region, Suggestion, Verdict};
@@ -10,6 +11,9 @@ use crate::{Fit, Options};
 
 /// A picture that takes less than this off held-out squared error shows nothing.
 const LEAST_SHOWN: f64 = 0.02;
+
+/// Two axes are named where they show so much more than one alone.
+const CLEARLY_MORE: f64 = 1.05;
 
 /// Less than this share of the squared error in common is nothing in common.
 const NOTHING_IN_COMMON: f64 = 0.01;
@@ -48,7 +52,7 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
     let beyond = match found.end_verdict() {
         Verdict::UnexplainedStructure => {
             let them = if more.is_empty() { "it" } else { "them" };
-            let shown = found.maps.structure();
+            let shown = found.maps.structure(&found.start.prepared.main);
             format!(
                 " Even with {them} structure remains that {}: {}.",
                 unexplained(found),
@@ -97,10 +101,14 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
 
 /// Why what shows over an axis is called noise.
 fn scatter(found: &Exploration, verdict: Verdict, unit: &str) -> String {
+    let elsewhere = match is_at_other_angles(&found.start.prepared.main) {
+        true => ", or friction depends on an angle that the repeats pass at other moments",
+        false => "",
+    };
     let said = |rms: f64| {
         format!(
             " What is left shows over an axis, but hardly comes again in another repeat, and is what whole stretches of motion \
-             scatter by: the zero wanders by {} from one to another.",
+             scatter by: the zero wanders by {} from one to another{elsewhere}.",
             figure(rms, unit)
         )
     };
@@ -204,9 +212,10 @@ fn structure(found: &Exploration, end: &Fit, shown: Option<&PairMap>) -> String 
 /// The columns over which what is left shows most, and what a function of them would take off it. `None` where none does.
 pub fn shown_over(found: &Exploration, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
     let pair = shown.map(|s| (vec![s.x.clone(), s.y.clone()], s.removable_share));
-    let axis = found.maps.removable().map(|(axis, share)| (vec![axis.to_owned()], share));
-    // A second axis cuts the first one's bins: what shows over one alone can be more.
-    let most = axis.into_iter().chain(pair).max_by(|a, b| a.1.total_cmp(&b.1));
+    let axis = found.maps.shows_over();
+    // A second axis cuts the first one's bins: what shows over one alone can be more, and is said more shortly.
+    let pair = pair.filter(|(_, both)| axis.as_ref().is_none_or(|(_, alone)| *both > CLEARLY_MORE * alone));
+    let most = pair.or(axis);
     most.filter(|(_, share)| *share > LEAST_SHOWN)
 }
 

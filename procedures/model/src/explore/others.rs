@@ -30,9 +30,12 @@ impl Others {
         let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
         for effect in end.spec.known().filter(is_out) {
             let id = effect.info().id;
+            let tied = ties.iter().find(|(_, rival)| *rival == id);
+            let tied = tied
+                .map(|(named, _)| format!("{named} is in the model in its place, and this run cannot tell them apart"));
             let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words());
             if let Some(why) = tried.or_else(|| given(effect, end)) {
-                others.left_out.push(LeftOut { effect: id.into(), why: why.into() });
+                others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or_else(|| why.into()) });
             } else if let Some(silence) = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite()) {
                 let sought = sought(effect, end);
                 others.silent.push(Silent {
@@ -41,13 +44,7 @@ impl Others {
                     sought,
                 });
             } else {
-                let tied = ties.iter().find(|(_, rival)| *rival == id);
-                let why = match tied {
-                    Some((named, _)) => {
-                        format!("{named} is in the model in its place, and this run cannot tell them apart")
-                    }
-                    None => invisible(effect, end),
-                };
+                let why = tied.unwrap_or_else(|| invisible(effect, end));
                 others.invisible.push(Invisible { effect: id.into(), why });
             }
         }

@@ -42,7 +42,7 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
         if ci95[0] < 0.0 && ci95[1] > 0.0 {
             return (ParameterState::Unidentified, Some(MAY_BE_ZERO.into()));
         }
-        if slot.value < least || slot.value > most {
+        if ci95[1] < least || ci95[0] > most {
             let possible = match (least.is_finite(), most.is_finite()) {
                 (true, true) => format!("{} to {}", say(least), say(most)),
                 (true, false) => format!("at least {}", say(least)),

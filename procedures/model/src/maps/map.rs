@@ -2,6 +2,7 @@
 
 use super::scale::Scale;
 use crate::linear::dot;
+use crate::prepare::Problem;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Rows sorted into the cells of one scale, or of two.
@@ -28,7 +29,7 @@ pub struct Cell {
 }
 
 impl Map {
-    pub fn new(x: Scale, y: Option<Scale>, piece: &[usize], residual: &[f64]) -> Self {
+    pub fn new(x: Scale, y: Option<Scale>, problem: &Problem, piece: &[usize], residual: &[f64]) -> Self {
         let width = y.as_ref().map_or(1, |y| y.bins.len());
         let cell: Vec<usize> =
             (0..residual.len()).map(|i| x.bin[i] * width + y.as_ref().map_or(0, |y| y.bin[i])).collect();
@@ -40,8 +41,18 @@ impl Map {
                 (rows > 0).then_some(Cell { x: c / width, y: c % width, mean, error, pieces, rows })
             })
             .collect();
-        let removable = held_out_share(&cell, count, piece, residual);
+        // A function of what the run was held at knows nothing of a level that is left out with all its repeats; what passes in
+        // each of them has to be the same at all levels.
+        let is_held = x.is_held && y.as_ref().is_none_or(|y| y.is_held);
+        let removable = held_out_share(&cell, count, if is_held { piece } else { &problem.fold }, residual);
         Self { x, y, cells, removable }
+    }
+
+    /// The same for a choice of what to show. What a drive did follows from the motion, which says more.
+    pub fn telling(&self) -> f64 {
+        const FOLLOWS: f64 = 0.9;
+        let is_drive = std::iter::once(&self.x).chain(&self.y).any(|s| s.name == "motor_torque_nm");
+        if is_drive { FOLLOWS * self.removable } else { self.removable }
     }
 }
 
@@ -95,37 +106,25 @@ fn statistics(
         .collect()
 }
 
-/// What the means of the cells, taken from the other pieces, take off a piece's squared error: a function of an axis is the same
-/// every time, and a speed that was held out with all its repeats is predicted by no function of the speed.
-fn held_out_share(cell: &[usize], count: usize, piece: &[usize], residual: &[f64]) -> f64 {
+/// What the means of the cells, taken from the other parts of the run, take off a part's squared error.
+fn held_out_share(cell: &[usize], count: usize, part: &[usize], residual: &[f64]) -> f64 {
+    let energy = dot(residual, residual);
     let mut all = vec![(0.0, 0.0); count];
-    for (c, e) in cell.iter().zip(residual) {
-        all[*c].0 += e;
-        all[*c].1 += 1.0;
-    }
-    let mut saved = 0.0;
-    let mut own = vec![(0.0, 0.0); count];
-    let mut passed: Vec<usize> = Vec::new();
-    let mut at = 0;
-    for rows in piece.chunk_by(|a, b| a == b) {
-        for i in at..at + rows.len() {
-            let (sum, n) = &mut own[cell[i]];
-            if *n == 0.0 {
-                passed.push(cell[i]);
-            }
+    let mut parts = vec![(0.0, 0.0); count * part.iter().max().map_or(0, |last| last + 1)];
+    for (i, c) in cell.iter().enumerate() {
+        for (sum, n) in [&mut all[*c], &mut parts[part[i] * count + c]] {
             *sum += residual[i];
             *n += 1.0;
         }
-        at += rows.len();
-        for c in passed.drain(..) {
-            let ((sum, n), (total, rows)) = (std::mem::take(&mut own[c]), all[c]);
-            if rows > n {
-                let predicted = (total - sum) / (rows - n);
-                saved += 2.0 * predicted * sum - n * predicted * predicted;
-            }
+    }
+    let mut saved = 0.0;
+    for (at, (sum, n)) in parts.iter().enumerate() {
+        let (total, rows) = all[at % count];
+        if *n > 0.0 && rows > *n {
+            let predicted = (total - sum) / (rows - n);
+            saved += 2.0 * predicted * sum - n * predicted * predicted;
         }
     }
-    let energy = dot(residual, residual);
     if energy > 0.0 { saved / energy } else { 0.0 }
 }
 

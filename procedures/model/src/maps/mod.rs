@@ -10,7 +10,7 @@ pub use regions::{Yardstick, yardstick};
 
 use crate::Options;
 use crate::pieces::pieces;
-use crate::prepare::Prepared;
+use crate::prepare::{Prepared, Problem};
 use crate::report::{PairMap, Region};
 use jointbench_instrument::Kind;
 use map::{Cell, Map};
@@ -44,7 +44,7 @@ impl Maps {
         let problem = &prepared.main;
         let (piece, _) = pieces(problem, 1);
         let scales = scales(prepared);
-        let map = |x: &Scale, y: Option<&Scale>| Map::new(x.clone(), y.cloned(), &piece, &residual);
+        let map = |x: &Scale, y: Option<&Scale>| Map::new(x.clone(), y.cloned(), problem, &piece, &residual);
         let axes: Vec<Map> = scales.iter().map(|s| map(s, None)).collect();
         let known = ["link_torque_nm", "brake_current_a", "temperature_c"];
         let unknown: Vec<&str> = problem.view.points.unknown().map(|s| prepared.column_name(s)).collect();
@@ -59,8 +59,17 @@ impl Maps {
 
     /// Share of the squared error that the best map would take off held-out data, with its axis.
     pub fn removable(&self) -> Option<(&str, f64)> {
-        let shares = self.axes.iter().chain(&self.by_direction).map(|m| (m.x.name.as_str(), m.removable));
-        shares.max_by(|a, b| a.1.total_cmp(&b.1))
+        self.best().map(|m| (m.x.name.as_str(), m.removable))
+    }
+
+    /// The same with both axes of a map by direction.
+    pub fn shows_over(&self) -> Option<(Vec<String>, f64)> {
+        let names = |m: &Map| std::iter::once(&m.x).chain(&m.y).map(|scale| scale.name.clone()).collect();
+        self.best().map(|m| (names(m), m.removable))
+    }
+
+    fn best(&self) -> Option<&Map> {
+        self.axes.iter().chain(&self.by_direction).max_by(|a, b| a.telling().total_cmp(&b.telling()))
     }
 
     /// What any function of an axis would take off this residual. `None` where `contribution` is no function of that axis.
@@ -130,11 +139,11 @@ impl Maps {
 
     /// The residual over the two axes where it shows most: of the pairs among the most telling axes, the one whose
     /// means take most off held-out rows.
-    pub fn structure(&self) -> Option<PairMap> {
+    pub fn structure(&self, problem: &Problem) -> Option<PairMap> {
         // An axis is as telling as its map, or as its map by direction: what one direction hides from the other cancels alone.
         let telling = |axis: &Map| {
             let sides = self.by_direction.iter().filter(|m| m.x.name == axis.x.name);
-            sides.map(|m| m.removable).fold(axis.removable, f64::max)
+            sides.map(Map::telling).fold(axis.telling(), f64::max)
         };
         let mut ranked: Vec<&Map> = self.axes.iter().filter(|m| m.x.name != "direction").collect();
         ranked.sort_by(|a, b| telling(b).total_cmp(&telling(a)));
@@ -145,9 +154,9 @@ impl Maps {
             let partners = ranked[i + 1..].iter().map(|m| &m.x);
             // The sign of the velocity is no second axis beside the velocity.
             for y in partners.chain(direction.filter(|_| !a.x.name.contains("velocity"))) {
-                let pair = self.pair(&a.x, y);
+                let pair = self.pair(&a.x, y, problem);
                 cells += pair.cells.len();
-                if best.as_ref().is_none_or(|b| pair.removable > b.removable) {
+                if best.as_ref().is_none_or(|b| pair.telling() > b.telling()) {
                     best = Some(pair);
                 }
             }
@@ -155,9 +164,9 @@ impl Maps {
         best.map(|m| self.public_pair(&m, cells))
     }
 
-    fn pair(&self, x: &Scale, y: &Scale) -> Map {
+    fn pair(&self, x: &Scale, y: &Scale, problem: &Problem) -> Map {
         // An angle keeps its fine bins beside two directions: what it hides is narrow.
         let x = if y.bins.len() > 2 { x.coarse(PAIR_BINS) } else { x.clone() };
-        Map::new(x, Some(y.coarse(PAIR_BINS)), &self.piece, &self.residual)
+        Map::new(x, Some(y.coarse(PAIR_BINS)), problem, &self.piece, &self.residual)
     }
 }

@@ -23,7 +23,7 @@ pub fn maps(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualMaps
     let speed = axis("velocity").map(|v| v.size("speed"));
     let mut chosen = vec![(speed.as_ref(), axis("direction"))];
     chosen.extend(["link_torque", "temperature", "brake_current"].map(|x| (axis(x), axis("velocity"))));
-    let beside: Vec<Map> = chosen.into_iter().filter_map(|(x, y)| Some(maps.pair(x?, y?))).collect();
+    let beside: Vec<Map> = chosen.into_iter().filter_map(|(x, y)| Some(maps.pair(x?, y?, &prepared.main))).collect();
     maps.cells += beside.iter().map(|m| m.cells.len()).sum::<usize>();
     let unit = prepared.unit();
     Ok(ResidualMaps {

@@ -15,6 +15,8 @@ pub struct Scale {
     pub bin: Vec<usize>,
     /// Smallest, mean and largest value of the rows of each bin.
     pub bins: Vec<Bin>,
+    /// What a piece of the run was held at, and not what passes in it.
+    pub is_held: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +58,12 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
         let scale = match signal {
             Signal::Velocity | Signal::Load if problem.settled => {
                 let held = piece_means(&values, problem);
-                Scale::new(name, unit, levels(&held), held)
+                Scale::new(name, unit, levels(&held), held).held()
+            }
+            // The response's own noise would sort its residual: only its mean over a piece says how hard the drive worked.
+            Signal::Drive if problem.settled => {
+                let held = piece_means(&values, problem);
+                Scale::new(name, unit, quantiles(&held, BINS), held).held()
             }
             Signal::Link | Signal::Position => {
                 let values = if problem.view.constants.slides { values } else { turned(values) };
@@ -67,7 +74,7 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
                 let values: Vec<f64> = values.iter().map(|d| if *d > 0.0 { 1.0 } else { -1.0 }).collect();
                 let both = values.contains(&1.0) && values.contains(&-1.0);
                 let bin = values.iter().map(|d| usize::from(both && *d > 0.0)).collect();
-                Scale::new(name, unit, bin, values)
+                Scale::new(name, unit, bin, values).held()
             }
             _ => Scale::new(name, unit, quantiles(&values, BINS), values),
         };
@@ -101,7 +108,11 @@ impl Scale {
             (*low, *high, *sum, *n) = (low.min(*v), high.max(*v), *sum + v, *n + 1.0);
         }
         let bins = bins.into_iter().map(|(from, to, sum, n)| Bin { from, centre: sum / n.max(1.0), to }).collect();
-        Self { name: name.into(), unit, values, bin, bins }
+        Self { name: name.into(), unit, values, bin, bins, is_held: false }
+    }
+
+    fn held(self) -> Self {
+        Self { is_held: true, ..self }
     }
 
     /// The same quantity in about equally filled, fewer bins, for a map over two.
@@ -109,7 +120,8 @@ impl Scale {
         if self.bins.len() <= count {
             return self.clone();
         }
-        Self::new(&self.name, self.unit.clone(), quantiles(&self.values, count), self.values.clone())
+        let coarse = Self::new(&self.name, self.unit.clone(), quantiles(&self.values, count), self.values.clone());
+        Self { is_held: self.is_held, ..coarse }
     }
 
     /// The size of the quantity without its sign.

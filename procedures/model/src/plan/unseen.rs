@@ -77,8 +77,8 @@ pub fn unseen(model: &Assembly, noise: &Noise, imagined: &[(&Choice, Problem)]) 
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run would show {}, which the data so far could not: {worth} would stand out by at least {:.1} standard \
-             deviations{}",
+            "this run would show {} of a size that the data so far could not show: {worth} would stand out by at least {:.1} \
+             standard deviations{}",
             list(&effects),
             bid.z.min(100.0),
             bid.choice.provided(),

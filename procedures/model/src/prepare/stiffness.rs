@@ -5,8 +5,10 @@ use super::repeats::Same;
 use super::{Prepared, filter, sample_s, segments, sweeps};
 use crate::linear::Spd;
 use crate::view::{Constants, Signal, Signals};
+use crate::words::figure;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
+use std::collections::BTreeMap;
 
 const CHUNK_S: f64 = 0.04;
 
@@ -20,7 +22,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let time_s = column("time_s").to_vec();
     let step_s = sample_s(&time_s);
     let link = column("link_position_rad");
-    let target: Vec<f64> = column("motor_position_rad").iter().zip(link).map(|(m, l)| m / gear - l).collect();
+    let mut target: Vec<f64> = column("motor_position_rad").iter().zip(link).map(|(m, l)| m / gear - l).collect();
+    let repeat = segments::integers(run, "repeat");
+    let zeros_rad = repeat.as_deref().and_then(|repeat| own_zeros(&mut target, repeat));
     let cutoff_hz = super::cutoff_hz(options, step_s)?;
     let measured = run.column("link_velocity_rad_s");
     let velocity = measured.map_or_else(
@@ -53,7 +57,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         runs: segments::runs(run),
         cutoff_hz,
         segment: segments::numbered(run),
-        repeat: segments::integers(run, "repeat"),
+        repeat,
         derived_velocity: measured.is_none(),
         time_s,
         constants: Constants::default(),
@@ -65,7 +69,33 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
     }
     source.signals.set(Signal::Load, smooth);
-    sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Load].map(Same::Value), options)
+    let mut prepared =
+        sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Load].map(Same::Value), options)?;
+    prepared.doubts.extend(zeros_rad.map(|apart| {
+        let apart = figure(apart, &prepared.unit());
+        format!("motor and link have another zero in every repeat, {apart} RMS apart, as encoders do that are set to zero before each: it is taken off")
+    }));
+    Ok(prepared)
+}
+
+/// Takes off each repeat's mean beside that of all, where these lie farther apart than everything that happens within the repeats,
+/// and tells how far.
+fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+    let all = mean(twist);
+    let mut sums: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
+    for (t, r) in twist.iter().zip(repeat) {
+        let (sum, n) = sums.entry(*r).or_default();
+        (*sum, *n) = (*sum + t - all, *n + 1.0);
+    }
+    let zero = |r: &i64| sums[r].0 / sums[r].1;
+    let square = |of: f64| of * of / twist.len() as f64;
+    let between: f64 = repeat.iter().map(|r| square(zero(r))).sum();
+    let within: f64 = twist.iter().zip(repeat).map(|(t, r)| square(t - all - zero(r))).sum();
+    (between > within).then(|| {
+        twist.iter_mut().zip(repeat).for_each(|(t, r)| *t -= zero(r));
+        between.sqrt()
+    })
 }
 
 /// Most Chebyshev polynomials of one leg.
@@ -111,6 +141,21 @@ fn smooth_leg(values: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn zeros_that_lie_apart_are_taken_off_and_a_creep_is_not() {
+        let twist = |i: usize| 1e-3 * (i as f64 * 0.1).sin();
+        let repeat: Vec<i64> = (0..900).map(|i| i / 300).collect();
+        let moved = |zeros: [f64; 3]| -> Vec<f64> { (0..900).map(|i| twist(i) + zeros[i / 300]).collect() };
+        let mut apart = moved([2e-3, -1e-3, -1e-3]);
+        let told = own_zeros(&mut apart, &repeat).unwrap();
+        assert!((told - 2f64.sqrt() * 1e-3).abs() < 5e-5, "{told}");
+        let level = |r: usize| apart[300 * r..300 * (r + 1)].iter().sum::<f64>() / 300.0;
+        assert!((level(0) - level(1)).abs() < 1e-9 && (level(1) - level(2)).abs() < 1e-9);
+        let creep = moved([0.0, 2e-4, 3e-4]);
+        let mut kept = creep.clone();
+        assert_eq!((own_zeros(&mut kept, &repeat), kept), (None, creep));
+    }
 
     #[test]
     fn a_relaxing_torque_is_followed_and_noise_is_not() {

@@ -38,22 +38,22 @@ pub fn waves(fit: &Fit) -> Vec<f64> {
 }
 
 /// Axis 1 of an industrial robot as a stiffness run: both encoders, and the motor's torque times the gear for the
-/// torque at the link. The encoders were set to zero before each repeat, so every repeat has its own zero.
+/// torque at the link.
 fn stiffness(robot: &RunTable) -> RunTable {
     let gear = robot.meta().gear_ratio.unwrap();
     let torque_constant = robot.meta().torque_constant_nm_per_a.unwrap();
     let column = |name: &str| robot.column(name).unwrap().to_vec();
-    let (motor, repeat) = (column("motor_position_rad"), column("repeat"));
-    let mut link = column("link_position_rad");
-    for number in [0.0, 1.0, 2.0] {
-        let rows: Vec<usize> = (0..link.len()).filter(|i| repeat[*i] == number).collect();
-        let zero = rows.iter().map(|i| motor[*i] / gear - link[*i]).sum::<f64>() / rows.len() as f64;
-        rows.iter().for_each(|i| link[*i] += zero);
-    }
     let torque = column("motor_current_a").iter().map(|i| torque_constant * gear * i).collect();
     let names =
         ["time_s", "motor_position_rad", "link_position_rad", "link_torque_nm", "link_velocity_rad_s", "repeat"];
-    let columns = vec![column("time_s"), motor, link, torque, column("link_velocity_rad_s"), repeat];
+    let columns = vec![
+        column("time_s"),
+        column("motor_position_rad"),
+        column("link_position_rad"),
+        torque,
+        column("link_velocity_rad_s"),
+        column("repeat"),
+    ];
     let meta = Meta {
         kind: Some(Kind::Stiffness),
         gear_ratio: Some(gear),
