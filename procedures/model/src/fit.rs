@@ -10,7 +10,7 @@ use crate::select::held_out;
 use crate::terms::{Term, Terms};
 use crate::view::View;
 use crate::words::figure;
-use crate::{ModelError, ModelSpec, Options, ResidualKind, effects, together};
+use crate::{ModelError, ModelSpec, Options, ResidualKind, effects, together, transfer};
 use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
@@ -90,7 +90,7 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
     let own: Vec<OwnEffect> =
         assembly.spec.own.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect();
     let scope = Scope::of(prepared, &own);
-    Ok(Fit {
+    let mut fit = Fit {
         kind: prepared.kind,
         effects: assembly.effects.clone(),
         own,
@@ -106,7 +106,10 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         preparation: prepared.about.clone(),
         terms,
         scope: Some(scope),
-    })
+    };
+    let fed_rms = transfer::fed_error(&fit, &prepared.main)?;
+    fit.scope.iter_mut().for_each(|scope| scope.fed_rms = fed_rms);
+    Ok(fit)
 }
 
 /// A fitted inertia within this share of the stated one agrees with it.

@@ -5,7 +5,7 @@ use crate::formula::NamedSignal;
 use crate::own::{OwnEffect, signals_with};
 use crate::prepare::Prepared;
 use crate::report::{Fit, GivenConstant, Scope, SignalRange};
-use crate::view::Signal;
+use crate::view::{Signal, View};
 use crate::words::{figure, percent};
 
 /// So far beyond a range, as a share of it, is not beyond.
@@ -23,7 +23,8 @@ impl Scope {
             let ramps = prepared.moving.as_ref().filter(|_| of_ramps).and_then(|m| m.view.find(s.signal));
             let values = view.find(s.signal)?.iter().chain(ramps.into_iter().flatten());
             let (min, max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-            Some(SignalRange { name: s.name.into(), unit: prepared.motion.label(s.unit), min, max })
+            let noise = (s.signal == Signal::Load).then(|| noise(view)).flatten();
+            Some(SignalRange { name: s.name.into(), unit: prepared.motion.label(s.unit), min, max, noise })
         };
         Self {
             motion: prepared.motion,
@@ -31,6 +32,7 @@ impl Scope {
             sample_s: view.sample_s,
             signals: signals_with(prepared.kind, own).iter().filter_map(range).collect(),
             constants: prepared.constants.clone(),
+            fed_rms: None,
         }
     }
 
@@ -108,4 +110,12 @@ impl Scope {
         };
         self.signals.iter().filter_map(say).collect()
     }
+}
+
+/// What smoothing took off the load, rms; samples outside of every leg stay as they are.
+fn noise(view: &View) -> Option<f64> {
+    let smooth = view.samples.find(Signal::Load)?;
+    let off = view.felt.as_ref()?.iter().zip(smooth).map(|(felt, smooth)| felt - smooth).filter(|off| *off != 0.0);
+    let (count, square) = off.fold((0, 0.0), |(n, sum), off| (n + 1, sum + off * off));
+    (count > 0).then(|| (square / f64::from(count)).sqrt())
 }

@@ -167,6 +167,8 @@ pub struct View {
     /// First samples of recordings, at which what came before is not in the run.
     pub starts: Vec<Start>,
     pub sample_s: f64,
+    /// The load of each sample as it was felt, where `samples` holds a smoother one.
+    pub felt: Option<Arc<Vec<f64>>>,
     pub constants: Constants,
     zeros: Vec<f64>,
 }
@@ -181,7 +183,7 @@ impl View {
     ) -> Self {
         let zeros = vec![0.0; points.len()];
         let starts = starts.into_iter().map(Start::from).collect();
-        Self { points, samples, chunks, starts, sample_s, constants: Constants::default(), zeros }
+        Self { points, samples, chunks, starts, sample_s, felt: None, constants: Constants::default(), zeros }
     }
 
     pub fn len(&self) -> usize {

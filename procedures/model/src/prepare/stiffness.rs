@@ -69,8 +69,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
     }
     source.signals.set(Signal::Load, smooth);
-    let mut prepared =
-        sweeps::prepare(run, source, CHUNK_S, &[Signal::Velocity, Signal::Load].map(Same::Value), options)?;
+    let inputs = [Signal::Velocity, Signal::Load].map(Same::Value);
+    let mut prepared = sweeps::prepare(run, source, CHUNK_S, &inputs, options)?;
+    prepared.main.view.felt = Some(torque.to_vec().into());
     prepared.doubts.extend(zeros_rad.map(|apart| {
         let apart = figure(apart, &prepared.unit());
         format!("motor and link have another zero in every repeat, {apart} RMS apart, as encoders do that are set to zero before each: it is taken off")

@@ -143,6 +143,10 @@ pub struct Scope {
     /// Facts of the set-up that turned measured columns into what the model sees. Empty in fits of earlier versions.
     #[serde(default)]
     pub constants: Vec<GivenConstant>,
+    /// Error of what remembers in C, fed with the load as the run felt it and not as the fit smoothed it. `None` where the
+    /// fit smoothed nothing that is remembered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fed_rms: Option<f64>,
 }
 
 /// A fact of the set-up, by its name in the meta file.
@@ -158,6 +162,9 @@ pub struct SignalRange {
     pub unit: String,
     pub min: f64,
     pub max: f64,
+    /// What the fit took off it as noise, rms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<f64>,
 }
 
 /// A fit on a run that took no part in it.

@@ -2,6 +2,7 @@
 
 mod alongside;
 mod c;
+mod fed;
 mod file;
 mod joint;
 mod parts;
@@ -12,6 +13,7 @@ mod terms;
 mod written;
 
 pub use alongside::Alongside;
+pub(crate) use fed::error as fed_error;
 pub use file::ModelFile;
 pub use predict::{Moments, predict};
 

@@ -103,6 +103,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             load_scale: 50.0,
             sample_s: STEP_S,
             constants: Vec::new(),
+            fed_rms: None,
             signals: moments(kind)
                 .into_iter()
                 .map(|(name, values)| SignalRange {
@@ -110,6 +111,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
                     unit: "1".into(),
                     min: values.iter().copied().fold(f64::INFINITY, f64::min),
                     max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+                    noise: None,
                 })
                 .collect(),
         }),

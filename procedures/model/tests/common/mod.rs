@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 pub mod bench;
+pub mod controller;
 pub mod recordings;
 pub mod tables;
 

@@ -5,6 +5,7 @@ use crate::effects::memory;
 use crate::formula::NamedSignal;
 use crate::own::signals_with;
 use crate::report::Fit;
+use crate::transfer::fed;
 use crate::transfer::parts::{Part, PartColumn, Parts};
 use crate::transfer::suffix;
 use crate::transfer::written::Rule;
@@ -20,6 +21,8 @@ pub struct Body {
     pub statements: Vec<String>,
     /// A state follows time.
     pub uses_step: bool,
+    /// Effects that follow their signal beyond a dead band.
+    banded: Vec<String>,
 }
 
 impl Body {
@@ -32,7 +35,9 @@ impl Body {
             inputs.extend(first);
         }
         let motion = fit.scope.as_ref().map_or(Motion::default(), |s| s.motion);
-        let mut body = Self { motion, inputs, states: Vec::new(), statements: Vec::new(), uses_step: false };
+        let banded =
+            parts.parts.iter().filter(|p| dead_band_of(fit, p).is_some()).map(|p| p.effect.to_owned()).collect();
+        let mut body = Self { motion, inputs, states: Vec::new(), statements: Vec::new(), uses_step: false, banded };
         for part in &parts.parts {
             body.statements
                 .push(format!("/* {} */", suffix::ascii(if part.title.is_empty() { part.effect } else { part.title })));
@@ -138,6 +143,22 @@ impl Body {
         let x = self.input(signal);
         self.states.push(format!("double {effect}_last;"));
         self.statements.push(format!("double {effect}_step = s->started ? {x} - s->{effect}_last : 0.0;"));
-        self.statements.push(format!("s->{effect}_last = {x};"));
+        if self.banded.iter().any(|banded| banded == effect) {
+            let band = format!("p->{effect}_{DEAD_BAND}");
+            self.statements.push(format!(
+                "{effect}_step = fmax(0.0, {effect}_step - {band}) + fmin(0.0, {effect}_step + {band});"
+            ));
+            self.statements.push(format!("s->{effect}_last = s->started ? s->{effect}_last + {effect}_step : {x};"));
+        } else {
+            self.statements.push(format!("s->{effect}_last = {x};"));
+        }
     }
+}
+
+/// Name of the parameter that is it.
+pub const DEAD_BAND: &str = "dead_band";
+
+/// How far the signal that a part remembers may swing without being followed.
+pub fn dead_band_of(fit: &Fit, part: &Part) -> Option<f64> {
+    fed::dead_band(fit, fed::remembered(part)?)
 }

@@ -3,11 +3,12 @@
 mod body;
 mod expression;
 
-use super::parts::Parts;
-use super::suffix;
+use super::parts::{Part, Parts};
+use super::{fed, suffix};
 use crate::ModelError;
 use crate::report::{Fit, Parameter};
-use body::Body;
+use crate::view::Signal;
+use body::{Body, DEAD_BAND, dead_band_of};
 use expression::number;
 use std::fmt::Write;
 
@@ -24,6 +25,7 @@ pub fn header(fit: &Fit) -> Result<String, ModelError> {
     };
     line("/*");
     super::about(fit, &parts, &parts.left_out).iter().for_each(|words| line(&format!(" * {}", suffix::ascii(words))));
+    fed(fit, &parts).iter().for_each(|words| line(&format!(" * {}", suffix::ascii(words))));
     line(" * SI units; the unit is the suffix of a name. C99; link with -lm.");
     line(" */");
     line(&format!("#ifndef {guard}\n#define {guard}\n\n#include <math.h>\n"));
@@ -38,8 +40,8 @@ pub fn header(fit: &Fit) -> Result<String, ModelError> {
     line(&format!("}} {name}_input;\n"));
 
     line("typedef struct {");
-    for (field, _, parameter) in parameters(fit, &parts) {
-        line(&format!("    double {field};{}", parameter.map(comment).unwrap_or_default()));
+    for (field, _, comment) in parameters(fit, &parts) {
+        line(&format!("    double {field};{comment}"));
     }
     line(&format!("}} {name}_parameters;\n"));
     line(&format!("static const {name}_parameters {name}_fitted = {{"));
@@ -71,20 +73,47 @@ pub fn header(fit: &Fit) -> Result<String, ModelError> {
 }
 
 /// Field, value and what the fit says about it. A struct must not be empty.
-fn parameters<'f>(fit: &'f Fit, parts: &Parts<'f>) -> Vec<(String, f64, Option<&'f Parameter>)> {
-    let mut all: Vec<_> = parts
-        .parts
-        .iter()
-        .flat_map(|part| part.factors.iter().chain(&part.shape).map(move |(name, value)| (part.effect, *name, *value)))
-        .map(|(effect, name, value)| {
-            let told = fit.parameters.iter().find(|p| p.effect == effect && p.name == name);
-            (format!("{effect}_{name}"), value, told)
-        })
-        .collect();
+fn parameters(fit: &Fit, parts: &Parts) -> Vec<(String, f64, String)> {
+    let mut all = Vec::new();
+    for part in &parts.parts {
+        let effect = part.effect;
+        for (name, value) in part.factors.iter().chain(&part.shape) {
+            let told = fit.parameters.iter().find(|p| p.effect == effect && p.name == *name);
+            all.push((format!("{effect}_{name}"), *value, told.map(comment).unwrap_or_default()));
+        }
+        if let Some(band) = dead_band_of(fit, part) {
+            let words = "followed is what goes beyond it; twice the noise of the signal, rms";
+            all.push((format!("{effect}_{DEAD_BAND}"), band, format!(" /* {words} */")));
+        }
+    }
     if all.is_empty() {
-        all.push(("nothing".to_owned(), 0.0, None));
+        all.push(("nothing".to_owned(), 0.0, String::new()));
     }
     all
+}
+
+/// What the signal of a memory has to be like, where the fit saw another one than a controller feels.
+fn fed(fit: &Fit, parts: &Parts) -> Vec<String> {
+    let of_load = |part: &&Part| fed::remembered(part) == Some(Signal::Load);
+    let effects: Vec<&str> = parts.parts.iter().filter(of_load).map(|part| part.effect).collect();
+    let scope = fit.scope.as_ref();
+    let load = scope.and_then(|scope| scope.signals.iter().find(|range| range.name == "load"));
+    let noise = load.and_then(|load| Some((load.noise?, &load.unit)));
+    let list = effects.join(", ");
+    match (noise, scope.and_then(|scope| scope.fed_rms)) {
+        _ if effects.is_empty() => Vec::new(),
+        (Some((noise, unit)), Some(rms)) => vec![
+            format!("Error fed with the load as that run felt it, sample by sample: {rms:.4e} {} rms", fit.unit),
+            format!(
+                "The fit smoothed the load, which had {noise:.4e} {unit} rms of noise; {list} follows it beyond a dead band \
+                 of twice that. Feed it unfiltered, and set {DEAD_BAND} where your signal has another noise."
+            ),
+        ],
+        _ => vec![format!(
+            "The fit smoothed the load, and {list} remembers every swing of its noise: feed it without noise and without lag, \
+             or fit again with this version, which measures the noise."
+        )],
+    }
 }
 
 fn comment(parameter: &Parameter) -> String {
