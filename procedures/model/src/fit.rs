@@ -112,6 +112,9 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
     Ok(fit)
 }
 
+/// How the note begins that an inertia is not the set-up's.
+pub(crate) const ANOTHER_INERTIA: &str = "the inertia is ";
+
 /// A fitted inertia within this share of the stated one agrees with it.
 const AS_STATED: f64 = 0.1;
 
@@ -121,7 +124,7 @@ fn another_inertia(fitted: &Parameter, prepared: &Prepared) -> Option<String> {
     ((fitted.value / stated - 1.0).abs() > AS_STATED).then(|| {
         let say = |inertia: f64| figure(inertia, &fitted.unit);
         format!(
-            "the inertia is {} here and {} in the set-up: settled motion hardly accelerates; believe a trajectory",
+            "{ANOTHER_INERTIA}{} here and {} in the set-up: settled motion hardly accelerates; believe a trajectory",
             say(fitted.value),
             say(stated)
         )

@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::bench::Staircase;
 use common::controller::on_controller;
 use common::tables::{meta, scatter, stiffness};
 use jointbench_instrument::{Kind, RunTable};
@@ -77,4 +78,26 @@ fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
     let mean = |moment: &f64| hangs[first(moment)..first(moment) + 4].iter().sum::<f64>() / 4.0;
     let apart = rms(time.iter().map(mean).zip(&of_fit.predicted).map(|(c, model)| c - model));
     assert!(apart > 2.0 * fit.rms, "{apart} without a dead band");
+}
+
+/// A figure is not to leave without what is known to be wrong with it.
+#[test]
+fn an_inertia_that_is_not_the_set_ups_says_so_wherever_it_goes() {
+    let mut stairs = Staircase { noise_nm: 0.002, scatter_nm: 0.0, seed: 1 }.run(|at| 0.02 * at.velocity.signum());
+    let (mut meta, trace) = stairs.into_parts();
+    meta.rotor_inertia_kg_m2 = Some(1.0);
+    stairs = RunTable::new(meta, trace).unwrap();
+    let fit = fitted(&stairs, "load_transmission,inertia,coulomb,viscous");
+    let note = fit.notes.iter().find(|note| note.contains("in the set-up")).expect("another inertia");
+    let ascii = note.replace('·', "*").replace('²', "^2");
+    let header = export(&fit, Format::C).unwrap();
+    let field = header.lines().find(|line| line.contains("double inertia_j;")).unwrap();
+    assert!(field.contains(&ascii) && header.contains(&format!("Note: {ascii}")), "{header}");
+    for format in [Format::Mujoco, Format::Urdf, Format::Table] {
+        let text = export(&fit, format).unwrap();
+        assert!(text.contains(&format!("Note: {note}")), "{text}");
+    }
+    let mujoco = export(&fit, Format::Mujoco).unwrap();
+    let before = mujoco.split("<joint").next().unwrap().trim_end();
+    assert!(before.ends_with(&format!("<!-- armature, motor side: {note} -->")), "{mujoco}");
 }

@@ -4,10 +4,10 @@
 //! joint/dynamics: damping [Nm·s/rad], friction [Nm]. The fit is on the motor side: torques grow by the gear ratio N,
 //! damping and inertia by N².
 
-use super::about;
 use super::parts::Parts;
+use super::{about, notes_of};
 use crate::ModelError;
-use crate::report::Fit;
+use crate::report::{Fit, Parameter};
 use jointbench_instrument::Kind;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,35 +33,50 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
     }
     let scope = fit.scope.as_ref().ok_or(ModelError::NoScope)?;
     let gear = scope.load_scale;
-    let of = |effect: &str, name: &str, scale: f64| {
+    let of = |effect: &'static str, name: &str, scale: f64| {
         let found = fit.parameters.iter().find(|p| p.effect == effect && p.name == name);
         // What is negative is no physical joint, and simulators refuse it.
-        found.map(|p| p.value * scale).filter(|v| *v >= 0.0 && v.is_finite())
+        Attribute { effect, of: found.map(|p| (p, p.value * scale)).filter(|(_, v)| *v >= 0.0 && v.is_finite()) }
     };
-    let friction = ("coulomb", of("coulomb", "tau_c", gear));
-    let damping = ("viscous", of("viscous", "c_v", gear * gear));
-    let armature = ("inertia", of("inertia", "j", gear * gear));
+    let friction = of("coulomb", "tau_c", gear);
+    let damping = of("viscous", "c_v", gear * gear);
+    let armature = of("inertia", "j", gear * gear);
     let carried = match dialect {
         Dialect::Mujoco => vec![("frictionloss", friction), ("damping", damping), ("armature", armature)],
         Dialect::Urdf => vec![("damping", damping), ("friction", friction)],
     };
-    let held =
-        |id: &str| id == "load_transmission" || carried.iter().any(|(_, (e, value))| *e == id && value.is_some());
+    let held = |id: &str| id == "load_transmission" || carried.iter().any(|(_, a)| a.effect == id && a.of.is_some());
     let left_out: Vec<(&str, String)> =
         fit.effects.iter().filter(|id| !held(id)).map(|id| (id.as_str(), reason(id, dialect).to_owned())).collect();
     let attributes: Vec<String> =
-        carried.iter().filter_map(|(name, (_, value))| value.map(|v| format!("{name}=\"{v}\""))).collect();
+        carried.iter().filter_map(|(name, a)| a.of.map(|(_, value)| format!("{name}=\"{value}\""))).collect();
+    // What a figure is worth stands beside it: the element follows at once.
+    let beside = carried.iter().filter_map(|(name, a)| Some((name, a.of?.0)));
+    let beside =
+        beside.flat_map(|(name, told)| notes_of(fit, told).map(move |note| format!("{name}, motor side: {note}")));
     let mut parts = Parts::of(fit)?;
     parts.parts.retain(|part| held(part.effect));
     let mut words = about(fit, &parts, &left_out);
     words.push(format!("At the link: torque times the gear ratio {gear}, damping and inertia times its square."));
-    // Two hyphens end a comment.
-    let comment: String = words.iter().map(|w| format!("  {}\n", w.replace("--", "- -"))).collect();
+    let comment: String = words.iter().map(|words| format!("  {}\n", plain(words))).collect();
+    let beside: String = beside.map(|words| format!("<!-- {} -->\n", plain(&words))).collect();
     let element = match dialect {
         Dialect::Mujoco => format!("<joint {}/>", attributes.join(" ")),
         Dialect::Urdf => format!("<dynamics {}/>", attributes.join(" ")),
     };
-    Ok(format!("<!--\n{comment}-->\n{element}\n"))
+    Ok(format!("<!--\n{comment}-->\n{beside}{element}\n"))
+}
+
+/// An attribute's effect, with the parameter that it holds and the value that it has at the link.
+#[derive(Debug, Clone, Copy)]
+struct Attribute<'f> {
+    effect: &'static str,
+    of: Option<(&'f Parameter, f64)>,
+}
+
+/// Two hyphens end a comment.
+fn plain(words: &str) -> String {
+    words.replace("--", "- -")
 }
 
 fn reason(effect: &str, dialect: Dialect) -> &'static str {

@@ -18,8 +18,9 @@ pub use file::ModelFile;
 pub use predict::{Moments, predict};
 
 use crate::ModelError;
+use crate::fit::ANOTHER_INERTIA;
 use crate::own::signals_with;
-use crate::report::{Fit, SignalRange};
+use crate::report::{Fit, Parameter, SignalRange};
 use crate::view::Signal;
 use jointbench_instrument::Kind;
 use parts::Parts;
@@ -112,7 +113,14 @@ fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)]) -> Vec<String> {
         lines.push(format!("Fitted where {} is {:.4} to {:.4} {}", signal.name, signal.min, signal.max, signal.unit));
     }
     lines.extend(left_out.iter().map(|(effect, why)| format!("NOT CARRIED OVER: {effect} ({why})")));
+    lines.extend(fit.notes.iter().map(|note| format!("Note: {note}")));
     lines
+}
+
+/// What the fit says about one of its figures, which is not to leave without it.
+fn notes_of<'f>(fit: &'f Fit, parameter: &'f Parameter) -> impl Iterator<Item = &'f str> {
+    let of_inertia = |note: &&String| parameter.effect == "inertia" && note.starts_with(ANOTHER_INERTIA);
+    parameter.note.iter().chain(fit.notes.iter().filter(of_inertia)).map(String::as_str)
 }
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ fn parameters(fit: &Fit, parts: &Parts) -> Vec<(String, f64, String)> {
         let effect = part.effect;
         for (name, value) in part.factors.iter().chain(&part.shape) {
             let told = fit.parameters.iter().find(|p| p.effect == effect && p.name == *name);
-            all.push((format!("{effect}_{name}"), *value, told.map(comment).unwrap_or_default()));
+            all.push((format!("{effect}_{name}"), *value, told.map(|told| comment(fit, told)).unwrap_or_default()));
         }
         if let Some(band) = dead_band_of(fit, part) {
             let words = "followed is what goes beyond it; twice the noise of the signal, rms";
@@ -116,8 +116,8 @@ fn fed(fit: &Fit, parts: &Parts) -> Vec<String> {
     }
 }
 
-fn comment(parameter: &Parameter) -> String {
+fn comment(fit: &Fit, parameter: &Parameter) -> String {
     let [low, high] = parameter.ci95;
-    let note = parameter.note.as_ref().map(|note| format!("; {note}")).unwrap_or_default();
+    let note: String = super::notes_of(fit, parameter).map(|note| format!("; {note}")).collect();
     format!(" /* {} */", suffix::ascii(&format!("[{}] 95 %: {low:.4e} to {high:.4e}{note}", parameter.unit)))
 }
