@@ -107,8 +107,7 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         terms,
         scope: Some(scope),
     };
-    let fed_rms = transfer::fed_error(&fit, &prepared.main)?;
-    fit.scope.iter_mut().for_each(|scope| scope.fed_rms = fed_rms);
+    transfer::measure(&mut fit, &prepared.main)?;
     Ok(fit)
 }
 

@@ -33,6 +33,8 @@ impl Scope {
             signals: signals_with(prepared.kind, own).iter().filter_map(range).collect(),
             constants: prepared.constants.clone(),
             fed_rms: None,
+            means: Vec::new(),
+            table_rms: None,
         }
     }
 

@@ -2,11 +2,11 @@
 
 mod common;
 
-use common::bench::Staircase;
+use common::bench::{GEAR, Moment, Staircase};
 use common::controller::on_controller;
 use common::tables::{meta, scatter, stiffness};
-use jointbench_instrument::{Kind, RunTable};
-use jointbench_model::transfer::{Format, export};
+use jointbench_instrument::{Channel, Kind, RunTable, Trace};
+use jointbench_model::transfer::{Format, export, predict};
 use jointbench_model::{Fit, ModelSpec, Options, fit, residuals};
 
 const STEP_S: f64 = 0.01;
@@ -100,4 +100,111 @@ fn an_inertia_that_is_not_the_set_ups_says_so_wherever_it_goes() {
     let mujoco = export(&fit, Format::Mujoco).unwrap();
     let before = mujoco.split("<joint").next().unwrap().trim_end();
     assert!(before.ends_with(&format!("<!-- armature, motor side: {note} -->")), "{mujoco}");
+}
+
+/// Between the points of a table in straight lines, at the axes named; the last axis runs fastest.
+struct Lut {
+    points: Vec<Vec<f64>>,
+    values: Vec<f64>,
+}
+
+impl Lut {
+    fn read(text: &str) -> Self {
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        let axes = lines.next().unwrap().split(',').count() - 1;
+        let rows: Vec<Vec<f64>> = lines.map(|l| l.split(',').map(|f| f.parse().unwrap()).collect()).collect();
+        let points = (0..axes).map(|axis| {
+            let mut points: Vec<f64> = rows.iter().map(|row| row[axis]).collect();
+            points.sort_by(f64::total_cmp);
+            points.dedup();
+            points
+        });
+        Self { points: points.collect(), values: rows.iter().map(|row| row[axes]).collect() }
+    }
+
+    fn at(&self, at: &[f64]) -> f64 {
+        let mut corners = vec![(0, 1.0)];
+        for (points, x) in self.points.iter().zip(at) {
+            let cell = points.partition_point(|p| p <= x).clamp(1, points.len() - 1) - 1;
+            let share = ((x - points[cell]) / (points[cell + 1] - points[cell])).clamp(0.0, 1.0);
+            let next = |(corner, weight): (usize, f64)| {
+                [
+                    (corner * points.len() + cell, weight * (1.0 - share)),
+                    (corner * points.len() + cell + 1, weight * share),
+                ]
+            };
+            corners = corners.into_iter().flat_map(next).collect();
+        }
+        corners.into_iter().map(|(corner, weight)| weight * self.values[corner]).sum()
+    }
+}
+
+/// Up to 2 A in steps and down again, to less and less; what holds depends on the way.
+fn brake() -> RunTable {
+    let names = ["time_s", "brake_current_a", "brake_torque_nm", "segment", "repeat"];
+    let mut trace = Trace::new(names.map(Channel::new).to_vec());
+    let tops = [20, 14, 8, 20, 14, 8];
+    let levels: Vec<i32> =
+        tops.into_iter().flat_map(|top: i32| (0..2 * top).map(move |k| top - (k - top).abs())).collect();
+    let (mut before, mut state) = (0.0, 0.0f64);
+    for (step, level) in levels.iter().enumerate() {
+        for k in 0..80 {
+            let i = 80 * step + k;
+            let current: f64 = before + (f64::from(*level) / 10.0 - before) * 0.2;
+            state = (state + current - before).clamp(-0.6, 0.6);
+            before = current;
+            let torque = 0.5 + 1.5 * (current / 0.9).tanh() + 0.7 * state / 0.6 + 0.01 * scatter(i, 1);
+            trace.push_row(&[0.01 * i as f64, current, torque, step as f64, if step < 84 { 0.0 } else { 1.0 }]);
+        }
+    }
+    RunTable::new(meta(Kind::Brake), trace).unwrap()
+}
+
+/// What a brake holds on average over its branches is in the table, and how far off that is, in its header.
+#[test]
+fn a_table_holds_the_mean_of_what_remembers_and_tells_its_own_error() {
+    let run = brake();
+    let fit = fitted(&run, "drag,torque_per_current,saturation,hysteresis");
+    let text = export(&fit, Format::Table).unwrap();
+    let lut = Lut::read(&text);
+    let (current, torque) = (run.column("brake_current_a").unwrap(), run.column("brake_torque_nm").unwrap());
+    let error = rms(current.iter().zip(torque).map(|(i, torque)| lut.at(&[*i]) - torque));
+    // The best curve with a value of its own for each of 80 stretches.
+    let stretch = |i: &f64| (i * 40.0 + 0.5) as usize;
+    let mut means = vec![(0.0, 0.0); 100];
+    for (i, torque) in current.iter().zip(torque) {
+        let (sum, count): &mut (f64, f64) = &mut means[stretch(i)];
+        (*sum, *count) = (*sum + torque, *count + 1.0);
+    }
+    let best = rms(current.iter().zip(torque).map(|(i, t)| means[stretch(i)].0 / means[stretch(i)].1 - t));
+    assert!(best > 0.1 && error < 1.02 * best, "the table errs by {error}, the best single curve by {best}\n{text}");
+    let said = told(&text, "# Error: of this table ");
+    assert!((said / error - 1.0).abs() < 0.05, "the header says {said}, and it is {error}");
+    assert!(text.contains("# hysteresis remembers: the table holds its mean over current"), "{text}");
+    assert!(!text.contains("NOT CARRIED OVER"), "{text}");
+}
+
+/// Thirty-six waves in a turn on ninety angles are no waves any more.
+#[test]
+fn a_table_has_points_enough_for_its_fastest_wave() {
+    let torque = |at: Moment| {
+        let motor = GEAR * at.link;
+        0.02 * at.velocity.signum() + 3e-4 * at.velocity + 0.006 * (36.0 * motor + 0.7).sin()
+    };
+    let run = Staircase { noise_nm: 0.001, scatter_nm: 0.0, seed: 3 }.run(torque);
+    let fit = fitted(&run, "load_transmission,coulomb,viscous,cogging");
+    let mut flat = fit.clone();
+    // Over velocity and angle alone.
+    flat.effects.retain(|id| id != "load_transmission");
+    let text = export(&flat, Format::Table).unwrap();
+    let lut = Lut::read(&text);
+    assert_eq!(lut.points[1].len(), 16 * 36 + 1, "{}", text.lines().take(12).collect::<Vec<_>>().join("\n"));
+    let asked: Vec<[f64; 2]> = (0..3000).map(|i| [1.0 + 0.01 * scatter(i, 1), 3.1 + 6.0 * scatter(i, 2)]).collect();
+    let column = |k: usize| asked.iter().map(|at| at[k]).collect::<Vec<f64>>();
+    let moments = [("velocity", column(0)), ("position", column(1)), ("direction", vec![1.0; asked.len()])];
+    let model = predict(&flat, &moments, 0.004).unwrap();
+    let off = rms(asked.iter().zip(&model).map(|(at, model)| lut.at(at) - model));
+    assert!(off < 0.02 * 0.006, "{off}");
+    let said = told(&text, "it is off what it is a table of by ");
+    assert!(off < 1.5 * said && said < 0.02 * 0.006, "the header says {said}, and it is {off}");
 }

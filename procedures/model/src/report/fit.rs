@@ -147,6 +147,24 @@ pub struct Scope {
     /// fit smoothed nothing that is remembered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fed_rms: Option<f64>,
+    /// What effects that remember are on average.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub means: Vec<MeanCurve>,
+    /// Error of the look-up table, read in straight lines at the points of the run. `None` in fits of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table_rms: Option<f64>,
+}
+
+/// An effect that remembers as the curve over what it remembers that comes nearest to it on the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeanCurve {
+    pub effect: String,
+    /// By the name that formulas use.
+    pub signal: String,
+    pub at: Vec<f64>,
+    pub mean: Vec<f64>,
+    /// How far the effect was off it.
+    pub off_rms: f64,
 }
 
 /// A fact of the set-up, by its name in the meta file.

@@ -12,8 +12,8 @@ pub use diagnosis::{
     Suggestion, Verdict,
 };
 pub use fit::{
-    Evaluation, Fit, GivenConstant, Parameter, ParameterState, Preparation, ResidualKind, Scope, SignalRange, Term,
-    TradeOff,
+    Evaluation, Fit, GivenConstant, MeanCurve, Parameter, ParameterState, Preparation, ResidualKind, Scope,
+    SignalRange, Term, TradeOff,
 };
 pub use maps::{AxisMap, MapBin, MapCell, PairMap, ResidualMaps};
 pub use residuals::{Axis, ResidualSet};

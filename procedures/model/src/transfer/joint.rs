@@ -5,7 +5,7 @@
 //! damping and inertia by N².
 
 use super::parts::Parts;
-use super::{about, notes_of};
+use super::{about, notes_of, of_model};
 use crate::ModelError;
 use crate::report::{Fit, Parameter};
 use jointbench_instrument::Kind;
@@ -56,7 +56,7 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
         beside.flat_map(|(name, told)| notes_of(fit, told).map(move |note| format!("{name}, motor side: {note}")));
     let mut parts = Parts::of(fit)?;
     parts.parts.retain(|part| held(part.effect));
-    let mut words = about(fit, &parts, &left_out);
+    let mut words = about(fit, &parts, &left_out, vec![of_model(fit, &left_out)]);
     words.push(format!("At the link: torque times the gear ratio {gear}, damping and inertia times its square."));
     let comment: String = words.iter().map(|words| format!("  {}\n", plain(words))).collect();
     let beside: String = beside.map(|words| format!("<!-- {} -->\n", plain(&words))).collect();

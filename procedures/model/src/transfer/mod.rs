@@ -13,13 +13,13 @@ mod terms;
 mod written;
 
 pub use alongside::Alongside;
-pub(crate) use fed::error as fed_error;
 pub use file::ModelFile;
 pub use predict::{Moments, predict};
 
 use crate::ModelError;
 use crate::fit::ANOTHER_INERTIA;
 use crate::own::signals_with;
+use crate::prepare::Problem;
 use crate::report::{Fit, Parameter, SignalRange};
 use crate::view::Signal;
 use jointbench_instrument::Kind;
@@ -98,12 +98,12 @@ fn predicted(fit: &Fit) -> String {
 
 /// What everyone should know who meets the export without its run, a line each. Ranges are those of the signals that
 /// what was carried over depends on.
-fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)]) -> Vec<String> {
+fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)], errors: Vec<String>) -> Vec<String> {
     let mut lines = vec![
         format!("jointbench {}: {} model, {}", env!("CARGO_PKG_VERSION"), fit.kind, predicted(fit)),
         format!("Effects: {}", fit.effects.join(", ")),
-        format!("Error: {:.4e} {} rms on data that took no part in the fit", fit.validation_rms, fit.unit),
     ];
+    lines.extend(errors);
     let named = signals_with(fit.kind, &fit.own);
     let is_input = |range: &&SignalRange| {
         let signal = named.iter().find(|s| s.name == range.name);
@@ -115,6 +115,22 @@ fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)]) -> Vec<String> {
     lines.extend(left_out.iter().map(|(effect, why)| format!("NOT CARRIED OVER: {effect} ({why})")));
     lines.extend(fit.notes.iter().map(|note| format!("Note: {note}")));
     lines
+}
+
+/// The error of the model, which is that of the export where nothing is left out.
+fn of_model(fit: &Fit, left_out: &[(&str, String)]) -> String {
+    let of = if left_out.is_empty() { "" } else { " of the whole model, what is not carried over included" };
+    format!("Error{of}: {:.4e} {} rms on data that took no part in the fit", fit.validation_rms, fit.unit)
+}
+
+/// Measures what leaves the program on the run that was fitted.
+pub(crate) fn measure(fit: &mut Fit, problem: &Problem) -> Result<(), ModelError> {
+    let means = table::curves(fit, problem)?;
+    let fed_rms = fed::error(fit, problem)?;
+    fit.scope.iter_mut().for_each(|scope| (scope.means, scope.fed_rms) = (means.clone(), fed_rms));
+    let table_rms = table::on_run(fit, problem)?;
+    fit.scope.iter_mut().for_each(|scope| scope.table_rms = table_rms);
+    Ok(())
 }
 
 /// What the fit says about one of its figures, which is not to leave without it.

@@ -104,6 +104,8 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             sample_s: STEP_S,
             constants: Vec::new(),
             fed_rms: None,
+            means: Vec::new(),
+            table_rms: None,
             signals: moments(kind)
                 .into_iter()
                 .map(|(name, values)| SignalRange {

@@ -24,8 +24,10 @@ pub fn header(fit: &Fit) -> Result<String, ModelError> {
         let _ = writeln!(text, "{words}");
     };
     line("/*");
-    super::about(fit, &parts, &parts.left_out).iter().for_each(|words| line(&format!(" * {}", suffix::ascii(words))));
-    fed(fit, &parts).iter().for_each(|words| line(&format!(" * {}", suffix::ascii(words))));
+    let errors = [super::of_model(fit, &parts.left_out)].into_iter().chain(fed(fit, &parts)).collect();
+    super::about(fit, &parts, &parts.left_out, errors)
+        .iter()
+        .for_each(|words| line(&format!(" * {}", suffix::ascii(words))));
     line(" * SI units; the unit is the suffix of a name. C99; link with -lm.");
     line(" */");
     line(&format!("#ifndef {guard}\n#define {guard}\n\n#include <math.h>\n"));

@@ -1,0 +1,49 @@
+//! How far off a table is, used as its reader uses it: in straight lines between its points.
+
+use super::Layout;
+use crate::ModelError;
+use crate::prepare::Problem;
+use crate::report::Fit;
+use crate::view::Signals;
+
+/// Off what it is a table of, in the middle between neighbouring points: rms and at most. `None` where it has no axis.
+pub fn between(layout: &Layout, values: &[f64]) -> Result<Option<[f64; 2]>, ModelError> {
+    let (mut square, mut most, mut count) = (0.0, 0.0f64, 0usize);
+    for along in 0..layout.axes.len() {
+        let middles = layout.rows(|axis, place| match place == along {
+            // Nobody asks for the middle of a change of direction.
+            true => axis.points.windows(2).filter(|w| w[0] * w[1] >= 0.0).map(|w| 0.5 * (w[0] + w[1])).collect(),
+            false => axis.points.clone(),
+        });
+        let truth = layout.predict(&middles)?;
+        for (row, truth) in middles.iter().zip(truth) {
+            let off = (layout.interpolate(values, row) - truth).abs();
+            (square, most, count) = (square + off * off, most.max(off), count + 1);
+        }
+    }
+    Ok((count > 0).then(|| [(square / count as f64).sqrt(), most]))
+}
+
+/// The error at the points of the run that was fitted. `None` where the run lacks an axis.
+pub fn on_run(fit: &Fit, problem: &Problem) -> Result<Option<f64>, ModelError> {
+    let layout = Layout::of(fit)?;
+    let values = layout.predict(&layout.grid())?;
+    let view = &problem.view;
+    let axes = |signals: &'_ Signals| -> Option<Vec<Vec<f64>>> {
+        layout.axes.iter().map(|axis| Some(signals.find(axis.signal.signal)?.to_vec())).collect()
+    };
+    let at = |columns: &[Vec<f64>], i: usize| {
+        layout.interpolate(&values, &columns.iter().map(|column| column[i]).collect::<Vec<f64>>())
+    };
+    let column: Vec<f64> = match (axes(&view.samples), axes(&view.points)) {
+        (Some(samples), _) if !view.chunks.is_empty() => {
+            let mean = |c: &std::ops::Range<usize>| c.clone().map(|i| at(&samples, i)).sum::<f64>() / c.len() as f64;
+            view.chunks.iter().map(mean).collect()
+        }
+        (_, Some(points)) => (0..view.len()).map(|i| at(&points, i)).collect(),
+        _ => return Ok(None),
+    };
+    let said = problem.reduce.apply(column);
+    let sse: f64 = problem.target.iter().zip(said).map(|(y, said)| (y - said).powi(2)).sum();
+    Ok(Some((sse / problem.rows() as f64).sqrt()))
+}
