@@ -84,8 +84,9 @@ fn parameters(fit: &Fit, parts: &Parts) -> Vec<(String, f64, String)> {
             all.push((format!("{effect}_{name}"), *value, told.map(|told| comment(fit, told)).unwrap_or_default()));
         }
         if let Some(band) = dead_band_of(fit, part) {
-            let words = "followed is what goes beyond it; twice the noise of the signal, rms";
-            all.push((format!("{effect}_{DEAD_BAND}"), band, format!(" /* {words} */")));
+            let words =
+                format!(" /* followed is what goes beyond it: {} times the noise of the signal, rms */", fed::NOISES);
+            all.push((format!("{effect}_{DEAD_BAND}"), band, words));
         }
     }
     if all.is_empty() {
@@ -108,7 +109,8 @@ fn fed(fit: &Fit, parts: &Parts) -> Vec<String> {
             format!("Error fed with the load as that run felt it, sample by sample: {rms:.4e} {} rms", fit.unit),
             format!(
                 "The fit smoothed the load, which had {noise:.4e} {unit} rms of noise; {list} follows it beyond a dead band \
-                 of twice that. Feed it unfiltered, and set {DEAD_BAND} where your signal has another noise."
+                 of {} times that. Feed it unfiltered, and set {DEAD_BAND} where your signal has another noise.",
+                fed::NOISES
             ),
         ],
         _ => vec![format!(
