@@ -78,12 +78,42 @@ impl Lab {
 
     /// Keeps an effect; one of the same id becomes its next version.
     pub async fn define_effect(&self, definition: &EffectDefinition) -> Answer<Effect> {
-        let own = parse(definition)?;
+        view(&self.keep_effect(&parse(definition)?).await?)
+    }
+
+    async fn keep_effect(&self, own: &OwnEffect) -> Answer<OwnEffectRecord> {
         let kept = reread(own.definition())?;
         let record = self.inner.store.save_own_effect(own.kind().name(), own.id(), &kept).await?;
         tracing::info!(effect = own.id(), version = record.version, "effect defined");
         self.tell_effects(own.kind(), own.id());
-        view(&record)
+        Ok(record)
+    }
+
+    /// Takes in what a model brings along, so that models can be made with it here. An id that stands for another formula here
+    /// would be two things at once.
+    pub(super) async fn bring_effects(&self, brought: &[OwnEffect]) -> Answer<()> {
+        let mut new = Vec::new();
+        for own in brought {
+            let said =
+                |own: &OwnEffect| (own.definition().formula.trim().to_owned(), own.definition().parameters.clone());
+            match self.own_effects(own.kind()).await?.iter().find(|here| here.id() == own.id()) {
+                None => new.push(own),
+                Some(here) if said(here) == said(own) => {}
+                Some(here) => {
+                    let (id, there, here) = (own.id(), &own.definition().formula, &here.definition().formula);
+                    let why = if there.trim() == here.trim() { ", with other parameters" } else { "" };
+                    return Err(LabError::Invalid(format!(
+                        "the model brings its own effect {id} ({there}), and here {id} is another ({here}{why}): give one of them \
+                         another id, or define the model's as the next version of {id} first (POST /effects), which new models \
+                         then have"
+                    )));
+                }
+            }
+        }
+        for own in new {
+            self.keep_effect(own).await?;
+        }
+        Ok(())
     }
 
     pub async fn delete_effect(&self, kind: &str, id: &str) -> Answer<()> {

@@ -113,6 +113,7 @@ impl Lab {
             let why = "this model predicts numbers on the run that are not finite: check its parameters";
             return Err(LabError::Invalid(why.to_owned()));
         }
+        self.bring_effects(&kept.own).await?;
         let new = NewModel {
             run: import.run,
             more_runs: Vec::new(),

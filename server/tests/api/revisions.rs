@@ -129,3 +129,33 @@ fn what_is_exported_comes_in_again_unchanged() {
     assert_eq!(status, 422, "{problem}");
     assert!(problem["detail"].as_str().unwrap().contains("has the form other: expected is"), "{problem}");
 }
+
+/// Whoever takes a model in goes on from it: with its effects, which are those of this store from then on.
+#[test]
+fn an_imported_model_brings_its_own_effects_along() {
+    let Two { daemon, better, .. } = two_versions();
+    let out = text(&daemon, &format!("/api/v1/models/{}/export?format=json", better["id"]));
+    let other = TestDaemon::start();
+    let run = rubbing_run(&other, 3);
+    let import = |model: &str| other.post("/api/v1/models/import", &format!(r#"{{"run": {run}, "model": {model}}}"#));
+    let (status, there) = import(&out);
+    assert_eq!(status, 201, "{there}");
+    let own = || {
+        let effects = other.get("/api/v1/effects?kind=friction").1;
+        let all = effects.as_array().unwrap().iter().filter(|effect| effect["definition"].is_object());
+        all.map(|effect| (effect["id"].clone(), effect["version"].clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(own(), [(json!("rub"), json!(1))]);
+    let effects = ["load_transmission", "coulomb", "viscous", "rub", "stribeck"];
+    let wanted = json!({"run": run, "effects": effects, "parent": there["id"]});
+    let (status, further) = other.post("/api/v1/models", &wanted.to_string());
+    assert_eq!((status, &further["added"]), (201, &json!(["stribeck"])), "{further}");
+    assert_eq!(import(&out).0, 201, "the same effect again");
+    assert_eq!(own(), [(json!("rub"), json!(1))]);
+
+    let another = out.replace("abs(load)", "load");
+    let (status, problem) = import(&another);
+    assert_eq!(status, 422, "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("here rub is another (tau = a * tanh"), "{problem}");
+    assert_eq!(own(), [(json!("rub"), json!(1))]);
+}
