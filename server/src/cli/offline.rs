@@ -103,7 +103,7 @@ fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
     }
     let first = runs.remove(0);
     let run = first.join(runs).map_err(|fault| Exit::bad_input(fault.to_string()))?;
-    let own = measured.own.read(run.kind())?;
+    let own = measured.own.read(run.kind(), run.meta().motion)?;
     let spec = match &measured.model {
         Some(list) => ModelSpec::with_own(run.kind(), list.split(',').map(str::trim).filter(|id| !id.is_empty()), own)?,
         None => ModelSpec::with_own(run.kind(), run.meta().baseline.iter(), own)?,

@@ -3,7 +3,7 @@
 use super::exit::Exit;
 use super::files;
 use clap::Args;
-use jointbench_instrument::Kind;
+use jointbench_instrument::{Kind, Motion};
 use jointbench_model::{Definition, OwnEffect};
 use std::path::{Path, PathBuf};
 
@@ -26,8 +26,8 @@ pub struct OwnEffects {
 }
 
 impl OwnEffects {
-    /// All of them; what names no kind is of the run's.
-    pub fn read(&self, kind: Kind) -> Result<Vec<OwnEffect>, Exit> {
+    /// All of them; what names no kind is of the run's. What there is to think about is told.
+    pub fn read(&self, kind: Kind, motion: Motion) -> Result<Vec<OwnEffect>, Exit> {
         let mut all = Vec::new();
         for file in &self.effect_file {
             all.extend(read_file(file, kind)?);
@@ -35,7 +35,7 @@ impl OwnEffects {
         for text in &self.own {
             all.push(OwnEffect::inline(kind, text)?);
         }
-        for fault in all.iter().filter_map(OwnEffect::doubt) {
+        for fault in all.iter().flat_map(|own| own.doubts(Some(motion))) {
             eprintln!("note: {}", Exit::from(fault).said);
         }
         Ok(all)

@@ -47,16 +47,19 @@ impl Lab {
 
     async fn reading(&self, trial: &EffectTrial) -> Answer<EffectCheck> {
         let own = parse(&trial.effect)?;
+        let mut motion = None;
         if let Some(run) = trial.columns_of.or(trial.run) {
+            motion = Some(self.facts(run).await?.0.motion);
             let none = self.inner.store.trace(run, None, 0..0).await?;
             let columns: Vec<&str> = none.channels().iter().map(|channel| channel.name.as_str()).collect();
             own.missing(&columns).map_or(Ok(()), |fault| Err(LabError::Formula(fault.into())))?;
         }
+        let doubts: Vec<String> = own.doubts(motion).iter().map(ToString::to_string).collect();
         let name = |p: &usize| own.definition().parameters[*p].name.clone();
         let mut check = EffectCheck {
             effect: Some(Effect { definition: Some(reread(own.definition())?), ..effect_view(&own.info()) }),
             mistake: None,
-            doubt: own.doubt().map(|fault| fault.to_string()),
+            doubt: (!doubts.is_empty()).then(|| doubts.join("; ")),
             linear: own.formula().columns.iter().map(|(p, _)| name(p)).collect(),
             shape: own.formula().shape.iter().map(name).collect(),
             signals: own.formula().signals.iter().map(|s| s.name.to_owned()).collect(),

@@ -100,7 +100,7 @@ pub struct EffectCheck {
     /// Of a formula that is still being typed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mistake: Option<Place>,
-    /// Where units contradict each other, which changes no figure.
+    /// Units that contradict each other, or a formula of the very thing that is modelled: neither changes a figure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
     /// Parameters that enter linearly.

@@ -158,3 +158,21 @@ fn a_formula_that_is_not_finite_on_the_run_is_refused_with_words() {
     assert_eq!((status, &problem["type"]), (422, &"urn:jointbench:invalid".into()), "{problem}");
     assert!(problem["detail"].as_str().unwrap().contains("velocity = -"), "{problem}");
 }
+
+#[test]
+fn what_to_think_about_is_told_for_the_run_at_hand() {
+    let daemon = TestDaemon::start();
+    let run = rubbing_run(&daemon, 5);
+    let doubt = |formula: &str, unit: &str, run: Option<i64>| {
+        let mut effect = rub(formula);
+        effect["parameters"][1]["unit"] = unit.into();
+        let (status, check) =
+            daemon.post("/api/v1/effects/check", &json!({"effect": effect, "columns_of": run}).to_string());
+        assert_eq!(status, 200, "{check}");
+        check["doubt"].as_str().unwrap_or_default().to_owned()
+    };
+    assert_eq!(doubt(RUB, "m/s", None), "", "a joint may slide");
+    assert!(doubt(RUB, "m/s", Some(run)).contains("this is in 1/m"));
+    let response = "tau = a * tanh(velocity / w0) * motor_torque";
+    assert!(doubt(response, "rad/s", Some(run)).contains("the very thing that a friction model predicts"));
+}

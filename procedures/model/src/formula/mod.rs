@@ -20,7 +20,7 @@ pub use signals::{NamedSignal, in_formula, left_hand_side, signals};
 pub use syntax::Operator;
 
 use crate::view::Signal;
-use jointbench_instrument::Kind;
+use jointbench_instrument::{Kind, Motion};
 use std::collections::BTreeSet;
 
 /// A formula that makes sense for a kind of run.
@@ -34,8 +34,9 @@ pub struct Formula {
     pub signals: Vec<NamedSignal>,
     /// A mean over an interval is far from the value at its middle: a sine or cosine of a signal.
     pub is_periodic: bool,
-    /// Units that contradict each other. They change no figure, so that the formula is used all the same.
-    pub(crate) doubt: Option<Mistake>,
+    /// Units that contradict each other in a joint that turns, and in one that slides. They change no figure, so that the
+    /// formula is used all the same.
+    doubts: [Option<Mistake>; 2],
 }
 
 impl Formula {
@@ -72,9 +73,19 @@ impl Formula {
             shape: (0..parameters.len()).filter(|p| !linear(p) && whole.uses(*p)).collect(),
             signals: signals(kind).iter().copied().filter(|s| whole.uses_signal(s.signal)).chain(columns).collect(),
             is_periodic: whole.any(&mut |what| periodic(what)),
-            doubt: units::check(kind, text, &whole, units).err(),
+            doubts: units::check(kind, text, &whole, units),
             columns: factors.columns,
         })
+    }
+
+    /// Units that contradict each other in such a motion; in every one, where none is known.
+    pub(crate) fn doubt(&self, motion: Option<Motion>) -> Option<&Mistake> {
+        let [turning, sliding] = &self.doubts;
+        match motion {
+            Some(Motion::Rotary) => turning.as_ref(),
+            Some(Motion::Linear) => sliding.as_ref(),
+            None => turning.as_ref().filter(|_| sliding.is_some()),
+        }
     }
 
     /// The parameter occurs.

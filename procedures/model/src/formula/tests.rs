@@ -56,7 +56,7 @@ fn a_column_of_the_run_stands_in_a_formula() {
     let (oil, known) = (Signal::Column("oil_pressure_pa"), Signal::Temperature);
     assert_eq!(named, [("temperature", "°C", known), ("oil_pressure_pa", "Pa", oil)]);
     let doubt = |units: &[&str]| {
-        Formula::parse(Kind::Friction, "tau = a * column(oil_pressure_pa)", &["a"], units).unwrap().doubt
+        Formula::parse(Kind::Friction, "tau = a * column(oil_pressure_pa)", &["a"], units).unwrap().doubt(None).cloned()
     };
     assert!(doubt(&["Nm/Pa"]).is_none() && doubt(&["Nm"]).is_some_and(|d| d.message.contains("tau is in Nm")));
 }
@@ -125,9 +125,9 @@ fn check_units(kind: Kind, marked: &str, units: [&str; 3], words: &str) {
     let text = marked.replacen('§', "", 1);
     let found = Formula::parse(kind, &text, &["a", "b", "w"], &units);
     match marked.find('§') {
-        None => assert_eq!(found.unwrap().doubt, None, "{marked}"),
+        None => assert_eq!(found.unwrap().doubt(None), None, "{marked}"),
         Some(at) => {
-            let mistake = found.unwrap().doubt.unwrap_or_else(|| panic!("{marked}"));
+            let mistake = found.unwrap().doubt(None).cloned().unwrap_or_else(|| panic!("{marked}"));
             assert!(mistake.at.start == at && mistake.message.contains(words), "{marked}: {mistake:?}");
         }
     }

@@ -35,20 +35,20 @@ const KNOWN: &[(&str, Unit)] = &[
     ("V", Unit([1.0, 2.0, -3.0, -1.0, 0.0])),
 ];
 
-/// The first place where units contradict each other, in a joint that turns as well as in one that slides.
+/// The first place where units contradict each other: in a joint that turns, and in one that slides.
 ///
 /// `whole` is what stands right of the equals sign of `text`, `units` those of the parameters.
-pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> Result<(), Mistake> {
+pub fn check(kind: Kind, text: &str, whole: &Expression, units: &[&str]) -> [Option<Mistake>; 2] {
     // A column that only its owner knows has whatever unit it has.
     let names_other = whole.any(&mut |what| matches!(what, What::Signal(Signal::Column(_))));
     let is_foreign = |unit: &&&str| unit.trim() != "1" && read(unit).is_none() && !names_other;
     if let Some(foreign) = units.iter().find(is_foreign) {
         let message = format!("a formula counts in SI units, and [{foreign}] is none: what is fitted is not converted");
-        return Err(Mistake::new(0..0, message));
+        let foreign = Mistake::new(0..0, message);
+        return [Some(foreign.clone()), Some(foreign)];
     }
     let units: Vec<Option<Unit>> = units.iter().map(|unit| read(unit)).collect();
-    let on = |slides| Check { kind, text, units: &units, slides }.whole(whole);
-    on(false).or_else(|mistake| on(true).map_err(|_| mistake))
+    [false, true].map(|slides| Check { kind, text, units: &units, slides }.whole(whole).err())
 }
 
 /// `None` for what is no SI unit known here, and for 1, which is what a parameter has whose unit was left out.

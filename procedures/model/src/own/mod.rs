@@ -10,10 +10,14 @@ use crate::ModelError;
 use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Shape, Stage};
 use crate::formula::{Formula, FormulaFault, Mistake, NamedSignal, signals};
 use crate::view::{Signal, View};
-use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::instead;
+use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+
+/// Said of a formula that names the motor's torque.
+const OF_RESPONSE: &str = "motor_torque is the very thing that a friction model predicts: an effect made of it takes in whatever \
+                           the others leave, and says nothing where only motion and load are known; name what causes it";
 
 /// A user's effect whose definition makes sense.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -59,9 +63,13 @@ impl OwnEffect {
         &self.formula
     }
 
-    /// Units that contradict each other: the figures are the formula's, whatever the units say.
-    pub fn doubt(&self) -> Option<FormulaFault> {
-        Some(self.formula.doubt.clone()?.found(self.id(), "formula", &self.definition.formula))
+    /// What a user should think about, though the figures are the formula's all the same: units that contradict each other
+    /// in such a motion, or in every one where none is known, and a formula of the very thing that is modelled.
+    pub fn doubts(&self, motion: Option<Motion>) -> Vec<FormulaFault> {
+        let response = self.formula.columns.iter().find_map(|(_, e)| e.place_of(Signal::Drive));
+        let response = response.map(|at| Mistake::new(at, OF_RESPONSE));
+        let found = |mistake: Mistake| mistake.found(self.id(), "formula", &self.definition.formula);
+        self.formula.doubt(motion).cloned().into_iter().chain(response).map(found).collect()
     }
 
     /// The first column that the formula names and a run with these has not.
