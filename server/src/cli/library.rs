@@ -57,6 +57,12 @@ pub fn effects(asked: Option<&str>) -> Done {
         for parameter in one.parameters {
             println!("  {} [{}], {} to {}", parameter.name, parameter.unit, parameter.min, parameter.max);
         }
+        let every = one.kind.required_columns().join(", ");
+        let needs = match one.needs {
+            [] => String::new(),
+            needs => format!("{}, beside ", needs.join(", ")),
+        };
+        println!("  needs {needs}what every {} run has ({every})", one.kind);
         println!("  missing, it looks like this: {}\n  source: {}", one.looks, one.source);
     }
     Ok(())

@@ -254,6 +254,8 @@ pub(super) fn effect_view(info: &jointbench_model::EffectInfo) -> Effect {
         title: info.title.to_owned(),
         sentence: info.sentence.to_owned(),
         formula: info.formula.to_owned(),
+        source: info.source.to_owned(),
+        looks: info.looks.to_owned(),
         parameters: info
             .parameters
             .iter()

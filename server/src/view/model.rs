@@ -14,6 +14,12 @@ pub struct Effect {
     /// One sentence a technician understands.
     pub sentence: String,
     pub formula: String,
+    /// Document and equation, or paper.
+    #[serde(default)]
+    pub source: String,
+    /// How the residual looks when the effect is missing.
+    #[serde(default)]
+    pub looks: String,
     pub parameters: Vec<EffectParameter>,
     /// Columns without which the effect cannot be computed.
     pub needs: Vec<String>,

@@ -160,6 +160,19 @@ fn a_formula_that_is_not_finite_on_the_run_is_refused_with_words() {
 }
 
 #[test]
+fn every_effect_tells_all_of_itself() {
+    let daemon = TestDaemon::start();
+    assert_eq!(daemon.post("/api/v1/effects", &rub(RUB).to_string()).0, 201);
+    let (_, effects) = daemon.get("/api/v1/effects");
+    for effect in effects.as_array().unwrap() {
+        for told in ["id", "sentence", "formula", "source", "looks"] {
+            assert!(effect[told].as_str().is_some_and(|words| !words.is_empty()), "{told}: {effect}");
+        }
+        assert!(effect["needs"].is_array() && effect["parameters"].is_array(), "{effect}");
+    }
+}
+
+#[test]
 fn what_to_think_about_is_told_for_the_run_at_hand() {
     let daemon = TestDaemon::start();
     let run = rubbing_run(&daemon, 5);

@@ -175,3 +175,19 @@ fn a_model_that_went_out_comes_into_the_store_again() {
     assert!(told.contains("model 3 of run 1") && told.contains("/workbench/1?model=3"), "{told}");
     assert_eq!(daemon.get("/models/3")["fit"]["terms"], file["fit"]["terms"]);
 }
+
+/// All that the contract says of an effect, and how its residual looks.
+#[test]
+fn an_effect_tells_all_of_itself() {
+    let said = done(Path::new("."), &["effects", "load_linear"]);
+    for words in [
+        "τ",
+        "  needs link_torque_nm, beside what every friction run has (time_s, ",
+        "source: ",
+        "it looks like this: ",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let said = done(Path::new("."), &["effects", "coulomb"]);
+    assert!(said.contains("  needs what every friction run has (time_s, "), "{said}");
+}
