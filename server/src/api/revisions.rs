@@ -3,7 +3,7 @@
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::{Problem, Refusals};
 use crate::lab::{Caller, Lab};
-use crate::view::{Comparison, Evaluation, Model, ModelImport, NewEvaluation, Worth};
+use crate::view::{Comparison, Evaluation, ImportedModel, ModelImport, NewEvaluation, Worth};
 use axum::Extension;
 use axum::extract::State;
 use axum::http::header;
@@ -115,11 +115,11 @@ pub async fn export(
 
 /// Keeps an exported model as a version of a run
 #[utoipa::path(post, path = "/models/import", operation_id = "import_model", tag = "models", request_body = ModelImport,
-    responses((status = 201, description = "The version", body = Model), Refusals))]
+    responses((status = 201, description = "The version", body = ImportedModel), Refusals))]
 pub async fn import(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
     Json(import): Json<ModelImport>,
-) -> Created<Model> {
+) -> Created<ImportedModel> {
     created(lab.import_model(import, &caller.name).await?)
 }

@@ -31,22 +31,24 @@ pub fn model(arguments: &Model) -> Done {
             let file = reread(&ModelFile::new(fit.clone()))?;
             let import = view::ModelImport { run: *run, model: file };
             let refused = |exit: Exit| Exit { said: format!("{}: {}", model.display(), exit.said), ..exit };
-            let (version, page) = match transfer::open(&runtime, store, false)? {
+            let (imported, page) = match transfer::open(&runtime, store, false)? {
                 Way::Folder(lab) => {
                     (runtime.block_on(lab.import_model(import, LOCAL)).map_err(|fault| refused(fault.into()))?, None)
                 }
                 Way::Daemon(client) => {
-                    let version: view::Model = client.post("/models/import", &import).map_err(refused)?;
-                    let page = client.page(&format!("/workbench/{run}?model={}", version.id));
-                    (version, Some(page))
+                    let imported: view::ImportedModel = client.post("/models/import", &import).map_err(refused)?;
+                    let page = client.page(&format!("/workbench/{run}?model={}", imported.model.id));
+                    (imported, Some(page))
                 }
             };
             if *json {
-                return json_out(&version);
+                return json_out(&imported);
             }
+            let version = &imported.model;
             let figure = |rms: f64| words::figure(rms, &fit.unit);
             println!("model {} of run {run}: {}", version.id, version.effects.join(" + "));
             println!("error {} on this run; {} where it was fitted", figure(version.rms), figure(fit.validation_rms));
+            imported.notes.iter().for_each(|note| println!("note      {note}"));
             if let Some(page) = page {
                 println!("{page}");
             }

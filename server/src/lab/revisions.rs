@@ -3,7 +3,7 @@
 use super::models::blocking;
 use super::{Answer, Lab, LabError, convert, reread};
 use crate::store::{NewModel, Subject};
-use crate::view::{Comparison, Evaluation, LiveMessage, Model, ModelImport, Worth, finite};
+use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite};
 use jointbench_model::transfer::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options};
 
@@ -94,7 +94,7 @@ impl Lab {
     }
 
     /// Keeps an exported model as a version of a run. Its numbers stay as they are; its errors are those on the run.
-    pub async fn import_model(&self, import: ModelImport, by: &str) -> Answer<Model> {
+    pub async fn import_model(&self, import: ModelImport, by: &str) -> Answer<ImportedModel> {
         let file: ModelFile = serde_json::from_value(import.model.into())
             .map_err(|fault| LabError::Invalid(format!("this is no exported model: {fault}")))?;
         let fit = file.check()?;
@@ -133,7 +133,7 @@ impl Lab {
         let record = self.inner.store.save_model(&new).await?;
         tracing::info!(run.id = import.run, model.id = record.id, "model imported");
         self.hub().tell(LiveMessage::Model { run: import.run, model: record.id });
-        convert::model(record)
+        Ok(ImportedModel { model: convert::model(record)?, notes: held.notes })
     }
 
     async fn fit(&self, model: i64) -> Answer<Fit> {

@@ -1,6 +1,6 @@
 //! Users' effects, and models beside each other and on their way out and in.
 
-use super::model::{Effect, FittedParameter, ResidualKind};
+use super::model::{Effect, FittedParameter, Model, ResidualKind};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
@@ -195,6 +195,16 @@ pub struct Wider {
     pub second: bool,
     pub times: f64,
     pub why: String,
+}
+
+/// A version that came in, and what its errors on the run do not say by themselves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportedModel {
+    #[serde(flatten)]
+    pub model: Model,
+    /// As an evaluation tells it: columns that are missing, facts that differ from those of the fit, signals that leave its
+    /// ranges.
+    pub notes: Vec<String>,
 }
 
 /// An exported model that comes in as a version of a run.

@@ -159,21 +159,29 @@ fn a_model_that_went_out_comes_into_the_store_again() {
         serde_json::from_str(&std::fs::read_to_string(folder.path().join("new.json")).expect("a model")).expect("JSON");
     assert_eq!((&kept["id"], &kept["fit"]["terms"]), (&Value::from(2), &file["fit"]["terms"]), "unchanged");
 
+    let geared = META.replace("\"gear_ratio\": 50", "\"gear_ratio\": 40");
+    std::fs::write(folder.path().join("geared.json"), geared).expect("facts");
+    done(folder.path(), &["import", "run.csv", "--meta", "geared.json"]);
+    let told = done(folder.path(), &["model", "import", "new.json", "--run", "2"]);
+    let note = "note      gear_ratio is 40 in the facts of this run and 50 in those of the fitted one";
+    assert!(told.contains(note), "{told}");
+    assert!(done(folder.path(), &["model", "evaluate", "new.json", "run.csv", "--meta", "geared.json"]).contains(note));
+
     let brake = "time_s,position_rad,brake_current_a,brake_torque_nm\n0,0,0,0\n0.1,0.1,0.1,0.2\n";
     std::fs::create_dir(folder.path().join("brake")).expect("a folder");
     std::fs::write(folder.path().join("brake/run.csv"), brake).expect("a table");
     std::fs::write(folder.path().join("brake/meta.json"), r#"{"kind": "brake"}"#).expect("facts");
     done(folder.path(), &["import", "brake/run.csv"]);
-    let said = refused(&["model", "import", "new.json", "--run", "2"]);
-    assert!(said.contains("this is a friction model, and run 2 is of the kind brake: choose a run"), "{said}");
+    let said = refused(&["model", "import", "new.json", "--run", "3"]);
+    assert!(said.contains("this is a friction model, and run 3 is of the kind brake: choose a run"), "{said}");
     std::fs::write(folder.path().join("joint.h"), "#ifndef JOINT_H").expect("a header");
     let said = refused(&["model", "import", "joint.h", "--run", "1"]);
     assert!(said.contains("only JSON is: what `jointbench fit --out`"), "{said}");
 
     let daemon = Daemon::serve(&folder.path().join("jointbench-data"), Path::new("joint-b-mock"));
     let told = done(folder.path(), &["model", "import", "new.json", "--run", "1", "--daemon", &daemon.base]);
-    assert!(told.contains("model 3 of run 1") && told.contains("/workbench/1?model=3"), "{told}");
-    assert_eq!(daemon.get("/models/3")["fit"]["terms"], file["fit"]["terms"]);
+    assert!(told.contains("model 4 of run 1") && told.contains("/workbench/1?model=4"), "{told}");
+    assert_eq!(daemon.get("/models/4")["fit"]["terms"], file["fit"]["terms"]);
 }
 
 /// All that the contract says of an effect, and how its residual looks.
