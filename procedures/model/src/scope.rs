@@ -119,5 +119,5 @@ fn noise(view: &View) -> Option<f64> {
     let smooth = view.samples.find(Signal::Load)?;
     let off = view.felt.as_ref()?.iter().zip(smooth).map(|(felt, smooth)| felt - smooth).filter(|off| *off != 0.0);
     let (count, square) = off.fold((0, 0.0), |(n, sum), off| (n + 1, sum + off * off));
-    (count > 0).then(|| (square / f64::from(count)).sqrt())
+    Some((square / f64::from(count.max(1))).sqrt())
 }

@@ -7,6 +7,8 @@ use crate::view::{Signal, Signals};
 use jointbench_instrument::Kind;
 use std::f64::consts::TAU;
 
+/// More than a plane nobody reads by hand, and few controllers interpolate.
+pub const MOST_AXES: usize = 2;
 /// Points of an axis that begins where the data begins.
 const EVEN: usize = 21;
 /// Points of each direction on a speed axis: a tenth of a decade apart over three decades.
@@ -43,7 +45,7 @@ pub fn cell(points: &[f64], value: f64) -> (usize, f64) {
     (cell, if to > from { ((value - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 })
 }
 
-/// The first two signals in the order in which a controller needs them.
+/// The first signals in the order in which a controller needs them.
 pub fn axes(kind: Kind, signals: &[NamedSignal], scope: &Scope, parts: &Parts) -> Vec<Axis> {
     let order: &[Signal] = match kind {
         Kind::Friction => &[Signal::Velocity, Signal::Load, Signal::Temperature, Signal::Link, Signal::Position],
@@ -61,7 +63,7 @@ pub fn axes(kind: Kind, signals: &[NamedSignal], scope: &Scope, parts: &Parts) -
         let range = scope.signals.iter().find(|r| r.name == signal.name)?;
         Some(Axis { points: points(signal.signal, range, parts), signal })
     };
-    order.filter_map(axis).take(2).collect()
+    order.filter_map(axis).take(MOST_AXES).collect()
 }
 
 fn points(signal: Signal, range: &SignalRange, parts: &Parts) -> Vec<f64> {

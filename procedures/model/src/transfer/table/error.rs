@@ -5,6 +5,7 @@ use crate::ModelError;
 use crate::prepare::Problem;
 use crate::report::Fit;
 use crate::view::Signals;
+use std::ops::Range;
 
 /// Off what it is a table of, in the middle between neighbouring points: rms and at most. `None` where it has no axis.
 pub fn between(layout: &Layout, values: &[f64]) -> Result<Option<[f64; 2]>, ModelError> {
@@ -17,7 +18,7 @@ pub fn between(layout: &Layout, values: &[f64]) -> Result<Option<[f64; 2]>, Mode
         });
         let truth = layout.predict(&middles)?;
         for (row, truth) in middles.iter().zip(truth) {
-            let off = (layout.interpolate(values, row) - truth).abs();
+            let off = (layout.interpolate(values, |axis| row[axis]) - truth).abs();
             (square, most, count) = (square + off * off, most.max(off), count + 1);
         }
     }
@@ -29,15 +30,13 @@ pub fn on_run(fit: &Fit, problem: &Problem) -> Result<Option<f64>, ModelError> {
     let layout = Layout::of(fit)?;
     let values = layout.predict(&layout.grid())?;
     let view = &problem.view;
-    let axes = |signals: &'_ Signals| -> Option<Vec<Vec<f64>>> {
-        layout.axes.iter().map(|axis| Some(signals.find(axis.signal.signal)?.to_vec())).collect()
-    };
-    let at = |columns: &[Vec<f64>], i: usize| {
-        layout.interpolate(&values, &columns.iter().map(|column| column[i]).collect::<Vec<f64>>())
-    };
-    let column: Vec<f64> = match (axes(&view.samples), axes(&view.points)) {
+    fn axes<'s>(layout: &Layout, signals: &'s Signals) -> Option<Vec<&'s [f64]>> {
+        layout.axes.iter().map(|axis| signals.find(axis.signal.signal)).collect()
+    }
+    let at = |columns: &[&[f64]], i: usize| layout.interpolate(&values, |axis| columns[axis][i]);
+    let column: Vec<f64> = match (axes(&layout, &view.samples), axes(&layout, &view.points)) {
         (Some(samples), _) if !view.chunks.is_empty() => {
-            let mean = |c: &std::ops::Range<usize>| c.clone().map(|i| at(&samples, i)).sum::<f64>() / c.len() as f64;
+            let mean = |c: &Range<usize>| c.clone().map(|i| at(&samples, i)).sum::<f64>() / c.len() as f64;
             view.chunks.iter().map(mean).collect()
         }
         (_, Some(points)) => (0..view.len()).map(|i| at(&points, i)).collect(),

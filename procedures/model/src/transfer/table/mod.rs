@@ -14,7 +14,7 @@ use crate::formula::NamedSignal;
 use crate::own::signals_with;
 use crate::report::{Fit, MeanCurve, Scope};
 use crate::view::Signal;
-use axes::{Axis, axes};
+use axes::{Axis, MOST_AXES, axes};
 use std::fmt::Write;
 
 const ANGLES: [Signal; 2] = [Signal::Position, Signal::Link];
@@ -102,18 +102,20 @@ impl<'f> Layout<'f> {
         Ok(values)
     }
 
-    /// What a reader takes from the values of the grid.
-    fn interpolate(&self, values: &[f64], at: &[f64]) -> f64 {
-        let mut corners = vec![(0, 1.0)];
-        for (axis, x) in self.axes.iter().zip(at) {
-            let (cell, share) = axis.place(*x);
-            let next = |(corner, weight): (usize, f64)| {
+    /// What a reader takes from the values of the grid. Asked for every sample of a run: nothing is allocated.
+    fn interpolate(&self, values: &[f64], at: impl Fn(usize) -> f64) -> f64 {
+        let mut corners = [(0, 0.0); 1 << MOST_AXES];
+        corners[0].1 = 1.0;
+        for (number, axis) in self.axes.iter().enumerate() {
+            let (cell, share) = axis.place(at(number));
+            for place in 0..1 << number {
+                let (corner, weight) = corners[place];
                 let corner = corner * axis.points.len() + cell;
-                [(corner, weight * (1.0 - share)), (corner + 1, weight * share)]
-            };
-            corners = corners.into_iter().flat_map(next).collect();
+                corners[place] = (corner, weight * (1.0 - share));
+                corners[place + (1 << number)] = (corner + 1, weight * share);
+            }
         }
-        corners.into_iter().map(|(corner, weight)| weight * values[corner]).sum()
+        corners[..1 << self.axes.len()].iter().map(|(corner, weight)| weight * values[*corner]).sum()
     }
 
     /// What the table is worth, a line each.
