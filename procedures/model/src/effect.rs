@@ -199,6 +199,11 @@ pub trait Effect: Sync {
         None
     }
 
+    /// What there would have to be to see, or why there is nothing.
+    fn unseen(&self) -> &str {
+        self.info().looks
+    }
+
     /// Why this data cannot show the effect: a needed signal is missing or never changes.
     fn hidden(&self, view: &View) -> Option<String> {
         let info = self.info();
@@ -223,7 +228,7 @@ pub trait Effect: Sync {
         if self.stage() == Stage::Memory && view.constants.turns_left_out {
             return Some("no contact shows that bends before it slips: rests and reversals are left out".into());
         }
-        if self.forms(view).is_empty() { Some(format!("it would not show: {}", info.looks)) } else { None }
+        if self.forms(view).is_empty() { Some(format!("it would not show: {}", self.unseen())) } else { None }
     }
 }
 

@@ -168,6 +168,9 @@ fn every_effect_tells_all_of_itself() {
         for told in ["id", "sentence", "formula", "source", "looks"] {
             assert!(effect[told].as_str().is_some_and(|words| !words.is_empty()), "{told}: {effect}");
         }
+        if effect["id"] == "rub" {
+            assert_eq!(effect["looks"], "what is left follows its formula over velocity and load");
+        }
         assert!(effect["needs"].is_array() && effect["parameters"].is_array(), "{effect}");
     }
 }

@@ -10,6 +10,7 @@ use crate::ModelError;
 use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Shape, Stage};
 use crate::formula::{Formula, FormulaFault, Mistake, NamedSignal, signals};
 use crate::view::{Signal, View};
+use crate::words::list;
 use jointbench_instrument::spelling::instead;
 use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,7 @@ pub struct OwnEffect {
     needs: Vec<&'static str>,
     /// The user's, or one that names the formula.
     sentence: String,
+    looks: String,
 }
 
 impl OwnEffect {
@@ -141,7 +143,7 @@ impl Effect for OwnEffect {
             sentence: &self.sentence,
             formula: &self.definition.formula,
             source: "written by a user",
-            looks: "its formula is zero or not finite on this data",
+            looks: &self.looks,
             parameters: &self.parameters,
             needs: &self.needs,
         }
@@ -156,6 +158,10 @@ impl Effect for OwnEffect {
             return Vec::new();
         }
         vec![Form { grid, ..self.form(view) }]
+    }
+
+    fn unseen(&self) -> &str {
+        "its formula is zero or not finite on this data"
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
@@ -196,7 +202,12 @@ impl TryFrom<Definition> for OwnEffect {
             "" => format!("What a user suspects: {}.", definition.formula.trim()),
             written => written.to_owned(),
         };
-        Ok(Self { definition, formula, parameters, needs, sentence })
+        let over: Vec<&str> = formula.signals.iter().map(|s| s.name).collect();
+        let looks = match over.as_slice() {
+            [] => "what is left is the same everywhere".to_owned(),
+            over => format!("what is left follows its formula over {}", list(over)),
+        };
+        Ok(Self { definition, formula, parameters, needs, sentence, looks })
     }
 }
 
