@@ -49,11 +49,7 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> No
                 (_, true) => "found by the period of the motion",
                 (_, false) => "legs that run alike",
             },
-            if is_at_other_angles(problem) {
-                "; at other angles, so that what depends on the angle counts as noise"
-            } else {
-                ""
-            }
+            if is_at_other_angles(problem) { ", at other angles" } else { "" }
         ),
         repeatable_share: Some(all.share().max(0.0)),
         repeatable_ci95: Some(share_interval(&all, &of_piece)),

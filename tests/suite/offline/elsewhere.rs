@@ -145,7 +145,7 @@ fn the_library_is_listed() {
 fn advice_names_the_axis_of_the_summary_as_a_formula_does() {
     let folder = tempfile::tempdir().expect("a folder");
     write_run(folder.path());
-    // A bump over a stretch of the angle is no effect of the library.
+    // A bump over the speed is no effect of the library, and the rub is over speed and load.
     let table = std::fs::read_to_string(folder.path().join("run.csv")).expect("a table");
     let bumped = table.lines().enumerate().map(|(i, line)| {
         let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
@@ -160,8 +160,8 @@ fn advice_names_the_axis_of_the_summary_as_a_formula_does() {
     std::fs::write(folder.path().join("run.csv"), bumped.join("\n")).expect("a table");
     let told = stdout(&run_in(folder.path(), &["discover", "run.csv", "--max-effects", "0"]));
     assert!(told.contains("no more effects were asked for"), "{told}");
-    assert!(told.contains("it shows most over motor velocity, a function"), "{told}");
-    assert!(told.contains("as a formula of velocity with --own"), "{told}");
+    assert!(told.contains("it shows most over motor velocity and link torque, a function"), "{told}");
+    assert!(told.contains("as a formula of velocity and load with --own"), "{told}");
     let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv"]));
     assert!(told.contains("is missing") && !told.contains("as a formula of"), "{told}");
 }

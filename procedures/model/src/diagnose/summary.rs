@@ -13,7 +13,7 @@ use crate::{Fit, Options};
 const LEAST_SHOWN: f64 = 0.02;
 
 /// Two axes are named where they show so much more than one alone.
-const CLEARLY_MORE: f64 = 1.05;
+const CLEARLY_MORE: f64 = 1.1;
 
 /// Less than this share of the squared error in common is nothing in common.
 const NOTHING_IN_COMMON: f64 = 0.01;

@@ -2,9 +2,6 @@
 
 use jointbench_model::{Invisible, LeftOut, Silent, words};
 
-/// The smallest of what would have been found are named, the rest counted.
-const NAMED_SILENT: usize = 4;
-
 pub fn print(silent: &[Silent], hidden: &[Invisible], left_out: &[LeftOut], unit: &str) {
     if let Some(said) = silences(silent, unit) {
         println!("{said}");
@@ -32,13 +29,10 @@ fn alike(hidden: &[Invisible]) -> Vec<(&str, Vec<&str>)> {
 fn silences(silent: &[Silent], unit: &str) -> Option<String> {
     let mut silent: Vec<&Silent> = silent.iter().collect();
     silent.sort_by(|a, b| a.minimum_detectable_rms.total_cmp(&b.minimum_detectable_rms));
-    let (named, rest) = silent.split_at(silent.len().min(NAMED_SILENT));
     let within = |s: &Silent| s.sought.as_ref().map_or_else(String::new, |sought| format!(" ({sought})"));
-    let named =
-        named.iter().map(|s| format!("{} {}{}", s.effect, words::figure(s.minimum_detectable_rms, unit), within(s)));
-    let named: Vec<String> = named.collect();
-    let rest = if rest.is_empty() { String::new() } else { format!(", and {} more from above that", rest.len()) };
-    (!named.is_empty()).then(|| format!("would have been found from (rms): {}{rest}", named.join(", ")))
+    let sized = |s: &&Silent| format!("{} {}{}", s.effect, words::figure(s.minimum_detectable_rms, unit), within(s));
+    let sized: Vec<String> = silent.iter().map(sized).collect();
+    (!sized.is_empty()).then(|| format!("would have been found from (rms): {}", sized.join(", ")))
 }
 
 #[cfg(test)]
@@ -46,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_smallest_are_named_and_the_rest_counted() {
+    fn each_is_named_with_its_size_the_smallest_first() {
         let silent = |effect: &str, nm: f64| Silent { effect: effect.into(), minimum_detectable_rms: nm, sought: None };
         let mut all: Vec<Silent> = [5e-3, 2e-3, 4e-3, 3e-3].iter().map(|nm| silent("gravity", *nm)).collect();
         all.push(Silent { sought: Some("1 to 60 waves a turn".into()), ..silent("cogging", 1.2e-4) });
@@ -57,7 +51,7 @@ mod tests {
             ),
             "{said}"
         );
-        assert!(said.ends_with(", and 1 more from above that"), "{said}");
+        assert!(said.ends_with(", gravity 4.00 mNm, gravity 5.00 mNm"), "{said}");
         assert_eq!(silences(&[], "Nm"), None);
     }
 }
