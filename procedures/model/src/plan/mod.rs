@@ -164,20 +164,25 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
             spec(&effects)
         };
         // One that no run tells from it keeps no other from being told.
-        let (mut apart, mut alike) = (Vec::new(), Vec::new());
+        let (mut apart, mut specs, mut alike, mut first) = (Vec::new(), Vec::new(), Vec::new(), None);
         for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
-            let is_told = decided(&[instead(rival)?])?.is_some();
-            if is_told { &mut apart } else { &mut alike }.push(rival.clone());
-        }
-        let all = apart.iter().map(instead).collect::<Result<Vec<_>, _>>()?;
-        let vain = (!alike.is_empty()).then(|| format!("{effect} from {}", list(&alike)));
-        let bid = match decided(&all)? {
-            None if !apart.is_empty() => {
-                apart.truncate(1);
-                decided(&all[..1])?
+            let other = [instead(rival)?];
+            match decided(&other)? {
+                Some(bid) => {
+                    first.get_or_insert(bid);
+                    apart.push(rival.clone());
+                    specs.extend(other);
+                }
+                None => alike.push(rival.clone()),
             }
-            bid => bid,
-        };
+        }
+        let vain = (!alike.is_empty()).then(|| format!("{effect} from {}", list(&alike)));
+        // One run for all of them, or one for the first.
+        let together = if apart.len() > 1 { decided(&specs)? } else { None };
+        if together.is_none() {
+            apart.truncate(1);
+        }
+        let bid = together.or(first);
         if let Some(bid) = bid {
             let tells = format!("{effect} from {}", list(&apart));
             let mut next = told(bid, &tells, std::iter::once(effect).chain(&apart));

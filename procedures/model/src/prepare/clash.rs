@@ -22,7 +22,7 @@ const SAME: f64 = 0.9;
 /// Share of the work that is done against the motion, from which on the motion is not the motor's.
 const DRIVEN: f64 = 0.5;
 
-/// Each in a sentence.
+/// What contradicts, each in a sentence.
 #[derive(Debug, Clone, Default)]
 pub struct Clashes {
     /// Whatever is fitted to these columns means nothing: no effect is named.
