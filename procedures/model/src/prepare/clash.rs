@@ -40,6 +40,18 @@ impl Clashes {
     }
 }
 
+/// Two columns that contradict each other.
+struct Clash {
+    is_void: bool,
+    said: String,
+}
+
+impl Clash {
+    fn void(said: String) -> Self {
+        Self { is_void: true, said }
+    }
+}
+
 pub fn clashes(run: &RunTable) -> Clashes {
     let gear_ratio = run.meta().gear_ratio.filter(|_| run.meta().motion != Motion::Linear);
     let gear = gear_ratio.unwrap_or(f64::NAN);
@@ -57,10 +69,11 @@ pub fn clashes(run: &RunTable) -> Clashes {
     };
     let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
     let torques = (run.kind() == Kind::Friction).then(|| super::carried::clash(run)).flatten();
-    let gears = pairs.iter().filter_map(|(one, other, factor)| other_gear(run, one, other, *factor));
+    let (void, gears): (Vec<Clash>, Vec<Clash>) = motions.partition(|clash| clash.is_void);
+    let said = |clashes: Vec<Clash>| clashes.into_iter().map(|clash| clash.said);
     Clashes {
-        void: motions.chain(torques).chain(driven(run)).chain(noise(run)).chain(too_fast(run)).collect(),
-        others: gears
+        void: said(void).chain(torques).chain(driven(run)).chain(noise(run)).chain(too_fast(run)).collect(),
+        others: said(gears)
             .chain(dead_load(run))
             .chain(super::reach::beyond(run))
             .chain(super::sensors::failed(run))
@@ -99,20 +112,24 @@ fn driven(run: &RunTable) -> Option<String> {
 }
 
 /// `factor · one` should move as `other` does.
-fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<String> {
+fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<Clash> {
     let (time_s, a, b) = (run.column("time_s")?, run.column(one)?, run.column(other)?);
     let is_speed = one.ends_with("_rad_s");
     if !is_speed && run.kind() != Kind::Friction {
         let one_rests = rests(one, a, other, b, factor);
         if let Some(told) = one_rests.or_else(|| rests(other, b, one, a, 1.0 / factor)) {
-            return Some(told);
+            return Some(Clash::void(told));
         }
     }
-    let times = times(&ways(time_s, a, b, is_speed, factor))?;
-    (!(1.0 / CLASH..=CLASH).contains(&times)).then(|| {
-        let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
-        format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign")
-    })
+    let ways = ways(time_s, a, b, is_speed, factor);
+    let times = alike(&ways).or_else(|| mostly(&ways))?;
+    if (1.0 / CLASH..=CLASH).contains(&times) {
+        let is_geared = !is_speed && factor != 1.0;
+        return is_geared.then(|| other_gear(&ways, factor)).flatten().map(|said| Clash { is_void: false, said });
+    }
+    let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
+    let said = format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign");
+    Some(Clash::void(said))
 }
 
 /// How far `factor · one` and `other` go in each piece of a run.
@@ -132,18 +149,8 @@ fn ways(time_s: &[f64], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> Ve
         .collect()
 }
 
-/// How many times as far the first goes, where they go alike at all.
-fn times(ways: &[(f64, f64)]) -> Option<f64> {
-    alike(ways).or_else(|| mostly(ways))
-}
-
 /// A gear ratio that is a tooth or two beside the right one: what is left of the load with it looks like an effect.
-fn other_gear(run: &RunTable, one: &str, other: &str, ratio: f64) -> Option<String> {
-    if one.ends_with("_rad_s") || ratio == 1.0 {
-        return None;
-    }
-    let ways = ways(run.column("time_s")?, run.column(one)?, run.column(other)?, false, ratio);
-    times(&ways).filter(|times| (1.0 / CLASH..=CLASH).contains(times))?;
+fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
     let fast = 0.5 * ways.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
     // A joint winds up where it turns back.
     let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
