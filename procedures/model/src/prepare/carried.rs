@@ -1,6 +1,6 @@
 //! A load that the motor does not carry: one of the two torques has another unit or sign.
 
-use super::clash::pieces;
+use super::clash;
 use crate::linear::{Basis, dot};
 use jointbench_instrument::RunTable;
 use std::ops::Range;
@@ -17,12 +17,13 @@ const LOADED: f64 = 0.25;
 const STEADY: f64 = 0.5;
 
 /// What the load asks of the motor beside friction and inertia should be the link's torque over the gear ratio.
-pub fn clash(run: &RunTable) -> Option<String> {
+pub fn clash(run: &RunTable, pieces: &[clash::Piece]) -> Option<String> {
     let column = |name: &str| run.column(name);
-    let (time_s, position) = (column("time_s")?, column("motor_position_rad")?);
-    let (current, load) = (column("motor_current_a")?, column("link_torque_nm")?);
+    let (position, current) = (column("motor_position_rad")?, column("motor_current_a")?);
+    let load = column("link_torque_nm")?;
     let per_link = run.meta().torque_constant_nm_per_a? * run.meta().gear_ratio.unwrap_or(1.0);
-    let (ranges, velocity): (Vec<_>, Vec<f64>) = pieces(time_s)
+    let (ranges, velocity): (Vec<_>, Vec<f64>) = pieces
+        .iter()
         .map(|(piece, passed_s)| (piece.clone(), (position[piece.end] - position[piece.start]) / passed_s))
         .unzip();
     let last = velocity.len().saturating_sub(1);

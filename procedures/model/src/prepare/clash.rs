@@ -67,12 +67,18 @@ pub fn clashes(run: &RunTable) -> Clashes {
         }
         Kind::Brake => &[("velocity_rad_s", "position_rad", 1.0)],
     };
-    let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, one, other, *factor));
-    let torques = (run.kind() == Kind::Friction).then(|| super::carried::clash(run)).flatten();
+    let pieces = pieces(run.column("time_s").unwrap_or_default());
+    let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, &pieces, one, other, *factor));
+    let torques = (run.kind() == Kind::Friction).then(|| super::carried::clash(run, &pieces)).flatten();
     let (void, gears): (Vec<Clash>, Vec<Clash>) = motions.partition(|clash| clash.is_void);
     let said = |clashes: Vec<Clash>| clashes.into_iter().map(|clash| clash.said);
     Clashes {
-        void: said(void).chain(torques).chain(driven(run)).chain(noise(run)).chain(too_fast(run)).collect(),
+        void: said(void)
+            .chain(torques)
+            .chain(driven(run, &pieces))
+            .chain(noise(run, &pieces))
+            .chain(too_fast(run))
+            .collect(),
         others: said(gears)
             .chain(dead_load(run))
             .chain(super::reach::beyond(run))
@@ -81,23 +87,26 @@ pub fn clashes(run: &RunTable) -> Clashes {
     }
 }
 
-/// Pieces of the run that do not reach over the end of a recording, with the time that passes in each.
-pub(super) fn pieces(time_s: &[f64]) -> impl Iterator<Item = (Range<usize>, f64)> {
+/// A piece of the run that does not reach over the end of a recording, and the time that passes in it [s].
+pub(super) type Piece = (Range<usize>, f64);
+
+fn pieces(time_s: &[f64]) -> Vec<Piece> {
     let step_s = super::sample_s(time_s);
     let n = ((PIECE_S / step_s) as usize).max(1);
-    (0..time_s.len().saturating_sub(n)).step_by(n).filter_map(move |start| {
+    let piece = |start| {
         let passed_s = time_s[start + n] - time_s[start];
         (passed_s > 0.0 && passed_s < 2.0 * n as f64 * step_s).then_some((start..start + n, passed_s))
-    })
+    };
+    (0..time_s.len().saturating_sub(n)).step_by(n).filter_map(piece).collect()
 }
 
 /// Without a load that was measured nothing turns a motor both ways: what brakes it in both has another sign.
-fn driven(run: &RunTable) -> Option<String> {
+fn driven(run: &RunTable, pieces: &[Piece]) -> Option<String> {
     let is_alone = run.kind() == Kind::Friction && run.column("link_torque_nm").is_none();
     let column = |name: &str| run.column(name).filter(|_| is_alone);
-    let (time_s, position, current) = (column("time_s")?, column("motor_position_rad")?, column("motor_current_a")?);
+    let (position, current) = (column("motor_position_rad")?, column("motor_current_a")?);
     let (mut work, mut moved) = ([0.0; 2], [0.0; 2]);
-    for (piece, _) in pieces(time_s) {
+    for (piece, _) in pieces {
         let way = position[piece.end] - position[piece.start];
         let done = way * current[piece.clone()].iter().sum::<f64>() / piece.len() as f64;
         work[usize::from(way < 0.0)] += done;
@@ -112,8 +121,8 @@ fn driven(run: &RunTable) -> Option<String> {
 }
 
 /// `factor · one` should move as `other` does.
-fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<Clash> {
-    let (time_s, a, b) = (run.column("time_s")?, run.column(one)?, run.column(other)?);
+fn clash(run: &RunTable, pieces: &[Piece], one: &str, other: &str, factor: f64) -> Option<Clash> {
+    let (a, b) = (run.column(one)?, run.column(other)?);
     let is_speed = one.ends_with("_rad_s");
     if !is_speed && run.kind() != Kind::Friction {
         let one_rests = rests(one, a, other, b, factor);
@@ -121,7 +130,7 @@ fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<Clash> {
             return Some(Clash::void(told));
         }
     }
-    let ways = ways(time_s, a, b, is_speed, factor);
+    let ways = ways(pieces, a, b, is_speed, factor);
     let times = alike(&ways).or_else(|| mostly(&ways))?;
     if (1.0 / CLASH..=CLASH).contains(&times) {
         let is_geared = !is_speed && factor != 1.0;
@@ -133,9 +142,10 @@ fn clash(run: &RunTable, one: &str, other: &str, factor: f64) -> Option<Clash> {
 }
 
 /// How far `factor · one` and `other` go in each piece of a run.
-fn ways(time_s: &[f64], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> Vec<(f64, f64)> {
-    pieces(time_s)
-        .map(|(Range { start, end }, passed_s)| {
+fn ways(pieces: &[Piece], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> Vec<(f64, f64)> {
+    pieces
+        .iter()
+        .map(|&(Range { start, end }, passed_s)| {
             let way = match is_speed {
                 // By the trapezoidal rule.
                 true => {
@@ -215,7 +225,7 @@ fn dead_load(run: &RunTable) -> Option<String> {
 
 /// A current of which neither a sample nor a piece of the run tells anything of the next: an open input. Where it holds still
 /// and only its noise is left, it has a mean.
-fn noise(run: &RunTable) -> Option<String> {
+fn noise(run: &RunTable, pieces: &[Piece]) -> Option<String> {
     const LEAST_PIECES: usize = 40;
     /// Noise comes this near to the noise before it, in standard deviations.
     const LIKE_CHANCE: f64 = 3.0;
@@ -224,7 +234,7 @@ fn noise(run: &RunTable) -> Option<String> {
         Kind::Brake => "brake_current_a",
         Kind::Encoder | Kind::Stiffness => return None,
     };
-    let (time_s, current) = (run.column("time_s")?, run.column(column)?);
+    let current = run.column(column)?;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let variance = |values: &[f64]| {
         let middle = mean(values);
@@ -235,7 +245,7 @@ fn noise(run: &RunTable) -> Option<String> {
         let next: f64 = values.windows(2).map(|i| (i[0] - middle) * (i[1] - middle)).sum();
         next.abs() < LIKE_CHANCE * variance(values) * (values.len() as f64).sqrt()
     };
-    let means: Vec<f64> = pieces(time_s).map(|(piece, _)| mean(&current[piece])).collect();
+    let means: Vec<f64> = pieces.iter().map(|(piece, _)| mean(&current[piece.clone()])).collect();
     let swings = variance(current) > mean(current).powi(2);
     (means.len() >= LEAST_PIECES && swings && is_white(current) && is_white(&means)).then(|| {
         format!(

@@ -18,6 +18,8 @@ const CLIPPED_SHARE: f64 = 0.003;
 const ALONE: f64 = 25.0;
 const ALONE_RANGE: f64 = 0.15;
 const AGREE: f64 = 0.2;
+/// What is usual in a column, so many of its samples tell.
+const TELLING: usize = 10_000;
 /// Where the speed before and after so many samples differs by this share of the largest, a drive pushes: its pulse is no fault.
 const BESIDE: usize = 5;
 const PUSHED: f64 = 0.02;
@@ -93,23 +95,27 @@ pub fn spikes(run: &RunTable) -> Option<String> {
     let (torques, angle) = columns(run.kind());
     let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
     let way = |i: usize, j: usize| angle[j.min(angle.len() - 1)] - angle[i];
-    let fastest = (BESIDE..angle.len()).map(|i| way(i - BESIDE, i).abs()).fold(0.0, f64::max);
-    let is_pushed = |i: usize| {
+    // Where a drive pushes.
+    let is_pushed = |i: usize, fastest: f64| {
         let before = way((i - 1).saturating_sub(BESIDE), i - 1);
         (way(i + 1, i + 1 + BESIDE) - before).abs() > PUSHED * fastest
     };
     torques.iter().chain(&["motor_velocity_rad_s", "velocity_rad_s", "temperature_c"]).find_map(|name| {
         let values = run.column(name)?;
-        let usual = super::median(values.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
-        let (low, high) = middle_of(values);
-        let alone = |i: &usize| {
-            let (before, here, after) = (values[i - 1], values[*i], values[i + 1]);
-            let off = (here - before).abs().min((here - after).abs());
-            let one_side = (here - before) * (here - after) > 0.0;
-            let is_alone = one_side && (after - before).abs() < AGREE * off;
-            is_alone && off > (ALONE * usual).max(ALONE_RANGE * (high - low)) && !is_pushed(*i)
+        let every = values.len().div_ceil(TELLING);
+        let usual = super::median(values.windows(2).step_by(every).map(|pair| (pair[1] - pair[0]).abs()));
+        let (low, high) = middle_of(values.iter().step_by(every).copied().collect());
+        let least = (ALONE * usual).max(ALONE_RANGE * (high - low));
+        let is_alone = |w: &[f64]| {
+            let (before, after) = (w[1] - w[0], w[1] - w[2]);
+            let off = before.abs().min(after.abs());
+            off > least && before * after > 0.0 && (w[2] - w[0]).abs() < AGREE * off
         };
-        let found: Vec<usize> = (1..values.len().saturating_sub(1)).filter(alone).collect();
+        let mut found: Vec<usize> = (1..).zip(values.windows(3)).filter(|(_, w)| is_alone(w)).map(|(i, _)| i).collect();
+        if !found.is_empty() {
+            let fastest = (BESIDE..angle.len()).map(|i| way(i - BESIDE, i).abs()).fold(0.0, f64::max);
+            found.retain(|i| !is_pushed(*i, fastest));
+        }
         let first = *found.first()?;
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
         let samples = if found.len() == 1 { "one sample that stands".to_owned() } else { format!("{} samples that stand", found.len()) };
@@ -123,11 +129,10 @@ pub fn spikes(run: &RunTable) -> Option<String> {
 }
 
 /// Between which nearly all values lie.
-fn middle_of(values: &[f64]) -> (f64, f64) {
-    let mut sorted = values.to_vec();
-    let (low, high) = (sorted.len() / 100, sorted.len() - 1 - sorted.len() / 100);
-    let low = *sorted.select_nth_unstable_by(low, f64::total_cmp).1;
-    let high = *sorted.select_nth_unstable_by(high, f64::total_cmp).1;
+fn middle_of(mut values: Vec<f64>) -> (f64, f64) {
+    let (low, high) = (values.len() / 100, values.len() - 1 - values.len() / 100);
+    let low = *values.select_nth_unstable_by(low, f64::total_cmp).1;
+    let high = *values.select_nth_unstable_by(high, f64::total_cmp).1;
     (low, high)
 }
 
