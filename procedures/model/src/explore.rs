@@ -211,7 +211,8 @@ impl<'p> Exploration<'p> {
     /// noise, whether or not a map shows where it comes from. A floor without an interval is too little known to accuse.
     fn repeats_itself(&self) -> bool {
         let held_out = self.end_held_out_rms;
-        self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE)
+        let surely = self.floor.repeatable_ci95.is_some_and(|[least, _]| least > outside::STRUCTURE_SHARE);
+        self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE) && surely
             || self
                 .floor
                 .rms

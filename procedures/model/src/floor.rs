@@ -3,11 +3,9 @@
 use crate::pieces::pieces;
 use crate::prepare::{Prepared, Problem};
 use crate::report::NoiseFloor;
-use crate::view::Signal;
 use crate::words::{figure, spoken};
 use jointbench_instrument::Kind;
 use statrs::distribution::{ContinuousCDF, StudentsT};
-use std::f64::consts::TAU;
 
 /// An interval that reaches this many times as far tells nothing.
 const WIDEST: f64 = 3.0;
@@ -22,21 +20,16 @@ const FEWEST: usize = 8;
 /// `remembers`.
 pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> NoiseFloor {
     let problem = &prepared.main;
-    let is_equal = |twins: &&(usize, usize)| remembers || !problem.other_pasts.contains(*twins);
-    let twins: Vec<&(usize, usize)> = problem.twins.iter().filter(is_equal).collect();
+    let is_equal = |twins: &(usize, usize)| remembers || !problem.other_pasts.contains(twins);
+    let twins: Vec<(usize, usize)> = problem.twins.iter().copied().filter(is_equal).collect();
     if twins.len() < FEWEST {
         return NoiseFloor { source: unknown(prepared), ..NoiseFloor::default() };
     }
-    let (piece, count) = pieces(problem, 1);
-    let mut of_piece = vec![Pairs::default(); count];
-    let mut all = Pairs::default();
-    for (a, b) in &twins {
-        let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
-        let pair = Pairs { noise: half, common: residual[*a] * residual[*b], count: 1.0 };
-        all.add(&pair, 1.0);
-        [a, b].into_iter().for_each(|row| of_piece[piece[*row]].add(&pair, 1.0));
-    }
-    of_piece.retain(|pairs| pairs.count > 0.0);
+    let (all, of_piece) = Pairs::sums(problem, residual, &twins);
+    // What depends on an angle comes again where that does.
+    let met: Vec<_> = twins.iter().copied().filter(|pair| !problem.other_angles.contains(pair)).collect();
+    let elsewhere = twins.len() - met.len();
+    let (again, again_of) = Pairs::sums(problem, residual, if met.len() < FEWEST { &twins } else { &met });
     NoiseFloor {
         rms: Some((all.noise / all.count).sqrt()),
         ci95: interval(&all, &of_piece),
@@ -49,27 +42,11 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> No
                 (_, true) => "found by the period of the motion",
                 (_, false) => "legs that run alike",
             },
-            if is_at_other_angles(problem) { ", at other angles" } else { "" }
+            if elsewhere > 0 { format!(", {elsewhere} of them at other angles") } else { String::new() }
         ),
-        repeatable_share: Some(all.share().max(0.0)),
-        repeatable_ci95: Some(share_interval(&all, &of_piece)),
+        repeatable_share: Some(again.share().max(0.0)),
+        repeatable_ci95: Some(share_interval(&again, &again_of)),
     }
-}
-
-/// The repeats of a speed begin at other angles of the link: what depends on the angle is not the same in them.
-pub fn is_at_other_angles(problem: &Problem) -> bool {
-    /// Of the RMS difference of two angles that have nothing to do with each other.
-    const SHARE: f64 = 0.2;
-    let Some(link) = problem.view.points.find(Signal::Link).filter(|link| link.len() == problem.rows()) else {
-        return false;
-    };
-    let apart = |(a, b): &(usize, usize)| {
-        let d = link[*a] - link[*b];
-        (d - (d / TAU).round() * TAU).powi(2)
-    };
-    let count = problem.twins.len().max(1) as f64;
-    let square = problem.twins.iter().map(apart).sum::<f64>() / count;
-    problem.settled && !problem.view.constants.slides && square > SHARE * SHARE * TAU * TAU / 12.0
 }
 
 /// Sums over pairs of moments.
@@ -83,6 +60,20 @@ struct Pairs {
 }
 
 impl Pairs {
+    /// Of all pairs, and of those that touch each piece of the run.
+    fn sums(problem: &Problem, residual: &[f64], twins: &[(usize, usize)]) -> (Self, Vec<Self>) {
+        let (piece, count) = pieces(problem, 1);
+        let (mut all, mut of_piece) = (Pairs::default(), vec![Pairs::default(); count]);
+        for (a, b) in twins {
+            let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
+            let pair = Pairs { noise: half, common: residual[*a] * residual[*b], count: 1.0 };
+            all.add(&pair, 1.0);
+            [a, b].into_iter().for_each(|row| of_piece[piece[*row]].add(&pair, 1.0));
+        }
+        of_piece.retain(|pairs| pairs.count > 0.0);
+        (all, of_piece)
+    }
+
     fn add(&mut self, other: &Pairs, times: f64) {
         self.noise += times * other.noise;
         self.common += times * other.common;

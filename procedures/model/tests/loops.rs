@@ -84,6 +84,20 @@ fn the_floor_of_a_brake_holds_no_hysteresis() {
     }
 }
 
+/// Its temperature hardly changes: times the torque, it would be curve and loops.
+#[test]
+fn a_warm_brake_has_its_loops_still() {
+    let run = run(0.03, true);
+    let column = |name| run.column(name).unwrap();
+    let (mut channels, mut columns) = (run.trace().channels().to_vec(), run.trace().columns().to_vec());
+    channels.push(Channel::new("temperature_c"));
+    columns.push(column("time_s").iter().map(|t| 42.0 + 0.2 * (0.05 * t).sin()).collect());
+    let run = RunTable::new(meta(Kind::Brake), Trace::from_columns(channels, columns)).unwrap();
+    let found = end(&run, 4);
+    let added: Vec<&str> = found.steps.iter().filter_map(|step| step.added.as_deref()).collect();
+    assert!(found.fit.effects.len() == 4 && !added.contains(&"temperature_dependence"), "{added:?}: {}", found.summary);
+}
+
 fn drag(run: &RunTable) -> Parameter {
     let spec = ModelSpec::parse(Kind::Brake, "drag,torque_per_current,hysteresis").unwrap();
     let found = fit(run, &spec, &Options::default()).unwrap();

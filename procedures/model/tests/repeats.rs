@@ -75,6 +75,35 @@ fn noise_of_a_torque_sensor_makes_no_other_condition() {
     assert_eq!((found.verdict, &found.undecided), (Verdict::Adequate, &None), "{}", found.summary);
 }
 
+/// Every leg begins where the link chances to be, and a tooth is bad.
+#[test]
+fn repeats_that_begin_at_other_angles_meet_where_they_pass_the_same() {
+    const STEP_S: f64 = 0.004;
+    let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a segment repeat";
+    let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    let noise = Normal::new(0.0, 1.0).unwrap();
+    let gear = meta(Kind::Friction).gear_ratio.unwrap();
+    let mut i = 0;
+    for leg in 0..80 {
+        let sign = if leg % 2 == 0 { 1.0 } else { -1.0 };
+        let velocity = sign * gear * 0.25 * 1.35f64.powi(leg % 20 / 2 * 7 % 10);
+        let mut position = gear * 3.9 * f64::from(leg);
+        for _ in 0..300 {
+            let bad = (-(((position / gear).rem_euclid(std::f64::consts::TAU) - 2.0) / 0.15).powi(2)).exp();
+            let torque = (0.03 + 6e-3 * bad) * sign + 1.5e-4 * velocity + 1e-3 * noise.sample(&mut random);
+            let (segment, repeat) = (f64::from(leg), f64::from(leg / 20));
+            trace.push_row(&[STEP_S * f64::from(i), position, velocity, torque / 0.08, segment, repeat]);
+            (i, position) = (i + 1, position + STEP_S * velocity);
+        }
+    }
+    let run = RunTable::new(meta(Kind::Friction), trace).unwrap();
+    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
+    assert!(found.noise_floor.source.contains("at other angles"), "{:?}", found.noise_floor);
+    assert!(found.noise_floor.repeatable_share.is_some_and(|share| share > 0.5), "{:?}", found.noise_floor);
+}
+
 /// An industrial robot whose three repeats are three motions.
 #[test]
 fn kr300_repeats_are_different_motions() {

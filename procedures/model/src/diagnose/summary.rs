@@ -2,7 +2,6 @@
 
 use crate::effect::{Effect, Stage};
 use crate::explore::{Exploration, Withdrawal, Withdrawn};
-use crate::floor::is_at_other_angles;
 use crate::intervals::IMPOSSIBLE;
 use crate::maps::Maps;
 use crate::report::{Evidence, Imitated, PairMap, Parameter, Region, Suggestion, Verdict};
@@ -101,7 +100,8 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
 
 /// Why what shows over an axis is called noise.
 fn scatter(found: &Exploration, verdict: Verdict, unit: &str) -> String {
-    let elsewhere = match is_at_other_angles(&found.start.prepared.main) {
+    let main = &found.start.prepared.main;
+    let elsewhere = match 2 * main.other_angles.len() > main.twins.len() {
         true => ", or friction depends on an angle that the repeats pass at other moments",
         false => "",
     };

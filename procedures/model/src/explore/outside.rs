@@ -13,7 +13,7 @@ use crate::terms::Term;
 
 /// A map must take this share off held-out squared error to be called structure. Over null runs the best map reaches
 /// 2 %, and what is left of well-explained runs 11 %.
-const STRUCTURE_SHARE: f64 = 0.15;
+pub const STRUCTURE_SHARE: f64 = 0.15;
 
 /// An effect that takes less than this share of what any function of its own axis would take is not what is missing.
 const WHOLE_EXPLANATION: f64 = 0.7;

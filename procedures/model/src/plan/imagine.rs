@@ -53,6 +53,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly, gear: f64
         folds: 1,
         twins: Vec::new(),
         other_pasts: HashSet::new(),
+        other_angles: HashSet::new(),
         unlike: None,
         segment: vec![0; rows],
         repeat: vec![0; rows],

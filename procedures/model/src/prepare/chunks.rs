@@ -167,6 +167,11 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         false => group.iter().map(|g| *g as i64).collect(),
     };
     let twins = phase.map_or_else(Vec::new, |phase| layout::twins(&condition, &phase, &of, 1));
+    let link = points.find(Signal::Link).filter(|_| settled && !samples.constants.slides);
+    let (twins, other_angles) = match link.filter(|link| repeats::are_apart(&twins, link)) {
+        Some(link) => repeats::by_angle(twins, &condition, &of, link),
+        None => (twins, HashSet::new()),
+    };
     let mut view = View::new(points, samples.signals.clone(), chunks, samples.starts.clone(), samples.step_s);
     view.constants = samples.constants;
     let mut problem = Problem {
@@ -180,6 +185,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         folds,
         twins,
         other_pasts: HashSet::new(),
+        other_angles,
         unlike: None,
         segment,
         repeat,

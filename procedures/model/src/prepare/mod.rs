@@ -55,6 +55,8 @@ pub struct Problem {
     pub twins: Vec<(usize, usize)>,
     /// Those of them that came there on different ways: equal only where a model knows the ways.
     pub other_pasts: HashSet<(usize, usize)>,
+    /// Those that pass other angles of the link, where repeats begin at others: what depends on the angle is not equal in them.
+    pub other_angles: HashSet<(usize, usize)>,
     /// Why there are none, where repeats are different motions.
     pub unlike: Option<Unlike>,
     pub segment: Vec<i64>,

@@ -1,8 +1,8 @@
 //! Repeats are believed where their inputs are the same: two motions that share nothing but a number say nothing about noise.
 
-use super::Problem;
+use super::{Problem, layout};
 use crate::view::Signal;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// Two repeats are one motion where their inputs differ by less than this share of their variance, as much as two
@@ -82,6 +82,60 @@ impl Input {
         let d = if self.turns { d - (d / TAU).round() * TAU } else { d };
         d * d / 2.0
     }
+}
+
+/// Angles of a turn that are told apart.
+const ANGLES: usize = 90;
+/// A condition that has fewer such pairs for each row is compared by phase.
+const FEWEST: f64 = 0.25;
+
+/// Pairs of rows.
+type Twins = Vec<(usize, usize)>;
+
+/// Where the repeats of a condition begin at other angles: pairs of moments at which they pass the same one, where these are
+/// not too few, and which of all are at other angles. Every condition counts with as many pairs for each row as the one that has
+/// the fewest.
+pub fn by_angle(twins: Twins, condition: &[usize], repeat: &[i64], link: &[f64]) -> (Twins, HashSet<(usize, usize)>) {
+    // Where it dwells at an angle, as far into that.
+    let mut dwelt: HashMap<(usize, i64, usize), usize> = HashMap::new();
+    let place = |row: usize| {
+        let angle = (link[row].rem_euclid(TAU) / TAU * ANGLES as f64) as usize;
+        let nth = dwelt.entry((condition[row], repeat[row], angle)).or_default();
+        *nth += 1;
+        angle + ANGLES * *nth
+    };
+    let places: Vec<usize> = (0..link.len()).map(place).collect();
+    let of_condition = |twins: Twins| {
+        let mut pairs: BTreeMap<usize, Twins> = BTreeMap::new();
+        twins.into_iter().for_each(|pair| pairs.entry(condition[pair.0]).or_default().push(pair));
+        pairs
+    };
+    let for_each_row =
+        |(c, pairs): (&usize, &Twins)| pairs.len() as f64 / condition.iter().filter(|of| *of == c).count() as f64;
+    let mut met = of_condition(layout::twins(condition, &places, repeat, 0));
+    met.retain(|c, pairs| for_each_row((c, pairs)) >= FEWEST);
+    let mut all = of_condition(twins);
+    let elsewhere = all.iter().filter(|(c, _)| !met.contains_key(c)).flat_map(|(_, pairs)| pairs.clone()).collect();
+    all.extend(met);
+    let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min);
+    let thinned = |of: (&usize, &Twins)| {
+        let share = fewest / for_each_row(of);
+        let is_kept = |i: &usize| ((i + 1) as f64 * share).floor() > (*i as f64 * share).floor();
+        (0..of.1.len()).filter(is_kept).map(|i| of.1[i]).collect::<Twins>()
+    };
+    (all.iter().flat_map(thinned).collect(), elsewhere)
+}
+
+/// The angles of pairs have little to do with each other.
+pub fn are_apart(twins: &[(usize, usize)], link: &[f64]) -> bool {
+    /// Of the RMS difference of two angles that have nothing to do with each other.
+    const SHARE: f64 = 0.2;
+    let apart = |(a, b): &(usize, usize)| {
+        let d = link[*a] - link[*b];
+        (d - (d / TAU).round() * TAU).powi(2)
+    };
+    let square = twins.iter().map(apart).sum::<f64>() / twins.len().max(1) as f64;
+    square > SHARE * SHARE * TAU * TAU / 12.0
 }
 
 /// Keeps the twins of those stretches (`of` numbers them for each row) whose inputs agree, and tells how far apart the

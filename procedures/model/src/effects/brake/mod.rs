@@ -4,6 +4,7 @@ mod cogging;
 mod drag;
 mod hysteresis;
 mod saturation;
+mod scaled;
 mod temperature_dependence;
 mod torque_per_current;
 mod velocity_dependence;

@@ -1,5 +1,6 @@
 //! Temperature dependence.
 
+use super::scaled;
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
@@ -11,13 +12,14 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Brake,
     title: "Temperature dependence",
     sentence: "A warm brake holds less.",
-    formula: "c_T·(T − 25 °C), or times i, or times the torque that current and history explain",
+    formula: "c_T·(T − 25 °C), or times i, or c_T·(T − T_0)·τ with the torque τ that current and history explain at T_0",
     source: "makers' data of hysteresis brakes",
     looks: "a line over temperature",
     parameters: &[
         parameter("c_t", "Nm/K", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_t_i", "Nm/(A·K)", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_t_tau", "1/K", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("t_0", "°C", f64::NEG_INFINITY, f64::INFINITY),
     ],
     needs: &["temperature_c"],
 };
@@ -27,16 +29,17 @@ impl Effect for TemperatureDependence {
         INFO
     }
 
-    fn forms(&self, _: &View) -> Vec<Form<'_>> {
+    fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let form = |name, linear| Form { name, ..Form::linear(linear) };
-        vec![form("plain", &["c_t"]), form("excited", &["c_t_i"]), form("scaled", &["c_t_tau"])]
+        let usual = scaled::usual(view, Signal::Temperature, |t| t);
+        vec![form("plain", &["c_t"]), form("excited", &["c_t_i"]), scaled::form("c_t_tau", "t_0", usual)]
     }
 
-    fn columns(&self, form: &str, _: &[f64], view: &View) -> Columns {
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         vec![match form {
             "plain" => view.map(Signal::Temperature, |t| t - 25.0),
             "excited" => view.map2(Signal::Temperature, Signal::Current, |t, i| (t - 25.0) * i),
-            _ => view.map2(Signal::Temperature, Signal::Drive, |t, d| (t - 25.0) * d),
+            _ => view.map2(Signal::Temperature, Signal::Drive, |t, d| (t - shape[0]) * d),
         }]
     }
 }

@@ -1,5 +1,6 @@
 //! Velocity dependence.
 
+use super::scaled;
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
 use crate::view::{Signal, View};
 use jointbench_instrument::Kind;
@@ -14,13 +15,14 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Brake,
     title: "Velocity dependence",
     sentence: "The brake holds more or less at higher speed: eddy currents and windage.",
-    formula: "c_v·|ω|, or c_v·i·|ω|, or c_v·τ·|ω| with the torque τ that current and history explain",
+    formula: "c_v·|ω|, or c_v·i·|ω|, or c_v·(|ω| − ω_0)·τ with the torque τ that current and history explain at ω_0",
     source: "makers' data of hysteresis brakes (eddy currents)",
     looks: "a line over speed, of which it takes more than one",
     parameters: &[
         parameter("c_v", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_v_i", "Nm·s/(rad·A)", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_v_tau", "s/rad", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("omega_0", "rad/s", 0.0, f64::INFINITY),
     ],
     needs: &["velocity_rad_s"],
 };
@@ -37,14 +39,15 @@ impl Effect for VelocityDependence {
             return Vec::new();
         }
         let form = |name, linear| Form { name, ..Form::linear(linear) };
-        vec![form("plain", &["c_v"]), form("excited", &["c_v_i"]), form("scaled", &["c_v_tau"])]
+        let usual = scaled::usual(view, Signal::Velocity, f64::abs);
+        vec![form("plain", &["c_v"]), form("excited", &["c_v_i"]), scaled::form("c_v_tau", "omega_0", usual)]
     }
 
-    fn columns(&self, form: &str, _: &[f64], view: &View) -> Columns {
+    fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         vec![match form {
             "plain" => view.map(Signal::Velocity, f64::abs),
             "excited" => view.map2(Signal::Velocity, Signal::Current, |w, i| w.abs() * i),
-            _ => view.map2(Signal::Velocity, Signal::Drive, |w, t| w.abs() * t),
+            _ => view.map2(Signal::Velocity, Signal::Drive, |w, t| (w.abs() - shape[0]) * t),
         }]
     }
 }

@@ -152,6 +152,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         folds,
         twins,
         other_pasts: HashSet::new(),
+        other_angles: HashSet::new(),
         unlike: None,
         segment,
         repeat,
