@@ -4,7 +4,7 @@ mod common;
 
 use common::bench::{Moment, Staircase};
 use common::tables::{friction_in_steps, scatter};
-use jointbench_instrument::{Kind, RunTable};
+use jointbench_instrument::{Channel, Kind, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover};
 
 const SPEEDS_RAD_S: [f64; 13] = [0.8, 1.2, 1.8, 2.7, 4.1, 6.1, 9.1, 13.7, 20.5, 30.8, 46.1, 69.2, 103.8];
@@ -48,4 +48,23 @@ fn a_hump_that_few_speeds_show_is_structure_too() {
         assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{seed}: {}", found.summary);
         assert!(found.shows_over.iter().any(|axis| axis.contains("velocity")), "{:?}", found.shows_over);
     }
+}
+
+/// Each speed came twice: no part of the axis has a band, and the angles at which slow steps begin would be blamed.
+#[test]
+fn where_a_model_fails_over_speeds_that_came_twice_is_told_by_the_speed() {
+    let (mut meta, trace) = friction_in_steps(&SPEEDS_RAD_S[..10], 2, 220, |now| {
+        let speed = now.velocity.abs();
+        now.velocity.signum() * (0.02 + 0.012 * (-speed / 4.0).exp() + 1e-4 * speed) + 1e-3 * scatter(now.row, 3)
+    })
+    .into_parts();
+    meta.gear_ratio = Some(1.0);
+    let numbered = |channel: &Channel| ["segment", "repeat"].contains(&&*channel.name);
+    let kept = trace.channels().iter().cloned().zip(trace.columns().to_vec()).filter(|(channel, _)| !numbered(channel));
+    let (channels, columns) = kept.unzip();
+    let run = RunTable::new(meta, Trace::from_columns(channels, columns)).unwrap();
+    let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+    assert_eq!(found.suggestions.first().map(|s| &*s.effect), Some("stribeck"), "{}", found.summary);
+    assert!(found.regions.iter().all(|region| region.axis != "link_position_rad"), "{:?}", found.regions);
+    assert!(found.summary.contains("a function of motor velocity would take"), "{}", found.summary);
 }

@@ -14,6 +14,10 @@ const MOST: usize = 8;
 const SAME: f64 = 0.7;
 const MUCH_WORSE: f64 = 1.5;
 
+/// An axis of which a function takes so much off is where a model fails, and others by less than this share of it are not.
+const BY_FAR: f64 = 0.5;
+const SHADOW: f64 = 0.9;
+
 /// What an error is measured against in words.
 pub struct Yardstick {
     value: f64,
@@ -55,6 +59,9 @@ struct Stretch<'m> {
 
 pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
     let mut stretches: Vec<Stretch> = maps.axes.iter().chain(&maps.by_direction).flat_map(|m| join(maps, m)).collect();
+    if let Some(best) = unbanded(maps) {
+        stretches.retain(|stretch| stretch.map.removable > SHADOW * best.removable);
+    }
     stretches.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
     // What lies at a time lies there because of what was done then, where another axis tells it too.
     stretches.sort_by_key(|stretch| stretch.map.x.name == "time_s");
@@ -73,8 +80,30 @@ pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Re
     told.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
 }
 
+/// The map that takes most off by far, where none of its axis's parts was passed often enough to have a band: what other axes
+/// show is then its shadow.
+fn unbanded(maps: &Maps) -> Option<&Map> {
+    let best = maps.best().filter(|best| best.removable > BY_FAR)?;
+    let mut of_axis = maps.axes.iter().chain(&maps.by_direction).filter(|map| map.x.name == best.x.name);
+    of_axis.all(|map| map.cells.iter().all(|cell| maps.half_width(cell).is_none())).then_some(best)
+}
+
 /// Why no region is named, with the part of an axis that comes nearest to being one.
 pub fn nowhere(maps: &Maps, unit: &str) -> String {
+    let of = |map: &Map, cell: &Cell, half_width: f64| {
+        let (mean, count) = (cell.mean, cell.rows);
+        Stretch { map, first: cell.x, last: cell.x, y: cell.y, mean, half_width, count }.region(maps.kind, unit, None)
+    };
+    if let Some(best) = unbanded(maps) {
+        let worst = best.cells.iter().max_by(|a, b| a.mean.abs().total_cmp(&b.mean.abs()));
+        return format!(
+            ", though a function of {} would take {} off: fewer than three independent stretches of motion passed each part of it. \
+             Most is left where {}",
+            spoken_axis(&best.x.name, maps.kind),
+            percent(best.removable),
+            worst.map(|cell| of(best, cell, 0.0).sentence).unwrap_or_default(),
+        );
+    }
     let cells =
         maps.axes.iter().chain(&maps.by_direction).flat_map(|map| map.cells.iter().map(move |cell| (map, cell)));
     let banded = cells.filter_map(|(map, cell)| Some((map, cell, maps.half_width(cell)?)));
@@ -82,11 +111,9 @@ pub fn nowhere(maps: &Maps, unit: &str) -> String {
     let Some((map, cell, half_width)) = banded.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else {
         return ", because none was passed by three independent stretches of motion".into();
     };
-    let (mean, count) = (cell.mean, cell.rows);
-    let nearest = Stretch { map, first: cell.x, last: cell.x, y: cell.y, mean, half_width, count };
     format!(
         "; nearest to it, {}, known to ±{} from {} independent stretches of motion",
-        nearest.region(maps.kind, unit, None).sentence,
+        of(map, cell, half_width).sentence,
         figure(half_width, unit),
         cell.pieces,
     )

@@ -309,8 +309,8 @@ fn again(choice: &Choice) -> Experiment {
     Experiment {
         procedure: choice.procedure.clone(),
         parameters: choice.parameters.clone(),
-        why: "without repeats of the same profile nobody knows how small the error can become; the run at hand made once \
-              more, with its repeats numbered, would tell it too"
+        why: "without repeats of the same profile nobody knows how small the error can become; make the run at hand again and \
+              number its repeats, or this run, which comes nearest to it"
             .into(),
         expected_z: None,
         expected_duration_s: choice.duration_s.is_finite().then_some(choice.duration_s),

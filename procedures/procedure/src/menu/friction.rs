@@ -16,6 +16,8 @@ const HELD_S: f64 = 0.6;
 const WARMS_BY_K: f64 = 10.0;
 /// Warm-up and cool-down [s].
 const WARMING_S: f64 = 240.0;
+/// Nobody asks for more unasked (motor).
+const USUAL_RAD_S: f64 = 180.0;
 
 pub fn offer(menu: &mut Menu, run: &RunTable) {
     let bench = menu.bench;
@@ -23,6 +25,7 @@ pub fn offer(menu: &mut Menu, run: &RunTable) {
     let loads = bench.has_brake && bench.has_torque_sensor;
     let mut ordinary = menu.before("friction", json!({"order_seed": seed}));
     ordinary.entry("repeats").or_insert(json!(2));
+    ordinary.entry("top_speed_rad_s").or_insert(json!(rounded(menu.top_rad_s().min(USUAL_RAD_S))));
     if !loads {
         ordinary.insert("load_levels".into(), json!(1));
     }
@@ -60,7 +63,7 @@ pub fn offer(menu: &mut Menu, run: &RunTable) {
     if run.column("temperature_c").is_some() {
         // As fast as the bench has room for.
         let before = menu.choices.len();
-        for top_rad_s in [1.0, 0.5, 0.25].map(|part| rounded(part * menu.top_rad_s().min(180.0))) {
+        for top_rad_s in [1.0, 0.5, 0.25].map(|part| rounded(part * menu.top_rad_s().min(USUAL_RAD_S))) {
             if menu.choices.len() == before {
                 let warming = json!({"top_speed_rad_s": top_rad_s, "heat_s": WARMING_S, "cool_s": WARMING_S});
                 menu.offer_warmed("friction_temperature", warming, &warmer_k);
