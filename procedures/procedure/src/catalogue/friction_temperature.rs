@@ -27,6 +27,8 @@ const SCHEMA: &[Parameter] = &[
 
 /// Below this span nothing can be said about temperature.
 const LEAST_SPAN_K: f64 = 2.0;
+/// Less of the friction is no change.
+const NOTHING: f64 = 0.01;
 /// The temperature that the coefficients of the models count from.
 const REFERENCE_C: f64 = 25.0;
 
@@ -123,11 +125,18 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         }
     }
     let figures = vec![over_temperature(run, &points), over_time(&points)];
-    let moves =
-        |effect: &str, name: &str| parameter(&fit, effect, name).is_some_and(|p| p.ci95[0] > 0.0 || p.ci95[1] < 0.0);
-    let (dry, wet) = (moves("temperature_coulomb", "tau_t"), moves("temperature_viscous", "c_t"));
+    let top_rad_s = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
+    let most_nm = points.iter().map(|p| (p.target - p.load_nm).abs()).fold(0.0, f64::max);
+    // Surely, and by more than nothing over all that it warmed, at the highest speed.
+    let moves = |effect: &str, name: &str, times: f64| {
+        let least_nm = NOTHING * most_nm;
+        parameter(&fit, effect, name).is_some_and(|p| {
+            (p.ci95[0] > 0.0 || p.ci95[1] < 0.0) && (p.value * times * (high_c - low_c)).abs() > least_nm
+        })
+    };
+    let (dry, wet) = (moves("temperature_coulomb", "tau_t", 1.0), moves("temperature_viscous", "c_t", top_rad_s));
     let what = match (dry, wet) {
-        (false, false) => "neither Coulomb nor viscous friction changes".to_owned(),
+        (false, false) => format!("neither Coulomb nor viscous friction changes by {:.0} %", 100.0 * NOTHING),
         (true, false) => "Coulomb friction changes and viscous friction does not".to_owned(),
         (_, true) => {
             let share = parameter(&fit, "temperature_viscous", "c_t").map_or(0.0, |p| p.value)
