@@ -74,7 +74,7 @@ const plainUplot: Plugin = {
 	},
 };
 
-/** What no page here has, by the file that it is in: nothing awaits while it is drawn or is drawn aside, no error has a place of its own, no class is a list, no style is told twice, no choice is of several, no markup comes from a server, nothing is preloaded. */
+/** What no page here has, by the file that it is in: nothing awaits while it is drawn or is drawn aside, no effect begins outside of a component or runs ahead, no form is set back, no state is given another prototype, no error has a place of its own, no class is a list, no style is told twice, no choice is of several, no markup comes from a server, nothing is preloaded. */
 const NEVER: [string, RegExp, string][] = [
 	['reactivity/async.js', /if \(async\.length === 0 && [^]*?(?=\/\*\*\n \* @param \{Blocker)/, 'fn(deriveds);\n}\n'],
 	['blocks/boundary.js', /new Boundary\(.*\);/, 'block(() => void branch(() => children(node)), flags);'],
@@ -86,6 +86,11 @@ const NEVER: [string, RegExp, string][] = [
 	['shared/attributes.js', /return _?clsx\(value\)/, "return value ?? ''"],
 	['shared/attributes.js', /if \(value\) \{(?=\s+\/\/ strip)/, 'if (false) {'],
 	['bindings/select.js', /\bselect\.multiple\b|entries\.every\(is_selectedcontent_mutation\)|'__defaultValue' in select(?=\) \{)/g, 'false'],
+	['reactivity/effects.js', /export function validate_effect\(rune\) \{[^]*?\n\}\n/, 'export function validate_effect() {}\n'],
+	...['effects', 'sources'].map((file): [string, RegExp, string] => [`reactivity/${file}.js`, /\((\w+\.f|flags) & EAGER_EFFECT\) !== 0|eager_effects\.size > 0/g, 'false']),
+	['reactivity/deriveds.js', /w\.derived_inert\(\);/, ''],
+	['bindings/shared.js', /const prev = [^]*?add_form_reset_listener\(\);/, ''],
+	['client/proxy.js', /,\s+setPrototypeOf\(\) \{[^}]*\}/, ''],
 	['dom/hydration.js', /export let (?=hydrating = false)/, 'export const '],
 	['dom/hydration.js', /hydrating = value;/, ''],
 	['vite/preload-helper.js', /[^]*/, 'export const __vitePreload = (load) => load();'],
