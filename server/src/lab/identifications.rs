@@ -4,7 +4,7 @@ use super::calibrations::applies;
 use super::{Answer, Lab, LabError, reread};
 use crate::bench::BenchHandle;
 use crate::store::Subject;
-use crate::view::{Earlier, FollowUp, Identification, Quantity, word};
+use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, word};
 use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;
@@ -12,6 +12,8 @@ use serde::de::DeserializeOwned;
 
 /// As many as a small plot can show.
 const EARLIER: u32 = 12;
+/// As many as a list shows before it is scrolled far: a daemon's start is no reason to read a whole store.
+const LEFT: u32 = 200;
 /// Under which names parts of what a complete run has found are kept.
 const QUANTITIES: &str = "quantities";
 const FOLLOW_UP: &str = "follow_up";
@@ -97,13 +99,15 @@ impl Lab {
             follow_up: procedure.follow_up(&found).map(|next| reread(&next)).transpose()?,
             result: reread(&found)?,
         };
-        let verdict = word(found.result.verdict);
-        // Without it the result stands all the same.
-        if record.state.is_final()
-            && record.verdict.as_ref() != Some(&verdict)
-            && let Err(fault) = self.inner.store.keep_verdict(id, &verdict).await
-        {
-            tracing::warn!(run.id = id, %fault, "what came of the run is not kept for the list of runs");
+        let verdict = found.result.verdict;
+        if record.state.is_final() && record.verdict.as_ref() != Some(&word(verdict)) {
+            match self.inner.store.keep_verdict(id, &word(verdict)).await {
+                Ok(()) => self.hub().tell(LiveMessage::Verdict { run: id, verdict }),
+                // Without it the result stands all the same.
+                Err(fault) => {
+                    tracing::warn!(run.id = id, %fault, "what came of the run is not kept for the list of runs");
+                }
+            }
         }
         Ok(found)
     }
@@ -112,11 +116,31 @@ impl Lab {
     pub(super) fn judge_at_its_end(&self, bench: &BenchHandle, run: i64) {
         let (lab, bench) = (self.clone(), bench.clone());
         tokio::spawn(async move {
-            let gone = bench.watch().wait_for(|_| !bench.is_busy()).await.is_err();
-            // A procedure that makes nothing of its run, or not of this one, is no fault.
-            if !gone && let Err(fault) = lab.identification(run).await {
-                tracing::debug!(run.id = run, %fault, "no result of the run");
+            if bench.watch().wait_for(|_| !bench.is_busy()).await.is_ok() {
+                lab.judge(run).await;
             }
         });
+    }
+
+    /// The same of what was measured before the list could say so, or shortly before a daemon died: one after another.
+    pub(super) fn judge_what_was_left(&self) {
+        let lab = self.clone();
+        tokio::spawn(async move {
+            match lab.inner.store.unjudged(LEFT).await {
+                Ok(runs) => {
+                    for run in runs {
+                        lab.judge(run).await;
+                    }
+                }
+                Err(fault) => tracing::warn!(%fault, "runs that nobody has judged are not found"),
+            }
+        });
+    }
+
+    /// A procedure that makes nothing of its run, or not of this one, is no fault.
+    async fn judge(&self, run: i64) {
+        if let Err(fault) = self.identification(run).await {
+            tracing::debug!(run.id = run, %fault, "no result of the run");
+        }
     }
 }

@@ -109,6 +109,7 @@ impl Lab {
         };
         lab.open_tokens().await?;
         lab.wait_until_secured().await;
+        lab.judge_what_was_left();
         Ok(lab)
     }
 

@@ -76,6 +76,13 @@ impl Store {
         Ok(())
     }
 
+    /// Runs of a bench that are over and of which no verdict is kept, newest first.
+    pub async fn unjudged(&self, limit: u32) -> Result<Vec<RunId>, StoreError> {
+        let query = "SELECT id FROM runs_told WHERE finished_at IS NOT NULL AND rows > 0 AND procedure <> 'import' \
+            AND id NOT IN (SELECT run FROM verdicts) ORDER BY id DESC LIMIT ?";
+        Ok(sqlx::query_scalar(query).bind(limit).fetch_all(&self.readers).await?)
+    }
+
     pub async fn run(&self, run: RunId) -> Result<RunRecord, StoreError> {
         let mut reader = self.readers.begin().await?;
         let mut query = QueryBuilder::new(TOLD);

@@ -1,6 +1,6 @@
 //! Text frames of the live stream. The binary frames are in [`crate::live::frame`].
 
-use super::{AutopilotState, AutopilotStep, Bench, ChannelInfo, Progress, RunEvent, RunState, Safe};
+use super::{AutopilotState, AutopilotStep, Bench, ChannelInfo, Identified, Progress, RunEvent, RunState, Safe};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -41,6 +41,11 @@ pub enum LiveMessage {
     Model {
         run: i64,
         model: i64,
+    },
+    /// What came of a run has been worked out.
+    Verdict {
+        run: i64,
+        verdict: Identified,
     },
     /// Users' effects of a kind have come, changed or gone: what a diagnosis may suggest is not what it was.
     Effects {

@@ -21,10 +21,13 @@ fn a_run_is_told_as_it_happens() {
                 if kind == "channels" {
                     channels = message["channels"].as_array().unwrap().len();
                 }
-                let over = kind == "state" && !message["safe"].is_null();
-                *told.entry(kind).or_default() += 1;
-                if over {
+                if kind == "state" && !message["safe"].is_null() {
                     assert_eq!((&message["state"], &message["run"]), (&"completed".into(), &run["id"]));
+                }
+                let judged = kind == "verdict";
+                *told.entry(kind).or_default() += 1;
+                if judged {
+                    assert_eq!(message["run"], run["id"]);
                     break;
                 }
             }
@@ -44,7 +47,7 @@ fn a_run_is_told_as_it_happens() {
     }
     assert_eq!(channels, 13);
     assert!(rows > 500 && next > 2, "{rows} rows in {next} frames");
-    for kind in ["bench", "state", "progress", "event", "channels"] {
+    for kind in ["bench", "state", "progress", "event", "channels", "verdict"] {
         assert!(told.contains_key(kind), "{kind} in {told:?}");
     }
 }

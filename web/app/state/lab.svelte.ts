@@ -28,7 +28,7 @@ class LabState {
 	/** Raised with every frame, for plots to redraw. */
 	frames = $state(0);
 	dropped = $state(0);
-	/** Raised when a model version was made anywhere. */
+	/** Raised when a model version was made anywhere, or the verdict of a run. */
 	models = $state(0);
 	/** Counts what has become of users' effects, so that diagnoses that may suggest them are asked for again. */
 	effects = $state(0);
@@ -138,6 +138,7 @@ class LabState {
 				}
 				break;
 			case 'model':
+			case 'verdict':
 				this.models += 1;
 				break;
 			case 'effects':

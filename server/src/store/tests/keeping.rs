@@ -191,6 +191,20 @@ fn runs_are_found_by_field_tag_note_and_number() {
 }
 
 #[test]
+fn runs_are_judged_once_and_what_is_on_is_not() {
+    block_on(async {
+        let (_folder, store) = fresh().await;
+        for run in [new_run(), NewRun { procedure: "import".into(), ..new_run() }, new_run()] {
+            store.import(&run, &[], rows(0, 5)).await.unwrap();
+        }
+        store.create_run(&new_run()).await.unwrap();
+        assert_eq!(store.unjudged(9).await.unwrap(), [3, 1]);
+        store.keep_verdict(3, "identified").await.unwrap();
+        assert_eq!(store.unjudged(9).await.unwrap(), [1]);
+    });
+}
+
+#[test]
 fn runs_are_ordered_by_what_they_are_asked_to_be() {
     block_on(async {
         let (_folder, store) = fresh().await;
