@@ -382,10 +382,14 @@ export async function writeEffect(page, run) {
 	await form.getByText('character 31').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the mistake is not marked at its character'));
 	expect((await form.locator('mark').count()) === 1, 'nothing is marked in the formula');
 	await form.getByLabel('name', { exact: true }).fill(name);
-	await formula.fill('tau = a * direction * abs(load)');
+	await formula.fill('a * direction');
 	await form.getByRole('button', { name: 'Make a a parameter' }).click();
+	const keep = form.getByRole('button', { name: 'Keep and add' });
+	await keep.click();
+	await form.getByText('cannot tell it from Coulomb friction').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'an effect that is another one is kept without a word'));
+	await formula.fill('tau = a * direction * abs(load)');
 	await form.getByRole('button', { name: `Try on run #${run}` }).click();
 	const found = await form.locator('.tried').innerText({ timeout: FIT_MS });
 	expect(/a = \d/.test(found), `the formula is not fitted to the run: ${found}`);
-	return toAnotherVersion(page, () => form.getByRole('button', { name: 'Keep and add' }).click());
+	return toAnotherVersion(page, () => keep.click());
 }

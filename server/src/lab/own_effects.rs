@@ -6,7 +6,7 @@ use crate::store::OwnEffectRecord;
 use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage, FormulaSignal, LiveMessage};
 use jointbench_instrument::Kind;
 use jointbench_model::formula::{self, Function};
-use jointbench_model::{Definition, Effect as _, ModelSpec, Options, OwnEffect, TradeOff};
+use jointbench_model::{Definition, Effect as _, ModelError, ModelSpec, Options, OwnEffect, TradeOff};
 
 impl Lab {
     pub async fn effects(&self, kind: Option<&str>) -> Answer<Vec<Effect>> {
@@ -69,12 +69,21 @@ impl Lab {
         if let Some(run) = trial.run {
             let runs: Vec<i64> = std::iter::once(run).chain(trial.more_runs.iter().copied()).collect();
             let table = self.tables(&runs).await?;
-            let effects = table.meta().baseline.iter().cloned().chain([own.id().to_owned()]);
-            let spec = ModelSpec::with_own(table.kind(), effects, vec![own.clone()])?;
-            let fit = blocking(move || jointbench_model::fit(&table, &spec, &Options::default())).await?;
-            check.like = trading(own.id(), &fit.trade_offs);
-            let found: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == own.id()).collect();
-            check.parameters = reread(&found)?;
+            let beside = trial.effects.as_ref().unwrap_or(&table.meta().baseline).iter();
+            let effects = beside.map(String::as_str).filter(|id| *id != own.id()).chain([own.id()]);
+            let others = self.own_effects(table.kind()).await?.into_iter().filter(|other| other.id() != own.id());
+            let spec = ModelSpec::with_own(table.kind(), effects, others.chain([own.clone()]).collect())?;
+            let id = own.id().to_owned();
+            let (found, like) = blocking(move || match jointbench_model::fit(&table, &spec, &Options::default()) {
+                Err(ModelError::Collinear { first, second }) if first == id => Ok((Vec::new(), vec![second])),
+                Err(ModelError::Collinear { first, second }) if second == id => Ok((Vec::new(), vec![first])),
+                fit => fit.map(|fit| {
+                    let found: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == id).collect();
+                    (found, trading(&id, &fit.trade_offs))
+                }),
+            })
+            .await?;
+            check = EffectCheck { like, parameters: reread(&found)?, ..check };
         }
         Ok(check)
     }

@@ -52,9 +52,12 @@ fn one() -> String {
 #[serde(deny_unknown_fields)]
 pub struct EffectTrial {
     pub effect: EffectDefinition,
-    /// The formula must be finite on this run; the effect is fitted beside the run's baseline.
+    /// The formula must be finite on this run; the effect is fitted beside `effects`.
     #[serde(default)]
     pub run: Option<i64>,
+    /// Effects of the model that it is tried in; else the run's baseline.
+    #[serde(default)]
+    pub effects: Option<Vec<String>>,
     /// The run whose columns the formula may name; nothing is fitted to it.
     #[serde(default)]
     pub columns_of: Option<i64>,
@@ -111,7 +114,7 @@ pub struct EffectCheck {
     pub signals: Vec<String>,
     /// The effect's parameters on the run; empty where none was named.
     pub parameters: Vec<FittedParameter>,
-    /// Effects of the baseline from which the run cannot tell it: of the two it decides only a combination.
+    /// Effects beside which it was tried and from which the run cannot tell it: of the two it decides only a combination.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub like: Vec<String>,
 }

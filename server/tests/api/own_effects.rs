@@ -98,6 +98,13 @@ fn an_effect_is_defined_suggested_fitted_and_kept_while_used() {
     assert_eq!((status, &check["linear"], &check["shape"]), (200, &json!(["a"]), &json!(["w0"])), "{check}");
     assert!((check["parameters"][1]["value"].as_f64().unwrap() - 12.0).abs() < 1.0, "{check}");
 
+    let dry = json!({"id": "dry", "kind": "friction", "formula": "tau = a * direction", "parameters": [{"name": "a", "unit": "Nm"}]});
+    for (effects, like) in [(json!(null), json!(["coulomb"])), (json!(["load_transmission", "viscous"]), Value::Null)] {
+        let trial = json!({"effect": dry, "run": run, "effects": effects});
+        let (status, check) = daemon.post("/api/v1/effects/check", &trial.to_string());
+        assert_eq!((status, &check["like"]), (200, &like), "{check}");
+    }
+
     let twice = json!({"effect": rub(RUB), "run": run, "more_runs": [run]});
     assert_eq!(daemon.post("/api/v1/effects/check", &twice.to_string()).0, 422, "a run is named once");
     let more = json!({"effect": rub(RUB), "run": run, "more_runs": [rubbing_run(&daemon, 54_321)]});

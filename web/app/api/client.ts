@@ -59,7 +59,7 @@ export const api = {
 
 	effects: (kind?: string, signal?: Signal) => ask('get', '/api/v1/effects', { query: { kind } }, signal),
 	formulas: (kind: string, signal?: Signal) => ask('get', '/api/v1/formulas/{kind}', { path: { kind } }, signal),
-	checkEffect: (trial: { effect: EffectDefinition; run?: number; columns_of?: number; typing?: boolean }, signal?: Signal) =>
+	checkEffect: (trial: { effect: EffectDefinition; run?: number; more_runs?: number[] | undefined; effects?: string[] | undefined; columns_of?: number; typing?: boolean }, signal?: Signal) =>
 		ask('post', '/api/v1/effects/check', { body: trial }, signal),
 	defineEffect: (effect: EffectDefinition) => ask('post', '/api/v1/effects', { body: effect }),
 	forgetEffect: (kind: string, id: string) =>
