@@ -218,11 +218,13 @@ export async function keepView(page, base, run) {
 	await page.getByRole('button', { name: 'Forget this view' }).click();
 	await page.getByRole('button', { name: `Base: hold the others against run ${run}` }).click();
 	await page.getByRole('columnheader', { name: `against #${run}` }).waitFor({ state: 'detached', timeout: PATIENCE_MS });
-	for (const [name, text] of [[`Tags of run ${run}, by commas`, 'walked, golden'], [`Note on run ${run}`, 'walked on it']]) {
+	for (const [name, text, width] of [[`Tags of run ${run}, by commas`, 'walked, golden', 1440], [`Note on run ${run}`, 'walked on it', 420]]) {
+		await page.setViewportSize({ width, height: 900 });
 		await page.getByRole('button', { name }).click();
 		await page.keyboard.type(text);
 		await page.keyboard.press('Enter');
 	}
+	await page.setViewportSize({ width: 1440, height: 900 });
 	for (const said of [page.getByRole('link', { name: 'golden' }), page.getByText('walked on it')]) await said.first().waitFor({ timeout: 5000 }).catch(() => expect(false, 'a tag or a note that is written in the list is not kept'));
 }
 
