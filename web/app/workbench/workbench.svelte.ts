@@ -215,6 +215,7 @@ export function openWorkbench(id: number) {
 		router.set({ more: null });
 		const made = await fitted(more.length ? together(more) : 'Fitting the first model', () => api.fit({ run: id, effects: set, more_runs: more }));
 		if (made) await show(made, null);
+		else router.set({ more: more.join() || null });
 	}
 
 	/** Back to the version that this one grew from. Nothing is lost: every version keeps its address. */
