@@ -155,6 +155,9 @@ await tell('walk', async () => {
 	await page.goto(`${where.base}/runs?search=${encodeURIComponent('procedure:fric duration>1s rows>')}`);
 	await page.getByRole('link', { name: `#${run}` }).first().waitFor({ timeout: 30_000 });
 	await page.getByText(/rows>/).first().waitFor({ timeout: 30_000 }).catch(() => expect(false, 'a half-typed term of a search is not told'));
+	await page.getByLabel('Export, views and columns').click();
+	await page.getByRole('button', { name: 'CSV of this list' }).click();
+	await page.getByText('Nothing is exported').waitFor({ timeout: 30_000 }).catch(() => expect(false, 'a search that is not understood exports another list'));
 	const lost = await another(where.base, []);
 	await lost.goto(`${where.base}/runs/987654`);
 	await lost.getByText('there is no run 987654').waitFor({ timeout: 30_000 });
