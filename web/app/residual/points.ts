@@ -28,21 +28,24 @@ export function inOneTurn(set: ResidualSet): ResidualSet {
 }
 
 /**
- * With the axes along which the diagnosis looks too, and which no column is: how long ago the motion turned, and in friction runs the motor's
- * torque. Against its own noise the residual would have a slope: it is the model's, moved to the mean of what was measured in each piece.
+ * With the axes along which the diagnosis looks too, and which no column is: how long ago and how far away the motion turned, and in friction
+ * runs the motor's torque. Against its own noise the residual would have a slope: it is the model's, moved to the mean of what was measured in each piece.
  */
 export function withMore(set: ResidualSet): ResidualSet {
-	const named = (name: string) => set.axes.find((axis) => axis.name === name)?.values;
-	const [time, direction] = [named('time_s'), named('direction')];
+	const named = (name: string) => set.axes.find((axis) => axis.name === name);
+	const direction = named('direction')?.values;
 	const more: ResidualSet['axes'] = [];
-	if (time && direction) {
-		let start = 0;
-		const since = time.map((at, i) => {
-			if (i > 0 && direction[i]! > 0 !== direction[i - 1]! > 0) start = i;
-			return at - time[start]!;
+	const since = (axis: ResidualSet['axes'][number] | undefined, name: string) => {
+		if (!axis || !direction) return;
+		let turn = axis.values[0]!;
+		const values = axis.values.map((at, i) => {
+			if (i > 0 && direction[i]! > 0 !== direction[i - 1]! > 0) turn = at;
+			return Math.abs(at - turn);
 		});
-		more.push({ name: 'time_since_reversal_s', unit: 's', values: since });
-	}
+		more.push({ ...axis, name, values });
+	};
+	since(named('time_s'), 'time_since_reversal_s');
+	since(named('motor_position_rad'), 'way_since_reversal_rad');
 	if (named('motor_velocity_rad_s')) more.push({ name: 'motor_torque_nm', unit: set.unit, values: torque(set) });
 	return { ...set, axes: [...set.axes, ...more.filter(({ name }) => !named(name))] };
 }

@@ -30,10 +30,11 @@ describe('positions', () => {
 
 it('has the axes along which the diagnosis looks too', () => {
 	const axis = (name: string, values: number[]) => ({ name, unit: '', values });
-	const set = { unit: 'Nm', error: [0, 1, 2, 2], predicted: [5, 5, 5, 9], piece: [0, 0, 1, 1], axes: [axis('motor_velocity_rad_s', []), axis('time_s', [0, 1, 3, 4]), axis('direction', [1, 1, -1, -1])] };
-	const more = withMore(set as never).axes.slice(3);
+	const set = { unit: 'Nm', error: [0, 1, 2, 2], predicted: [5, 5, 5, 9], piece: [0, 0, 1, 1], axes: [axis('motor_velocity_rad_s', []), axis('time_s', [0, 1, 3, 4]), axis('motor_position_rad', [0, 7, 14, 5]), axis('direction', [1, 1, -1, -1])] };
+	const more = withMore(set as never).axes.slice(4);
 	expect(more.map(({ name, values }) => [name, values])).toEqual([
 		['time_since_reversal_s', [0, 1, 0, 1]],
+		['way_since_reversal_rad', [0, 7, 0, 9]],
 		['motor_torque_nm', [5.5, 5.5, 7, 11]],
 	]);
 });

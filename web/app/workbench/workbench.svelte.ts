@@ -63,7 +63,7 @@ export function openWorkbench(id: number) {
 	const other: Model | null = $derived(
 		versions.find((one) => String(one.id) === router.query.get('with') && one.id !== model?.id) ?? null,
 	);
-	const load = async (version: number, signal: AbortSignal) => ({ version, set: withMore(inOneTurn(await api.residuals(version, signal))) });
+	const load = async (version: number, signal: AbortSignal) => ({ version, set: inOneTurn(withMore(await api.residuals(version, signal))) });
 	const residuals = resource(() => model?.id ?? null, load);
 	const otherResiduals = resource(() => other?.id ?? null, load);
 	const side = $derived((router.query.get('side') ?? 'both') as Side);
