@@ -34,8 +34,7 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
     let undecided = summary::undecided(&found, &[&fit, &complete], verdict, options);
     let start = &found.start.main;
-    let of_start = (verdict == Verdict::MissingEffect)
-        .then(|| Maps::new(&prepared, start.tangent().rest(&start.response()), options));
+    let of_start = (verdict == Verdict::MissingEffect).then(|| Maps::new(&prepared, start.linear().residual, options));
     let maps = of_start.as_ref().unwrap_or(&found.maps);
     let mut regions = regions(maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
     let remembering = found.ranking().into_iter().filter_map(|(advance, _)| advance.added.as_ref());

@@ -132,6 +132,17 @@ fn what_the_library_does_not_know_is_called_structure_and_shown() {
 }
 
 #[test]
+fn where_a_model_fails_is_told_by_what_it_leaves() {
+    // A Stribeck effect at the end of its range stands for the viscous friction as well as it can.
+    let run = bench(9).run(dry);
+    let spec = ModelSpec::new(run.kind(), ["load_transmission", "coulomb", "stribeck"]).unwrap();
+    let found = diagnose(&run, &spec, &Options::default()).unwrap();
+    assert_eq!(found.verdict, Verdict::MissingEffect, "{}", found.summary);
+    let worst = found.regions.iter().map(|region| region.mean_residual.abs()).fold(0.0, f64::max);
+    assert!(worst > found.fit.rms, "{worst} Nm of {} Nm", found.fit.rms);
+}
+
+#[test]
 fn a_model_says_where_it_is_an_extrapolation() {
     let light = bench(3).run_at(&[0.0, 2.0, 4.0], dry);
     let model = fit(&light, &ModelSpec::baseline(&light).unwrap(), &Options::default()).unwrap();
