@@ -49,7 +49,8 @@ const WARM = /(deg|°)c\b/i;
 const TAIL = /[[(].*[\])]|[_\s](rad_s|rad|deg_s|degs?|nm|mnm|ncm|ma|a|ms|us|s|rpm|turns?|revs?|c|v)$/gi;
 const bare = (header: string) => header.replace(TAIL, '').toLowerCase().replace(/[^a-z0-9]/g, '');
 
-function unitIn(header: string, units: Unit[]): string {
+/** The unit that a header names, where the column may come in it; else the daemon's own. */
+export function unitIn(header: string, units: Unit[]): string {
 	const word = UNIT_WORDS.find(([pattern, name]) => pattern.test(header) && units.some((unit) => unit.name === name));
 	return word?.[1] ?? units[0]!.name;
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { KINDS } from './columns';
-import { guess, guessKind, instructions } from './guess';
+import { KINDS, unitsOf } from './columns';
+import { guess, guessKind, instructions, unitIn } from './guess';
 import { parseHead, peek } from './peek';
 
 const friction = KINDS[0]!;
@@ -16,6 +16,11 @@ describe('the mapping of a foreign table', () => {
 		expect(mapping['motor_velocity_rad_s']).toEqual({ from: 'speed_rpm', unit: 'rpm' });
 		expect(mapping['link_torque_nm']).toEqual({ from: 'Torque (mNm)', unit: 'mNm' });
 		expect(mapping['segment']!.from).toBe('');
+	});
+
+	it('reads the unit of a column that is chosen by hand from its header', () => {
+		const units = unitsOf('motor_position_rad');
+		expect(['Winkel Motor (°)', 'phi', 'n (rpm)'].map((header) => unitIn(header, units))).toEqual(['deg', 'rad', 'rad']);
 	});
 
 	it('takes the load by the name that the page gives it', () => {
