@@ -74,7 +74,7 @@ const plainUplot: Plugin = {
 	},
 };
 
-/** What no page here has, by the file that it is in: nothing awaits while it is drawn or is drawn aside, no effect begins outside of a component or runs ahead, no form is set back, no state is given another prototype, no error has a place of its own, no class is a list, no style is told twice, no choice is of several, no markup comes from a server, nothing is preloaded. */
+/** What no page here has, by the file that it is in: nothing awaits while it is drawn or is drawn aside, no effect begins outside of a component or runs ahead, nothing moves on its way in or out or is called off, no form is set back, no state is given another prototype or a property by description, no error has a place of its own, no class is a list, no style is told twice, no choice is of several, no markup comes from a server, nothing is preloaded. */
 const NEVER: [string, RegExp, string][] = [
 	['reactivity/async.js', /if \(async\.length === 0 && [^]*?(?=\/\*\*\n \* @param \{Blocker)/, 'fn(deriveds);\n}\n'],
 	['blocks/boundary.js', /new Boundary\(.*\);/, 'block(() => void branch(() => children(node)), flags);'],
@@ -89,7 +89,12 @@ const NEVER: [string, RegExp, string][] = [
 	['reactivity/effects.js', /export function validate_effect\(rune\) \{[^]*?\n\}\n/, 'export function validate_effect() {}\n'],
 	...['effects', 'sources'].map((file): [string, RegExp, string] => [`reactivity/${file}.js`, /\((\w+\.f|flags) & EAGER_EFFECT\) !== 0|eager_effects\.size > 0/g, 'false']),
 	['reactivity/deriveds.js', /w\.derived_inert\(\);/, ''],
+	['reactivity/effects.js', /effect\.nodes && effect\.nodes\.t|(?<=const controller = )effect\.ac/g, 'null'],
+	['reactivity/effects.js', /(?<=var remaining = )transitions\.length/, '0'],
+	['reactivity/batch.js', /effect\.ac === null/, 'true'],
+	...['reactivity/deriveds', 'client/runtime'].map((file): [string, RegExp, string] => [`${file}.js`, /\b(e|reaction|derived)\.ac !== null|(?<=e\.teardown \|\| )e\.ac/g, 'false']),
 	['bindings/shared.js', /const prev = [^]*?add_form_reset_listener\(\);/, ''],
+	['client/proxy.js', /defineProperty\(_, prop, descriptor\) \{[^]*?\n\t\t\},\n/, ''],
 	['client/proxy.js', /,\s+setPrototypeOf\(\) \{[^}]*\}/, ''],
 	['dom/hydration.js', /export let (?=hydrating = false)/, 'export const '],
 	['dom/hydration.js', /hydrating = value;/, ''],
