@@ -1,8 +1,8 @@
 // Files that a person brings, dropped on a page.
 import { expect } from './browser.mjs';
 
-/** A table with foreign names and units, semicolons between its columns and commas in its numbers. */
-export const FOREIGN = ['Time [ms];pos_deg;Iq [A]', ...Array.from({ length: 200 }, (_, i) => `${i * 4};${i % 90};0,${i % 9}`)].join('\n');
+/** A table with foreign names and units, a column that holds no numbers, semicolons between its columns and commas in its numbers. */
+export const FOREIGN = ['Time [ms];pos_deg;Iq [A];remark', ...Array.from({ length: 200 }, (_, i) => `${i * 4};${i % 90};0,${i % 9};${i ? '' : 'cold'}`)].join('\n');
 
 /** Drops files, each a name and a text, on a page to import them. */
 export async function dropFiles(page, base, files, path = '/runs') {

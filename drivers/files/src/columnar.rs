@@ -17,25 +17,26 @@ const BATCH_ROWS: usize = 1 << 16;
 /// Whole numbers up to here are exact as doubles.
 const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
 
-pub(crate) fn read_parquet(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
+pub(crate) fn read_parquet(name: &str, bytes: &[u8], leave: &[String]) -> Result<RawTable, FileError> {
     let fault = |fault: String| FileFault::Columnar(fault).in_file(name);
     let file = bytes::Bytes::copy_from_slice(bytes);
     let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|f| fault(f.to_string()))?;
     let schema = builder.schema().clone();
     let reader = builder.with_batch_size(BATCH_ROWS).build().map_err(|f| fault(f.to_string()))?;
-    collect(name, &schema, reader)
+    collect(name, &schema, leave, reader)
 }
 
-pub(crate) fn read_arrow(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
+pub(crate) fn read_arrow(name: &str, bytes: &[u8], leave: &[String]) -> Result<RawTable, FileError> {
     let reader = arrow_ipc::reader::FileReader::try_new(Cursor::new(bytes), None)
         .map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
     let schema = reader.schema();
-    collect(name, &schema, reader)
+    collect(name, &schema, leave, reader)
 }
 
 fn collect(
     name: &str,
     schema: &Schema,
+    leave: &[String],
     batches: impl Iterator<Item = Result<RecordBatch, ArrowError>>,
 ) -> Result<RawTable, FileError> {
     let embedded = schema.metadata().get(EMBEDDED);
@@ -45,7 +46,8 @@ fn collect(
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     for batch in batches {
         let batch = batch.map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
-        for ((array, column), column_name) in batch.columns().iter().zip(&mut columns).zip(&names) {
+        let arrays = batch.columns().iter().zip(&mut columns).zip(&names);
+        for ((array, column), column_name) in arrays.filter(|(_, name)| !leave.contains(name)) {
             let first = column.len();
             append(array.as_ref(), column).map_err(|(row, fault)| {
                 let mut error = fault.in_file(name).in_column(column_name);

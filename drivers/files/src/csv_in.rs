@@ -26,7 +26,8 @@ pub(crate) fn gunzip(name: &str, bytes: &[u8]) -> Result<Vec<u8>, FileError> {
     }
 }
 
-pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
+/// The columns to `leave` stay empty.
+pub(crate) fn read(name: &str, bytes: &[u8], leave: &[String]) -> Result<RawTable, FileError> {
     if let Err(fault) = std::str::from_utf8(bytes) {
         let at = fault.valid_up_to();
         return Err(FileFault::NotText(bytes[at]).at_line(name, line_at(bytes, at)));
@@ -45,9 +46,10 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
     let names = column_names(&record).map_err(|fault| fault.at_line(name, line_of_record(text, &record)))?;
     let rows = text.len() / (names.len() * 8);
     let mut columns: Vec<Vec<f64>> = names.iter().map(|_| Vec::with_capacity(rows)).collect();
+    let left: Vec<bool> = names.iter().map(|name| leave.contains(name)).collect();
     let (mut wrong, mut wrong_rows) = (Vec::new(), 0);
     while next(&mut record)? {
-        let Err((column, fault)) = take(&record, &names, separator, &mut columns) else { continue };
+        let Err((column, fault)) = take(&record, &names, &left, separator, &mut columns) else { continue };
         wrong_rows += 1;
         if wrong.len() < TOLD_ROWS {
             wrong.push(Wrong { line: line_of_record(text, &record), column, fault });
@@ -56,7 +58,7 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
     if wrong_rows > 0 {
         return Err(FileError::of_rows(name, wrong, wrong_rows));
     }
-    match columns[0].is_empty() {
+    match columns.iter().all(Vec::is_empty) {
         true => Err(FileFault::NoRows.at_line(name, 1)),
         false => Ok(RawTable { names, columns, meta: None }),
     }
@@ -66,13 +68,15 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<RawTable, FileError> {
 fn take(
     record: &ByteRecord,
     names: &[String],
+    left: &[bool],
     separator: u8,
     columns: &mut [Vec<f64>],
 ) -> Result<(), (Option<String>, FileFault)> {
     if record.len() != names.len() {
         return Err((None, FileFault::Width { expected: names.len(), found: record.len() }));
     }
-    for ((column, field), name) in columns.iter_mut().zip(record).zip(names) {
+    let fields = columns.iter_mut().zip(record).zip(names).zip(left).filter(|(_, left)| !**left);
+    for (((column, field), name), _) in fields {
         let value = number(field, separator);
         let found = || FileFault::NotNumber { found: String::from_utf8_lossy(field).into_owned() };
         column.push(value.ok_or_else(|| (Some(name.clone()), found()))?);

@@ -80,6 +80,8 @@ pub enum FileFault {
     Misspelt { found: String, meant: &'static str },
     #[error("the mapping names column {wanted}, which is not in the file: it has {}", .there.join(", "))]
     Unmapped { wanted: String, there: Vec<String> },
+    #[error("column {wanted} cannot be left out, as it is not in the file: it has {}", .there.join(", "))]
+    NotLeft { wanted: String, there: Vec<String> },
     #[error("the scale names column {wanted}, which is not in the table: it has {}", .there.join(", "))]
     Unscaled { wanted: String, there: Vec<String> },
     #[error("{0}")]

@@ -14,6 +14,8 @@ pub struct ReadOptions {
     pub map: Vec<(String, String)>,
     /// Factors: (name in the run table, factor). A value in the table is the file's value times the factor.
     pub scale: Vec<(String, f64)>,
+    /// Columns of the file that stay out, whatever they hold.
+    pub leave: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -19,6 +19,7 @@ impl RawTable {
         meta: Option<Meta>,
         options: &ReadOptions,
     ) -> Result<RunTable, FileError> {
+        self.leave(options).map_err(|fault| fault.in_file(name))?;
         self.rename(options).map_err(|fault| fault.in_file(name))?;
         self.scale(options).map_err(|fault| fault.in_file(name))?;
         let mut meta = meta.or_else(|| options.meta.clone()).or(self.meta).unwrap_or_default();
@@ -37,6 +38,17 @@ impl RawTable {
             }
             FileError { place: Box::new(place), fault: FileFault::Table(fault) }
         })
+    }
+
+    fn leave(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
+        for wanted in &options.leave {
+            let place = self.names.iter().position(|name| name == wanted);
+            let place =
+                place.ok_or_else(|| FileFault::NotLeft { wanted: wanted.clone(), there: self.names.clone() })?;
+            self.names.remove(place);
+            self.columns.remove(place);
+        }
+        Ok(())
     }
 
     fn rename(&mut self, options: &ReadOptions) -> Result<(), FileFault> {

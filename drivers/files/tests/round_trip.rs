@@ -90,13 +90,14 @@ fn a_file_finds_its_facts_beside_it() {
 
 #[test]
 fn columns_are_renamed_and_scaled_on_the_way_in() {
-    let csv = "t,q_deg,Iq\n0,180,1.5\n1,90,2\n";
+    let csv = "remark,t,q_deg,Iq\ncold,0,180,1.5\n,1,90,2\n";
     let options = ReadOptions {
         meta: Some(Meta { kind: Some(Kind::Friction), ..Meta::default() }),
         map: [("time_s", "t"), ("motor_position_rad", "q_deg"), ("motor_current_a", "Iq")]
             .map(|(name, column)| (name.into(), column.into()))
             .to_vec(),
         scale: vec![("motor_position_rad".into(), std::f64::consts::PI / 180.0), ("time_s".into(), 1e-3)],
+        leave: vec!["remark".into()],
         ..ReadOptions::default()
     };
     let table = read_bytes("log.csv", csv.as_bytes(), &options).unwrap();
@@ -104,10 +105,12 @@ fn columns_are_renamed_and_scaled_on_the_way_in() {
     assert!((position_rad[0] - std::f64::consts::PI).abs() < 1e-15, "{position_rad:?}");
     assert_eq!(table.column("time_s"), Some(&[0.0, 1e-3][..]));
     assert_eq!(table.column("motor_current_a"), Some(&[1.5, 2.0][..]));
+    assert_eq!(table.column("remark"), None);
 
     for (options, named) in [
         (ReadOptions { map: vec![("motor_current_a".into(), "Id".into())], ..options.clone() }, "Id"),
         (ReadOptions { scale: vec![("link_torque_nm".into(), 2.0)], ..options.clone() }, "link_torque_nm"),
+        (ReadOptions { leave: vec!["note".into(), "remark".into()], ..options.clone() }, "note"),
     ] {
         let refused = read_bytes("log.csv", csv.as_bytes(), &options).unwrap_err().to_string();
         assert!(refused.contains(named) && refused.contains("it has"), "{refused}");

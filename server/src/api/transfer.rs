@@ -72,6 +72,8 @@ pub struct ImportForm {
     map: Option<Vec<String>>,
     /// `column=factor`; may be repeated.
     scale: Option<Vec<String>>,
+    /// Name in the file of a column that stays out, whatever it holds; may be repeated.
+    leave: Option<Vec<String>>,
 }
 
 /// Takes a measured file in as a run; a refused file leaves nothing behind
@@ -100,7 +102,10 @@ async fn read_form(mut form: Multipart, name: Option<String>) -> Result<ImportRe
             "meta" => request.meta = Some(part.text().await.map_err(unreadable)?),
             "map" => request.map.push(part.text().await.map_err(unreadable)?),
             "scale" => request.scale.push(part.text().await.map_err(unreadable)?),
-            other => return Err(Problem::malformed(format!("part {other:?}: expected file, meta, map or scale"))),
+            "leave" => request.leave.push(part.text().await.map_err(unreadable)?),
+            other => {
+                return Err(Problem::malformed(format!("part {other:?}: expected file, meta, map, scale or leave")));
+            }
         }
     }
     if request.file_name.is_empty() {

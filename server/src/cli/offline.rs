@@ -112,7 +112,8 @@ fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
 }
 
 pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<RunTable, Exit> {
-    let mut options = ReadOptions { meta_path: meta.map(Path::to_owned), ..ReadOptions::default() };
+    let (meta_path, leave) = (meta.map(Path::to_owned), columns.leave.clone());
+    let mut options = ReadOptions { meta_path, leave, ..ReadOptions::default() };
     for pair in &columns.map {
         options.map.push(parse_map(pair)?);
     }

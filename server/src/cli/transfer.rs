@@ -129,6 +129,7 @@ fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportReq
         meta,
         map: columns.map.clone(),
         scale: columns.scale.clone(),
+        leave: columns.leave.clone(),
     })
 }
 
@@ -149,6 +150,7 @@ fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
     }
     request.map.iter().for_each(|pair| part("\"map\"", pair.as_bytes()));
     request.scale.iter().for_each(|pair| part("\"scale\"", pair.as_bytes()));
+    request.leave.iter().for_each(|name| part("\"leave\"", name.as_bytes()));
     body.extend_from_slice(format!("--{boundary}--\r\n").as_bytes());
     client.post_bytes("/runs/import", &format!("multipart/form-data; boundary={boundary}"), &body)
 }

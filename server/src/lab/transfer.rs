@@ -58,13 +58,16 @@ pub struct ImportRequest {
     pub map: Vec<String>,
     /// `column=factor`.
     pub scale: Vec<String>,
+    /// Names in the file.
+    pub leave: Vec<String>,
 }
 
 impl Lab {
     /// Takes a file in as a run. It is read and checked whole before anything is kept, and kept in one transaction.
     pub async fn import(&self, request: ImportRequest, by: &str) -> Answer<Run> {
         let name = request.name.clone().unwrap_or_else(|| request.file_name.clone());
-        let source = json!({ "file": request.file_name, "map": request.map, "scale": request.scale });
+        let source =
+            json!({ "file": request.file_name, "map": request.map, "scale": request.scale, "leave": request.leave });
         let table = tokio::task::spawn_blocking(move || read(&request))
             .await
             .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))??;
@@ -145,7 +148,7 @@ impl Lab {
 }
 
 fn read(request: &ImportRequest) -> Answer<RunTable> {
-    let mut options = ReadOptions::default();
+    let mut options = ReadOptions { leave: request.leave.clone(), ..ReadOptions::default() };
     for pair in &request.map {
         options.map.push(parse_map(pair)?);
     }

@@ -15,12 +15,11 @@ export function pair(files: readonly File[]): Upload[] {
 }
 
 /** Sent as a form, which the typed client does not build. */
-export async function importRun({ file, meta }: Upload, { map, scale }: { map: string[]; scale: string[] } = { map: [], scale: [] }): Promise<Run> {
+export async function importRun({ file, meta }: Upload, columns: { map?: string[]; scale?: string[]; leave?: string[] } = {}): Promise<Run> {
 	const form = new FormData();
 	form.append('file', file, file.name);
 	if (meta) form.append('meta', await meta.text());
-	for (const one of map) form.append('map', one);
-	for (const one of scale) form.append('scale', one);
+	for (const [part, list] of Object.entries(columns)) for (const one of list) form.append(part, one);
 	const answer = await request(`${BASE}/runs/import`, { method: 'POST', body: form });
 	return (await answer.json()) as Run;
 }

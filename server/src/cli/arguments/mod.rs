@@ -293,6 +293,9 @@ pub struct Columns {
     /// Multiply a column, such as motor_position_rad=0.0174533; may be given again
     #[arg(long, value_name = "COLUMN=FACTOR")]
     pub scale: Vec<String>,
+    /// Leave a column of the file out, such as one of remarks; may be given again
+    #[arg(long, value_name = "NAME")]
+    pub leave: Vec<String>,
 }
 
 /// How the run is prepared. Everything left out is chosen from the data and told with the fit.
