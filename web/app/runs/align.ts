@@ -85,5 +85,6 @@ function flatten(value: unknown, name = ''): [string, string][] {
 	if (value !== null && typeof value === 'object' && !Array.isArray(value)) {
 		return Object.entries(value).flatMap(([key, inner]) => flatten(inner, name ? `${name}.${key}` : key));
 	}
-	return [[name, Array.isArray(value) ? value.map(String).join(', ') : String(value)]];
+	// A part of a campaign is its procedure.
+	return [[name, Array.isArray(value) ? value.map((one) => (one as { procedure?: string } | null)?.procedure ?? String(one)).join(', ') : String(value)]];
 }

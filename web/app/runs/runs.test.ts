@@ -49,12 +49,13 @@ it('tells figures that differ from those that only look different', () => {
 it('shows where settings differ', () => {
 	const table = factTable([
 		{ kind: 'friction', oil: { name: 'A', age_h: 1 } },
-		{ kind: 'friction', oil: { name: 'B' } },
+		{ kind: 'friction', oil: { name: 'B' }, parts: [{ procedure: 'warm_up', first_segment: 0 }, { procedure: 'strokes' }] },
 	]);
 	expect(table).toEqual([
 		{ name: 'kind', values: ['friction', 'friction'], differs: false },
 		{ name: 'oil.name', values: ['A', 'B'], differs: true },
 		{ name: 'oil.age_h', values: ['1', '–'], differs: true },
+		{ name: 'parts', values: ['–', 'warm_up, strokes'], differs: true },
 	]);
 });
 
