@@ -69,9 +69,9 @@ export const signed = (text: string): string => text.replace(SIGN, '−');
 
 /** A sentence of the daemon as people write it: effects by their titles, other ids as words, without the unit at their end; a capital at its start. */
 export function prose(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
-	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])/g, (id) => {
+	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])|(?<=^|with )[a-z]+(?= is missing| the held-out)/g, (id) => {
 		const title = effects.find((one) => one.id === id)?.title;
-		return title ? title.charAt(0).toLowerCase() + title.slice(1) : words(id.replace(SPELT_UNIT, ''));
+		return title?.replace(/^(?!Coul|Strib)./, (first) => first.toLowerCase()) ?? words(id.replace(SPELT_UNIT, ''));
 	});
 	return spoken.charAt(0).toUpperCase() + signed(spoken.slice(1));
 }
