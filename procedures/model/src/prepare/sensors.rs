@@ -18,8 +18,6 @@ const CLIPPED_SHARE: f64 = 0.003;
 const ALONE: f64 = 25.0;
 const ALONE_RANGE: f64 = 0.15;
 const AGREE: f64 = 0.2;
-/// What is usual in a column, so many of its samples tell.
-const TELLING: usize = 10_000;
 /// Where the speed before and after so many samples differs by this share of the largest, a drive pushes: its pulse is no fault.
 const BESIDE: usize = 5;
 const PUSHED: f64 = 0.02;
@@ -102,7 +100,7 @@ pub fn spikes(run: &RunTable) -> Option<String> {
     };
     torques.iter().chain(&["motor_velocity_rad_s", "velocity_rad_s", "temperature_c"]).find_map(|name| {
         let values = run.column(name)?;
-        let every = values.len().div_ceil(TELLING);
+        let every = values.len().div_ceil(super::TELLING);
         let usual = super::median(values.windows(2).step_by(every).map(|pair| (pair[1] - pair[0]).abs()));
         let (low, high) = middle_of(values.iter().step_by(every).copied().collect());
         let least = (ALONE * usual).max(ALONE_RANGE * (high - low));

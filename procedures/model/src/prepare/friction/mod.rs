@@ -7,7 +7,7 @@ mod reversals;
 mod weight;
 
 use super::chunks::Source;
-use super::{Prepared, filter, median, sample_s, segments};
+use super::{Prepared, TELLING, filter, median, sample_s, segments};
 use crate::linear::{Basis, dot};
 use crate::view::{Constants, Signal, Signals};
 use crate::{ModelError, Options, ResidualKind};
@@ -91,7 +91,9 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
             (slope(&acceleration), acceleration)
         };
         let ways = || {
-            let noise = median(velocity.iter().zip(&smooth_velocity).map(|(a, b)| (a - b).abs()));
+            let every = velocity.len().div_ceil(TELLING);
+            let off = velocity.iter().zip(&smooth_velocity).step_by(every).map(|(a, b)| (a - b).abs());
+            let noise = median(off);
             let fastest = smooth_velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
             let direction = segments::direction(&smooth_velocity, (2.0 * noise).min(0.02 * fastest));
             segments::without_swings(direction, position, &starts)
