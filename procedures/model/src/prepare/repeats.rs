@@ -93,8 +93,8 @@ const FEWEST: f64 = 0.25;
 type Twins = Vec<(usize, usize)>;
 
 /// Where the repeats of a condition begin at other angles: pairs of moments at which they pass the same one, where these are
-/// not too few, and which of all are at other angles. Every condition counts with as many pairs for each row as the one that has
-/// the fewest.
+/// not too few, and which of all are at other angles. No condition counts with more pairs for each row than another, but for one
+/// that has hardly any.
 pub fn by_angle(twins: Twins, condition: &[usize], repeat: &[i64], link: &[f64]) -> (Twins, HashSet<(usize, usize)>) {
     // Where it dwells at an angle, as far into that.
     let mut dwelt: HashMap<(usize, i64, usize), usize> = HashMap::new();
@@ -110,14 +110,15 @@ pub fn by_angle(twins: Twins, condition: &[usize], repeat: &[i64], link: &[f64])
         twins.into_iter().for_each(|pair| pairs.entry(condition[pair.0]).or_default().push(pair));
         pairs
     };
-    let for_each_row =
-        |(c, pairs): (&usize, &Twins)| pairs.len() as f64 / condition.iter().filter(|of| *of == c).count() as f64;
+    let mut rows: HashMap<usize, f64> = HashMap::new();
+    condition.iter().for_each(|c| *rows.entry(*c).or_default() += 1.0);
+    let for_each_row = |(c, pairs): (&usize, &Twins)| pairs.len() as f64 / rows[c];
     let mut met = of_condition(layout::twins(condition, &places, repeat, 0));
     met.retain(|c, pairs| for_each_row((c, pairs)) >= FEWEST);
     let mut all = of_condition(twins);
     let elsewhere = all.iter().filter(|(c, _)| !met.contains_key(c)).flat_map(|(_, pairs)| pairs.clone()).collect();
     all.extend(met);
-    let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min);
+    let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min).max(FEWEST);
     let thinned = |of: (&usize, &Twins)| {
         let share = fewest / for_each_row(of);
         let is_kept = |i: &usize| ((i + 1) as f64 * share).floor() > (*i as f64 * share).floor();
