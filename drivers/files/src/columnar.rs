@@ -1,5 +1,6 @@
 //! Parquet and Arrow in: columns of any number type, without gaps.
 
+use crate::ReadOptions;
 use crate::error::{FileError, FileFault};
 use crate::facts::{self, EMBEDDED};
 use crate::raw::RawTable;
@@ -17,26 +18,26 @@ const BATCH_ROWS: usize = 1 << 16;
 /// Whole numbers up to here are exact as doubles.
 const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
 
-pub(crate) fn read_parquet(name: &str, bytes: &[u8], leave: &[String]) -> Result<RawTable, FileError> {
+pub(crate) fn read_parquet(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<RawTable, FileError> {
     let fault = |fault: String| FileFault::Columnar(fault).in_file(name);
     let file = bytes::Bytes::copy_from_slice(bytes);
     let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|f| fault(f.to_string()))?;
     let schema = builder.schema().clone();
     let reader = builder.with_batch_size(BATCH_ROWS).build().map_err(|f| fault(f.to_string()))?;
-    collect(name, &schema, leave, reader)
+    collect(name, &schema, options, reader)
 }
 
-pub(crate) fn read_arrow(name: &str, bytes: &[u8], leave: &[String]) -> Result<RawTable, FileError> {
+pub(crate) fn read_arrow(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<RawTable, FileError> {
     let reader = arrow_ipc::reader::FileReader::try_new(Cursor::new(bytes), None)
         .map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
     let schema = reader.schema();
-    collect(name, &schema, leave, reader)
+    collect(name, &schema, options, reader)
 }
 
 fn collect(
     name: &str,
     schema: &Schema,
-    leave: &[String],
+    options: &ReadOptions,
     batches: impl Iterator<Item = Result<RecordBatch, ArrowError>>,
 ) -> Result<RawTable, FileError> {
     let embedded = schema.metadata().get(EMBEDDED);
@@ -47,9 +48,9 @@ fn collect(
     for batch in batches {
         let batch = batch.map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
         let arrays = batch.columns().iter().zip(&mut columns).zip(&names);
-        for ((array, column), column_name) in arrays.filter(|(_, name)| !leave.contains(name)) {
+        for ((array, column), column_name) in arrays.filter(|(_, name)| !options.leave.contains(name)) {
             let first = column.len();
-            append(array.as_ref(), column).map_err(|(row, fault)| {
+            append(array.as_ref(), column, options.leave_empty_rows).map_err(|(row, fault)| {
                 let mut error = fault.in_file(name).in_column(column_name);
                 error.place.row = row.map(|row| (first + row) as u64 + 1);
                 error
@@ -62,10 +63,15 @@ fn collect(
 /// A fault, and the row in the batch where one row is at fault.
 type At<T> = Result<T, (Option<usize>, FileFault)>;
 
-fn append(array: &dyn Array, column: &mut Vec<f64>) -> At<()> {
-    if let Some(row) = (array.null_count() > 0).then(|| (0..array.len()).find(|row| array.is_null(*row))).flatten() {
-        return Err((Some(row), FileFault::NotNumber { found: String::new() }));
+fn append(array: &dyn Array, column: &mut Vec<f64>, leave_empty: bool) -> At<()> {
+    let empty: Vec<usize> = match array.null_count() {
+        0 => Vec::new(),
+        _ => (0..array.len()).filter(|row| array.is_null(*row)).collect(),
+    };
+    if let Some(row) = empty.first().filter(|_| !leave_empty) {
+        return Err((Some(*row), FileFault::NotNumber { found: String::new() }));
     }
+    let first = column.len();
     match array.data_type() {
         DataType::Float64 => column.extend_from_slice(array.as_primitive::<Float64Type>().values()),
         DataType::Float32 => widen::<Float32Type>(array, column),
@@ -86,6 +92,7 @@ fn append(array: &dyn Array, column: &mut Vec<f64>) -> At<()> {
         DataType::Boolean => column.extend(array.as_boolean().values().iter().map(|on| f64::from(u8::from(on)))),
         other => return Err((None, FileFault::NotNumeric { found: other.to_string() })),
     }
+    empty.iter().for_each(|row| column[first + row] = f64::NAN);
     Ok(())
 }
 

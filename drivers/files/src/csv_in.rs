@@ -3,6 +3,7 @@
 //! Between the columns stands what is most frequent in the line of names: a comma, a semicolon or a tab. Where it is no
 //! comma, a number may have a comma for its point.
 
+use crate::ReadOptions;
 use crate::error::{FileError, FileFault, Wrong};
 use crate::raw::RawTable;
 use csv::ByteRecord;
@@ -26,8 +27,8 @@ pub(crate) fn gunzip(name: &str, bytes: &[u8]) -> Result<Vec<u8>, FileError> {
     }
 }
 
-/// The columns to `leave` stay empty.
-pub(crate) fn read(name: &str, bytes: &[u8], leave: &[String]) -> Result<RawTable, FileError> {
+/// The columns to leave stay empty, and an empty cell of a row to leave is no number.
+pub(crate) fn read(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<RawTable, FileError> {
     if let Err(fault) = std::str::from_utf8(bytes) {
         let at = fault.valid_up_to();
         return Err(FileFault::NotText(bytes[at]).at_line(name, line_at(bytes, at)));
@@ -46,10 +47,10 @@ pub(crate) fn read(name: &str, bytes: &[u8], leave: &[String]) -> Result<RawTabl
     let names = column_names(&record).map_err(|fault| fault.at_line(name, line_of_record(text, &record)))?;
     let rows = text.len() / (names.len() * 8);
     let mut columns: Vec<Vec<f64>> = names.iter().map(|_| Vec::with_capacity(rows)).collect();
-    let left: Vec<bool> = names.iter().map(|name| leave.contains(name)).collect();
+    let left: Vec<bool> = names.iter().map(|name| options.leave.contains(name)).collect();
     let (mut wrong, mut wrong_rows) = (Vec::new(), 0);
     while next(&mut record)? {
-        let Err((column, fault)) = take(&record, &names, &left, separator, &mut columns) else { continue };
+        let Err((column, fault)) = take(&record, &names, &left, options, separator, &mut columns) else { continue };
         wrong_rows += 1;
         if wrong.len() < TOLD_ROWS {
             wrong.push(Wrong { line: line_of_record(text, &record), column, fault });
@@ -69,6 +70,7 @@ fn take(
     record: &ByteRecord,
     names: &[String],
     left: &[bool],
+    options: &ReadOptions,
     separator: u8,
     columns: &mut [Vec<f64>],
 ) -> Result<(), (Option<String>, FileFault)> {
@@ -77,7 +79,8 @@ fn take(
     }
     let fields = columns.iter_mut().zip(record).zip(names).zip(left).filter(|(_, left)| !**left);
     for (((column, field), name), _) in fields {
-        let value = number(field, separator);
+        let empty = options.leave_empty_rows && field.trim_ascii().is_empty();
+        let value = if empty { Some(f64::NAN) } else { number(field, separator) };
         let found = || FileFault::NotNumber { found: String::from_utf8_lossy(field).into_owned() };
         column.push(value.ok_or_else(|| (Some(name.clone()), found()))?);
     }

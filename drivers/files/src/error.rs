@@ -5,7 +5,7 @@ use std::{fmt, io};
 
 /// A file that is refused: where, and what was expected.
 #[derive(Debug, thiserror::Error)]
-#[error("{place}: {fault}")]
+#[error("{place}: {fault}{}", if fault.is_of_empty_cells() { "; rows with empty cells can be left out" } else { "" })]
 pub struct FileError {
     pub place: Box<Place>,
     #[source]
@@ -123,6 +123,16 @@ fn shown(found: &str) -> String {
 }
 
 impl FileFault {
+    fn is_of_empty_cells(&self) -> bool {
+        match self {
+            Self::NotNumber { found } => found.trim().is_empty(),
+            Self::Rows { first, more, .. } => {
+                first.is_of_empty_cells() || more.iter().any(|wrong| wrong.fault.is_of_empty_cells())
+            }
+            _ => false,
+        }
+    }
+
     pub(crate) fn in_file(self, file: &str) -> FileError {
         FileError { place: Box::new(Place { file: file.to_owned(), ..Place::default() }), fault: self }
     }

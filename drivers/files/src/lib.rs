@@ -20,6 +20,7 @@ pub use facts::{meta_json, meta_path_of, parse_meta};
 pub use mat_out::write_mat;
 pub use options::{OptionFault, ReadOptions, parse_map, parse_scale};
 pub use parquet_out::write_parquet;
+pub use raw::LEFT_OUT_ROWS;
 pub use table_out::{TableColumn, write_table_csv, write_table_parquet};
 
 use jointbench_instrument::{Meta, RunTable, Trace};
@@ -56,7 +57,7 @@ impl Form {
 pub fn read(path: &Path, options: &ReadOptions) -> Result<RunTable, FileError> {
     let name = path.display().to_string();
     let bytes = fs::read(path).map_err(|fault| FileFault::Io(fault).in_file(&name))?;
-    let raw = raw_table(&name, &bytes, &options.leave)?;
+    let raw = raw_table(&name, &bytes, options)?;
     let beside = match (&options.meta_path, &options.meta, &raw.meta) {
         (Some(path), _, _) => Some(facts::read_meta(path)?),
         (None, None, None) => facts::beside(path).map(|path| facts::read_meta(&path)).transpose()?,
@@ -68,15 +69,15 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<RunTable, FileError> {
 /// Reads a run table that came over a wire. `name` tells the form and stands in messages; nothing is looked for beside it.
 pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<RunTable, FileError> {
     let meta = options.meta_path.as_deref().map(facts::read_meta).transpose()?;
-    raw_table(name, bytes, &options.leave)?.into_table(name, bytes, meta, options)
+    raw_table(name, bytes, options)?.into_table(name, bytes, meta, options)
 }
 
-fn raw_table(name: &str, bytes: &[u8], leave: &[String]) -> Result<raw::RawTable, FileError> {
+fn raw_table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<raw::RawTable, FileError> {
     match Form::of(name).ok_or_else(|| FileFault::UnknownForm.in_file(name))? {
-        Form::Csv => csv_in::read(name, bytes, leave),
-        Form::GzippedCsv => csv_in::read(name, &csv_in::gunzip(name, bytes)?, leave),
-        Form::Parquet => columnar::read_parquet(name, bytes, leave),
-        Form::Arrow => columnar::read_arrow(name, bytes, leave),
+        Form::Csv => csv_in::read(name, bytes, options),
+        Form::GzippedCsv => csv_in::read(name, &csv_in::gunzip(name, bytes)?, options),
+        Form::Parquet => columnar::read_parquet(name, bytes, options),
+        Form::Arrow => columnar::read_arrow(name, bytes, options),
     }
 }
 

@@ -16,6 +16,8 @@ pub struct ReadOptions {
     pub scale: Vec<(String, f64)>,
     /// Columns of the file that stay out, whatever they hold.
     pub leave: Vec<String>,
+    /// A row with an empty cell stays out, and is a gap in time. How many did is a fact of the run.
+    pub leave_empty_rows: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -4,6 +4,9 @@ use crate::error::{FileError, FileFault, Place};
 use crate::{Form, ReadOptions, csv_in, facts};
 use jointbench_instrument::{Meta, RunTable, Trace};
 
+/// The fact that says how many rows of the file were left out for their empty cells.
+pub const LEFT_OUT_ROWS: &str = "left_out_rows";
+
 pub(crate) struct RawTable {
     pub names: Vec<String>,
     pub columns: Vec<Vec<f64>>,
@@ -22,11 +25,13 @@ impl RawTable {
         self.leave(options).map_err(|fault| fault.in_file(name))?;
         self.rename(options).map_err(|fault| fault.in_file(name))?;
         self.scale(options).map_err(|fault| fault.in_file(name))?;
-        let mut meta = meta.or_else(|| options.meta.clone()).or(self.meta).unwrap_or_default();
+        let mut meta = meta.or_else(|| options.meta.clone()).or(self.meta.take()).unwrap_or_default();
+        let places = options.leave_empty_rows.then(|| self.leave_empty_rows(&mut meta));
         let channels = facts::take_resolutions(&mut meta, &self.names);
         RunTable::new(meta, Trace::from_columns(channels, self.columns)).map_err(|fault| {
             let mut place = Place { file: name.to_owned(), ..Place::default() };
-            match (fault.row(), Form::of(name)) {
+            let row = fault.row().map(|row| places.as_ref().map_or(row, |places| places[row]));
+            match (row, Form::of(name)) {
                 (Some(row), Some(Form::Csv)) => place.line = csv_in::line_of(bytes, row),
                 (Some(row), Some(Form::GzippedCsv)) => {
                     place.line = csv_in::gunzip(name, bytes).ok().and_then(|text| csv_in::line_of(&text, row));
@@ -49,6 +54,18 @@ impl RawTable {
             self.columns.remove(place);
         }
         Ok(())
+    }
+
+    /// The rows that stay, by their places in the file.
+    fn leave_empty_rows(&mut self, meta: &mut Meta) -> Vec<usize> {
+        let rows = self.columns.first().map_or(0, Vec::len);
+        let whole = |row: &usize| self.columns.iter().all(|column| !column[*row].is_nan());
+        let places: Vec<usize> = (0..rows).filter(whole).collect();
+        if places.len() < rows {
+            self.columns = self.columns.iter().map(|c| places.iter().map(|row| c[*row]).collect()).collect();
+            meta.other.insert(LEFT_OUT_ROWS.to_owned(), (rows - places.len()).into());
+        }
+        places
     }
 
     fn rename(&mut self, options: &ReadOptions) -> Result<(), FileFault> {

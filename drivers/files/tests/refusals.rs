@@ -31,7 +31,10 @@ fn text_is_refused_where_it_is_wrong() {
         &with("0,1,2\n\n1,1,fast\n"),
         "run.csv, line 4, column motor_current_a: expected a number, found “fast”",
     );
-    check_refused(&with("0,1,\n"), "run.csv, line 2, column motor_current_a: expected a number, found nothing");
+    check_refused(
+        &with("0,1,\n"),
+        "run.csv, line 2, column motor_current_a: expected a number, found nothing; rows with empty cells can be left out",
+    );
     check_refused(
         &with("0,1,2\r\n1,1\r\n"),
         "run.csv, line 3: expected 3 values as in the line of column names, found 2",

@@ -1,6 +1,8 @@
 //! What goes out comes in again bit by bit.
 
-use jointbench_files::{ReadOptions, meta_json, parse_meta, read, read_bytes, write, write_csv, write_parquet};
+use jointbench_files::{
+    LEFT_OUT_ROWS, ReadOptions, meta_json, parse_meta, read, read_bytes, write, write_csv, write_parquet,
+};
 use jointbench_instrument::{Channel, Kind, Meta, Trace};
 use proptest::prelude::*;
 
@@ -86,6 +88,23 @@ fn a_file_finds_its_facts_beside_it() {
     std::fs::rename(folder.path().join("run-1.csv"), folder.path().join("other.csv")).unwrap();
     let refused = read(&folder.path().join("other.csv"), &ReadOptions::default()).unwrap_err().to_string();
     assert!(refused.contains("a table of kind stiffness needs"), "the facts of the folder hold: {refused}");
+}
+
+#[test]
+fn rows_with_empty_cells_stay_out_where_that_is_asked_for() {
+    let csv = "time_s,motor_position_rad,motor_current_a\n0,1,1\n1,,2\n2,3,3\n3,4,x\n";
+    let meta = Some(Meta { kind: Some(Kind::Friction), ..Meta::default() });
+    let options = ReadOptions { meta, leave_empty_rows: true, ..ReadOptions::default() };
+    let table = read_bytes("log.csv", csv.replace('x', "4").as_bytes(), &options).unwrap();
+    assert_eq!(table.column("time_s"), Some(&[0.0, 2.0, 3.0][..]));
+    assert_eq!(table.meta().other[LEFT_OUT_ROWS], 1);
+
+    let refused = |csv: &str, options| read_bytes("log.csv", csv.as_bytes(), options).unwrap_err().to_string();
+    assert!(refused(csv, &options).contains("line 5, column motor_current_a: expected a number, found “x”"));
+    // What the table as a whole refuses is told by its line in the file, too.
+    assert!(refused(&csv.replace("3,4,x", "2,4,4"), &options).contains("line 5"));
+    let silent = ReadOptions { leave_empty_rows: false, ..options.clone() };
+    assert!(refused(csv, &silent).contains("rows with empty cells can be left out"));
 }
 
 #[test]

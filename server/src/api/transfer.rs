@@ -74,6 +74,8 @@ pub struct ImportForm {
     scale: Option<Vec<String>>,
     /// Name in the file of a column that stays out, whatever it holds; may be repeated.
     leave: Option<Vec<String>>,
+    /// Whether rows with an empty cell stay out; refused otherwise. How many did is told with the run.
+    leave_empty_rows: Option<bool>,
 }
 
 /// Takes a measured file in as a run; a refused file leaves nothing behind
@@ -103,8 +105,10 @@ async fn read_form(mut form: Multipart, name: Option<String>) -> Result<ImportRe
             "map" => request.map.push(part.text().await.map_err(unreadable)?),
             "scale" => request.scale.push(part.text().await.map_err(unreadable)?),
             "leave" => request.leave.push(part.text().await.map_err(unreadable)?),
+            "leave_empty_rows" => request.leave_empty_rows = part.text().await.map_err(unreadable)? == "true",
             other => {
-                return Err(Problem::malformed(format!("part {other:?}: expected file, meta, map, scale or leave")));
+                let expected = "file, meta, map, scale, leave or leave_empty_rows";
+                return Err(Problem::malformed(format!("part {other:?}: expected {expected}")));
             }
         }
     }

@@ -5,7 +5,7 @@ use super::exit::{Done, Exit};
 use super::files;
 use super::print;
 use crate::lab::{Offer, next_run, reread};
-use jointbench_files::{ReadOptions, parse_map, parse_scale};
+use jointbench_files::{LEFT_OUT_ROWS, ReadOptions, parse_map, parse_scale};
 use jointbench_instrument::RunTable;
 use jointbench_model::{ModelSpec, Open, Options};
 use serde::Serialize;
@@ -112,8 +112,12 @@ fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
 }
 
 pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<RunTable, Exit> {
-    let (meta_path, leave) = (meta.map(Path::to_owned), columns.leave.clone());
-    let mut options = ReadOptions { meta_path, leave, ..ReadOptions::default() };
+    let mut options = ReadOptions {
+        meta_path: meta.map(Path::to_owned),
+        leave: columns.leave.clone(),
+        leave_empty_rows: columns.leave_empty_rows,
+        ..ReadOptions::default()
+    };
     for pair in &columns.map {
         options.map.push(parse_map(pair)?);
     }
@@ -127,7 +131,11 @@ pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Resul
             "there is no file {run}; run {run} of the store becomes one with: jointbench export {run}"
         )));
     }
-    Ok(jointbench_files::read(&table, &options)?)
+    let run = jointbench_files::read(&table, &options)?;
+    if let Some(rows) = run.meta().other.get(LEFT_OUT_ROWS) {
+        eprintln!("{}: rows left out for an empty cell: {rows}", table.display());
+    }
+    Ok(run)
 }
 
 fn options(preparation: &Preparation) -> Result<Options, Exit> {

@@ -130,6 +130,7 @@ fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportReq
         map: columns.map.clone(),
         scale: columns.scale.clone(),
         leave: columns.leave.clone(),
+        leave_empty_rows: columns.leave_empty_rows,
     })
 }
 
@@ -151,6 +152,7 @@ fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
     request.map.iter().for_each(|pair| part("\"map\"", pair.as_bytes()));
     request.scale.iter().for_each(|pair| part("\"scale\"", pair.as_bytes()));
     request.leave.iter().for_each(|name| part("\"leave\"", name.as_bytes()));
+    part("\"leave_empty_rows\"", request.leave_empty_rows.to_string().as_bytes());
     body.extend_from_slice(format!("--{boundary}--\r\n").as_bytes());
     client.post_bytes("/runs/import", &format!("multipart/form-data; boundary={boundary}"), &body)
 }

@@ -4,7 +4,8 @@ use super::{Answer, Lab, LabError};
 use crate::store::{NewRun, RunFilter, RunRecord};
 use crate::view::Run;
 use jointbench_files::{
-    ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_mat, write_parquet,
+    LEFT_OUT_ROWS, ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_mat,
+    write_parquet,
 };
 use jointbench_instrument::{Meta, RunTable, Trace};
 use serde::Deserialize;
@@ -60,6 +61,7 @@ pub struct ImportRequest {
     pub scale: Vec<String>,
     /// Names in the file.
     pub leave: Vec<String>,
+    pub leave_empty_rows: bool,
 }
 
 impl Lab {
@@ -76,7 +78,10 @@ impl Lab {
 
     async fn keep_table(&self, name: &str, mut source: serde_json::Value, table: RunTable, by: &str) -> Answer<Run> {
         let kind = table.kind().to_string();
-        let attention = jointbench_model::prepare::attention(&table);
+        let mut attention = jointbench_model::prepare::attention(&table);
+        if let Some(rows) = table.meta().other.get(LEFT_OUT_ROWS) {
+            attention.push(format!("rows left out for an empty cell: {rows}"));
+        }
         if !attention.is_empty() {
             source[ATTENTION] = attention.into();
         }
@@ -148,7 +153,11 @@ impl Lab {
 }
 
 fn read(request: &ImportRequest) -> Answer<RunTable> {
-    let mut options = ReadOptions { leave: request.leave.clone(), ..ReadOptions::default() };
+    let mut options = ReadOptions {
+        leave: request.leave.clone(),
+        leave_empty_rows: request.leave_empty_rows,
+        ..ReadOptions::default()
+    };
     for pair in &request.map {
         options.map.push(parse_map(pair)?);
     }

@@ -48,6 +48,17 @@ fn a_refused_file_is_located_and_leaves_nothing() {
 }
 
 #[test]
+fn rows_with_empty_cells_stay_out_where_that_is_asked_for() {
+    let daemon = TestDaemon::start();
+    let gap = GOOD.replace("0.01,0.2", "0.01,");
+    let (status, problem) = upload(&daemon, &gap, &[("meta", META)]);
+    assert!(status == 422 && problem["detail"].as_str().unwrap().contains("can be left out"), "{problem}");
+    let (status, run) = upload(&daemon, &gap, &[("meta", META), ("leave_empty_rows", "true")]);
+    assert_eq!((status, &run["rows"]), (201, &2.into()), "{run}");
+    assert!(run["provenance"]["imported"]["attention"].to_string().contains("for an empty cell: 1"), "{run}");
+}
+
+#[test]
 fn what_goes_out_comes_in_again_unchanged() {
     let daemon = TestDaemon::start();
     let (status, run) = upload(&daemon, GOOD, &[("meta", META), ("scale", "motor_current_a=2")]);

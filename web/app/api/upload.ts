@@ -15,7 +15,7 @@ export function pair(files: readonly File[]): Upload[] {
 }
 
 /** Sent as a form, which the typed client does not build. */
-export async function importRun({ file, meta }: Upload, columns: { map?: string[]; scale?: string[]; leave?: string[] } = {}): Promise<Run> {
+export async function importRun({ file, meta }: Upload, columns: { map?: string[]; scale?: string[]; leave?: string[]; leave_empty_rows?: string[] } = {}): Promise<Run> {
 	const form = new FormData();
 	form.append('file', file, file.name);
 	if (meta) form.append('meta', await meta.text());

@@ -296,6 +296,9 @@ pub struct Columns {
     /// Leave a column of the file out, such as one of remarks; may be given again
     #[arg(long, value_name = "NAME")]
     pub leave: Vec<String>,
+    /// Leave out rows with an empty cell, which are refused otherwise; how many is told
+    #[arg(long)]
+    pub leave_empty_rows: bool,
 }
 
 /// How the run is prepared. Everything left out is chosen from the data and told with the fit.
