@@ -11,7 +11,7 @@ const smaller: Plugin = {
 	apply: 'build',
 	async generateBundle(_, bundle) {
 		for (const chunk of Object.values(bundle)) {
-			if (chunk.type === 'chunk') chunk.code = (await minify(chunk.code, { module: true, ecma: 2020, compress: { passes: 2, keep_fargs: false, unsafe: true, unsafe_arrows: true, hoist_funs: true } })).code ?? chunk.code;
+			if (chunk.type === 'chunk') chunk.code = (await minify(chunk.code, { module: true, ecma: 2020, compress: { passes: 2, keep_fargs: false, unsafe: true, unsafe_arrows: true, hoist_funs: true, lhs_constants: false } })).code ?? chunk.code;
 		}
 	},
 };
