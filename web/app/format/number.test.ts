@@ -33,6 +33,8 @@ describe('numbers as an instrument shows them', () => {
 		expect(estimate(0.10123, [0.097, 0.105])).toBe('0.1012');
 		expect(estimate(0.10123, [0.05, 0.15])).toBe('0.101');
 		expect(estimate(1, [null, null])).toBe('1.000');
+		expect(`${estimate(9e-5, [6.1e-5, 1.19e-4])} ${bounds([6.1e-5, 1.19e-4])}`).toBe('0.000090 [0.000061, 0.000119]');
+		expect(bounds([-2e-5, 3e-5])).toBe('[−2.0·10⁻⁵, 3.0·10⁻⁵]');
 		expect(bounds([0.5, null])).toBe('[0.5000, ?]');
 	});
 

@@ -2,12 +2,12 @@
 
 const MINUS = '−';
 
-/** `digits` significant digits, no exponent between 1e-4 and 1e6. */
-export function figure(value: number | null | undefined, digits = 4): string {
+/** `digits` significant digits, no exponent from `least` to 1e6. */
+export function figure(value: number | null | undefined, digits = 4, least = 1e-4): string {
 	if (value == null || !Number.isFinite(value)) return '–';
 	if (value === 0) return '0';
 	const size = Math.abs(value);
-	if (size < 1e-4 || size >= 1e6) return exponent(value, Math.max(0, digits - 1));
+	if (size < least || size >= 1e6) return exponent(value, Math.max(0, digits - 1));
 	const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
 	return value.toFixed(Math.min(decimals, 8)).replace('-', MINUS);
 }
@@ -80,13 +80,13 @@ export function chance(p: number, atMost = false): string {
 /** Ends of an interval; `null` where the data sets no bound. */
 export type Interval = readonly (number | null)[];
 
-/** A value (or an end of its interval) with as many digits as the interval deserves. */
+/** A value (or an end of its interval) with as many digits as the interval deserves, written as its larger end is. */
 export function estimate(value: number | null, interval: Interval): string {
 	const [low, high] = interval;
 	const width = low == null || high == null ? 0 : Math.abs(high - low) / 2;
 	if (value === null || !(width > 0) || value === 0) return figure(value, 4);
 	const needed = Math.floor(Math.log10(Math.abs(value))) - Math.floor(Math.log10(width)) + 2;
-	return figure(value, Math.min(7, Math.max(2, needed)));
+	return figure(value, Math.min(7, Math.max(2, needed)), Math.max(Math.abs(low!), Math.abs(high!)) < 1e-4 ? 1e-4 : 1e-6);
 }
 
 /** `[0.097, 0.105]` */
