@@ -24,7 +24,8 @@ impl Lab {
             Some(shown) => self.diagnoses(shown.id).await?.pop(),
             None => None,
         };
-        let report = Report { run, notes, identification, versions, diagnosis };
+        let titles = self.effects(Some(&run.summary.kind)).await?.into_iter().map(|one| (one.id, one.title)).collect();
+        let report = Report { run, notes, identification, versions, diagnosis, titles };
         tokio::task::spawn_blocking(move || report.html())
             .await
             .map_err(|fault| LabError::Internal(format!("the report of run {id} failed: {fault}")))

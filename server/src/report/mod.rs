@@ -12,7 +12,7 @@ use jointbench_model::words;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use number::with_interval;
 use serde_json::{Map, Value};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// What is told of a run.
 pub struct Report {
@@ -25,6 +25,8 @@ pub struct Report {
     pub versions: Vec<Model>,
     /// Of that version.
     pub diagnosis: Option<Diagnosis>,
+    /// What effects are called, by their ids.
+    pub titles: HashMap<String, String>,
 }
 
 impl Report {
@@ -95,13 +97,13 @@ impl Report {
         let unit = &model.fit.unit;
         html! {
             h2 { "Model" }
-            p { (model.effects.join(" + ")) }
+            p { (model.effects.iter().map(|id| self.titled(id)).collect::<Vec<_>>().join(" + ")) }
             table {
                 tr { th { "Version" } th { "Change" } th.figure { "Held-out error" } td { } }
                 @for version in &self.versions {
                     tr {
                         td { (version.id) }
-                        td { (change(version)) }
+                        td { (self.change(version)) }
                         td.figure { (words::figure(version.validation_rms, unit)) }
                         td width="40%" { span.bar style=(format!("width: {:.1}%", 100.0 * version.validation_rms / most)) {} }
                     }
@@ -119,7 +121,7 @@ impl Report {
                     @let ends = parameter.ci95[0].zip(parameter.ci95[1]).map(|(low, high)| [low, high]);
                     @let (value, interval) = with_interval(parameter.value, ends, &parameter.unit);
                     tr {
-                        td { (parameter.effect) } td { (parameter.name) }
+                        td { (self.titled(&parameter.effect)) } td { (parameter.name) }
                         td.figure { (value) } td.figure { (interval.unwrap_or_default()) }
                         td { @if parameter.state != ParameterState::Ok { (parameter.note.clone().unwrap_or_default()) } }
                     }
@@ -129,7 +131,7 @@ impl Report {
                 p.quiet { (format!("{} and {} trade off (correlation {:.2}).", pair.first, pair.second, pair.correlation)) }
             }
             @for note in &model.fit.notes { p.quiet { (note) } }
-            @if let Some(diagnosis) = &self.diagnosis { (diagnosed(diagnosis)) }
+            @if let Some(diagnosis) = &self.diagnosis { (self.diagnosed(diagnosis)) }
         }
     }
 
@@ -144,6 +146,49 @@ impl Report {
             (pairs(&self.run.provenance.iter().filter(|(name, _)| *name != "bench_description")
                 .map(|(name, value)| (name.clone(), value.clone())).collect()))
             @if let Some(text) = text { p { "Bench description" } pre { (text) } }
+        }
+    }
+
+    fn titled<'s>(&'s self, effect: &'s str) -> &'s str {
+        self.titles.get(effect).map_or(effect, String::as_str)
+    }
+
+    fn change(&self, version: &Model) -> String {
+        match version.parent {
+            None => "start".to_owned(),
+            Some(_) => {
+                let added = version.added.iter().map(|id| format!("+ {}", self.titled(id)));
+                let removed = version.removed.iter().map(|id| format!("− {}", self.titled(id)));
+                let reasons: BTreeSet<&str> = version.excluded.iter().map(|one| one.reason.as_str()).collect();
+                let without = reasons.into_iter().map(|reason| format!("without samples: {reason}"));
+                added.chain(removed).chain(without).collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
+
+    fn diagnosed(&self, diagnosis: &Diagnosis) -> Markup {
+        let found = &diagnosis.finding;
+        let verdict = match (found.verdict, &found.undecided) {
+            (Verdict::Adequate, Some(_)) => "Cannot be decided",
+            (_, Some(_)) => "The columns contradict each other",
+            (Verdict::Adequate, None) => "Adequate",
+            (Verdict::MissingEffect, None) => "An effect is missing",
+            (Verdict::UnexplainedStructure, None) => "Unexplained structure",
+        };
+        // What columns suggest that contradict each other is no advice.
+        let is_advice = found.undecided.is_none() || found.verdict == Verdict::Adequate;
+        html! {
+            h2 { "Diagnosis" }
+            p.verdict { strong { (verdict) ". " } (found.summary) }
+            @if !found.regions.is_empty() {
+                p { "Where the model fails:" }
+                ul { @for region in found.regions.iter().take(5) { li { (region.sentence) } } }
+            }
+            @if is_advice && !found.suggestions.is_empty() {
+                p { "What is missing:" }
+                ul { @for suggestion in found.suggestions.iter().take(5) { li { strong { (self.titled(&suggestion.effect)) } ": " (suggestion.why) } } }
+            }
+            @if let Some(experiment) = found.experiment.as_ref().filter(|_| is_advice) { p { "What to measure next: " (experiment.why) } }
         }
     }
 }
@@ -183,45 +228,6 @@ fn result(found: &Identification) -> Markup {
             }
         }
         p.quiet { "Worked out from the samples by " (found.software) "." }
-    }
-}
-
-fn change(version: &Model) -> String {
-    match version.parent {
-        None => "start".to_owned(),
-        Some(_) => {
-            let added = version.added.iter().map(|id| format!("+ {id}"));
-            let removed = version.removed.iter().map(|id| format!("− {id}"));
-            let reasons: BTreeSet<&str> = version.excluded.iter().map(|one| one.reason.as_str()).collect();
-            let without = reasons.into_iter().map(|reason| format!("without samples: {reason}"));
-            added.chain(removed).chain(without).collect::<Vec<_>>().join(", ")
-        }
-    }
-}
-
-fn diagnosed(diagnosis: &Diagnosis) -> Markup {
-    let found = &diagnosis.finding;
-    let verdict = match (found.verdict, &found.undecided) {
-        (Verdict::Adequate, Some(_)) => "Cannot be decided",
-        (_, Some(_)) => "The columns contradict each other",
-        (Verdict::Adequate, None) => "Adequate",
-        (Verdict::MissingEffect, None) => "An effect is missing",
-        (Verdict::UnexplainedStructure, None) => "Unexplained structure",
-    };
-    // What columns suggest that contradict each other is no advice.
-    let is_advice = found.undecided.is_none() || found.verdict == Verdict::Adequate;
-    html! {
-        h2 { "Diagnosis" }
-        p.verdict { strong { (verdict) ". " } (found.summary) }
-        @if !found.regions.is_empty() {
-            p { "Where the model fails:" }
-            ul { @for region in found.regions.iter().take(5) { li { (region.sentence) } } }
-        }
-        @if is_advice && !found.suggestions.is_empty() {
-            p { "What is missing:" }
-            ul { @for suggestion in found.suggestions.iter().take(5) { li { strong { (suggestion.effect) } ": " (suggestion.why) } } }
-        }
-        @if let Some(experiment) = found.experiment.as_ref().filter(|_| is_advice) { p { "What to measure next: " (experiment.why) } }
     }
 }
 

@@ -82,12 +82,12 @@ fn a_run_is_measured_fitted_diagnosed_and_improved() {
     assert_eq!((&child["excluded"], &child["idle"]), (&json!([]), &json!(true)), "{child}");
     let of = |model: &serde_json::Value| daemon.get_raw(&format!("/api/v1/runs/{id}/report?model={model}"));
     let page = of(&child["id"]).body_mut().read_to_string().unwrap();
-    assert!(page.contains("+ direction_offset") && page.contains("noise floor"), "where the version came from");
+    assert!(page.contains("+ Direction offset") && page.contains("noise floor"), "where the version came from");
     assert!(!page.contains("<script") && !page.contains("src="), "complete in itself");
     let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
-    assert!(!page.contains("+ direction_offset"), "an idle version is told of where it is asked for");
+    assert!(!page.contains("+ Direction offset"), "an idle version is told of where it is asked for");
     let page = of(&model["id"]).body_mut().read_to_string().unwrap();
-    assert!(!page.contains("direction_offset") && page.contains("noise floor"), "an earlier version and its diagnosis");
+    assert!(!page.contains("Direction offset") && page.contains("noise floor"), "an earlier version and its diagnosis");
     assert_eq!(of(&json!(99_999)).status(), 404, "of no other run");
 }
 
