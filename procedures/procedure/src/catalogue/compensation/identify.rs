@@ -149,7 +149,7 @@ fn bars(followed: &[Followed]) -> Figure {
     };
     Figure {
         name: "ratio".into(),
-        title: "Errors as a share of those without compensation (table 4.7)".into(),
+        title: "Errors as a share of those without compensation".into(),
         form: Form::Cartesian,
         x: Axis::names("compensation", followed.iter().map(|one| one.way.words()[1])),
         y: Axis::of("share of none", ""),

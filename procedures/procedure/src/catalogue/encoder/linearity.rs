@@ -148,11 +148,11 @@ impl Procedure for EncoderLinearity {
     }
 }
 
-/// Whether more than the terms of the thesis, table and velocity, is needed for the bits that go beyond its 14.
-fn what_it_takes(thesis: f64, full: f64) -> String {
-    match (thesis >= BEYOND_BITS, full >= BEYOND_BITS) {
-        (true, _) => format!("The terms of the thesis, table and velocity, are enough for {BEYOND_BITS} bits."),
-        (false, true) => format!("{BEYOND_BITS} bits take the direction term, which the thesis does not have."),
+/// Whether more than table and velocity, the terms of the thesis, is needed for the bits that go beyond its 14.
+fn what_it_takes(without_direction: f64, full: f64) -> String {
+    match (without_direction >= BEYOND_BITS, full >= BEYOND_BITS) {
+        (true, _) => format!("Table and velocity term are enough for {BEYOND_BITS} bits."),
+        (false, true) => format!("{BEYOND_BITS} bits take the direction term."),
         (false, false) => format!("{BEYOND_BITS} bits are not reached, with the direction term neither."),
     }
 }
