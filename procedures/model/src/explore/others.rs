@@ -7,6 +7,8 @@ use crate::report::{Invisible, LeftOut, Silent};
 use crate::select::{Search, Silence};
 use crate::{late, memory};
 
+const TOO_LARGE: &str = "only one that is larger than all that was measured would have been seen";
+
 #[derive(Default)]
 pub struct Others {
     /// Looked for and not found, with the smallest that would have been.
@@ -26,6 +28,7 @@ impl Others {
     ) -> Self {
         let silences: Vec<Silence> =
             search.silences().into_iter().chain(memory::silences(end)).chain(late::silence(end)).collect();
+        let largest = end.prepared.main.target.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let mut others = Self::default();
         let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
         for effect in end.spec.known().filter(is_out) {
@@ -37,6 +40,10 @@ impl Others {
             if let Some(why) = tried.or_else(|| given(effect, end)) {
                 others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or_else(|| why.into()) });
             } else if let Some(silence) = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite()) {
+                if silence.detectable_rms > largest {
+                    others.invisible.push(Invisible { effect: id.into(), why: TOO_LARGE.into() });
+                    continue;
+                }
                 let sought = sought(effect, end);
                 others.silent.push(Silent {
                     effect: id.into(),
