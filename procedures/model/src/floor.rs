@@ -29,7 +29,8 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> No
     // What depends on an angle comes again where that does.
     let met: Vec<_> = twins.iter().copied().filter(|pair| !problem.other_angles.contains(pair)).collect();
     let elsewhere = twins.len() - met.len();
-    let (again, again_of) = Pairs::sums(problem, residual, if met.len() < FEWEST { &twins } else { &met });
+    let of_met = (elsewhere > 0 && met.len() >= FEWEST).then(|| Pairs::sums(problem, residual, &met));
+    let (again, again_of) = of_met.as_ref().map_or((&all, &of_piece), |(again, of)| (again, of));
     NoiseFloor {
         rms: Some((all.noise / all.count).sqrt()),
         ci95: interval(&all, &of_piece),
@@ -45,7 +46,7 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> No
             if elsewhere > 0 { format!(", {elsewhere} of them at other angles") } else { String::new() }
         ),
         repeatable_share: Some(again.share().max(0.0)),
-        repeatable_ci95: Some(share_interval(&again, &again_of)),
+        repeatable_ci95: Some(share_interval(again, again_of)),
     }
 }
 

@@ -37,13 +37,12 @@ impl Others {
             let tied = tied
                 .map(|(named, _)| format!("{named} is in the model in its place, and this run cannot tell them apart"));
             let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words());
+            let silence = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
             if let Some(why) = tried.or_else(|| given(effect, end)) {
                 others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or_else(|| why.into()) });
-            } else if let Some(silence) = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite()) {
-                if silence.detectable_rms > largest {
-                    others.invisible.push(Invisible { effect: id.into(), why: TOO_LARGE.into() });
-                    continue;
-                }
+            } else if silence.is_some_and(|silence| silence.detectable_rms > largest) {
+                others.invisible.push(Invisible { effect: id.into(), why: TOO_LARGE.into() });
+            } else if let Some(silence) = silence {
                 let sought = sought(effect, end);
                 others.silent.push(Silent {
                     effect: id.into(),
