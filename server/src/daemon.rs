@@ -17,6 +17,8 @@ pub struct DaemonSettings {
     /// Lets its holder look and stop, and nothing else.
     pub read_token: Option<String>,
     pub benches: Vec<BenchDescription>,
+    /// The file of `jointbench`, for those parts of the daemon that are processes of their own.
+    pub program: PathBuf,
 }
 
 pub struct Daemon {
@@ -32,7 +34,7 @@ impl Daemon {
         let tokens = tokens(&settings)?;
         let listener = TcpListener::bind(settings.listen).await.map_err(|fault| taken(settings.listen, &fault))?;
         let address = listener.local_addr().map_err(|fault| taken(settings.listen, &fault))?;
-        let lab = Lab::open(&settings.data, settings.benches, tokens).await?;
+        let lab = Lab::open(&settings.data, settings.benches, tokens, settings.program).await?;
         let router = api::router(lab.clone());
         let server = tokio::spawn(async move {
             if let Err(fault) = axum::serve(listener, router).await {

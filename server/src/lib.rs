@@ -9,6 +9,7 @@ pub mod config;
 pub mod daemon;
 pub mod lab;
 pub mod live;
+pub mod program;
 pub mod report;
 pub mod store;
 pub mod view;

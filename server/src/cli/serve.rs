@@ -32,7 +32,8 @@ pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescripti
         benches.iter_mut().for_each(|bench| bench.record = Some(folder.join(&bench.name)));
     }
     let data = place.data.unwrap_or_else(|| PathBuf::from(data));
-    DaemonSettings { listen: place.listen, data, token: place.token, read_token: place.read_token, benches }
+    let program = crate::program::own();
+    DaemonSettings { listen: place.listen, data, token: place.token, read_token: place.read_token, benches, program }
 }
 
 pub(super) fn runtime() -> Result<tokio::runtime::Runtime, Exit> {

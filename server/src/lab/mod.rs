@@ -43,7 +43,7 @@ use crate::view::AutopilotState;
 use autopilot::Flights;
 use jointbench_procedure::{RunState, Safe};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 type Answer<T> = Result<T, LabError>;
@@ -59,6 +59,8 @@ struct Inner {
     hub: Hub,
     benches: Vec<BenchHandle>,
     tokens: Tokens,
+    /// The file of `jointbench`.
+    program: PathBuf,
     flights: Flights,
     /// Whose turn it is to work out what effects are worth.
     worth: tokio::sync::Mutex<()>,
@@ -71,7 +73,12 @@ struct Inner {
 impl Lab {
     /// Opens the store, ends what another daemon has left open, and starts one thread for each bench, which secures it.
     /// Nothing that was interrupted starts again.
-    pub async fn open(data: &Path, descriptions: Vec<BenchDescription>, tokens: Tokens) -> Answer<Lab> {
+    pub async fn open(
+        data: &Path,
+        descriptions: Vec<BenchDescription>,
+        tokens: Tokens,
+        program: PathBuf,
+    ) -> Answer<Lab> {
         let store = Store::open(data).await?;
         interrupt_autopilots(&store).await?;
         let mut interrupted: BTreeMap<String, Vec<i64>> = BTreeMap::new();
@@ -101,6 +108,7 @@ impl Lab {
                 hub,
                 benches,
                 tokens,
+                program,
                 flights: Flights::default(),
                 worth: Default::default(),
                 earlier: Default::default(),
@@ -121,12 +129,18 @@ impl Lab {
                 hub: Hub::new(),
                 benches: Vec::new(),
                 tokens: Tokens::default(),
+                program: crate::program::own(),
                 flights: Flights::default(),
                 worth: Default::default(),
                 earlier: Default::default(),
                 first: Default::default(),
             }),
         }
+    }
+
+    /// The file of `jointbench`, for parts of the daemon that are processes of their own.
+    pub fn program(&self) -> &Path {
+        &self.inner.program
     }
 
     pub fn hub(&self) -> &Hub {

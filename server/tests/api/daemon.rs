@@ -33,6 +33,7 @@ pub fn settings(data: &Path, pace: Option<f64>) -> DaemonSettings {
         token: None,
         read_token: None,
         benches: vec![BenchDescription::mock(BENCH, mock)],
+        program: env!("CARGO_BIN_EXE_jointbench").into(),
     }
 }
 
