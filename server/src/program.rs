@@ -1,6 +1,9 @@
 //! This program itself: parts of the daemon run as processes of their own, from the same file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+use tracing::level_filters::LevelFilter;
 
 /// The file of the program that runs now. On Linux the name still leads to it after an update has replaced the file, so
 /// that a daemon never starts parts of another version.
@@ -10,4 +13,24 @@ pub fn own() -> PathBuf {
     }
     // Where the system does not tell it, the search path may.
     std::env::current_exe().unwrap_or_else(|_| PathBuf::from("jointbench"))
+}
+
+static LOG_FORM: OnceLock<&'static str> = OnceLock::new();
+
+/// The form of the log, which the parts write in too.
+pub fn set_log_form(form: &'static str) {
+    LOG_FORM.get_or_init(|| form);
+}
+
+/// A part of the daemon, as a process of its own: what it tells in its log is what this process tells.
+pub fn part(program: &Path, name: &str) -> Command {
+    let mut command = Command::new(program);
+    command.arg(name);
+    if let Some(form) = LOG_FORM.get() {
+        command.args(["--log", form]);
+    }
+    if std::env::var_os("RUST_LOG").is_none() {
+        command.env("RUST_LOG", LevelFilter::current().to_string());
+    }
+    command
 }

@@ -10,11 +10,12 @@ use jointbench_instrument::roles::{
     AlignmentStage, CurrentSource, Identity, Instrument, JointController, PositionCounter, Thermometer, TorqueSensor,
 };
 use jointbench_instrument::{Bench, Clock, Fault, Limits};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
 /// How each instrument is reached. Absence is an empty slot.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct InstrumentSettings {
     pub joint: JointSettings,
     pub torque_sensor: Option<TorqueSensorSettings>,
@@ -25,7 +26,7 @@ pub struct InstrumentSettings {
     pub thermometer: Option<AdamSettings>,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum JointSettings {
     Odrive(OdriveSettings),
     Puma(PumaSettings),
@@ -60,7 +61,7 @@ impl JointSettings {
     }
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum TorqueSensorSettings {
     Lorenz(LorenzSettings),
     /// On the sensor's analogue output.

@@ -3,9 +3,10 @@
 use crate::skew::align;
 use crate::zero::take_off;
 use crate::{Kind, Meta, Trace};
+use serde::{Deserialize, Serialize};
 
 /// One run, ready for a model: the required columns are there, all values of the time are finite and rising.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunTable {
     kind: Kind,
     meta: Meta,

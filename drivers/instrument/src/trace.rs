@@ -28,7 +28,7 @@ impl Channel {
 }
 
 /// Rows of samples held as columns of equal length.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Trace {
     channels: Vec<Channel>,
     columns: Vec<Vec<f64>>,

@@ -42,7 +42,7 @@ impl Continues {
 }
 
 /// What a run has done of its procedure's whole plan.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Done {
     /// Steps up to the last one that was finished.
     pub steps: usize,

@@ -18,7 +18,7 @@ pub enum Safe {
     UnsafeUnknown,
 }
 
-/// What a run can be asked for, by a person all but the last.
+/// What a run can be asked for, by a person all but the last two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
@@ -36,10 +36,12 @@ pub enum Control {
     EStop,
     /// The program that holds the run is told to end: as `Abort`.
     Quit,
+    /// The part of the program that stores the run has died: as `Abort`, and the run counts as interrupted.
+    StorageLost,
 }
 
 /// What a run is asked for, and by whom, where that is known.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Demand {
     pub control: Control,
     pub by: Option<String>,

@@ -1,9 +1,10 @@
 //! Where a stage holds the sensor of the encoder under test during a step, and the hunt for where it no longer counts.
 
 use jointbench_instrument::roles::Pose;
+use serde::{Deserialize, Serialize};
 
 /// Where the stage is during a step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Place {
     /// Where it was left.
     #[default]
@@ -16,7 +17,7 @@ pub enum Place {
 
 /// A way out of a pose at which the periods are consistent, to be followed until they are not: in equal strides first, then
 /// by halving the last one. Every try is approached from the consistent side.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
     pub from: Pose,
     pub to: Pose,

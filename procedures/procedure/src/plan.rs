@@ -1,12 +1,13 @@
 //! What a procedure decides: a list of steps with their set-points over time. Pure data; the engine acts on it.
 
-use crate::catalogue::BrakeModel;
+use crate::catalogue::{BrakeModel, procedure};
 use crate::continuing::Done;
 use crate::place::Place;
 use crate::profile::Profile;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::roles::PositionCounter;
 use jointbench_instrument::{Bench, Kind, Limits, Meta, RunTable};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -60,7 +61,7 @@ fn counts(encoder: &Option<Box<dyn PositionCounter>>) -> Option<f64> {
 }
 
 /// Which part of a plan a step belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// Skipped as soon as the joint is steady ([`Plan::steady`]).
     WarmUp,
@@ -68,7 +69,7 @@ pub enum Phase {
 }
 
 /// The history that a step begins with. A pause takes it away; resuming restores it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Before {
     /// The brake as the step before has left it: a pause keeps its current, and more is approached from below.
     #[default]
@@ -80,7 +81,7 @@ pub enum Before {
 }
 
 /// What the drive holds beside or instead of the velocity of a step.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Drive {
     /// The velocity, by its own loop.
     #[default]
@@ -92,7 +93,7 @@ pub enum Drive {
 }
 
 /// Where a current that is fed forward comes from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Feed {
     /// Over the time of the step [A].
     Planned(Profile),
@@ -102,7 +103,7 @@ pub enum Feed {
 }
 
 /// Ends a stretch of current alone: a joint that has broken away is caught by the velocity loop.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Until {
     /// Samples in a row in which the motor has moved on in the current's direction.
     pub increases: u32,
@@ -111,7 +112,7 @@ pub struct Until {
 }
 
 /// One step: a checkpoint at its end, repeated from its beginning after a pause.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     pub label: String,
     pub phase: Phase,
@@ -149,7 +150,7 @@ impl Step {
 }
 
 /// When a joint counts as warm: judged over whole cycles of warm-up steps.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Steady {
     /// Steps that make one cycle; every cycle has the same speeds.
     pub cycle_steps: usize,
@@ -161,7 +162,7 @@ pub struct Steady {
 
 /// Steps that wait for what the run itself finds ([`crate::Procedure::learn`]). Until then they stand as on a joint as
 /// expected: how long they take and how far they move is known before anything does.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lesson {
     /// Segments that are learnt from.
     pub from: Range<u32>,
@@ -171,11 +172,15 @@ pub struct Lesson {
     pub earlier: Option<Arc<(RunTable, Done)>>,
 }
 
+/// As in the catalogue.
+pub type ProcedureId = &'static str;
+
 /// A validated procedure, ready to run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// Id of the procedure.
-    pub procedure: &'static str,
+    #[serde(deserialize_with = "known_procedure")]
+    pub procedure: ProcedureId,
     /// What was chosen, defaults included.
     pub parameters: Map<String, Value>,
     pub kind: Kind,
@@ -196,6 +201,13 @@ pub struct Plan {
     pub lesson: Option<Lesson>,
     /// Where it begins from where the whole plan began (motor) [rad]: a run that goes on begins where the one before it ended.
     pub begins_rad: f64,
+}
+
+/// A plan that comes from another process names a procedure of this one.
+fn known_procedure<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ProcedureId, D::Error> {
+    let id = String::deserialize(deserializer)?;
+    let known = procedure(&id).map(|known| known.id());
+    known.ok_or_else(|| serde::de::Error::custom(format!("there is no procedure {id}")))
 }
 
 impl Plan {

@@ -1,7 +1,9 @@
 //! A set-point over the time of a step: straight lines between knots.
 
+use serde::{Deserialize, Serialize};
+
 /// Piecewise linear in time: the first knot is at 0 s, times never fall, the last value holds for ever.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     knots: Vec<(f64, f64)>,
 }

@@ -26,19 +26,20 @@ pub struct Live<'a> {
     pub progress: &'a Progress,
 }
 
-/// Keeps what a run brings. Called on the thread that owns the bench.
+/// Takes what a run brings, and sees to it that it becomes durable. Called on the thread that owns the bench, between two
+/// commands to a drive that turns: nothing here may wait for a disk or for another process.
 pub trait Recorder {
     /// Why the bench must not move until a person has acknowledged it. Asked once, before anything is commanded.
     fn blocked(&mut self) -> Result<Option<String>, RecorderFault>;
 
-    /// Returns when state, events and rows are durable, in one transaction, or not there at all. A fault ends the run.
+    /// Takes state, events and rows over: they become durable together, in one transaction, or not at all, behind all that
+    /// was taken before. A fault ends the run; it says what is not kept.
     fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault>;
 
-    /// Must not block: the shaft is turning.
     fn live(&mut self, live: Live<'_>);
 }
 
-/// The store could not keep what was handed over.
+/// What is handed over cannot be kept.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the run cannot be recorded: {0}")]
 pub struct RecorderFault(pub String);

@@ -37,7 +37,7 @@ pub enum Outcome {
     Aborted,
     /// A limit, a fault, a full disk or a programming error ended it.
     Failed,
-    /// The process died in mid-run; the next one found it.
+    /// The process that stores the run, or the one that makes it, died in mid-run.
     Interrupted,
 }
 

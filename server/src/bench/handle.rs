@@ -1,55 +1,65 @@
-//! The way to a bench for everybody but its thread. Cheap to clone.
+//! The way to a bench for everybody. Cheap to clone.
 
-use super::status::Status;
-use super::thread::{self, Command};
+use super::display::Display;
+use super::keeper::{Item, Keeper};
+use super::shared::{Shared, blocked, lock};
+use super::status::{Status, Underway};
+use super::supervisor::Supervisor;
+use super::wire::Order;
 use crate::config::BenchDescription;
 use crate::lab::LabError;
 use crate::live::Hub;
-use crate::store::Store;
-use jointbench_procedure::{BenchFacts, Control, Demand, Plan, RunId};
-use std::sync::mpsc::{self, Sender};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use crate::store::{SafetyRecord, Store};
+use jointbench_model::transfer::Alongside;
+use jointbench_procedure::{BenchFacts, Demand, Plan, RunId, Safe};
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
-use tokio::sync::{oneshot, watch};
+use std::time::Duration;
+use tokio::sync::{mpsc, watch};
+use tokio::time::timeout;
+
+/// A worker that does not answer for so long is busy with an instrument that does not answer.
+const ANSWERS: Duration = Duration::from_secs(1);
+/// Whoever presses the stop hears within this time whether it is stored.
+const STORES: Duration = Duration::from_millis(500);
+const STOPPED: &str = "the software stop was pressed";
+const NEVER_BEGAN: &str = "the bench worker ended before the run began";
 
 #[derive(Clone)]
 pub struct BenchHandle {
     shared: Arc<Shared>,
+    thread: Arc<Mutex<Option<JoinHandle<()>>>>,
 }
 
-struct Shared {
-    description: BenchDescription,
-    commands: Sender<Command>,
-    status: watch::Receiver<Status>,
-    slot: Slot,
-    thread: Mutex<Option<JoinHandle<()>>>,
-}
-
-/// The way to the run that is on. Taken before a run begins, given back by the thread at its end.
-pub(super) type Slot = Arc<Mutex<Option<Sender<Demand>>>>;
-
-pub(super) fn lock(slot: &Slot) -> MutexGuard<'_, Option<Sender<Demand>>> {
-    slot.lock().unwrap_or_else(PoisonError::into_inner)
+/// What a bench begins with.
+pub struct Beginning {
+    pub description: BenchDescription,
+    /// Why the bench must not move already.
+    pub block: Option<SafetyRecord>,
+    /// The runs that another daemon left open on this bench.
+    pub interrupted: Vec<RunId>,
 }
 
 impl BenchHandle {
-    /// Starts the thread, which opens the instruments and secures them. `interrupted`: the runs that another daemon left
-    /// open on this bench.
-    pub fn start(
-        description: BenchDescription,
-        store: Store,
-        hub: Hub,
-        interrupted: Vec<RunId>,
-    ) -> std::io::Result<Self> {
-        let slot = Slot::default();
-        let start = thread::Start { description: description.clone(), store, hub, slot: slot.clone(), interrupted };
-        let (commands, status, thread) = thread::spawn(start)?;
-        let thread = Mutex::new(Some(thread));
-        Ok(Self { shared: Arc::new(Shared { description, commands, status, slot, thread }) })
+    /// Starts the worker, which opens the instruments and secures them. `program`: the file of `jointbench`. Within the
+    /// runtime.
+    pub fn start(beginning: Beginning, store: Store, hub: Hub, data: &Path, program: &Path) -> std::io::Result<Self> {
+        let Beginning { description, block, interrupted } = beginning;
+        let (to_keep, items) = mpsc::unbounded_channel();
+        let paths = (std::path::absolute(data)?, program.to_owned());
+        let shared = Arc::new(Shared::new(description, store, hub, paths, to_keep));
+        shared.status.send_modify(|status| status.blocked = block.as_ref().map(|block| blocked(block, true)));
+        tokio::spawn(Keeper::new(shared.clone()).keep_all(items));
+        let supervisor = Supervisor::new(shared.clone(), interrupted);
+        let name = format!("bench {}", shared.name());
+        let thread = std::thread::Builder::new().name(name).spawn(move || supervisor.supervise())?;
+        Ok(Self { shared, thread: Arc::new(Mutex::new(Some(thread))) })
     }
 
     pub fn name(&self) -> &str {
-        &self.shared.description.name
+        self.shared.name()
     }
 
     pub fn description(&self) -> &BenchDescription {
@@ -62,124 +72,147 @@ impl BenchHandle {
 
     /// To wait for a change.
     pub fn watch(&self) -> watch::Receiver<Status> {
-        self.shared.status.clone()
+        self.shared.status.subscribe()
     }
 
     /// What a procedure may know before anything moves, instruments open or not.
     pub fn facts(&self) -> BenchFacts {
-        let description = &self.shared.description;
-        let has = description.has();
-        BenchFacts {
-            name: description.name.clone(),
-            simulated: description.is_simulated(),
-            limits: description.limits,
-            constants: description.constants,
-            has_torque_sensor: has.torque_sensor,
-            has_two_ranges: has.two_ranges,
-            has_brake: has.brake,
-            encoder_counts: has.encoder_counts,
-            has_stage: has.stage,
-            amperes_per_volt: has.amperes_per_volt,
-            brake_model: None,
-            feeds_forward: has.feeds_forward,
-        }
+        facts(&self.shared.description)
     }
 
-    /// Reserves the bench for one run. [`LabError::Conflict`] where another is on.
+    /// Reserves the bench for one run. [`LabError::Conflict`] where another is on, or not yet stored.
     pub fn claim(&self) -> Result<Claim, LabError> {
-        let mut slot = lock(&self.shared.slot);
-        if slot.is_some() {
-            let name = self.name();
-            return Err(LabError::Conflict(format!(
-                "bench {name} has a run on: stop it (`jointbench stop`, or in the dashboard), or wait for its end"
-            )));
+        let name = self.name();
+        let taken = self.shared.claimed.compare_exchange(false, true, Ordering::AcqRel, Ordering::Acquire).is_err();
+        let status = self.shared.status.borrow().clone();
+        let on = taken || status.runs.values().any(|run| !run.ended);
+        if on || !status.runs.is_empty() {
+            if !taken {
+                self.shared.claimed.store(false, Ordering::Release);
+            }
+            return Err(LabError::Conflict(match status.unstored.fault {
+                Some(fault) if !on => format!("bench {name}: its last run is over, but not yet stored: {fault}"),
+                _ => format!(
+                    "bench {name} has a run on: stop it (`jointbench stop`, or in the dashboard), or wait for its end"
+                ),
+            }));
         }
-        let (sender, controls) = mpsc::channel();
-        *slot = Some(sender);
-        drop(slot);
-        Ok(Claim { bench: self.clone(), controls: Some(controls) })
+        Ok(Claim { bench: self.clone() })
     }
 
-    /// A run is on, or about to be.
+    /// A run is on, about to be, or not yet stored.
     pub fn is_busy(&self) -> bool {
-        lock(&self.shared.slot).is_some()
+        self.shared.is_busy()
     }
 
-    /// Whether a run was there to hear it.
-    pub fn control(&self, demand: Demand) -> bool {
-        lock(&self.shared.slot).as_ref().is_some_and(|run| run.send(demand).is_ok())
+    /// Whether this run was there to hear it.
+    pub fn control(&self, run: RunId, demand: Demand) -> bool {
+        let is_on = self.shared.status.borrow().runs.get(&run).is_some_and(|run| !run.ended && !run.state.is_final());
+        is_on && self.shared.order(&Order::Control(demand)).is_ok()
     }
 
-    /// Ends a run at once, or secures the bench where none is on. Returns when the thread has taken the command.
-    pub async fn stop(&self, by: &str) -> Result<(), LabError> {
-        if self.control(Demand { control: Control::EStop, by: Some(by.to_owned()) }) {
-            return Ok(());
+    /// The software stop: nothing starts any more, what is on ends, the bench is secured. Returns when the worker knows of
+    /// it, and when it is stored, where that does not take long.
+    pub async fn stop(&self, by: &str) {
+        let run = self.shared.status.borrow().run;
+        let block = self.shared.new_block(true, STOPPED, run, Some(by));
+        let known = self.shared.order_and_hear(|ticket| Order::Stop { block: block.clone(), ticket });
+        let at = block.at.clone();
+        self.shared.enter(block);
+        match known {
+            Ok(known) => drop(timeout(ANSWERS, known).await),
+            Err(_) => tracing::warn!(bench = self.name(), "the bench worker is away: the next one begins stopped"),
         }
-        let (taken, wait) = oneshot::channel();
-        self.send(Command::Secure { taken })?;
-        wait.await.map_err(|_| self.gone())
+        let stored = |status: &Status| status.blocked.as_ref().is_none_or(|block| block.stored || block.since != at);
+        // Where that takes longer, the bench says that the stop is not yet stored.
+        drop(timeout(STORES, self.watch().wait_for(stored)).await);
     }
 
-    /// As [`BenchHandle::refresh`], as soon as the run that is on has ended.
-    pub fn refresh_later(&self) -> Result<(), LabError> {
-        self.send(Command::Refresh { done: oneshot::channel().0 })
+    /// The block that began at this moment was lifted in the store.
+    pub fn lift(&self, since: &str) -> bool {
+        self.shared.lift(since)
     }
 
-    /// Tries the instruments again that did not answer.
+    /// Tries the instruments again that did not answer, and secures the bench.
     pub async fn reopen(&self) -> Result<(), LabError> {
-        let (done, wait) = oneshot::channel();
-        self.send(Command::Open { done })?;
-        wait.await.map_err(|_| self.gone())
+        let wanting: Vec<String> = {
+            let status = self.shared.status.borrow();
+            status.instruments.iter().filter(|one| !one.ready).map(|one| one.name.clone()).collect()
+        };
+        let done = self.shared.order_and_hear(|ticket| Order::Reopen { wanting, ticket }).map_err(|_| self.gone())?;
+        done.await.map_err(|_| self.gone())
     }
 
-    /// The block was lifted, or set, in the store.
-    pub async fn refresh(&self) -> Result<(), LabError> {
-        let (done, wait) = oneshot::channel();
-        self.send(Command::Refresh { done })?;
-        wait.await.map_err(|_| self.gone())
-    }
-
-    /// Ends a run that is on, secures the bench and ends the thread. Blocks until then.
+    /// Ends a run that is on, secures the bench and ends the worker. Blocks until then.
     pub fn shut_down(&self) {
-        self.control(Control::Quit.into());
-        // An error says that the thread has ended already.
-        let _ = self.shared.commands.send(Command::Quit);
-        let thread = self.shared.thread.lock().unwrap_or_else(PoisonError::into_inner).take();
-        if let Some(thread) = thread
+        self.shared.ending.store(true, Ordering::Release);
+        if self.shared.order(&Order::Quit).is_err() {
+            tracing::debug!(bench = self.name(), "no worker to end");
+        }
+        if let Some(thread) = lock(&self.thread).take()
             && thread.join().is_err()
         {
-            tracing::error!(bench = self.name(), "the bench thread has panicked");
+            tracing::error!(bench = self.name(), "the thread of the bench has panicked");
         }
     }
 
-    fn send(&self, command: Command) -> Result<(), LabError> {
-        self.shared.commands.send(command).map_err(|_| self.gone())
+    /// The last model that the bench has of such a run, where it can tell row by row.
+    async fn alongside(&self, run: RunId, plan: &Plan) -> Option<Alongside> {
+        let last = self.shared.store.last_model(self.name(), &plan.kind.to_string(), run).await;
+        let model = last.inspect_err(|fault| tracing::error!(run.id = run, %fault, "the last model cannot be read"));
+        let fit = serde_json::from_value(model.ok()??.fit).ok()?;
+        let constants = &self.shared.description.constants;
+        Alongside::new(fit, constants.torque_constant_nm_per_a, constants.gear_ratio)
     }
 
     fn gone(&self) -> LabError {
-        LabError::Bench(format!("the thread of bench {} has ended: start the daemon again", self.name()))
+        LabError::Bench(format!("the worker of bench {} has ended: it is started again, try in a moment", self.name()))
+    }
+}
+
+/// What a procedure may know of a described bench before anything moves.
+pub fn facts(description: &BenchDescription) -> BenchFacts {
+    let has = description.has();
+    BenchFacts {
+        name: description.name.clone(),
+        simulated: description.is_simulated(),
+        limits: description.limits,
+        constants: description.constants,
+        has_torque_sensor: has.torque_sensor,
+        has_two_ranges: has.two_ranges,
+        has_brake: has.brake,
+        encoder_counts: has.encoder_counts,
+        has_stage: has.stage,
+        amperes_per_volt: has.amperes_per_volt,
+        brake_model: None,
+        feeds_forward: has.feeds_forward,
     }
 }
 
 /// A bench that is reserved for a run. Dropped without a start, it is free again.
 pub struct Claim {
     bench: BenchHandle,
-    controls: Option<mpsc::Receiver<Demand>>,
 }
 
 impl Claim {
-    pub fn start(mut self, run: RunId, plan: Plan) -> Result<(), LabError> {
-        match self.controls.take() {
-            Some(controls) => self.bench.send(Command::Run { run, plan: Box::new(plan), controls }),
-            None => Ok(()),
-        }
+    /// Hands a run that is in the store to the worker. Where there is none, the run is interrupted before it began.
+    pub async fn start(self, run: RunId, plan: Plan) -> Result<(), LabError> {
+        let bench = &self.bench;
+        let display = Display::new(bench.alongside(run, &plan).await, plan.rate_hz);
+        *lock(&bench.shared.display) = Some(display);
+        bench.shared.status.send_modify(|status| drop(status.runs.insert(run, Underway::queued())));
+        bench.shared.order(&Order::Run { run, plan: Box::new(plan) }).map_err(|_| {
+            let item = Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN };
+            if bench.shared.to_keep.send(item).is_err() {
+                tracing::error!(run.id = run, "nobody stores any more");
+            }
+            bench.gone()
+        })
     }
 }
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        if self.controls.is_some() {
-            lock(&self.bench.shared.slot).take();
-        }
+        self.bench.shared.claimed.store(false, Ordering::Release);
     }
 }

@@ -6,6 +6,7 @@ use jointbench_instrument::skew::skewed;
 use jointbench_instrument::units::unit_of;
 use jointbench_instrument::{Bench, Trace};
 use jointbench_procedure::engine::SLOW_EVERY_S;
+use serde::{Deserialize, Serialize};
 
 /// A rate is told over this long at least.
 const OVER_S: f64 = 1.0;
@@ -13,7 +14,7 @@ const OVER_S: f64 = 1.0;
 const SAME_S: f64 = 3e-6;
 
 /// How a channel comes in, as far as it is known.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Incoming {
     name: String,
     rate_hz: Option<f64>,

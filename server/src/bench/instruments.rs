@@ -10,6 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// What opening has brought: the instruments one by one, and the bench where all of them answer.
+#[derive(Default)]
 pub struct Opened {
     pub instruments: Vec<Instrument>,
     pub bench: Option<Bench>,
@@ -78,7 +79,7 @@ fn described(description: &BenchDescription, asked: &Asked) -> Instrument {
     }
 }
 
-fn unreached(description: &BenchDescription, fault: String) -> Instrument {
+pub(super) fn unreached(description: &BenchDescription, fault: String) -> Instrument {
     Instrument {
         bench: description.name.clone(),
         role: "joint".to_owned(),

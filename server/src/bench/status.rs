@@ -1,10 +1,13 @@
-//! What a bench thread tells of itself.
+//! What the server knows of a bench.
 
 use super::health::Incoming;
+use crate::store::RunCommit;
 use crate::view::{BenchState, Blocked, Instrument, InstrumentFault, Progress};
 use jiff::Timestamp;
 use jointbench_instrument::limits::Limited;
 use jointbench_instrument::{Fault, Trace};
+use jointbench_procedure::{EventKind, RunId, RunState, Safe};
+use std::collections::BTreeMap;
 
 /// So many of the last faults of an instrument are told.
 pub(super) const FAULTS: usize = 5;
@@ -32,8 +35,53 @@ pub struct Status {
     /// The newest row of the run, against the limits.
     pub readings: Vec<(Limited, f64)>,
     pub channels: Vec<Incoming>,
-    /// The thread has opened and secured the bench since it began, as far as that was possible.
+    /// The worker has opened and secured the bench since it began, as far as that was possible.
     pub settled: bool,
+    /// All instruments answered when they were opened.
+    pub open: bool,
+    /// Runs that are on, or of whose end the store does not know yet.
+    pub runs: BTreeMap<RunId, Underway>,
+    pub unstored: Unstored,
+}
+
+/// A run as its worker has told of it, which may be more than the store knows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Underway {
+    pub state: RunState,
+    pub safe: Option<Safe>,
+    pub reason: Option<String>,
+    /// The worker is through with it.
+    pub ended: bool,
+    /// The store has its end.
+    pub stored: bool,
+}
+
+impl Underway {
+    pub(super) fn queued() -> Self {
+        Self { state: RunState::Queued, safe: None, reason: None, ended: false, stored: false }
+    }
+
+    /// Takes over what a commit says.
+    pub(super) fn take_in(&mut self, commit: &RunCommit) {
+        self.state = commit.state;
+        for event in &commit.events {
+            match &event.kind {
+                EventKind::Safe { safe } => self.safe = Some(*safe),
+                EventKind::State { reason: Some(reason), .. } => self.reason = Some(reason.clone()),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// What was measured and is not yet durable.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Unstored {
+    pub rows: usize,
+    /// Since when none of them was stored.
+    pub since: Option<Timestamp>,
+    /// Why nothing can be stored, or so slowly.
+    pub fault: Option<String>,
 }
 
 impl Status {
@@ -47,7 +95,29 @@ impl Status {
             readings: Vec::new(),
             channels: Vec::new(),
             settled: false,
+            open: false,
+            runs: BTreeMap::new(),
+            unstored: Unstored::default(),
         }
+    }
+
+    /// The bench has nothing on: its state comes from its block and its instruments.
+    pub(super) fn rest(&mut self) {
+        self.state = match &self.blocked {
+            Some(blocked) if blocked.stopped => BenchState::Stopped,
+            Some(_) => BenchState::Fault,
+            None if !self.open => BenchState::Offline,
+            None if self.faults().is_some() => BenchState::Fault,
+            None => BenchState::Idle,
+        };
+        self.run = None;
+        self.progress = None;
+        self.readings.clear();
+    }
+
+    /// What is known of a run whose end is not stored, where the store is in trouble; and why it is not stored.
+    pub fn not_stored(&self, run: RunId) -> Option<(&Underway, &str)> {
+        Some((self.runs.get(&run)?, self.unstored.fault.as_deref()?))
     }
 
     pub fn reading(&self, quantity: Limited) -> Option<f64> {

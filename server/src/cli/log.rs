@@ -16,6 +16,10 @@ pub enum LogForm {
 pub fn start(form: LogForm, level: &str) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
     let builder = tracing_subscriber::fmt().with_env_filter(filter).with_writer(stderr);
+    crate::program::set_log_form(match form {
+        LogForm::Text => "text",
+        LogForm::Json => "json",
+    });
     match form {
         LogForm::Text => builder.with_target(false).with_ansi(stderr().is_terminal()).init(),
         LogForm::Json => builder.json().flatten_event(true).init(),

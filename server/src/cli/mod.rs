@@ -24,6 +24,7 @@ mod serve;
 mod steer;
 mod transfer;
 
+use crate::bench::worker;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use std::process::ExitCode;
@@ -36,14 +37,15 @@ pub fn main() -> ExitCode {
     jointbench_model::one_heap();
     let arguments = Arguments::parse();
     // `jointbench fit … | head` ends quietly. Never where a bench is ours: its end is the engine's business.
-    if !matches!(arguments.command, Command::Demo(_) | Command::Serve(_)) {
+    if !matches!(arguments.command, Command::Demo(_) | Command::Serve(_) | Command::Worker) {
         sigpipe::reset();
     }
-    let default_level = if matches!(arguments.command, Command::Serve(_)) { "info" } else { "warn" };
+    let default_level = if matches!(arguments.command, Command::Serve(_) | Command::Worker) { "info" } else { "warn" };
     log::start(arguments.log, default_level);
     let done = match arguments.command {
         Command::Demo(arguments) => demo::demo(arguments),
         Command::Serve(arguments) => serve::serve(arguments),
+        Command::Worker => worker::serve().map_err(|fault| Exit::failed(fault.to_string())),
         Command::Check(arguments) => check::check(&arguments),
         Command::Ports(arguments) => ports::ports(&arguments),
         Command::Procedures(arguments) => library::procedures(arguments.id.as_deref()),

@@ -190,7 +190,9 @@ pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
     loop {
         let run: Run = client.get(&format!("/runs/{id}"))?;
         // A run that its daemon has left is told in two strokes: its end, then how the bench was secured and why.
-        if is_over(run.summary.state) && run.summary.safe.is_some() {
+        // What has completed is only read when it is stored; any other end is final, whatever the disk does.
+        let waits_for_the_disk = run.summary.state == RunState::Completed && run.summary.not_stored.is_some();
+        if is_over(run.summary.state) && run.summary.safe.is_some() && !waits_for_the_disk {
             shown.end();
             return Ok(run);
         }
@@ -217,10 +219,13 @@ pub(super) fn ending(run: &Run) -> String {
     if let Some(safe) = summary.safe {
         said += &format!(", bench {}", word(safe));
     }
-    match &summary.reason {
-        Some(reason) => said + ": " + reason,
-        None => said,
+    if let Some(reason) = &summary.reason {
+        said += &format!(": {reason}");
     }
+    if let Some(why) = &summary.not_stored {
+        said += &format!("; not yet stored: {why}");
+    }
+    said
 }
 
 /// A test case for the run, a failure where it did not complete or nothing was identified, an error where there is no run to

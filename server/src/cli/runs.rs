@@ -57,6 +57,7 @@ fn line(run: &RunSummary) -> String {
     let duration = run.duration_s.map(|s| format!("{s:.0} s")).unwrap_or_default();
     let day = run.created_at.get(..16).unwrap_or(&run.created_at).replace('T', " ");
     let reason = run.reason.as_ref().map(|reason| format!("  {reason}")).unwrap_or_default();
+    let not_stored = run.not_stored.as_ref().map(|why| format!("  not yet stored: {why}")).unwrap_or_default();
     let (id, state, procedure, rows) = (run.id, word(run.state), &run.procedure, run.rows);
     // Of a long path the end tells more.
     let bench = match run.bench.chars().count().saturating_sub(BENCH) {
@@ -67,7 +68,7 @@ fn line(run: &RunSummary) -> String {
     let coulomb = run.model.as_ref().and_then(|model| model.coulomb.as_ref());
     let coulomb = coulomb.map(|one| words::figure(one.value, &one.unit)).unwrap_or_default();
     format!(
-        "{id:5}  {day}  {state:11}  {procedure:24}  {bench:BENCH$}  {duration:>7}  {rows:>9}  {error:>10}  {coulomb:>10}{reason}"
+        "{id:5}  {day}  {state:11}  {procedure:24}  {bench:BENCH$}  {duration:>7}  {rows:>9}  {error:>10}  {coulomb:>10}{reason}{not_stored}"
     )
 }
 

@@ -40,7 +40,7 @@ pub fn instruments(raw: &RawBench, joint: &RawJoint, wrong: &mut Collector) -> O
 }
 
 /// The days of calibration that are given, by role.
-pub fn calibrations(raw: &RawBench, wrong: &mut Collector) -> Option<Vec<(&'static str, Date)>> {
+pub fn calibrations(raw: &RawBench, wrong: &mut Collector) -> Option<Vec<(String, Date)>> {
     let counter = |raw: &Option<RawCounter>| raw.as_ref().and_then(|counter| counter.calibrated.clone());
     let given: [(&'static str, Option<Spanned<Datetime>>); 6] = [
         ("torque_sensor", raw.torque_sensor.as_ref().and_then(|sensor| sensor.calibrated.clone())),
@@ -51,7 +51,7 @@ pub fn calibrations(raw: &RawBench, wrong: &mut Collector) -> Option<Vec<(&'stat
         ("thermometer", raw.thermometer.as_ref().and_then(|felt| felt.calibrated.clone())),
     ];
     let given = given.into_iter().filter_map(|(role, day)| Some((role, day?)));
-    let days: Vec<_> = given.map(|(role, day)| Some((role, calibrated(&day, wrong)?))).collect();
+    let days: Vec<_> = given.map(|(role, day)| Some((role.to_owned(), calibrated(&day, wrong)?))).collect();
     days.into_iter().collect()
 }
 

@@ -17,6 +17,7 @@ use jointbench_devices::{InstrumentSettings, Joint, MockSettings, TorqueSensorSe
 use jointbench_instrument::Limits;
 use jointbench_instrument::bench::JointConstants;
 use jointbench_instrument::spelling::nearest;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Ready-made descriptions, also to start a new one from.
@@ -32,14 +33,14 @@ pub const READY_MADE: [(&str, &str); 8] = [
 ];
 
 /// A checked bench.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct BenchDescription {
     pub name: String,
     pub source: Source,
     pub limits: Limits,
     pub constants: JointConstants,
     /// When which instrument was calibrated, by its role.
-    pub calibrated: Vec<(&'static str, Date)>,
+    pub calibrated: Vec<(String, Date)>,
     /// Every opening of its instruments writes their traffic down in a new folder in this one.
     pub record: Option<PathBuf>,
     /// As written, for the provenance of its runs; nothing of other benches in the same file.
@@ -47,7 +48,7 @@ pub struct BenchDescription {
 }
 
 /// Where the instruments are.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Source {
     Mock(MockSettings),
     Hardware(Box<InstrumentSettings>),

@@ -11,9 +11,13 @@ use jointbench_procedure::catalogue::{BrakeModel, brake_model};
 use jointbench_procedure::parameter::{Parameter, ParameterKind, Values};
 use jointbench_procedure::{BenchFacts, Plan, PlanFault, Procedure, catalogue, procedure};
 use serde_json::{Map, Value};
+use std::time::Duration;
+use tokio::time::timeout;
 
 /// So many of the latest runs are looked at for one of this bench, and so much of its safety record is told.
 const RECENT: u32 = 100;
+/// At the start the store has so long for what it is given first.
+const STORES: Duration = Duration::from_secs(5);
 
 impl Lab {
     pub fn benches(&self) -> Vec<Bench> {
@@ -35,13 +39,7 @@ impl Lab {
     /// Ends a run on this bench at once, or secures the idle bench; nothing starts on it until somebody resets it.
     pub async fn emergency_stop(&self, name: &str, by: &str) -> Answer<Bench> {
         tracing::warn!(bench = name, by, "software stop");
-        let bench = self.handle(name)?;
-        let run = bench.status().run;
-        bench.stop(by).await?;
-        if self.inner.store.bench_block(name).await?.is_none() {
-            self.inner.store.stop_bench(name, run, "the software stop was pressed", by).await?;
-        }
-        bench.refresh_later()?;
+        self.handle(name)?.stop(by).await;
         self.bench(name)
     }
 
@@ -64,12 +62,21 @@ impl Lab {
         if reason.trim().is_empty() {
             return Err(LabError::Invalid("give a reason: what was found and done at the bench".into()));
         }
-        if self.inner.store.bench_block(name).await?.is_none() {
+        let Some(block) = bench.status().blocked else {
             return Err(LabError::Conflict(format!("bench {name} is not blocked: there is nothing to acknowledge")));
+        };
+        if !block.stored {
+            return Err(LabError::Busy(format!(
+                "bench {name} is blocked, but that is not yet stored: see that the disk has room and answers, then reset again"
+            )));
         }
-        self.inner.store.acknowledge_bench(name, reason.trim(), by).await?;
+        let lifted = self.inner.store.acknowledge_bench(name, &block.since, reason.trim(), by).await?;
+        if !(lifted && bench.lift(&block.since)) {
+            return Err(LabError::Conflict(format!(
+                "bench {name} was blocked again in the meantime: look at it again, then reset it"
+            )));
+        }
         tracing::warn!(bench = name, reason, by, "block lifted by a person");
-        bench.refresh().await?;
         self.bench(name)
     }
 
@@ -167,7 +174,9 @@ impl Lab {
         for bench in &self.inner.benches {
             let mut watch = bench.watch();
             // An error says that the thread has ended; its status tells why.
-            let _ = watch.wait_for(|status| status.settled).await;
+            drop(watch.wait_for(|status| status.settled).await);
+            // How runs that were interrupted ended is stored by now, or the bench says why not.
+            drop(timeout(STORES, watch.wait_for(|status| status.runs.is_empty())).await);
         }
     }
 }

@@ -62,6 +62,11 @@ pub fn bench_view(description: &BenchDescription, status: &Status) -> view::Benc
                 value: status.reading(*quantity),
             })
             .collect(),
+        unstored: (status.unstored.rows > 0 || status.unstored.fault.is_some()).then(|| view::Unstored {
+            rows: status.unstored.rows as u64,
+            since: status.unstored.since.map(|since| format!("{since:.3}")),
+            fault: status.unstored.fault.clone(),
+        }),
         channels: status.channels.iter().map(|channel| channel.told(Timestamp::now())).collect(),
         constants: view::Constants {
             torque_constant_nm_per_a: constants.torque_constant_nm_per_a,
@@ -100,7 +105,17 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
         verdict: record.verdict.as_ref().and_then(|verdict| reread(verdict).ok()),
         // Figures of a model that cannot be read any more are none.
         model: record.model.as_ref().and_then(|model| reread(model).ok()),
+        not_stored: None,
     }
+}
+
+/// A run whose end is not stored is shown as its worker has told of it.
+pub(super) fn as_it_is(run: &mut view::RunSummary, status: &Status) {
+    let Some((underway, fault)) = status.not_stored(run.id) else { return };
+    run.state = state_view(underway.state);
+    run.safe = underway.safe.map(safe_view);
+    run.reason = underway.reason.clone();
+    run.not_stored = Some(fault.to_owned());
 }
 
 pub(super) fn run(record: RunRecord, progress: Option<view::Progress>) -> view::Run {
@@ -144,6 +159,9 @@ fn sentence(kind: &EventKind) -> String {
         EventKind::StepStarted { label, repeat, .. } => format!("{label} (repeat {})", repeat + 1),
         EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows", step + 1),
         EventKind::Control { control: Control::Quit, .. } => "the daemon was told to end".to_owned(),
+        EventKind::Control { control: Control::StorageLost, .. } => {
+            "the part of the daemon that stores runs ended".to_owned()
+        }
         EventKind::Control { control, by } => {
             let asked = match control {
                 Control::EStop => "the software stop was pressed".to_owned(),

@@ -5,6 +5,7 @@
 //! * [`LabError::File`]: a measurement file or description was refused; carries file, line and column where known.
 //! * [`LabError::Formula`]: a user's effect is wrong at a character.
 //! * [`LabError::Conflict`]: right request, wrong moment (bench busy, bench blocked).
+//! * [`LabError::Busy`]: nothing is wrong with the request; the same may work in a moment (disk full, database held).
 //! * [`LabError::Over`]: too late for ever, whatever is waited for (a run that has ended, or was gone on with).
 //! * [`LabError::Bench`]: an instrument does not do what it should.
 //! * [`LabError::Setup`]: the daemon cannot start as it was asked to (port taken, folder unwritable, old database).
@@ -24,6 +25,8 @@ pub enum LabError {
     Formula(Box<jointbench_model::FormulaFault>),
     #[error("{0}")]
     Conflict(String),
+    #[error("{0}")]
+    Busy(String),
     #[error("{0}")]
     Over(String),
     #[error("{0}")]
@@ -46,7 +49,7 @@ impl LabError {
     /// 0 done, 1 the run failed or a limit was broken, 2 bad arguments or bad input, 3 could not be decided.
     pub fn exit_code(&self) -> u8 {
         match self {
-            LabError::Conflict(_) | LabError::Bench(_) | LabError::Internal(_) => 1,
+            LabError::Conflict(_) | LabError::Busy(_) | LabError::Bench(_) | LabError::Internal(_) => 1,
             LabError::NotFound(_)
             | LabError::Over(_)
             | LabError::Invalid(_)
@@ -68,6 +71,7 @@ impl From<crate::store::StoreError> for LabError {
             _ if error.is_setup() => LabError::Setup(said),
             E::OtherRun { .. } | E::Search { .. } | E::Order { .. } => LabError::Invalid(said),
             E::RunOver { .. } | E::EffectUsed { .. } => LabError::Conflict(said),
+            E::Held | E::DiskFull => LabError::Busy(said),
             _ => LabError::Internal(said),
         }
     }

@@ -35,7 +35,7 @@ pub use tables::TableFormat;
 pub use tokens::{Caller, LOCAL, Tokens};
 pub use transfer::{ATTENTION, COPY_OF, FileFormat, ImportRequest};
 
-use crate::bench::BenchHandle;
+use crate::bench::{Beginning, BenchHandle, store_leftovers, worker};
 use crate::config::BenchDescription;
 use crate::live::Hub;
 use crate::store::Store;
@@ -80,6 +80,8 @@ impl Lab {
         program: PathBuf,
     ) -> Answer<Lab> {
         let store = Store::open(data).await?;
+        wait_for_workers(data).await;
+        store_leftovers(data, &store).await?;
         interrupt_autopilots(&store).await?;
         let mut interrupted: BTreeMap<String, Vec<i64>> = BTreeMap::new();
         for run in store.interrupt_open_runs().await? {
@@ -88,9 +90,11 @@ impl Lab {
         let hub = Hub::new();
         let mut benches = Vec::new();
         for description in descriptions {
-            let runs = interrupted.remove(&description.name).unwrap_or_default();
+            let interrupted = interrupted.remove(&description.name).unwrap_or_default();
+            let block = store.bench_block(&description.name).await?;
             let name = description.name.clone();
-            let bench = BenchHandle::start(description, store.clone(), hub.clone(), runs)
+            let beginning = Beginning { description, block, interrupted };
+            let bench = BenchHandle::start(beginning, store.clone(), hub.clone(), data, &program)
                 .map_err(|fault| LabError::Setup(format!("bench {name} gets no thread: {fault}")))?;
             benches.push(bench);
         }
@@ -159,6 +163,15 @@ impl Lab {
             tracing::error!(%fault, "that autopilots were interrupted could not be kept");
         }
         self.inner.store.close().await;
+    }
+}
+
+/// The worker of a daemon that was killed secures its bench, and leaves what is not stored: that comes first.
+async fn wait_for_workers(data: &Path) {
+    let data = data.to_owned();
+    let waited = tokio::task::spawn_blocking(move || worker::wait_until_gone(&data)).await;
+    if let Err(fault) = waited {
+        tracing::error!(%fault, "waiting for earlier workers failed");
     }
 }
 

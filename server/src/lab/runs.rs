@@ -1,7 +1,7 @@
 //! Runs: start, steer, look at.
 
 use super::{Answer, Lab, LabError, convert};
-use crate::bench::BenchHandle;
+use crate::bench::{BenchHandle, Status};
 use crate::store::{NewRun, RunFilter, RunRecord, Search};
 use crate::view::{self, Run, RunEvent, RunList, Samples};
 use jointbench_instrument::{Meta, RunTable};
@@ -35,7 +35,7 @@ impl Lab {
         if !failed.is_empty() {
             return Err(LabError::Invalid(format!("the plan is refused: {}", failed.join("; "))));
         }
-        if let Some(block) = self.inner.store.bench_block(bench.name()).await? {
+        if let Some(block) = bench.status().blocked {
             let (name, word) = (bench.name(), if block.stopped { "stopped" } else { "blocked" });
             return Err(LabError::Conflict(format!(
                 "bench {name} is {word}: {}. Look at it, then reset it with a reason: in the dashboard, or \
@@ -43,7 +43,7 @@ impl Lab {
                 block.reason
             )));
         }
-        self.let_go(bench).await?;
+        self.let_go(bench).await;
         let claim = bench.claim()?;
         if bench.status().faults().is_some() {
             bench.reopen().await?;
@@ -54,31 +54,38 @@ impl Lab {
         let run = self.inner.store.create_run(&new_run(bench, &plan, by)?).await?;
         let procedure = plan.procedure;
         tracing::info!(run.id = run, bench = bench.name(), procedure, by, planned_s = plan.duration_s(), "run queued");
-        claim.start(run, plan)?;
+        claim.start(run, plan).await?;
         self.judge_at_its_end(bench, run);
         self.run(run).await
     }
 
-    /// Returns when a run of this bench whose end is kept, so that anybody may know of it, has given the bench back.
-    async fn let_go(&self, bench: &BenchHandle) -> Answer<()> {
-        if let Some(run) = bench.status().run
-            && self.inner.store.run(run).await?.state.is_final()
-        {
-            // An error says that the thread has ended; its status tells why.
-            let _ = bench.watch().wait_for(|status| status.run != Some(run)).await;
-        }
-        Ok(())
+    /// Returns when a run of this bench whose end is stored, so that anybody may know of it, has given the bench back.
+    async fn let_go(&self, bench: &BenchHandle) {
+        let over: Vec<i64> =
+            bench.status().runs.iter().filter(|(_, run)| run.stored && !run.ended).map(|(id, _)| *id).collect();
+        let gone = |status: &Status| over.iter().all(|run| !status.runs.contains_key(run));
+        // An error says that the daemon ends.
+        drop(bench.watch().wait_for(gone).await);
     }
 
     pub async fn run(&self, id: i64) -> Answer<Run> {
         let record = self.inner.store.run(id).await?;
-        let status = self.inner.benches.iter().map(BenchHandle::status).find(|status| status.run == Some(id));
-        Ok(convert::run(record, status.and_then(|status| status.progress)))
+        let status = self.inner.benches.iter().map(BenchHandle::status).find(|status| status.runs.contains_key(&id));
+        let progress =
+            status.as_ref().filter(|status| status.run == Some(id)).and_then(|status| status.progress.clone());
+        let mut run = convert::run(record, progress);
+        status.inspect(|status| convert::as_it_is(&mut run.summary, status));
+        Ok(run)
     }
 
     pub async fn runs(&self, filter: &RunFilter) -> Answer<RunList> {
         let (total, records) = self.inner.store.runs(filter).await?;
-        Ok(RunList { total, runs: records.iter().map(convert::summary).collect(), unclear: None })
+        let mut runs: Vec<view::RunSummary> = records.iter().map(convert::summary).collect();
+        for bench in &self.inner.benches {
+            let status = bench.status();
+            runs.iter_mut().for_each(|run| convert::as_it_is(run, &status));
+        }
+        Ok(RunList { total, runs, unclear: None })
     }
 
     /// The runs that what is understood of a search finds. A key that is begun takes none away.
@@ -93,14 +100,11 @@ impl Lab {
     }
 
     pub async fn control(&self, id: i64, control: Control, by: &str) -> Answer<Run> {
-        let record = self.inner.store.run(id).await?;
-        if record.state.is_final() {
-            return Err(LabError::Over(format!("run {id} is over ({}): there is nothing to steer", record.state)));
-        }
         let demand = Demand { control, by: Some(by.to_owned()) };
-        let bench = self.inner.benches.iter().find(|bench| bench.name() == record.bench);
-        if !bench.is_some_and(|bench| bench.control(demand)) {
-            return Err(LabError::Conflict(format!("run {id} is {}, and not to be steered now", record.state)));
+        if !self.inner.benches.iter().any(|bench| bench.control(id, demand.clone())) {
+            let state = self.run(id).await?.summary.state;
+            let state: String = super::reread(&state)?;
+            return Err(LabError::Over(format!("run {id} is over ({state}): there is nothing to steer")));
         }
         self.run(id).await
     }

@@ -11,9 +11,21 @@ use super::samples::{TailPiece, tail};
 use super::{BLOCK_ROWS, NewRun, Store, StoreError};
 use jointbench_instrument::{Channel, Trace};
 use jointbench_procedure::{Event, RunId, RunState};
+use serde::{Deserialize, Serialize};
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// Rows, events and state of a run that belong together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunCommit {
+    pub run: RunId,
+    /// Counts from 1 for each run.
+    pub number: u64,
+    pub state: RunState,
+    pub events: Vec<Event>,
+    pub rows: Trace,
+}
 
 impl Store {
     /// Appends rows and events to a run and moves it to `state`. Durable when this returns.
@@ -22,6 +34,32 @@ impl Store {
     pub async fn commit(&self, run: RunId, state: RunState, events: &[Event], rows: Trace) -> Result<(), StoreError> {
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         append(&mut writer, run, state, events, rows).await?;
+        Ok(writer.commit().await?)
+    }
+
+    /// Stores the next commits of runs, all of them or none. One that is there already is left alone: whoever does not know
+    /// whether it was stored hands it over again.
+    ///
+    /// # Errors
+    /// [`StoreError::CommitMissing`] where the one before is not there.
+    pub async fn commit_all(&self, commits: &[&RunCommit]) -> Result<(), StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        for RunCommit { run, number, state, events, rows } in commits {
+            let there: Option<i64> = sqlx::query_scalar("SELECT commits FROM runs WHERE id = ?")
+                .bind(run)
+                .fetch_optional(&mut *writer)
+                .await?;
+            let there = there.ok_or(StoreError::NoRun(*run))? as u64;
+            if *number <= there {
+                continue;
+            }
+            if *number != there + 1 {
+                return Err(StoreError::CommitMissing { run: *run, number: there + 1 });
+            }
+            append(&mut writer, *run, *state, events, rows.clone()).await?;
+            let count = sqlx::query("UPDATE runs SET commits = ? WHERE id = ?");
+            count.bind(*number as i64).bind(run).execute(&mut *writer).await?;
+        }
         Ok(writer.commit().await?)
     }
 

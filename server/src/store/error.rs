@@ -15,8 +15,15 @@ pub enum StoreError {
     Newer { file: PathBuf, schema: i64 },
     #[error("{} was written by an older jointbench that cannot be carried over ({what}): move it away, or choose another folder with --data", .file.display())]
     Old { file: PathBuf, what: String },
-    #[error("the disk is full: nothing of this step was kept, all before it was; free some space and start again")]
+    #[error("the disk is full: free some space and try again")]
     DiskFull,
+    #[error(
+        "the database did not answer in time: another program holds jointbench.db in the data folder, or the disk does not \
+         answer; close that program (`fuser jointbench.db` names it)"
+    )]
+    Held,
+    #[error("run {run}: commit {number} was never stored")]
+    CommitMissing { run: RunId, number: u64 },
     #[error("there is no run {0}")]
     NoRun(RunId),
     #[error("search term {term}: {what}")]
@@ -54,6 +61,11 @@ impl StoreError {
         matches!(self, E::Unwritable { .. } | E::InUse { .. } | E::Foreign { .. } | E::Newer { .. } | E::Old { .. })
     }
 
+    /// Nothing is wrong with what was to be stored: the same may be stored later.
+    pub fn may_pass(&self) -> bool {
+        matches!(self, StoreError::DiskFull | StoreError::Held | StoreError::Database(_))
+    }
+
     /// What was named is not there.
     pub fn is_not_found(&self) -> bool {
         use StoreError as E;
@@ -65,15 +77,20 @@ impl StoreError {
 }
 
 /// SQLite's primary result codes: sqlite.org/rescode.html.
+const SQLITE_BUSY: i32 = 5;
 const SQLITE_CORRUPT: i32 = 11;
 const SQLITE_FULL: i32 = 13;
 const SQLITE_NOTADB: i32 = 26;
 
 impl From<sqlx::Error> for StoreError {
     fn from(fault: sqlx::Error) -> Self {
+        if matches!(fault, sqlx::Error::PoolTimedOut) {
+            return StoreError::Held;
+        }
         let code = fault.as_database_error().and_then(|fault| fault.code()?.parse::<i32>().ok());
         // The extended code holds the primary one in its low byte.
         match code.map(|code| code & 0xff) {
+            Some(SQLITE_BUSY) => StoreError::Held,
             Some(SQLITE_FULL) => StoreError::DiskFull,
             Some(SQLITE_CORRUPT | SQLITE_NOTADB) => StoreError::Damaged(fault.to_string()),
             _ => StoreError::Database(fault.to_string()),

@@ -7,7 +7,7 @@ use std::future::{self, Future};
 use std::pin::Pin;
 
 /// Name and text of every file in `migrations/`, in order. Listed by hand: the macro that would do it compiles SQLite twice.
-const FILES: [(&str, &str); 17] = [
+const FILES: [(&str, &str); 18] = [
     ("0001_runs.sql", include_str!("../../../migrations/0001_runs.sql")),
     ("0002_models.sql", include_str!("../../../migrations/0002_models.sql")),
     ("0003_safety.sql", include_str!("../../../migrations/0003_safety.sql")),
@@ -25,6 +25,7 @@ const FILES: [(&str, &str); 17] = [
     ("0015_idle_models.sql", include_str!("../../../migrations/0015_idle_models.sql")),
     ("0016_tried_models.sql", include_str!("../../../migrations/0016_tried_models.sql")),
     ("0017_verdicts.sql", include_str!("../../../migrations/0017_verdicts.sql")),
+    ("0018_commits.sql", include_str!("../../../migrations/0018_commits.sql")),
 ];
 
 #[derive(Debug)]

@@ -29,6 +29,7 @@ mod tests;
 mod tokens;
 mod view;
 
+pub use commit::RunCommit;
 pub use error::StoreError;
 pub use kept::Subject;
 pub use order::Order;

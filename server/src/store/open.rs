@@ -20,6 +20,8 @@ const PAGE_BYTES: u32 = 16_384;
 const FILE_NAME: &str = "jointbench.db";
 const MAPPED_BYTES: &str = "1073741824";
 const READERS: u32 = 4;
+/// For a database that another program holds, and for the one connection that writes.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 impl Store {
     /// Opens the store in `folder`, which is made where it is missing.
@@ -30,7 +32,7 @@ impl Store {
             .filename(&file)
             .create_if_missing(true)
             .foreign_keys(true)
-            .busy_timeout(Duration::from_secs(5))
+            .busy_timeout(PATIENCE)
             .pragma("mmap_size", MAPPED_BYTES)
             .disable_statement_logging();
 
@@ -66,7 +68,7 @@ impl Store {
 }
 
 fn pool(most: u32) -> SqlitePoolOptions {
-    SqlitePoolOptions::new().max_connections(most).idle_timeout(None).max_lifetime(None)
+    SqlitePoolOptions::new().max_connections(most).idle_timeout(None).max_lifetime(None).acquire_timeout(PATIENCE)
 }
 
 /// The one connection that writes. On a full disk SQLite may end a transaction by itself; to sqlx it is still on then, and none

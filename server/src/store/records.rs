@@ -3,6 +3,7 @@
 use super::Order;
 use jointbench_instrument::Channel;
 use jointbench_procedure::{RunId, RunState, Safe};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 /// A run about to begin.
@@ -173,7 +174,7 @@ pub struct AutopilotRecord {
 }
 
 /// Why a bench must not move.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SafetyRecord {
     pub blocked: bool,
     /// By the software stop.

@@ -26,25 +26,56 @@ impl Store {
         Ok(entries.into_iter().map(record).collect())
     }
 
+    /// Enters a block that began a while ago; one that is there already is left alone.
+    pub async fn keep_block(&self, bench: &str, block: &SafetyRecord) -> Result<(), StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let there: bool = sqlx::query_scalar(
+            "SELECT EXISTS (SELECT 1 FROM bench_safety WHERE bench = ? AND at = ? AND reason = ? AND blocked)",
+        )
+        .bind(bench)
+        .bind(&block.at)
+        .bind(&block.reason)
+        .fetch_one(&mut *writer)
+        .await?;
+        if !there {
+            insert(&mut writer, bench, block).await?;
+        }
+        Ok(writer.commit().await?)
+    }
+
     pub async fn block_bench(&self, bench: &str, run: Option<RunId>, reason: &str) -> Result<(), StoreError> {
         enter(&mut *self.writer.acquire().await?, bench, Word::Block, run, reason, None).await
     }
 
-    /// A person has pressed the software stop.
-    pub async fn stop_bench(&self, bench: &str, run: Option<RunId>, reason: &str, by: &str) -> Result<(), StoreError> {
-        enter(&mut *self.writer.acquire().await?, bench, Word::Stop, run, reason, Some(by)).await
-    }
-
-    /// A person has looked; `reason` is what they say about it.
-    pub async fn acknowledge_bench(&self, bench: &str, reason: &str, by: &str) -> Result<(), StoreError> {
-        enter(&mut *self.writer.acquire().await?, bench, Word::Release, None, reason, Some(by)).await
+    /// A person has looked at the block that began at this moment; `reason` is what they say about it. `false`, and nothing
+    /// is lifted, where the stop was pressed again since.
+    pub async fn acknowledge_bench(
+        &self,
+        bench: &str,
+        since: &str,
+        reason: &str,
+        by: &str,
+    ) -> Result<bool, StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let pressed_again: bool = sqlx::query_scalar(
+            "SELECT EXISTS (SELECT 1 FROM bench_safety WHERE bench = ?1 AND stopped AND at > ?2 \
+             AND id > (SELECT COALESCE(MAX(id), 0) FROM bench_safety WHERE bench = ?1 AND NOT blocked))",
+        )
+        .bind(bench)
+        .bind(since)
+        .fetch_one(&mut *writer)
+        .await?;
+        if !pressed_again {
+            enter(&mut writer, bench, Word::Release, None, reason, Some(by)).await?;
+        }
+        writer.commit().await?;
+        Ok(!pressed_again)
     }
 }
 
 #[derive(Clone, Copy, PartialEq)]
 enum Word {
     Block,
-    Stop,
     Release,
 }
 
@@ -56,16 +87,28 @@ async fn enter(
     reason: &str,
     by: Option<&str>,
 ) -> Result<(), StoreError> {
+    let record = SafetyRecord {
+        blocked: word != Word::Release,
+        stopped: false,
+        reason: reason.to_owned(),
+        run,
+        by: by.map(str::to_owned),
+        at: now(),
+    };
+    insert(writer, bench, &record).await
+}
+
+async fn insert(writer: &mut SqliteConnection, bench: &str, record: &SafetyRecord) -> Result<(), StoreError> {
     sqlx::query(
         "INSERT INTO bench_safety (bench, blocked, stopped, reason, run, who, at) VALUES (?, ?, ?, ?, ?, ?, ?)",
     )
     .bind(bench)
-    .bind(word != Word::Release)
-    .bind(word == Word::Stop)
-    .bind(reason)
-    .bind(run)
-    .bind(by)
-    .bind(now())
+    .bind(record.blocked)
+    .bind(record.stopped)
+    .bind(&record.reason)
+    .bind(record.run)
+    .bind(&record.by)
+    .bind(&record.at)
     .execute(writer)
     .await?;
     Ok(())

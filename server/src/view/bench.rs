@@ -35,6 +35,18 @@ pub struct Bench {
     /// instruments tell in every run.
     pub channels: Vec<ChannelHealth>,
     pub constants: Constants,
+    /// What was measured and is not yet durable.
+    pub unstored: Option<Unstored>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Unstored {
+    pub rows: u64,
+    /// Since when none of them was stored.
+    #[schema(format = DateTime)]
+    pub since: Option<String>,
+    /// Why nothing can be stored, or so slowly. It is tried again until it is stored.
+    pub fault: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -46,6 +58,8 @@ pub struct Blocked {
     pub by: Option<String>,
     #[schema(format = DateTime)]
     pub since: String,
+    /// Otherwise it holds all the same, and is stored as soon as the disk takes it.
+    pub stored: bool,
 }
 
 /// An entry of a bench's safety record, which is only appended to.

@@ -64,6 +64,9 @@ pub struct RunSummary {
     /// The last version of the run's model that is neither idle nor only tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<LastModel>,
+    /// Why the end of the run is not yet stored: the rest is as the bench has told. It is stored as soon as that can be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub not_stored: Option<String>,
 }
 
 /// What a model version comes to, in short.

@@ -4,6 +4,7 @@ use crate::daemon::{BENCH, TestDaemon};
 use jointbench::config::BenchDescription;
 use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Trouble};
 use jointbench_devices::{Joint, MockSettings};
+use serde_json::Value;
 
 /// Of a minute.
 const RUN: &str = r#"{"bench": "joint-a-mock", "procedure": "friction", "parameters":
@@ -12,11 +13,9 @@ const RUN: &str = r#"{"bench": "joint-a-mock", "procedure": "friction", "paramet
 const FULL_S: f64 = 30.0;
 /// Long after the run is over.
 const HEALED_S: f64 = 42.0;
-/// Rows are committed so often.
-const COMMIT_EVERY_S: f64 = 2.0;
 
 #[test]
-fn a_full_disk_ends_a_run_which_keeps_what_was_acknowledged() {
+fn a_full_disk_ends_a_run_which_is_told_at_once_and_kept_when_there_is_room() {
     let full = PlannedTrouble {
         instrument: MockInstrument::Disk,
         trouble: Trouble::DiskFull,
@@ -30,8 +29,17 @@ fn a_full_disk_ends_a_run_which_keeps_what_was_acknowledged() {
     let path = format!("/api/v1/runs/{}", run["id"]);
 
     let run = daemon.wait_for(&path, |run| run["state"] == "failed");
+    assert_eq!(run["safe"], "safe_verified", "known at once: {run}");
+    let not_stored = |value: &Value| value.as_str().is_some_and(|why| why.contains("the disk is full"));
+    assert!(not_stored(&run["not_stored"]), "and that it is not stored: {run}");
+    let (_, list) = daemon.get("/api/v1/runs");
+    assert_eq!(list["runs"][0]["state"], "failed", "{list}");
+    let (_, bench) = daemon.get(&format!("/api/v1/bench/{BENCH}"));
+    assert!(bench["state"] == "idle" && not_stored(&bench["unstored"]["fault"]), "{bench}");
+    assert_eq!(daemon.post("/api/v1/runs", RUN).0, 409, "no run that could not be stored");
+
+    let run = daemon.wait_for(&path, |run| run["not_stored"].is_null());
     assert!(run["rows"].as_u64() > Some(100), "{run}");
-    assert_eq!(run["safe"], "safe_verified", "{run}");
     let reason = run["reason"].as_str().unwrap();
     assert!(reason.contains("the disk is full") && reason.contains("free some space"), "{reason}");
 
@@ -40,8 +48,7 @@ fn a_full_disk_ends_a_run_which_keeps_what_was_acknowledged() {
         csv.as_str().unwrap().lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
     assert_eq!(times.len() as u64, run["rows"].as_u64().unwrap());
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
-    // A few rows still fit into pages that were there before.
-    assert!(times.last().is_some_and(|last_s| *last_s >= FULL_S - COMMIT_EVERY_S), "{:?}", times.last());
+    assert!(times.last().is_some_and(|last_s| *last_s >= FULL_S), "what waited in memory is there: {:?}", times.last());
 
     let (status, next) = daemon.post("/api/v1/runs", RUN);
     assert_eq!(status, 201, "{next}");

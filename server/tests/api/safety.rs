@@ -47,7 +47,7 @@ fn the_software_stop_holds_until_somebody_resets_it_with_a_reason_through_a_rest
     let (_, record) = second.get(&format!("{}/safety", path()));
     let told: Vec<_> = record.as_array().unwrap().iter().map(|entry| (&entry["stopped"], &entry["reason"])).collect();
     assert_eq!(told[0], (&false.into(), &"hand out of the way".into()), "{record}");
-    assert_eq!((told.len(), told[1].0, &record[1]["run"]), (2, &true.into(), &id.into()), "{record}");
+    assert_eq!((told.len(), told[2].0, &record[2]["run"]), (3, &true.into(), &id.into()), "every press: {record}");
     assert_eq!(second.post("/api/v1/runs", SHORT_RUN).0, 201);
 }
 

@@ -17,6 +17,7 @@ use crate::instruments::{InstrumentSettings, JointSettings, TorqueSensorSettings
 use crate::transport::{Address, PortSettings};
 use jointbench_instrument::roles::PowerSwitch;
 use jointbench_instrument::{Bench, Clock, Fault, FaultKind};
+use serde::{Deserialize, Serialize};
 use std::io;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -29,7 +30,7 @@ const NINTER: u8 = 32;
 const DEADLINE_MS: u64 = 3000;
 
 /// What the instruments' wires are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Transport {
     /// Within this process, for whoever holds the bench: fast, and nobody else can listen.
     Inside,
@@ -38,7 +39,7 @@ pub enum Transport {
     Tcp,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MockSettings {
     pub joint: Joint,
     pub load: Load,

@@ -17,6 +17,8 @@ pub(super) enum Ending {
     EStopped,
     /// The program that holds the run was told to end.
     Quit,
+    /// The part of the program that stores the run has died.
+    StorageLost,
     /// Arming found a reason not to move.
     NotReady(String),
     /// The guard stopped a command before it was sent.
@@ -58,6 +60,7 @@ impl Ending {
             Ending::Completed => Outcome::Completed,
             Ending::Stopped | Ending::Abandoned => Outcome::Stopped,
             Ending::Aborted | Ending::EStopped | Ending::Quit => Outcome::Aborted,
+            Ending::StorageLost => Outcome::Interrupted,
             _ => Outcome::Failed,
         }
     }
@@ -65,7 +68,11 @@ impl Ending {
     pub fn urgency(&self) -> Urgency {
         match self {
             Ending::Completed | Ending::Stopped | Ending::Abandoned | Ending::Unrecorded(_) => Urgency::Orderly,
-            Ending::Aborted | Ending::Quit | Ending::CommandRefused(_) | Ending::OtherFault(_) => Urgency::Quick,
+            Ending::Aborted
+            | Ending::Quit
+            | Ending::StorageLost
+            | Ending::CommandRefused(_)
+            | Ending::OtherFault(_) => Urgency::Quick,
             Ending::EStopped
             | Ending::NotReady(_)
             | Ending::SampleRefused(_)
@@ -100,6 +107,9 @@ impl fmt::Display for Ending {
             Ending::Aborted => f.write_str("aborted by a person"),
             Ending::EStopped => f.write_str("software stop by a person"),
             Ending::Quit => f.write_str("aborted because the daemon was told to end"),
+            Ending::StorageLost => {
+                f.write_str("the daemon ended before the run did; the bench worker secured the bench")
+            }
             Ending::NotReady(why) => write!(f, "not started: {why}"),
             Ending::CommandRefused(refusal) => write!(f, "command refused: {refusal}"),
             Ending::SampleRefused(refusal) => write!(f, "limit broken: {refusal}"),

@@ -1,4 +1,4 @@
-//! What is not yet durable: the rows and events since the last commit, in order.
+//! What is not yet handed over: the rows and events since the last commit, in order.
 
 use super::ending::Ending;
 use crate::event::{Event, EventKind};
@@ -6,7 +6,7 @@ use crate::recorder::{Commit, Live, Progress, Recorder, RecorderFault, RunId};
 use crate::state::{RunState, Transition};
 use jointbench_instrument::Trace;
 
-/// Rows are durable after this much bench time at the latest.
+/// Rows are handed over to be kept after this much bench time at the latest.
 const COMMIT_EVERY_S: f64 = 2.0;
 /// The newest rows are shown this often: the 30 frames of a second.
 const LIVE_EVERY_S: f64 = 1.0 / 30.0;
@@ -61,7 +61,7 @@ impl<'a> Journal<'a> {
         }
     }
 
-    /// The one place where a run changes its state; durable when this returns.
+    /// The one place where a run changes its state.
     pub fn enter(&mut self, now_s: f64, transition: Transition, reason: Option<String>) -> Result<(), Ending> {
         self.state = self.state.after(transition).map_err(Ending::Illegal)?;
         tracing::info!(run.id = self.run, state = %self.state, "run state");

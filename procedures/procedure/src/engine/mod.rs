@@ -28,20 +28,21 @@ use encoders::Stood;
 use ending::Ending;
 use jointbench_instrument::Bench;
 pub use safe_state::{Secured, secure};
+use serde::{Deserialize, Serialize};
 use session::Session;
 use skew::Skews;
 use std::sync::mpsc::Receiver;
 pub use tick::SLOW_EVERY_S;
 
 /// How a run ended.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunEnd {
     /// Final.
     pub state: RunState,
     pub safe: Safe,
     /// Why, where the run was not completed.
     pub reason: Option<String>,
-    /// Rows that the recorder has acknowledged.
+    /// Rows that the recorder has taken.
     pub rows: u64,
     pub duration_s: f64,
 }

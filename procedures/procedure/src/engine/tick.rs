@@ -81,6 +81,7 @@ impl Session<'_> {
                 Control::EStop => return Err(Ending::EStopped),
                 Control::Abort => return Err(Ending::Aborted),
                 Control::Quit => return Err(Ending::Quit),
+                Control::StorageLost => return Err(Ending::StorageLost),
                 Control::Stop if self.journal.state() == RunState::Securing => {}
                 Control::Stop => return Err(Ending::Stopped),
                 Control::Pause => self.wish_for(Wish::Pause, Transition::Pause),

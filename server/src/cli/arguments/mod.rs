@@ -41,6 +41,9 @@ pub enum Command {
     Demo(Demo),
     /// Run the daemon: benches, store, REST API and dashboard
     Serve(Serve),
+    /// What the daemon starts for each bench: holds its instruments, by orders on its standard input
+    #[command(hide = true)]
+    Worker,
     /// Check a bench description and let its instruments identify themselves; moves nothing
     Check(Check),
     /// List this computer's serial ports: what is behind them, and what may not be opened and why

@@ -1,4 +1,4 @@
-use super::super::{NewModel, Order, RunFilter, StoreError, Subject};
+use super::super::{NewModel, Order, RunFilter, SafetyRecord, StoreError, Subject};
 use super::*;
 use jointbench_procedure::Safe;
 use serde_json::{Value, json};
@@ -335,7 +335,14 @@ fn an_unsafe_end_blocks_the_bench_until_a_person_has_looked() {
         let block = store.bench_block("joint-a").await.unwrap().unwrap();
         assert_eq!(block.run, Some(run));
         assert_eq!(store.bench_block("joint-b").await.unwrap(), None);
-        store.acknowledge_bench("joint-a", "brake is off, shaft turns freely", "Anna").await.unwrap();
+        let said = "brake is off, shaft turns freely";
+        let stop = SafetyRecord { stopped: true, at: format!("{}9", block.at), ..block.clone() };
+        for _ in 0..2 {
+            store.keep_block("joint-a", &stop).await.unwrap();
+        }
+        assert!(!store.acknowledge_bench("joint-a", &block.at, said, "Anna").await.unwrap(), "it was pressed again");
+        assert!(store.acknowledge_bench("joint-a", &stop.at, said, "Anna").await.unwrap());
+        assert_eq!(store.safety("joint-a", 10).await.unwrap().len(), 3, "what comes twice is kept once");
         assert_eq!(store.bench_block("joint-a").await.unwrap(), None);
         store.block_bench("joint-a", None, "cover open").await.unwrap();
         assert_eq!(store.bench_block("joint-a").await.unwrap().unwrap().reason, "cover open");

@@ -1,0 +1,80 @@
+//! Shows what a run brings, as it comes: what is shown here may not be durable yet, and the bench says so.
+
+use super::health::Health;
+use super::shared::Shared;
+use super::status::readings;
+use crate::live::Rows;
+use crate::view::{LiveMessage, Progress};
+use jiff::Timestamp;
+use jointbench_instrument::{Channel, Trace};
+use jointbench_model::transfer::Alongside;
+use jointbench_procedure::{self as procedure, RunId};
+use std::time::{Duration, Instant};
+
+/// A mock bench outruns the clock on the wall; eyes do not.
+const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+/// Limits and channels of a bench.
+const BENCH_EVERY: Duration = Duration::from_millis(500);
+
+pub(super) struct Display {
+    /// The last model of the bench, beside what is measured. `None` from where it cannot tell.
+    model: Option<Alongside>,
+    health: Health,
+    told_progress: Option<Instant>,
+    told_bench: Option<Instant>,
+    began: Instant,
+}
+
+impl Display {
+    pub fn new(model: Option<Alongside>, rate_hz: f64) -> Self {
+        Self { model, health: Health::new(rate_hz), told_progress: None, told_bench: None, began: Instant::now() }
+    }
+
+    pub fn show(&mut self, shared: &Shared, run: RunId, rows: Trace, progress: &procedure::Progress) {
+        self.health.add(&rows);
+        let bench = shared.name().to_owned();
+        let newest = readings(&rows, shared.description.constants.gear_ratio);
+        shared.hub.show(Rows { bench: bench.clone(), run, rows: self.beside_model(rows) });
+        if self.told_progress.is_some_and(|told| told.elapsed() < PROGRESS_EVERY) {
+            return;
+        }
+        self.told_progress = Some(Instant::now());
+        let progress = self.on_the_wall(progress);
+        shared.hub.tell(LiveMessage::Progress { bench, run, progress: progress.clone() });
+        let channels = self.health.told(Timestamp::now());
+        shared.status.send_modify(|status| {
+            status.progress = Some(progress);
+            status.readings = newest;
+            status.channels = channels;
+        });
+        if self.told_bench.is_none_or(|told| told.elapsed() >= BENCH_EVERY) {
+            self.told_bench = Some(Instant::now());
+            shared.tell_bench();
+        }
+    }
+
+    /// The time of a mock bench may run faster than that of the person who waits.
+    fn on_the_wall(&self, progress: &procedure::Progress) -> Progress {
+        let elapsed_s = self.began.elapsed().as_secs_f64();
+        let wall = if progress.elapsed_s > 0.0 { elapsed_s / progress.elapsed_s } else { 1.0 };
+        Progress {
+            step: progress.step,
+            steps: progress.steps,
+            label: progress.label.clone(),
+            elapsed_s,
+            remaining_s: progress.remaining_s * wall,
+        }
+    }
+
+    /// The rows with the torque of the motor, as measured and as the model has it.
+    fn beside_model(&mut self, rows: Trace) -> Trace {
+        let Some([measured, predicted]) = self.model.as_mut().and_then(|model| model.tell(&rows)) else {
+            self.model = None;
+            return rows;
+        };
+        let (mut channels, mut columns) = rows.into_parts();
+        channels.extend(["motor_torque_nm", "model_torque_nm"].map(Channel::new));
+        columns.extend([measured, predicted]);
+        Trace::from_columns(channels, columns)
+    }
+}

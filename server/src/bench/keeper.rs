@@ -1,0 +1,228 @@
+//! Stores what the worker of a bench brings, in order, and tries again for as long as the disk does not take it. Nobody but
+//! this task waits for the disk.
+
+use super::shared::Shared;
+use super::status::New;
+use super::wire::{Entry, Order};
+use crate::lab::{run_event, safe_view, state_view};
+use crate::store::{RunCommit, SafetyRecord, StoreError};
+use crate::view::LiveMessage;
+use jointbench_procedure::{RunId, RunState, Safe};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+use tokio::sync::mpsc::UnboundedReceiver;
+use tokio::sync::oneshot;
+use tokio::time::{sleep, timeout};
+
+/// So often it is tried again.
+const AGAIN_EVERY: Duration = Duration::from_millis(500);
+/// A disk that has not answered for so long is said to be slow.
+const SLOW: Duration = Duration::from_millis(500);
+/// So many commits become durable together.
+const MOST_TOGETHER: usize = 64;
+
+pub(super) enum Item {
+    Entry(Arc<Entry>),
+    /// The worker died: how its run ended is said here.
+    Interrupted {
+        run: RunId,
+        safe: Safe,
+        reason: &'static str,
+    },
+    Fault(New),
+    /// Answered when everything before it is stored.
+    Flush(oneshot::Sender<()>),
+}
+
+/// What is stored in one transaction.
+enum Work {
+    Commits(Vec<Arc<Entry>>),
+    Interruption { run: RunId, safe: Safe, reason: &'static str },
+    Fault(New),
+}
+
+pub(super) struct Keeper {
+    shared: Arc<Shared>,
+    /// The newest line of each run's journal that was told.
+    told_events: BTreeMap<RunId, u64>,
+}
+
+impl Keeper {
+    pub fn new(shared: Arc<Shared>) -> Self {
+        Self { shared, told_events: BTreeMap::new() }
+    }
+
+    pub async fn keep_all(mut self, mut items: UnboundedReceiver<Item>) {
+        let mut next = None;
+        while let Some(item) = match next.take() {
+            Some(item) => Some(item),
+            None => items.recv().await,
+        } {
+            match item {
+                Item::Entry(first) => {
+                    let mut entries = vec![first];
+                    while entries.len() < MOST_TOGETHER {
+                        match items.try_recv() {
+                            Ok(Item::Entry(entry)) => entries.push(entry),
+                            Ok(other) => {
+                                next = Some(other);
+                                break;
+                            }
+                            Err(_) => break,
+                        }
+                    }
+                    self.keep_entries(entries).await;
+                }
+                Item::Interrupted { run, safe, reason } => self.keep_interrupted(run, safe, reason).await,
+                Item::Fault(new) => drop(self.insist(&Work::Fault(new)).await),
+                // Whoever asked may have left.
+                Item::Flush(done) => drop(done.send(())),
+            }
+            if next.is_none() && items.is_empty() {
+                self.set_trouble(None);
+            }
+        }
+    }
+
+    async fn keep_entries(&mut self, entries: Vec<Arc<Entry>>) {
+        let kept = self.insist(&Work::Commits(entries.clone())).await;
+        let Some(last) = entries.last() else { return };
+        if self.shared.order(&Order::Stored { number: last.number }).is_err() {
+            tracing::debug!(bench = self.shared.name(), "no worker hears what is stored");
+        }
+        let rows: usize = entries.iter().map(|entry| entry.commit.rows.len()).sum();
+        self.shared.status.send_modify(|status| {
+            status.unstored.rows = status.unstored.rows.saturating_sub(rows);
+            status.unstored.since = (status.unstored.rows > 0).then(jiff::Timestamp::now);
+        });
+        for entry in entries {
+            let commit = &entry.commit;
+            if kept {
+                self.tell_events(commit.run).await;
+            }
+            if commit.state.is_final() {
+                self.tell_end(commit.run);
+                self.shared.settle(commit.run, |run| run.stored = true);
+            }
+        }
+    }
+
+    async fn keep_interrupted(&mut self, run: RunId, safe: Safe, reason: &'static str) {
+        self.insist(&Work::Interruption { run, safe, reason }).await;
+        self.tell_events(run).await;
+        self.tell_end(run);
+        self.shared.settle(run, |run| (run.ended, run.stored) = (true, true));
+    }
+
+    /// Tries until it is stored, or the store says that it never will be. Whether it is.
+    async fn insist(&self, work: &Work) -> bool {
+        loop {
+            match self.attempt(work).await {
+                Ok(()) => return true,
+                Err(fault) if fault.may_pass() => {
+                    // A run goes on while a visitor holds the database; what else is wrong will hardly pass by itself.
+                    self.set_trouble(Some((fault.to_string(), !matches!(fault, StoreError::Held))));
+                    tokio::select! {
+                        () = sleep(AGAIN_EVERY) => {}
+                        () = self.shared.disk_changed.notified() => {}
+                    }
+                }
+                Err(fault) => {
+                    tracing::error!(bench = self.shared.name(), %fault, "this can never be stored, and is lost");
+                    return false;
+                }
+            }
+        }
+    }
+
+    /// Once. A disk that does not answer is told while it is waited for.
+    async fn attempt(&self, work: &Work) -> Result<(), StoreError> {
+        self.shared.store.fill_disk(self.shared.disk_is_full.load(Ordering::Acquire)).await?;
+        let mut attempt = std::pin::pin!(self.store(work));
+        if let Ok(done) = timeout(SLOW, &mut attempt).await {
+            return done;
+        }
+        if self.shared.status.borrow().unstored.fault.is_none() {
+            self.set_trouble(Some(("the disk is slow, or another program holds the database".into(), false)));
+        }
+        attempt.await
+    }
+
+    async fn store(&self, work: &Work) -> Result<(), StoreError> {
+        let Shared { store, .. } = &*self.shared;
+        match work {
+            Work::Commits(entries) => {
+                let commits: Vec<&RunCommit> = entries.iter().map(|entry| &entry.commit).collect();
+                store.commit_all(&commits).await
+            }
+            Work::Interruption { run, safe, reason } => {
+                store.end_run(*run, RunState::Interrupted, *safe, Some(reason)).await
+            }
+            Work::Fault(New { instrument, fault }) => {
+                store.keep_fault(self.shared.name(), instrument, &fault.at, &fault.text).await
+            }
+        }
+    }
+
+    /// What is wrong with storing, and whether that ends the run that is on.
+    fn set_trouble(&self, trouble: Option<(String, bool)>) {
+        let shared = &self.shared;
+        let (fault, ends_run) = trouble.unzip();
+        if shared.status.borrow().unstored.fault == fault {
+            return;
+        }
+        match &fault {
+            Some(fault) => tracing::error!(bench = shared.name(), fault, "not yet stored"),
+            None => tracing::info!(bench = shared.name(), "everything is stored again"),
+        }
+        shared.change(|status| status.unstored.fault = fault.clone());
+        let fault = fault.filter(|_| ends_run == Some(true));
+        if shared.order(&Order::Storage { fault }).is_err() {
+            tracing::debug!(bench = shared.name(), "no worker hears how the store is");
+        }
+        self.tell_ends_that_wait();
+    }
+
+    /// A run that is over is shown as such, whatever the disk does.
+    fn tell_ends_that_wait(&self) {
+        let over: Vec<RunId> = {
+            let status = self.shared.status.borrow();
+            status.runs.iter().filter(|(_, run)| run.state.is_final()).map(|(id, _)| *id).collect()
+        };
+        over.into_iter().for_each(|run| self.tell_end(run));
+    }
+
+    /// Tells the journal's new lines with the numbers that the store gave them.
+    async fn tell_events(&mut self, run: RunId) {
+        let told = self.told_events.entry(run).or_default();
+        for event in self.shared.store.events(run, *told).await.unwrap_or_default() {
+            *told = event.sequence;
+            let (bench, event) = (self.shared.name().to_owned(), run_event(event));
+            self.shared.hub.tell(LiveMessage::Event { bench, run, event });
+        }
+    }
+
+    fn tell_end(&self, run: RunId) {
+        let Some(underway) = self.shared.status.borrow().runs.get(&run).cloned() else { return };
+        self.shared.hub.tell(LiveMessage::State {
+            bench: self.shared.name().to_owned(),
+            run,
+            state: state_view(underway.state),
+            safe: underway.safe.map(safe_view),
+            reason: underway.reason,
+        });
+    }
+}
+
+/// Stores a block as soon as that can be, before anything else that waits.
+pub(super) fn keep_block(shared: Arc<Shared>, block: SafetyRecord) {
+    shared.runtime.clone().spawn(async move {
+        while let Err(fault) = shared.store.keep_block(shared.name(), &block).await {
+            tracing::error!(bench = shared.name(), %fault, "the block of the bench is not yet stored");
+            sleep(AGAIN_EVERY).await;
+        }
+        shared.block_is_stored(&block.at);
+    });
+}

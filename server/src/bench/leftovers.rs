@@ -1,0 +1,135 @@
+//! What a worker could not hand to the store, because the server part of the daemon ended before it: one file in the data
+//! folder, which the next start stores and removes.
+
+use super::wire::{Entry, receive, send};
+use super::worker::file_name;
+use crate::store::{SafetyRecord, Store, StoreError};
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const FOLDER: &str = "unstored";
+const ENDING: &str = "msgpack";
+
+#[derive(Serialize, Deserialize)]
+struct Leftovers {
+    bench: String,
+    block: Option<SafetyRecord>,
+    entries: Vec<Arc<Entry>>,
+}
+
+/// Writes what is left, where something is. What cannot be written is told in the log, and lost.
+pub(super) fn leave(data: &Path, bench: &str, block: Option<SafetyRecord>, entries: &[Arc<Entry>]) {
+    if block.is_none() && entries.is_empty() {
+        return;
+    }
+    let rows: usize = entries.iter().map(|entry| entry.commit.rows.len()).sum();
+    let left = Leftovers { bench: bench.to_owned(), block, entries: entries.to_vec() };
+    match write(&data.join(FOLDER), &left) {
+        Ok(path) => tracing::warn!(bench, rows, file = %path.display(), "left for the next start to store"),
+        Err(fault) => tracing::error!(bench, rows, %fault, "what was not yet stored could not be left and is lost"),
+    }
+}
+
+/// Whole or not there: behind its digest, and under its name only when it is on the disk.
+fn write(folder: &Path, left: &Leftovers) -> io::Result<PathBuf> {
+    fs::create_dir_all(folder)?;
+    let mut body = Vec::new();
+    send(&mut body, left)?;
+    let stamp = Timestamp::now().strftime("%Y%m%dT%H%M%S%6fZ");
+    let path = folder.join(format!("{}-{stamp}.{ENDING}", file_name(&left.bench)));
+    let unfinished = path.with_extension("part");
+    let mut file = File::create(&unfinished)?;
+    file.write_all(&Sha256::digest(&body))?;
+    file.write_all(&body)?;
+    file.sync_all()?;
+    fs::rename(&unfinished, &path)?;
+    File::open(folder)?.sync_all()?;
+    Ok(path)
+}
+
+fn read(path: &Path) -> io::Result<Leftovers> {
+    let bytes = fs::read(path)?;
+    let damaged = || io::Error::new(ErrorKind::InvalidData, "its checksum is wrong");
+    let (digest, body) = bytes.split_at_checked(Sha256::output_size()).ok_or_else(damaged)?;
+    if digest != Sha256::digest(body).as_slice() {
+        return Err(damaged());
+    }
+    receive(&mut &*body)?.ok_or_else(damaged)
+}
+
+/// Stores what workers have left in the data folder. A file that is damaged stays where it is, and is told.
+///
+/// # Errors
+/// Where the store refuses; the file stays for the next start.
+pub async fn store_all(data: &Path, store: &Store) -> Result<(), StoreError> {
+    let Ok(found) = fs::read_dir(data.join(FOLDER)) else { return Ok(()) };
+    let mut files: Vec<PathBuf> = found.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == ENDING));
+    files.sort();
+    for path in files {
+        match read(&path) {
+            Ok(left) => {
+                store_one(left, store).await?;
+                if let Err(fault) = fs::remove_file(&path) {
+                    tracing::warn!(file = %path.display(), %fault, "stored, but not removed");
+                }
+            }
+            Err(fault) => tracing::error!(file = %path.display(), %fault, "what a worker has left cannot be read"),
+        }
+    }
+    Ok(())
+}
+
+async fn store_one(left: Leftovers, store: &Store) -> Result<(), StoreError> {
+    let Leftovers { bench, block, entries } = left;
+    for entry in &entries {
+        match store.commit_all(&[&entry.commit]).await {
+            // Ended by a start that did not know of them.
+            Err(fault @ (StoreError::RunOver { .. } | StoreError::NoRun(_))) => {
+                tracing::error!(run.id = entry.commit.run, %fault, "what a worker has left has no place");
+            }
+            done => done?,
+        }
+    }
+    if let Some(block) = block {
+        store.keep_block(&bench, &block).await?;
+    }
+    tracing::warn!(bench, entries = entries.len(), "what a worker had left is stored");
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::RunCommit;
+    use jointbench_instrument::{Channel, Trace};
+    use jointbench_procedure::RunState;
+
+    fn entry(number: u64) -> Arc<Entry> {
+        let rows = Trace::from_columns(vec![Channel::new("time_s")], vec![vec![0.0, 0.1]]);
+        Arc::new(Entry {
+            number,
+            commit: RunCommit { run: 1, number, state: RunState::Running, events: Vec::new(), rows },
+        })
+    }
+
+    #[test]
+    fn what_is_left_comes_back_and_a_damaged_file_is_told() {
+        let data = tempfile::tempdir().unwrap();
+        leave(data.path(), "a/b", None, &[]);
+        assert!(!data.path().join(FOLDER).exists(), "nothing is left where nothing waits");
+        leave(data.path(), "a/b", None, &[entry(1), entry(2)]);
+        let path = fs::read_dir(data.path().join(FOLDER)).unwrap().next().unwrap().unwrap().path();
+        let left = read(&path).unwrap();
+        assert_eq!((left.bench.as_str(), left.entries), ("a/b", vec![entry(1), entry(2)]));
+        let mut bytes = fs::read(&path).unwrap();
+        *bytes.last_mut().unwrap() ^= 1;
+        fs::write(&path, bytes).unwrap();
+        assert!(read(&path).is_err());
+    }
+}

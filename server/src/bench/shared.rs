@@ -1,0 +1,201 @@
+//! What the server's side of a bench shares: its status, the way to its worker, what keeps it from moving.
+
+use super::display::Display;
+use super::keeper::Item;
+use super::status::{Status, Underway};
+use super::wire::{self, Order};
+use crate::config::BenchDescription;
+use crate::live::Hub;
+use crate::store::{SafetyRecord, Store};
+use crate::view::{BenchState, Blocked, LiveMessage};
+use jiff::Timestamp;
+use jointbench_procedure::RunId;
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::process::ChildStdin;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tokio::runtime::Handle;
+use tokio::sync::mpsc::UnboundedSender;
+use tokio::sync::{Notify, oneshot, watch};
+
+pub(super) struct Shared {
+    pub description: BenchDescription,
+    pub store: Store,
+    pub hub: Hub,
+    pub data: PathBuf,
+    pub program: PathBuf,
+    /// For the threads that are none of its own.
+    pub runtime: Handle,
+    pub status: watch::Sender<Status>,
+    /// In the order in which it is to be stored.
+    pub to_keep: UnboundedSender<Item>,
+    pub display: Mutex<Option<Display>>,
+    /// The bench is reserved for a run that has no number yet.
+    pub claimed: AtomicBool,
+    /// The daemon ends: the worker is not started again.
+    pub ending: AtomicBool,
+    /// Whether the mock bench has a full disk, and that this has changed.
+    pub disk_is_full: AtomicBool,
+    pub disk_changed: Notify,
+    orders: Mutex<Option<ChildStdin>>,
+    tickets: Mutex<HashMap<u64, oneshot::Sender<()>>>,
+    last_ticket: AtomicU64,
+}
+
+/// The worker of the bench is not there to hear it.
+#[derive(Debug)]
+pub(super) struct NoWorker;
+
+impl Shared {
+    /// Within the runtime.
+    pub fn new(
+        description: BenchDescription,
+        store: Store,
+        hub: Hub,
+        (data, program): (PathBuf, PathBuf),
+        to_keep: UnboundedSender<Item>,
+    ) -> Self {
+        Self {
+            description,
+            store,
+            hub,
+            data,
+            program,
+            runtime: Handle::current(),
+            status: watch::Sender::new(Status::offline()),
+            to_keep,
+            display: Mutex::default(),
+            claimed: AtomicBool::new(false),
+            ending: AtomicBool::new(false),
+            disk_is_full: AtomicBool::new(false),
+            disk_changed: Notify::new(),
+            orders: Mutex::default(),
+            tickets: Mutex::default(),
+            last_ticket: AtomicU64::new(0),
+        }
+    }
+
+    pub fn name(&self) -> &str {
+        &self.description.name
+    }
+
+    /// A worker has come, or has gone.
+    pub fn set_worker(&self, orders: Option<ChildStdin>) {
+        *lock(&self.orders) = orders;
+        if lock(&self.orders).is_none() {
+            // Whoever waits for an answer of it waits in vain.
+            lock(&self.tickets).clear();
+        }
+    }
+
+    pub fn order(&self, order: &Order) -> Result<(), NoWorker> {
+        let mut orders = lock(&self.orders);
+        wire::send(orders.as_mut().ok_or(NoWorker)?, order).map_err(|_| NoWorker)
+    }
+
+    /// An order whose being done is told.
+    pub fn order_and_hear(&self, order: impl FnOnce(u64) -> Order) -> Result<oneshot::Receiver<()>, NoWorker> {
+        let ticket = self.last_ticket.fetch_add(1, Ordering::Relaxed) + 1;
+        let (done, wait) = oneshot::channel();
+        lock(&self.tickets).insert(ticket, done);
+        self.order(&order(ticket))?;
+        Ok(wait)
+    }
+
+    pub fn done(&self, ticket: u64) {
+        if let Some(done) = lock(&self.tickets).remove(&ticket) {
+            // Whoever asked may have left.
+            let _ = done.send(());
+        }
+    }
+
+    pub fn is_busy(&self) -> bool {
+        self.claimed.load(Ordering::Acquire) || !self.status.borrow().runs.is_empty()
+    }
+
+    pub fn change<T: Default>(&self, change: impl FnOnce(&mut Status) -> T) -> T {
+        let mut told = T::default();
+        self.status.send_modify(|status| told = change(status));
+        self.tell_bench();
+        told
+    }
+
+    pub fn tell_bench(&self) {
+        let bench = crate::lab::bench_view(&self.description, &self.status.borrow());
+        self.hub.tell(LiveMessage::Bench { bench: Box::new(bench) });
+    }
+
+    /// A block that begins now. What blocked the bench before is not forgotten over it.
+    pub fn new_block(&self, stopped: bool, reason: &str, run: Option<RunId>, by: Option<&str>) -> SafetyRecord {
+        let before = self.status.borrow().blocked.clone();
+        let reason = match &before {
+            Some(before) if before.stopped != stopped => format!("{reason}; before that: {}", before.reason),
+            Some(before) if stopped => before.reason.clone(),
+            _ => reason.to_owned(),
+        };
+        let stopped = stopped || before.is_some_and(|before| before.stopped);
+        let at = format!("{:.6}", Timestamp::now());
+        SafetyRecord { blocked: true, stopped, reason, run, by: by.map(str::to_owned), at }
+    }
+
+    /// Nothing moves on this bench from here on, until a person lifts the block: shown at once, stored as soon as that can be.
+    pub fn enter(self: &Arc<Self>, block: SafetyRecord) {
+        self.change(|status| {
+            status.blocked = Some(blocked(&block, false));
+            match status.run {
+                Some(_) if block.stopped => status.state = BenchState::Securing,
+                Some(_) => {}
+                None => status.rest(),
+            }
+        });
+        super::keeper::keep_block(self.clone(), block);
+    }
+
+    /// The block that began at this moment is lifted; one that began later is not. Whether nothing blocks the bench now.
+    pub fn lift(&self, since: &str) -> bool {
+        let is_free = self.change(|status| {
+            status.blocked.take_if(|blocked| blocked.since == since);
+            if status.run.is_none() {
+                status.rest();
+            }
+            status.blocked.is_none()
+        });
+        if self.order(&Order::Release { until: since.to_owned() }).is_err() {
+            tracing::debug!(bench = self.name(), "no worker hears that the block is lifted");
+        }
+        is_free
+    }
+
+    pub fn block_is_stored(&self, at: &str) {
+        self.change(|status| {
+            if let Some(blocked) = status.blocked.as_mut().filter(|blocked| blocked.since == at) {
+                blocked.stored = true;
+            }
+        });
+        let stored = Order::BlockStored { at: at.to_owned() };
+        if self.order(&stored).is_err() {
+            tracing::debug!(bench = self.name(), "no worker hears that the block is stored");
+        }
+    }
+
+    /// A run leaves the list when its worker is through with it and its end is stored.
+    pub fn settle(&self, run: RunId, change: impl FnOnce(&mut Underway)) {
+        self.change(|status| {
+            let Some(underway) = status.runs.get_mut(&run) else { return };
+            change(underway);
+            if underway.ended && underway.stored {
+                status.runs.remove(&run);
+            }
+        });
+    }
+}
+
+pub(super) fn blocked(block: &SafetyRecord, stored: bool) -> Blocked {
+    let SafetyRecord { stopped, reason, by, at, .. } = block.clone();
+    Blocked { stopped, reason, by, since: at, stored }
+}
+
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,309 @@
+//! The thread of the server that has a worker: starts it, takes in what it reports, and starts another where it died.
+
+use super::instruments::unreached;
+use super::keeper::Item;
+use super::shared::{Shared, lock};
+use super::status::{FAULTS, Met, New, Underway};
+use super::wire::{self, Entry, Order, Report, Setup};
+use crate::lab::state_view;
+use crate::store::SafetyRecord;
+use crate::view::{self, BenchState, InstrumentFault, LiveMessage};
+use jiff::Timestamp;
+use jointbench_procedure::{EventKind, RunEnd, RunId, RunState, Safe};
+use std::io::{self, BufReader};
+use std::process::{Child, ChildStdout, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+use tokio::sync::oneshot;
+
+const DAEMON_ENDED: &str = "the daemon ended before the run did; all committed samples are kept";
+const WORKER_ENDED: &str = "the bench worker ended before the run did; all committed samples are kept";
+/// At its end a daemon waits so long for a store that does not take what is left.
+const DRAINED: Duration = Duration::from_secs(5);
+/// And so long for a worker that has secured its bench.
+const GONE: Duration = Duration::from_secs(20);
+const SOONEST: Duration = Duration::from_millis(200);
+const LATEST: Duration = Duration::from_secs(10);
+/// A worker that lived so long did not die of its start.
+const LIVED: Duration = Duration::from_secs(60);
+
+pub(super) struct Supervisor {
+    shared: Arc<Shared>,
+    /// Runs that nobody makes any more, and of which it is not known how the bench was left.
+    orphans: Vec<(RunId, &'static str)>,
+}
+
+impl Supervisor {
+    /// `interrupted`: the runs that another daemon left open on this bench.
+    pub fn new(shared: Arc<Shared>, interrupted: Vec<RunId>) -> Self {
+        shared.status.send_modify(|status| {
+            status.runs = interrupted.iter().map(|run| (*run, Underway::queued())).collect();
+        });
+        Self { shared, orphans: interrupted.into_iter().map(|run| (run, DAEMON_ENDED)).collect() }
+    }
+
+    /// Until the daemon ends.
+    pub fn supervise(mut self) {
+        let mut pause = SOONEST;
+        loop {
+            let started = Instant::now();
+            match self.start() {
+                Ok((mut child, reports)) => {
+                    let finished = self.attend(reports);
+                    if finished {
+                        self.drain();
+                    }
+                    self.shared.set_worker(None);
+                    let how = wait(&mut child);
+                    self.worker_is_gone(finished, &how);
+                }
+                Err(fault) => self.tell_unreached(format!("the bench worker does not start: {fault}")),
+            }
+            if self.shared.ending.load(Ordering::Acquire) {
+                return;
+            }
+            pause = if started.elapsed() > LIVED { SOONEST } else { (2 * pause).min(LATEST) };
+            std::thread::sleep(pause);
+        }
+    }
+
+    fn start(&self) -> io::Result<(Child, ChildStdout)> {
+        let shared = &self.shared;
+        let mut command = crate::program::part(&shared.program, "worker");
+        command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        #[cfg(unix)]
+        {
+            // Ctrl-C in a terminal is the server's, which ends its workers in an orderly way.
+            use std::os::unix::process::CommandExt;
+            command.process_group(0);
+        }
+        let mut child = command.spawn()?;
+        let (orders, reports) = child.stdin.take().zip(child.stdout.take()).ok_or(io::ErrorKind::BrokenPipe)?;
+        shared.set_worker(Some(orders));
+        let block = shared.status.borrow().blocked.as_ref().map(record);
+        let setup = Setup { description: shared.description.clone(), data: shared.data.clone(), block };
+        let opened = shared.order(&Order::Open(Box::new(setup)));
+        opened.map_err(|_| io::Error::other("it ends at once"))?;
+        tracing::info!(bench = shared.name(), process = child.id(), "bench worker started");
+        Ok((child, reports))
+    }
+
+    /// Takes in every report. Whether the worker came to its end in an orderly way.
+    fn attend(&mut self, reports: ChildStdout) -> bool {
+        let mut reports = BufReader::new(reports);
+        loop {
+            match wire::receive(&mut reports) {
+                Ok(Some(Report::Finished)) => return true,
+                Ok(Some(report)) => self.take_in(report),
+                Ok(None) => return false,
+                Err(fault) => {
+                    tracing::error!(bench = self.shared.name(), %fault, "a report of the worker cannot be read");
+                    return false;
+                }
+            }
+        }
+    }
+
+    fn take_in(&mut self, report: Report) {
+        let shared = &self.shared;
+        match report {
+            Report::Opened { instruments, channels, open } => self.opened(instruments, channels, open),
+            Report::Secured { safe, notes } => self.secured(safe, &notes),
+            Report::Done { ticket } => shared.done(ticket),
+            Report::Entry(entry) => self.entry(entry),
+            Report::Live { run, rows, progress, .. } => {
+                if let Some(display) = lock(&shared.display).as_mut() {
+                    display.show(shared, run, rows, &progress);
+                }
+            }
+            Report::Ended { run, end } => self.ended(run, &end),
+            Report::DiskFull(full) => {
+                shared.disk_is_full.store(full, Ordering::Release);
+                shared.disk_changed.notify_one();
+            }
+            Report::Finished => {}
+        }
+    }
+
+    fn opened(&self, mut instruments: Vec<view::Instrument>, channels: Vec<super::health::Incoming>, open: bool) {
+        for instrument in &mut instruments {
+            instrument.faults = self.known_faults(&instrument.name);
+        }
+        let new = self.shared.change(|status| {
+            if status.channels.is_empty() {
+                status.channels = channels;
+            }
+            status.open = open;
+            status.found(instruments)
+        });
+        self.keep_faults(new);
+    }
+
+    fn secured(&mut self, safe: Safe, notes: &[String]) {
+        let open = self.shared.status.borrow().open;
+        if open && safe == Safe::UnsafeUnknown {
+            self.block_as_unsafe(&notes.join("; "), None);
+        } else if !open && !self.orphans.is_empty() {
+            self.block_as_unsafe("a run was interrupted and the instruments do not answer", None);
+        }
+        for (run, reason) in std::mem::take(&mut self.orphans) {
+            tracing::warn!(run.id = run, bench = self.shared.name(), %safe, "run was interrupted, the bench is secured now");
+            self.keep(Item::Interrupted { run, safe, reason });
+        }
+        self.shared.change(|status| {
+            status.settled = true;
+            if status.run.is_none() {
+                status.rest();
+            }
+        });
+    }
+
+    fn entry(&self, entry: Arc<Entry>) {
+        let shared = &self.shared;
+        let commit = &entry.commit;
+        let new: Vec<New> = shared.change(|status| {
+            let underway = status.runs.entry(commit.run).or_insert_with(Underway::queued);
+            let before = underway.state;
+            underway.take_in(commit);
+            status.unstored.rows += commit.rows.len();
+            status.unstored.since.get_or_insert_with(Timestamp::now);
+            if before != commit.state && !commit.state.is_final() {
+                status.run = Some(commit.run);
+                status.state = bench_state(commit.state);
+            }
+            let met = commit.events.iter().filter_map(|event| met(&event.kind));
+            met.filter_map(|met| status.met(&met)).collect()
+        });
+        self.keep_faults(new);
+        if !commit.state.is_final() && commit.events.iter().any(|event| matches!(event.kind, EventKind::State { .. })) {
+            // The end is told with its reason, when it is stored.
+            shared.hub.tell(LiveMessage::State {
+                bench: shared.name().to_owned(),
+                run: commit.run,
+                state: state_view(commit.state),
+                safe: None,
+                reason: None,
+            });
+        }
+        self.keep(Item::Entry(entry));
+    }
+
+    fn ended(&self, run: RunId, end: &RunEnd) {
+        if end.safe == Safe::UnsafeUnknown {
+            self.block_as_unsafe(end.reason.as_deref().unwrap_or_default(), Some(run));
+        }
+        lock(&self.shared.display).take();
+        self.shared.change(|status| status.rest());
+        self.shared.settle(run, |underway| underway.ended = true);
+    }
+
+    fn block_as_unsafe(&self, reason: &str, run: Option<RunId>) {
+        let reason = if reason.is_empty() { "no cause is known" } else { reason };
+        let reason = format!("the bench is not known to be safe: {reason}");
+        self.shared.enter(self.shared.new_block(false, &reason, run, None));
+    }
+
+    /// What was wrong with an instrument before the daemon was started.
+    fn known_faults(&self, instrument: &str) -> Vec<InstrumentFault> {
+        let shared = &self.shared;
+        let known = shared.runtime.block_on(shared.store.faults(shared.name(), instrument, FAULTS as u32));
+        let known = known.inspect_err(|fault| tracing::error!(instrument, %fault, "earlier faults cannot be read"));
+        known.unwrap_or_default().into_iter().map(|(at, text)| InstrumentFault { at, text }).collect()
+    }
+
+    fn keep_faults(&self, new: Vec<New>) {
+        new.into_iter().for_each(|new| self.keep(Item::Fault(new)));
+    }
+
+    fn keep(&self, item: Item) {
+        if self.shared.to_keep.send(item).is_err() {
+            tracing::error!(bench = self.shared.name(), "nobody stores any more");
+        }
+    }
+
+    /// Lets the store have what the worker has brought; a worker that is left with something leaves it in the data folder.
+    fn drain(&self) {
+        let (done, stored) = oneshot::channel();
+        self.keep(Item::Flush(done));
+        let stored = self.shared.runtime.block_on(async { tokio::time::timeout(DRAINED, stored).await });
+        if stored.is_err() {
+            tracing::warn!(bench = self.shared.name(), "the store does not take what is left: the worker leaves it");
+        }
+    }
+
+    /// The bench has nobody: nothing moves, and what it does is not known until another worker has secured it.
+    fn worker_is_gone(&mut self, finished: bool, how: &str) {
+        let ending = self.shared.ending.load(Ordering::Acquire);
+        if finished && ending {
+            return;
+        }
+        tracing::error!(bench = self.shared.name(), how, "the bench worker is gone");
+        let open: Vec<RunId> = {
+            let status = self.shared.status.borrow();
+            let lost = status.runs.iter().filter(|(_, run)| !run.ended);
+            lost.map(|(run, _)| *run).collect()
+        };
+        for run in open {
+            let is_over = self.shared.status.borrow().runs.get(&run).is_some_and(|run| run.state.is_final());
+            if is_over {
+                // Its last word has come; only the worker's own end has not.
+                self.shared.settle(run, |run| run.ended = true);
+            } else {
+                self.orphans.push((run, WORKER_ENDED));
+            }
+        }
+        self.tell_unreached(format!("the bench worker ended ({how}); it is started again and secures the bench"));
+    }
+
+    fn tell_unreached(&self, why: String) {
+        let instruments = vec![unreached(&self.shared.description, why)];
+        let new = self.shared.change(|status| {
+            status.open = false;
+            let new = status.found(instruments);
+            status.rest();
+            new
+        });
+        self.keep_faults(new);
+    }
+}
+
+fn bench_state(run: RunState) -> BenchState {
+    match run {
+        RunState::Paused => BenchState::Paused,
+        RunState::Securing => BenchState::Securing,
+        _ => BenchState::Running,
+    }
+}
+
+fn met(event: &EventKind) -> Option<Met> {
+    match event {
+        EventKind::Fault { fault, recovered } => {
+            Some(Met { at: Timestamp::now(), fault: fault.clone(), recovered: *recovered })
+        }
+        _ => None,
+    }
+}
+
+fn record(blocked: &view::Blocked) -> SafetyRecord {
+    let view::Blocked { stopped, reason, by, since, .. } = blocked.clone();
+    SafetyRecord { blocked: true, stopped, reason, run: None, by, at: since }
+}
+
+/// How a worker ended; one that does not end is killed.
+fn wait(child: &mut Child) -> String {
+    let give_up = Instant::now() + GONE;
+    loop {
+        match child.try_wait() {
+            Ok(Some(status)) => return status.to_string(),
+            Ok(None) if Instant::now() < give_up => {}
+            Ok(None) => {
+                tracing::error!(process = child.id(), "the bench worker does not end and is killed");
+                // An error says that it has ended by itself.
+                let _ = child.kill();
+            }
+            Err(fault) => return fault.to_string(),
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}

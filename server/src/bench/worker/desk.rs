@@ -1,0 +1,103 @@
+//! What the threads of a worker share: the block, the way to the run that is on, the outbox.
+
+use super::outbox::Outbox;
+use crate::bench::wire::Report;
+use crate::store::SafetyRecord;
+use jointbench_devices::MockBench;
+use jointbench_procedure::{Control, Demand, RunId};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+pub(super) struct Desk {
+    pub outbox: Arc<Outbox>,
+    state: Mutex<State>,
+    disk_is_full: AtomicBool,
+}
+
+struct State {
+    block: Option<SafetyRecord>,
+    block_is_stored: bool,
+    run: Option<(RunId, Sender<Demand>)>,
+    server_is_gone: bool,
+}
+
+impl Desk {
+    pub fn new(outbox: Arc<Outbox>, block: Option<SafetyRecord>) -> Self {
+        let state = Mutex::new(State { block, block_is_stored: true, run: None, server_is_gone: false });
+        Self { outbox, state, disk_is_full: AtomicBool::new(false) }
+    }
+
+    pub fn block(&self) -> Option<SafetyRecord> {
+        self.lock().block.clone()
+    }
+
+    pub fn set_block(&self, block: SafetyRecord) {
+        let mut state = self.lock();
+        (state.block, state.block_is_stored) = (Some(block), false);
+    }
+
+    pub fn block_is_stored(&self, at: &str) {
+        let mut state = self.lock();
+        if state.block.as_ref().is_some_and(|block| block.at == at) {
+            state.block_is_stored = true;
+        }
+    }
+
+    /// What the server has not said to be stored.
+    pub fn unstored_block(&self) -> Option<SafetyRecord> {
+        let state = self.lock();
+        state.block.clone().filter(|_| !state.block_is_stored)
+    }
+
+    /// A stop that was pressed behind the look of the person who lifts the block stays.
+    pub fn release(&self, until: &str) {
+        self.lock().block.take_if(|block| block.at.as_str() <= until);
+    }
+
+    /// The software stop, in this order: nothing starts any more, what is on ends. Whether a run was there to end.
+    pub fn stop(&self, block: SafetyRecord) -> bool {
+        let by = block.by.clone();
+        self.set_block(block);
+        self.control(Demand { control: Control::EStop, by })
+    }
+
+    /// From here on the run can be controlled, also before it begins.
+    pub fn expect(&self, run: RunId) -> Receiver<Demand> {
+        let (sender, receiver) = mpsc::channel();
+        self.lock().run = Some((run, sender));
+        receiver
+    }
+
+    pub fn run_is_over(&self) {
+        self.lock().run = None;
+    }
+
+    /// Whether a run was there to hear it.
+    pub fn control(&self, demand: Demand) -> bool {
+        self.outbox.hurry();
+        self.lock().run.as_ref().is_some_and(|(_, run)| run.send(demand).is_ok())
+    }
+
+    /// Nobody stores anything any more: the run that is on ends, none begins.
+    pub fn server_is_gone(&self) {
+        self.lock().server_is_gone = true;
+        self.control(Control::StorageLost.into());
+    }
+
+    pub fn is_alone(&self) -> bool {
+        self.lock().server_is_gone
+    }
+
+    /// Tells the server what day the mock bench's disk has, where that has changed.
+    pub fn tell_disk(&self, mock: Option<&MockBench>) {
+        let full = mock.is_some_and(MockBench::disk_is_full);
+        if self.disk_is_full.swap(full, Ordering::AcqRel) != full {
+            self.outbox.say(Report::DiskFull(full));
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,115 @@
+//! The worker of a bench: a process of its own that holds the instruments, so that nothing that happens to the server part of
+//! the daemon (a fit that takes all memory, a disk that stands, a panic) reaches them.
+//!
+//! Three threads: the owner runs the engine, `orders` listens to the server and carries the software stop out at once, and
+//! `reports` says what is to be stored and shown. Where the server is gone, the run that is on is ended, the bench secured,
+//! and what the store has not got is left in the data folder.
+
+mod desk;
+mod outbox;
+mod owner;
+mod recorder;
+mod seat;
+
+pub(super) use seat::file_name;
+pub use seat::wait_until_gone;
+
+use super::leftovers;
+use super::wire::{self, Order, Setup};
+use desk::Desk;
+use jointbench_procedure::{Control, Demand, Plan, RunId};
+use outbox::Outbox;
+use owner::Owner;
+use std::io::{self, Read};
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver, Sender};
+
+/// What the owner of the bench is asked for, one after the other.
+enum Command {
+    Run { run: RunId, plan: Box<Plan>, controls: Receiver<Demand> },
+    Secure,
+    Reopen { wanting: Vec<String>, ticket: u64 },
+    Quit,
+}
+
+/// Serves a bench until the server wants no more, or is gone. Standard input and output belong to the server.
+///
+/// # Errors
+/// Where there is no server to serve, or no thread.
+pub fn serve() -> io::Result<()> {
+    let mut orders = io::stdin();
+    let Some(Order::Open(setup)) = wire::receive(&mut orders)? else {
+        return Err(io::Error::other("a worker is started by the daemon, and by nobody else"));
+    };
+    let Setup { description, data, block } = *setup;
+    let name = description.name.clone();
+    seat::raise_priority();
+    let (outbox, reports) = Outbox::start(io::stdout())?;
+    let desk = Arc::new(Desk::new(outbox, block));
+    let (commands, to_do) = mpsc::channel();
+    seat::end_when_told(desk.clone(), commands.clone())?;
+    let listening = desk.clone();
+    std::thread::Builder::new().name("orders".into()).spawn(move || listen(orders, &listening, &commands))?;
+    match seat::take(&data, &name) {
+        Ok(seat) => {
+            Owner::new(description, desk.clone()).serve(&to_do);
+            drop(seat);
+        }
+        Err(why) => owner::serve_nothing(&description, &desk, &to_do, &why),
+    }
+    desk.outbox.say(wire::Report::Finished);
+    desk.outbox.close();
+    if reports.join().is_err() {
+        tracing::error!("the thread of the reports has panicked");
+    }
+    // The server closes its end when it has stored what it can.
+    while !desk.is_alone() && to_do.recv().is_ok() {}
+    leftovers::leave(&data, &name, desk.unstored_block(), &desk.outbox.unstored());
+    Ok(())
+}
+
+fn listen(mut orders: impl Read, desk: &Desk, commands: &Sender<Command>) {
+    loop {
+        match wire::receive(&mut orders) {
+            Ok(Some(order)) => obey(order, desk, commands),
+            Ok(None) => break,
+            Err(fault) => {
+                tracing::error!(%fault, "an order of the server cannot be read");
+                break;
+            }
+        }
+    }
+    desk.server_is_gone();
+    // An error says that the owner has ended already.
+    let _ = commands.send(Command::Quit);
+}
+
+fn obey(order: Order, desk: &Desk, commands: &Sender<Command>) {
+    let command = match order {
+        Order::Stop { block, ticket } => {
+            let secures_itself = desk.stop(block);
+            desk.outbox.say(wire::Report::Done { ticket });
+            if secures_itself {
+                return;
+            }
+            Command::Secure
+        }
+        Order::Control(demand) => {
+            desk.control(demand);
+            return;
+        }
+        Order::Run { run, plan } => Command::Run { run, plan, controls: desk.expect(run) },
+        Order::Release { until } => return desk.release(&until),
+        Order::BlockStored { at } => return desk.block_is_stored(&at),
+        Order::Stored { number } => return desk.outbox.stored(number),
+        Order::Storage { fault } => return desk.outbox.set_fault(fault),
+        Order::Reopen { wanting, ticket } => Command::Reopen { wanting, ticket },
+        Order::Quit => {
+            desk.control(Control::Quit.into());
+            Command::Quit
+        }
+        Order::Open(_) => return tracing::error!("a bench is opened once"),
+    };
+    // An error says that the owner has ended already.
+    let _ = commands.send(command);
+}

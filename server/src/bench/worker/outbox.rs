@@ -1,0 +1,144 @@
+//! What the worker has to say, and what of it is not yet durable: the bounded queue between control and storage. The thread
+//! that owns the bench only ever puts something down here.
+
+use crate::bench::wire::{self, Entry, Report};
+use crate::store::RunCommit;
+use std::collections::VecDeque;
+use std::io::Write;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+
+/// So much may wait to be stored: eight minutes of 17 channels at 1 kHz.
+pub const MOST_BYTES: usize = 64 << 20;
+/// Pictures of rows that nobody fetched are worth nothing: so many wait at most.
+const MOST_LIVE: usize = 64;
+
+pub struct Outbox {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    /// In the order in which it is said.
+    unsaid: VecDeque<Report>,
+    /// Said or not, but not durable.
+    unstored: VecDeque<Arc<Entry>>,
+    unstored_bytes: usize,
+    last_number: u64,
+    /// Why nothing can be stored.
+    fault: Option<String>,
+    /// Somebody wants something of the run: nobody may be kept waiting.
+    hurry: bool,
+    closed: bool,
+}
+
+/// What of a run waits to be stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Backlog {
+    pub rows: usize,
+    pub bytes: usize,
+}
+
+impl Outbox {
+    /// Starts the thread that says everything.
+    pub fn start(to: impl Write + Send + 'static) -> std::io::Result<(Arc<Self>, JoinHandle<()>)> {
+        let outbox = Arc::new(Self { state: Mutex::default(), changed: Condvar::new() });
+        let said = outbox.clone();
+        let thread = std::thread::Builder::new().name("reports".into()).spawn(move || said.say_all(to))?;
+        Ok((outbox, thread))
+    }
+
+    pub fn say(&self, report: Report) {
+        let mut state = self.lock();
+        if matches!(report, Report::Live { .. })
+            && state.unsaid.iter().filter(|waiting| matches!(waiting, Report::Live { .. })).count() >= MOST_LIVE
+        {
+            return;
+        }
+        state.unsaid.push_back(report);
+        self.changed.notify_all();
+    }
+
+    /// Takes over what is to be stored. Never waits.
+    pub fn keep(&self, commit: RunCommit) {
+        let mut inner = self.lock();
+        inner.last_number += 1;
+        let entry = Arc::new(Entry { number: inner.last_number, commit });
+        inner.unstored_bytes += bytes(&entry);
+        inner.unstored.push_back(entry.clone());
+        inner.unsaid.push_back(Report::Entry(entry));
+        self.changed.notify_all();
+    }
+
+    pub fn backlog(&self) -> Backlog {
+        let state = self.lock();
+        Backlog { rows: state.unstored.iter().map(|entry| entry.commit.rows.len()).sum(), bytes: state.unstored_bytes }
+    }
+
+    /// Everything up to this number is durable.
+    pub fn stored(&self, number: u64) {
+        let mut state = self.lock();
+        while state.unstored.front().is_some_and(|entry| entry.number <= number) {
+            let entry = state.unstored.pop_front();
+            state.unstored_bytes -= entry.map_or(0, |entry| bytes(&entry));
+        }
+        self.changed.notify_all();
+    }
+
+    pub fn set_fault(&self, fault: Option<String>) {
+        self.lock().fault = fault;
+        self.changed.notify_all();
+    }
+
+    pub fn fault(&self) -> Option<String> {
+        self.lock().fault.clone()
+    }
+
+    /// Lets go whoever waits for the store, or is about to.
+    pub fn hurry(&self) {
+        self.lock().hurry = true;
+        self.changed.notify_all();
+    }
+
+    /// For a bench whose time stands while it waits: returns when the store has caught up, or somebody is in a hurry.
+    pub fn let_the_store_catch_up(&self) {
+        let far_ahead =
+            |state: &mut State| !state.unstored.is_empty() && !state.hurry && state.fault.is_none() && !state.closed;
+        self.changed.wait_while(self.lock(), far_ahead).unwrap_or_else(PoisonError::into_inner).hurry = false;
+    }
+
+    /// Says what is left, and nothing after it.
+    pub fn close(&self) {
+        self.lock().closed = true;
+        self.changed.notify_all();
+    }
+
+    /// What the store has not got.
+    pub fn unstored(&self) -> Vec<Arc<Entry>> {
+        self.lock().unstored.iter().cloned().collect()
+    }
+
+    fn say_all(&self, mut to: impl Write) {
+        loop {
+            let idle = |state: &mut State| state.unsaid.is_empty() && !state.closed;
+            let mut state = self.changed.wait_while(self.lock(), idle).unwrap_or_else(PoisonError::into_inner);
+            let Some(report) = state.unsaid.pop_front() else { return };
+            drop(state);
+            if let Err(fault) = wire::send(&mut to, &report) {
+                tracing::error!(%fault, "the server part of the daemon does not listen any more");
+                return;
+            }
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// In memory, and about so many on the way.
+fn bytes(entry: &Entry) -> usize {
+    let rows = &entry.commit.rows;
+    rows.len() * rows.channels().len() * size_of::<f64>()
+}

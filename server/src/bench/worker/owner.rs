@@ -1,0 +1,156 @@
+//! The thread that owns a bench. An ordinary loop: one command after the other, a run is one command.
+
+use super::Command;
+use super::desk::Desk;
+use super::recorder::OutboxRecorder;
+use crate::bench::health::expected;
+use crate::bench::instruments::{Opened, open, unreached};
+use crate::bench::wire::Report;
+use crate::config::BenchDescription;
+use crate::view;
+use jointbench_instrument::roles::Instrument;
+use jointbench_procedure::{Demand, Plan, RunId, Safe};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
+
+/// Between runs the clock of a mock bench is moved so often: its bad day may be over.
+const IDLE_EVERY: Duration = Duration::from_secs(1);
+
+pub(super) struct Owner {
+    description: BenchDescription,
+    desk: Arc<Desk>,
+    opened: Opened,
+}
+
+impl Owner {
+    /// Opens the instruments.
+    pub fn new(description: BenchDescription, desk: Arc<Desk>) -> Self {
+        let opened = open(&description);
+        Self { description, desk, opened }
+    }
+
+    pub fn serve(mut self, commands: &Receiver<Command>) {
+        self.tell_opened();
+        // Whoever was here before may have been killed: nothing is known of the bench until it is secured.
+        self.secure();
+        loop {
+            match commands.recv_timeout(IDLE_EVERY) {
+                Ok(Command::Run { run, plan, controls }) => self.run(run, &plan, &controls),
+                Ok(Command::Secure) => self.secure(),
+                Ok(Command::Reopen { wanting, ticket }) => {
+                    self.let_time_pass();
+                    self.reopen(&wanting);
+                    self.desk.outbox.say(Report::Done { ticket });
+                }
+                Ok(Command::Quit) | Err(RecvTimeoutError::Disconnected) => break,
+                Err(RecvTimeoutError::Timeout) if self.desk.outbox.fault().is_some() => self.let_time_pass(),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// Moves the clock of a mock bench, which nobody else does between runs.
+    fn let_time_pass(&self) {
+        let Some(mock) = &self.opened.mock else { return };
+        let clock = mock.clock();
+        let pace = self.description.pace().unwrap_or(1.0).max(1.0);
+        clock.sleep_until_s(clock.now_s() + pace * IDLE_EVERY.as_secs_f64());
+        self.desk.tell_disk(Some(mock));
+    }
+
+    fn tell_opened(&self) {
+        for instrument in &self.opened.instruments {
+            let (bench, name, port) = (&self.description.name, &instrument.name, &instrument.port);
+            match &instrument.fault {
+                None => tracing::info!(bench, name, port, driver = instrument.driver, "instrument ready"),
+                Some(fault) => tracing::warn!(bench, name, port, fault, "instrument not ready"),
+            }
+        }
+        self.desk.outbox.say(Report::Opened {
+            instruments: self.opened.instruments.clone(),
+            channels: self.opened.bench.as_ref().map(expected).unwrap_or_default(),
+            open: self.opened.bench.is_some(),
+        });
+    }
+
+    fn reopen(&mut self, wanting: &[String]) {
+        if self.opened.bench.is_some() {
+            self.recover(wanting);
+        } else {
+            // The ports of a half-open bench are let go before they are opened again.
+            self.opened = Opened::default();
+            self.opened = open(&self.description);
+        }
+        self.tell_opened();
+        self.secure();
+    }
+
+    /// Asks instruments again that a run has found wanting.
+    fn recover(&mut self, wanting: &[String]) {
+        let Opened { bench: Some(bench), instruments, .. } = &mut self.opened else { return };
+        for instrument in instruments.iter_mut().filter(|one| wanting.contains(&one.name)) {
+            match bench.instrument(&instrument.name).map(Instrument::recover) {
+                Some(Ok(identity)) => {
+                    (instrument.ready, instrument.identity) = (true, Some(identity.into()));
+                    (instrument.fault, instrument.since) = (None, None);
+                }
+                Some(Err(fault)) => (instrument.ready, instrument.fault) = (false, Some(fault.to_string())),
+                None => {}
+            }
+        }
+    }
+
+    fn run(&mut self, run: RunId, plan: &Plan, controls: &Receiver<Demand>) {
+        let Opened { bench: Some(bench), mock, .. } = &mut self.opened else {
+            // The lab opens a bench before it starts a run; a bench that went away in between has no instruments to move.
+            tracing::error!(run.id = run, "run started on a bench that is not open");
+            self.desk.run_is_over();
+            return self.tell_opened();
+        };
+        if self.desk.is_alone() {
+            return tracing::warn!(run.id = run, "not started: the server part of the daemon has ended");
+        }
+        let stepped = self.description.pace().is_none();
+        let mut recorder = OutboxRecorder::new(&self.desk, mock.as_ref(), stepped, run);
+        let end = jointbench_procedure::run(bench, plan, run, controls, &mut recorder);
+        self.desk.run_is_over();
+        self.desk.outbox.say(Report::Ended { run, end });
+    }
+
+    fn secure(&mut self) {
+        let report = match &mut self.opened.bench {
+            // A bench that is merely not plugged in is secured when it is opened.
+            None => Report::Secured { safe: Safe::UnsafeUnknown, notes: Vec::new() },
+            Some(bench) => {
+                let secured = jointbench_procedure::secure(bench);
+                for note in &secured.notes {
+                    tracing::warn!(bench = self.description.name, "{note}");
+                }
+                Report::Secured { safe: secured.safe, notes: secured.notes }
+            }
+        };
+        self.desk.outbox.say(report);
+    }
+}
+
+/// Answers for a bench that another worker holds.
+pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, commands: &Receiver<Command>, why: &str) {
+    let say = || {
+        let instruments: Vec<view::Instrument> = vec![unreached(description, why.to_owned())];
+        desk.outbox.say(Report::Opened { instruments, channels: Vec::new(), open: false });
+        desk.outbox.say(Report::Secured { safe: Safe::UnsafeUnknown, notes: Vec::new() });
+    };
+    say();
+    while let Ok(command) = commands.recv() {
+        match command {
+            Command::Quit => return,
+            Command::Reopen { ticket, .. } => {
+                say();
+                desk.outbox.say(Report::Done { ticket });
+            }
+            Command::Run { .. } => desk.run_is_over(),
+            Command::Secure => say(),
+        }
+    }
+}

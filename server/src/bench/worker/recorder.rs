@@ -1,0 +1,65 @@
+//! Hands what a run brings to the outbox. Nothing here waits while the bench's time goes on.
+
+use super::desk::Desk;
+use super::outbox::MOST_BYTES;
+use crate::bench::wire::Report;
+use crate::store::RunCommit;
+use jointbench_devices::MockBench;
+use jointbench_procedure::{Commit, Live, Recorder, RecorderFault, RunId};
+
+pub(super) struct OutboxRecorder<'a> {
+    desk: &'a Desk,
+    /// Its disk may have a bad day, which is the store's.
+    mock: Option<&'a MockBench>,
+    /// The bench's time stands while nobody waits for it.
+    stepped: bool,
+    run: RunId,
+    commits: u64,
+    /// Rows that found no room.
+    dropped: usize,
+}
+
+impl<'a> OutboxRecorder<'a> {
+    pub fn new(desk: &'a Desk, mock: Option<&'a MockBench>, stepped: bool, run: RunId) -> Self {
+        Self { desk, mock, stepped, run, commits: 0, dropped: 0 }
+    }
+}
+
+impl Recorder for OutboxRecorder<'_> {
+    fn blocked(&mut self) -> Result<Option<String>, RecorderFault> {
+        Ok(self.desk.block().map(|block| block.reason))
+    }
+
+    fn commit(&mut self, commit: Commit<'_>) -> Result<(), RecorderFault> {
+        let Commit { state, events, mut rows, .. } = commit;
+        let outbox = &self.desk.outbox;
+        self.desk.tell_disk(self.mock);
+        let backlog = outbox.backlog();
+        let is_full = backlog.bytes >= MOST_BYTES;
+        if is_full {
+            // How the run ends is kept all the same: it is small.
+            self.dropped += rows.take().len();
+        }
+        self.commits += 1;
+        outbox.keep(RunCommit { run: self.run, number: self.commits, state, events: events.to_vec(), rows });
+        if self.stepped {
+            outbox.let_the_store_catch_up();
+        }
+        match outbox.fault() {
+            Some(fault) => Err(RecorderFault(format!(
+                "{fault}; {} rows wait in memory and are stored as soon as that is possible",
+                outbox.backlog().rows
+            ))),
+            None if is_full => Err(RecorderFault(format!(
+                "the disk does not keep up: {} rows wait in memory, which is the most, and {} rows are not kept",
+                backlog.rows, self.dropped
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    fn live(&mut self, live: Live<'_>) {
+        let Live { run, state, rows, progress } = live;
+        self.desk.outbox.say(Report::Live { run, state, rows: rows.clone(), progress: progress.clone() });
+    }
+}

@@ -1,0 +1,81 @@
+//! One worker for each bench of a data folder, and how it stands among the processes of the machine.
+
+use super::Command;
+use super::desk::Desk;
+use jointbench_procedure::Control;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+/// The worker of a daemon that was killed secures its bench first.
+const PATIENCE: Duration = Duration::from_secs(20);
+const FOLDER: &str = "workers";
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+/// Returns when no other worker holds the bench; held until it is dropped. `Err` says who does.
+pub(super) fn take(data: &Path, bench: &str) -> Result<File, String> {
+    let path = data.join(FOLDER).join(format!("{}.lock", file_name(bench)));
+    let unwritable =
+        |fault: io::Error| format!("{} cannot be written ({fault}): check its permissions", path.display());
+    path.parent().map_or(Ok(()), fs::create_dir_all).map_err(unwritable)?;
+    let file =
+        OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path).map_err(unwritable)?;
+    let give_up = Instant::now() + PATIENCE;
+    loop {
+        match file.try_lock() {
+            Ok(()) => return Ok(file),
+            Err(TryLockError::WouldBlock) if Instant::now() < give_up => std::thread::sleep(LOOK_EVERY),
+            Err(TryLockError::WouldBlock) => {
+                let why = "an earlier worker still holds this bench: look for a process `jointbench worker`, end it, and retry";
+                return Err(why.to_owned());
+            }
+            Err(TryLockError::Error(fault)) => return Err(unwritable(fault)),
+        }
+    }
+}
+
+/// Returns when no worker of an earlier daemon is at work in the data folder, or after a while.
+pub fn wait_until_gone(data: &Path) {
+    let Ok(seats) = fs::read_dir(data.join(FOLDER)) else { return };
+    let give_up = Instant::now() + PATIENCE;
+    for seat in seats.flatten() {
+        let Ok(file) = File::open(seat.path()) else { continue };
+        while matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)) && Instant::now() < give_up {
+            std::thread::sleep(LOOK_EVERY);
+        }
+    }
+}
+
+/// The name of a bench as that of a file.
+pub fn file_name(bench: &str) -> String {
+    percent_encoding::utf8_percent_encode(bench, percent_encoding::NON_ALPHANUMERIC).to_string()
+}
+
+/// Control goes before fits and requests, where the system allows it.
+pub(super) fn raise_priority() {
+    #[cfg(unix)]
+    if let Err(fault) = rustix::process::setpriority_process(None, -10) {
+        tracing::debug!(%fault, "the worker keeps the priority that it was started with");
+    }
+}
+
+/// Told to end by itself, a worker ends as if its server had gone.
+pub(super) fn end_when_told(desk: Arc<Desk>, commands: Sender<Command>) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
+        std::thread::Builder::new().name("signals".into()).spawn(move || {
+            for signal in &mut signals {
+                tracing::warn!(signal, "the worker is told to end: the bench is secured");
+                desk.control(Control::Quit.into());
+                // An error says that the owner has ended already.
+                let _ = commands.send(Command::Quit);
+            }
+        })?;
+    }
+    Ok(())
+}
