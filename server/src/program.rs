@@ -26,6 +26,12 @@ pub fn set_log_form(form: &'static str) {
 pub fn part(program: &Path, name: &str) -> Command {
     let mut command = Command::new(program);
     command.arg(name);
+    #[cfg(unix)]
+    {
+        // A list of processes shows the name, and not the way that leads to the file.
+        use std::os::unix::process::CommandExt;
+        command.arg0("jointbench");
+    }
     if let Some(form) = LOG_FORM.get() {
         command.args(["--log", form]);
     }

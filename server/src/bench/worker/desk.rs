@@ -65,6 +65,7 @@ impl Desk {
     /// From here on the run can be controlled, also before it begins.
     pub fn expect(&self, run: RunId) -> Receiver<Demand> {
         let (sender, receiver) = mpsc::channel();
+        self.outbox.set_hurry(false);
         self.lock().run = Some((run, sender));
         receiver
     }
@@ -75,7 +76,9 @@ impl Desk {
 
     /// Whether a run was there to hear it.
     pub fn control(&self, demand: Demand) -> bool {
-        self.outbox.hurry();
+        if !matches!(demand.control, Control::Pause | Control::Resume) {
+            self.outbox.set_hurry(true);
+        }
         self.lock().run.as_ref().is_some_and(|(_, run)| run.send(demand).is_ok())
     }
 

@@ -28,7 +28,7 @@ struct State {
     last_number: u64,
     /// Why nothing can be stored.
     fault: Option<String>,
-    /// Somebody wants something of the run: nobody may be kept waiting.
+    /// The run that is on is to end: nobody may be kept waiting.
     hurry: bool,
     closed: bool,
 }
@@ -95,17 +95,17 @@ impl Outbox {
         self.lock().fault.clone()
     }
 
-    /// Lets go whoever waits for the store, or is about to.
-    pub fn hurry(&self) {
-        self.lock().hurry = true;
+    /// Whether the run that is on is to end: from then on nobody waits for the store.
+    pub fn set_hurry(&self, hurry: bool) {
+        self.lock().hurry = hurry;
         self.changed.notify_all();
     }
 
-    /// For a bench whose time stands while it waits: returns when the store has caught up, or somebody is in a hurry.
+    /// For a bench whose time stands while it waits: returns when the store has caught up, or the run is to end.
     pub fn let_the_store_catch_up(&self) {
         let far_ahead =
             |state: &mut State| !state.unstored.is_empty() && !state.hurry && state.fault.is_none() && !state.closed;
-        self.changed.wait_while(self.lock(), far_ahead).unwrap_or_else(PoisonError::into_inner).hurry = false;
+        drop(self.changed.wait_while(self.lock(), far_ahead).unwrap_or_else(PoisonError::into_inner));
     }
 
     /// Says what is left, and nothing after it.
@@ -141,4 +141,50 @@ impl Outbox {
 fn bytes(entry: &Entry) -> usize {
     let rows = &entry.commit.rows;
     rows.len() * rows.channels().len() * size_of::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointbench_instrument::{Channel, Trace};
+    use jointbench_procedure::RunState;
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    fn commit(number: u64, rows: usize) -> RunCommit {
+        let rows = Trace::from_columns(vec![Channel::new("time_s")], vec![vec![0.0; rows]]);
+        RunCommit { run: 1, number, state: RunState::Running, events: Vec::new(), rows }
+    }
+
+    #[test]
+    fn what_is_stored_leaves_and_the_rest_is_known() {
+        let (outbox, reports) = Outbox::start(std::io::sink()).unwrap();
+        (1..=3).for_each(|number| outbox.keep(commit(number, 100)));
+        assert_eq!(outbox.backlog(), Backlog { rows: 300, bytes: 2400 });
+        outbox.stored(2);
+        assert_eq!(outbox.backlog(), Backlog { rows: 100, bytes: 800 });
+        assert_eq!(outbox.unstored().iter().map(|entry| entry.commit.number).collect::<Vec<_>>(), [3]);
+        outbox.close();
+        reports.join().unwrap();
+    }
+
+    #[test]
+    fn nobody_waits_for_the_store_once_the_run_is_to_end() {
+        let (outbox, reports) = Outbox::start(std::io::sink()).unwrap();
+        outbox.keep(commit(1, 100));
+        let (done, waits) = mpsc::channel();
+        let waiting = outbox.clone();
+        let thread = std::thread::spawn(move || {
+            for _ in 0..3 {
+                waiting.let_the_store_catch_up();
+            }
+            done.send(()).unwrap();
+        });
+        assert!(waits.recv_timeout(Duration::from_millis(50)).is_err(), "the store has nothing yet");
+        outbox.set_hurry(true);
+        waits.recv_timeout(Duration::from_secs(10)).unwrap();
+        outbox.close();
+        thread.join().unwrap();
+        reports.join().unwrap();
+    }
 }
