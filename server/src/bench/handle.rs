@@ -1,7 +1,7 @@
 //! The way to a bench for everybody. Cheap to clone.
 
 use super::display::Display;
-use super::keeper::{Item, Keeper};
+use super::keeper::{Item, Keeper, NEVER_BEGAN};
 use super::shared::{Shared, blocked, lock};
 use super::status::{Status, Underway};
 use super::supervisor::Supervisor;
@@ -25,7 +25,6 @@ const ANSWERS: Duration = Duration::from_secs(1);
 /// Whoever presses the stop hears within this time whether it is stored.
 const STORES: Duration = Duration::from_millis(500);
 const STOPPED: &str = "the software stop was pressed";
-const NEVER_BEGAN: &str = "the bench worker ended before the run began";
 
 #[derive(Clone)]
 pub struct BenchHandle {

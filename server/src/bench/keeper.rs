@@ -20,6 +20,7 @@ use tokio::time::{sleep, timeout};
 const AGAIN_EVERY: Duration = Duration::from_millis(500);
 /// A disk that has not answered for so long is said to be slow.
 const SLOW: Duration = Duration::from_millis(500);
+pub(super) const NEVER_BEGAN: &str = "the bench went away before the run began";
 /// So many commits become durable together.
 const MOST_TOGETHER: usize = 64;
 

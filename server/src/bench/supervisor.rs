@@ -1,7 +1,7 @@
 //! The thread of the server that has a worker: starts it, takes in what it reports, and starts another where it died.
 
 use super::instruments::unreached;
-use super::keeper::Item;
+use super::keeper::{Item, NEVER_BEGAN};
 use super::shared::{Shared, lock};
 use super::status::{FAULTS, Met, New, Underway};
 use super::wire::{self, Entry, Order, Report, Setup};
@@ -118,6 +118,9 @@ impl Supervisor {
                 }
             }
             Report::Ended { run, end } => self.ended(run, &end),
+            Report::NotBegun { run } => {
+                self.keep(Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN });
+            }
             Report::DiskFull(full) => {
                 shared.disk_is_full.store(full, Ordering::Release);
                 shared.disk_changed.notify_one();

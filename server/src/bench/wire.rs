@@ -94,6 +94,10 @@ pub enum Report {
         run: RunId,
         end: RunEnd,
     },
+    /// The bench is not open, or nobody would store the run: nothing was commanded.
+    NotBegun {
+        run: RunId,
+    },
     /// The mock bench's disk has its bad day, or no longer.
     DiskFull(bool),
     /// The last one: the bench is secured, and nothing more will come.

@@ -105,11 +105,10 @@ impl Owner {
         let Opened { bench: Some(bench), mock, .. } = &mut self.opened else {
             // The lab opens a bench before it starts a run; a bench that went away in between has no instruments to move.
             tracing::error!(run.id = run, "run started on a bench that is not open");
-            self.desk.run_is_over();
-            return self.tell_opened();
+            return not_begun(&self.desk, run);
         };
         if self.desk.is_alone() {
-            return tracing::warn!(run.id = run, "not started: the server part of the daemon has ended");
+            return not_begun(&self.desk, run);
         }
         let stepped = self.description.pace().is_none();
         let mut recorder = OutboxRecorder::new(&self.desk, mock.as_ref(), stepped, run);
@@ -134,6 +133,11 @@ impl Owner {
     }
 }
 
+fn not_begun(desk: &Desk, run: RunId) {
+    desk.run_is_over();
+    desk.outbox.say(Report::NotBegun { run });
+}
+
 /// Answers for a bench that another worker holds.
 pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, commands: &Receiver<Command>, why: &str) {
     let say = || {
@@ -149,7 +153,7 @@ pub(super) fn serve_nothing(description: &BenchDescription, desk: &Desk, command
                 say();
                 desk.outbox.say(Report::Done { ticket });
             }
-            Command::Run { .. } => desk.run_is_over(),
+            Command::Run { run, .. } => not_begun(desk, run),
             Command::Secure => say(),
         }
     }
