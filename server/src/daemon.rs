@@ -1,8 +1,9 @@
 //! The daemon: a lab behind a port.
 
-use crate::api;
+use crate::api::{self, Surroundings};
 use crate::config::BenchDescription;
-use crate::lab::{Lab, LabError, Tokens};
+use crate::lab::{Lab, LabError, Tokens, weakness};
+use crate::listener::{self, Limits, Tls, TlsFiles};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use tokio::net::TcpListener;
@@ -16,15 +17,28 @@ pub struct DaemonSettings {
     pub token: Option<String>,
     /// Lets its holder look and stop, and nothing else.
     pub read_token: Option<String>,
+    pub network: Network,
     pub benches: Vec<BenchDescription>,
     /// The file of `jointbench`, for those parts of the daemon that are processes of their own.
     pub program: PathBuf,
+}
+
+/// How the daemon is reached.
+#[derive(Debug, Clone, Default)]
+pub struct Network {
+    /// Needed where `listen` is not a loopback address, unless a proxy is in front.
+    pub tls: Option<TlsFiles>,
+    /// A reverse proxy with TLS is in front of the daemon, and nothing else reaches it.
+    pub behind_proxy: bool,
+    pub limits: Limits,
 }
 
 pub struct Daemon {
     pub lab: Lab,
     /// Where it listens; the port is chosen by the system where 0 was asked for.
     pub address: SocketAddr,
+    /// `http` or `https`.
+    pub scheme: &'static str,
     server: JoinHandle<()>,
 }
 
@@ -32,17 +46,17 @@ impl Daemon {
     /// Takes the port, opens the store, secures the benches, then answers. [`LabError::Setup`] says what is in the way.
     pub async fn start(settings: DaemonSettings) -> Result<Daemon, LabError> {
         let tokens = tokens(&settings)?;
+        let Network { tls, behind_proxy, limits } = settings.network.clone();
+        let tls = tls.map(Tls::open).transpose().map_err(LabError::Setup)?;
+        refuse_plain(&settings)?;
         let listener = TcpListener::bind(settings.listen).await.map_err(|fault| taken(settings.listen, &fault))?;
         let address = listener.local_addr().map_err(|fault| taken(settings.listen, &fault))?;
         let lab = Lab::open(&settings.data, settings.benches, tokens, settings.program).await?;
-        let router = api::router(lab.clone());
-        let server = tokio::spawn(async move {
-            if let Err(fault) = axum::serve(listener, router).await {
-                tracing::error!(%fault, "the server has ended");
-            }
-        });
-        tracing::info!(%address, data = %settings.data.display(), "listening");
-        Ok(Daemon { lab, address, server })
+        let router = api::router(lab.clone(), Surroundings { tls: tls.is_some(), behind_proxy });
+        let scheme = if tls.is_some() { "https" } else { "http" };
+        let server = tokio::spawn(listener::serve(listener, router, tls, limits));
+        tracing::info!(%address, scheme, data = %settings.data.display(), "listening");
+        Ok(Daemon { lab, address, scheme, server })
     }
 
     /// Ends all runs, secures all benches, closes the store.
@@ -75,26 +89,43 @@ pub async fn asked_to_end() {
 }
 
 fn tokens(settings: &DaemonSettings) -> Result<Tokens, LabError> {
+    let refused = |why: String| Err(LabError::Setup(why));
+    let token = settings.token.as_deref().map(str::trim);
     let read_token = settings.read_token.as_deref().map(str::trim);
-    let all = [settings.token.as_deref().map(str::trim), read_token];
-    if all.into_iter().flatten().any(|token| token.len() < 8) {
-        return Err(LabError::Setup("a token is too short: give at least 8 characters".into()));
-    }
-    match &settings.token {
-        None if read_token.is_some() => Err(LabError::Setup(
-            "a token that only reads needs one that may do more beside it: give that with --token or JOINTBENCH_TOKEN"
-                .into(),
-        )),
-        Some(token) if Some(token.trim()) == read_token => {
-            Err(LabError::Setup("the token that only reads is the other one too: give two different ones".into()))
+    for (what, token) in [("the token", token), ("the token that only reads", read_token)] {
+        if let Some(why) = token.and_then(weakness) {
+            return refused(format!("{what} {why}"));
         }
-        Some(token) => Ok(Tokens::given(Some(token.trim()), read_token)),
-        None if settings.listen.ip().is_loopback() => Ok(Tokens::default()),
-        None => Err(LabError::Setup(format!(
-            "{} can be reached from other machines: give a token with --token or JOINTBENCH_TOKEN, or listen on 127.0.0.1",
-            settings.listen
-        ))),
     }
+    match token {
+        None if read_token.is_some() => {
+            refused(format!("a token that only reads needs one that may do more beside it: {GIVE}"))
+        }
+        Some(_) if token == read_token => {
+            refused("the token that only reads is the other one too: give two different ones".into())
+        }
+        Some(token) => Ok(Tokens::given(Some(token), read_token)),
+        None if settings.network.behind_proxy => refused(format!("a proxy lets other machines in: {GIVE}")),
+        None if settings.listen.ip().is_loopback() => Ok(Tokens::default()),
+        None => {
+            refused(format!("{} can be reached from other machines: {GIVE}, or listen on 127.0.0.1", settings.listen))
+        }
+    }
+}
+
+const GIVE: &str = "give a token with --token-file or JOINTBENCH_TOKEN";
+
+/// A token that crosses a network in the clear is everybody's.
+fn refuse_plain(settings: &DaemonSettings) -> Result<(), LabError> {
+    let Network { tls, behind_proxy, .. } = &settings.network;
+    if settings.listen.ip().is_loopback() || *behind_proxy || tls.is_some() {
+        return Ok(());
+    }
+    Err(LabError::Setup(format!(
+        "{} can be reached from other machines, and without TLS they send their tokens in the clear: give --tls-cert and \
+         --tls-key, or --behind-proxy where a proxy with TLS is in front, or listen on 127.0.0.1 (docs/network.md)",
+        settings.listen
+    )))
 }
 
 fn taken(address: SocketAddr, fault: &std::io::Error) -> LabError {

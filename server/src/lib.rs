@@ -8,6 +8,7 @@ pub mod cli;
 pub mod config;
 pub mod daemon;
 pub mod lab;
+pub mod listener;
 pub mod live;
 pub mod program;
 pub mod report;

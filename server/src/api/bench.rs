@@ -2,7 +2,7 @@
 
 use super::extract::{Answer, Json, Path};
 use super::problem::{Problem, Refusals};
-use crate::lab::{Caller, Lab};
+use crate::lab::{Caller, Lab, names};
 use crate::view::{Acknowledgement, Bench, Instrument, SafetyEntry};
 use axum::Extension;
 use axum::extract::State;
@@ -45,7 +45,8 @@ pub async fn acknowledge(
     Path(bench): Path<String>,
     Json(word): Json<Acknowledgement>,
 ) -> Answer<Bench> {
-    Ok(Json(lab.acknowledge(&bench, &word.reason, &caller.name).await?))
+    let reason = names::checked_text("reason", &word.reason, names::LONGEST_SENTENCE)?;
+    Ok(Json(lab.acknowledge(&bench, reason, &caller.name).await?))
 }
 
 /// Tries the instruments again that are not ready

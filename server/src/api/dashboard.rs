@@ -4,8 +4,7 @@ use super::problem::Problem;
 use crate::lab::Lab;
 use axum::body::Body;
 use axum::extract::{Request, State};
-use axum::http::{HeaderValue, Method, StatusCode, header};
-use axum::middleware::Next;
+use axum::http::{Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use jointbench_ui::Asset;
 
@@ -49,18 +48,4 @@ fn answer(asset: Asset, request: &Request) -> Response {
     }
     let body = if request.method() == Method::HEAD { Body::empty() } else { Body::from(asset.bytes.into_owned()) };
     (headers, body).into_response()
-}
-
-/// Middleware: what every answer says to a browser.
-pub async fn security_headers(request: Request, next: Next) -> Response {
-    let mut response = next.run(request).await;
-    let headers = response.headers_mut();
-    for (name, value) in [
-        (header::CONTENT_SECURITY_POLICY, jointbench_ui::CONTENT_SECURITY_POLICY),
-        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::REFERRER_POLICY, "no-referrer"),
-    ] {
-        headers.entry(name).or_insert(HeaderValue::from_static(value));
-    }
-    response
 }

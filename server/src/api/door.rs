@@ -5,17 +5,59 @@
 //! request must be ours or absent (programs send none). Browsers differ in what they refuse by themselves.
 
 use super::problem::Problem;
-use super::size;
+use super::rights::reader_may;
+use super::tries::{Slowed, Tries};
 use crate::lab::{Caller, Lab, Tokens};
 use crate::view::Access;
-use axum::extract::{Request, State};
-use axum::http::{HeaderMap, Method, Uri, header};
+use axum::extract::{ConnectInfo, MatchedPath, Request, State};
+use axum::http::{HeaderMap, HeaderName, Method, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use percent_encoding::percent_decode_str;
 use std::borrow::Cow;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::sync::Arc;
 
-fn check(tokens: &Tokens, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<Caller, Problem> {
+/// What is around the daemon, as far as its doors have to know.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Surroundings {
+    /// Clients come by TLS.
+    pub tls: bool,
+    /// Clients come through a reverse proxy, which says where from.
+    pub behind_proxy: bool,
+}
+
+/// Cheap to clone.
+#[derive(Clone)]
+pub struct Door {
+    lab: Lab,
+    surroundings: Surroundings,
+    tries: Arc<Tries>,
+}
+
+impl Door {
+    pub fn new(lab: Lab, surroundings: Surroundings) -> Self {
+        Self { lab, surroundings, tries: Arc::default() }
+    }
+
+    /// Where a request comes from.
+    fn source(&self, request: &Request) -> IpAddr {
+        // A proxy adds the address of its client behind those that the client claims.
+        let told = text(request.headers(), HeaderName::from_static("x-forwarded-for"));
+        let told = told.and_then(|list| list.rsplit(',').next()?.trim().parse().ok());
+        let peer = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|peer| peer.0.ip());
+        told.filter(|_| self.surroundings.behind_proxy).or(peer).unwrap_or(Ipv4Addr::UNSPECIFIED.into())
+    }
+}
+
+/// `route`: the pattern of the router that the request has met.
+fn check(
+    tokens: &Tokens,
+    method: &Method,
+    uri: &Uri,
+    headers: &HeaderMap,
+    route: Option<&str>,
+) -> Result<Caller, Problem> {
     let host = text(headers, header::HOST).or_else(|| uri.authority().map(|a| a.as_str()));
     if !tokens.are_needed() && host.is_some_and(|host| !is_loopback(host)) {
         let detail = "this daemon answers on loopback only; open it as http://127.0.0.1 or http://localhost";
@@ -36,40 +78,38 @@ fn check(tokens: &Tokens, method: &Method, uri: &Uri, headers: &HeaderMap) -> Re
         None => Caller::local(),
     };
     match caller.access {
-        Access::Read if !only_looks(method, uri.path()) => Err(Problem::forbidden(
+        Access::Read if !reader_may(method, route) => Err(Problem::forbidden(
             "this token only reads: it looks and stops, starts or changes nothing, and is told of no other token",
         )),
         _ => Ok(caller),
     }
 }
 
-/// What whoever only reads may do: look, but for who else may come in; stop; and ask what needs a body.
-fn only_looks(method: &Method, path: &str) -> bool {
-    let asks = ["/stop", "/preview", "/effects/check", "/diagnoses", "/evaluate", "/tables"];
-    asks.iter().any(|end| path.ends_with(end)) || method.is_safe() && !path.starts_with("/api/v1/tokens")
-}
-
 /// Middleware: refuses before anything is looked at, and tells handlers who calls.
-pub async fn guard(State(lab): State<Lab>, mut request: Request, next: Next) -> Response {
-    match check(lab.tokens(), request.method(), request.uri(), request.headers()) {
+pub async fn guard(State(door): State<Door>, mut request: Request, next: Next) -> Response {
+    let route = request.extensions().get::<MatchedPath>().map(MatchedPath::as_str);
+    let checked = check(door.lab.tokens(), request.method(), request.uri(), request.headers(), route);
+    let problem = match checked {
         Ok(caller) => {
-            lab.came_in(&caller);
+            door.lab.came_in(&caller);
             request.extensions_mut().insert(caller);
-            next.run(request).await
+            return next.run(request).await;
         }
-        Err(problem) => {
-            size::hear_out(request).await;
-            problem.into_response()
-        }
+        Err(problem) => problem,
+    };
+    let is_wrong = problem.status == 401 && secret(request.headers(), request.uri()).is_some();
+    if is_wrong && door.tries.slow(door.source(&request)).await == Slowed::TooMany {
+        return Problem::too_many("too many wrong tokens come in; a right one is answered at once").into_response();
     }
+    problem.into_response()
 }
 
-fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
+fn text(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     headers.get(name)?.to_str().ok()
 }
 
 /// A value that is no text is there all the same.
-fn text_or_garbage(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
+fn text_or_garbage(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     headers.get(name).map(|value| value.to_str().unwrap_or("an unreadable origin"))
 }
 
@@ -108,9 +148,9 @@ mod tests {
     fn refusal(tokens: &Tokens, method: Method, path: &str, headers: &[(&str, &str)]) -> Option<u16> {
         let mut map = HeaderMap::new();
         for (name, value) in headers {
-            map.insert(header::HeaderName::from_bytes(name.as_bytes()).unwrap(), value.parse().unwrap());
+            map.insert(HeaderName::from_bytes(name.as_bytes()).unwrap(), value.parse().unwrap());
         }
-        check(tokens, &method, &path.parse().unwrap(), &map).err().map(|problem| problem.status)
+        check(tokens, &method, &path.parse().unwrap(), &map, Some(path)).err().map(|problem| problem.status)
     }
 
     #[test]
@@ -174,13 +214,13 @@ mod tests {
         for (method, path, refused) in [
             (Method::GET, "/api/v1/bench", None),
             (Method::GET, "/api/v1/tokens", Some(403)),
-            (Method::POST, "/api/v1/bench/a/stop", None),
-            (Method::POST, "/api/v1/procedures/friction/preview", None),
-            (Method::POST, "/api/v1/bench/a/acknowledge", Some(403)),
+            (Method::POST, "/api/v1/bench/{bench}/stop", None),
+            (Method::POST, "/api/v1/procedures/{id}/preview", None),
+            (Method::POST, "/api/v1/bench/{bench}/acknowledge", Some(403)),
             (Method::POST, "/api/v1/runs", Some(403)),
-            (Method::POST, "/api/v1/runs/1/stop", None),
-            (Method::POST, "/api/v1/runs/1/resume", Some(403)),
-            (Method::DELETE, "/api/v1/effects/friction/rub", Some(403)),
+            (Method::POST, "/api/v1/runs/{id}/stop", None),
+            (Method::POST, "/api/v1/runs/{id}/resume", Some(403)),
+            (Method::DELETE, "/api/v1/effects/{kind}/{id}", Some(403)),
         ] {
             assert_eq!(refusal(&door, method.clone(), path, &headers), refused, "{method} {path}");
         }

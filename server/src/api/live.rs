@@ -7,6 +7,9 @@ use axum::extract::State;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::response::Response;
 
+/// A client has nothing to say: pings and the end are small [bytes].
+const LARGEST_HEARD: usize = 4096;
+
 /// Live stream (WebSocket)
 ///
 /// Text frames are `LiveMessage`s. Binary frames carry samples, little endian: u32 sequence, u32 dropped frames, u32 rows,
@@ -21,7 +24,8 @@ pub async fn stream(
     upgrade: WebSocketUpgrade,
 ) -> Response {
     // A browser hangs up where none of what it offers is taken.
-    upgrade.protocols(["jointbench"]).on_upgrade(async move |socket| {
+    let upgrade = upgrade.max_message_size(LARGEST_HEARD).max_frame_size(LARGEST_HEARD).protocols(["jointbench"]);
+    upgrade.on_upgrade(async move |socket| {
         tokio::select! {
             () = crate::live::serve(socket, lab.clone()) => {}
             () = lab.shut_out(&caller) => {}

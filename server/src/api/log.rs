@@ -2,8 +2,9 @@
 
 use super::extract::{Answer, Json, Query};
 use super::problem::Refusals;
-use crate::lab::Lab;
-use crate::view::LogEntry;
+use crate::lab::{Caller, Lab, OF_TOKENS};
+use crate::view::{Access, LogEntry};
+use axum::Extension;
 use axum::extract::State;
 use serde::Deserialize;
 use utoipa::IntoParams;
@@ -18,9 +19,18 @@ pub struct LogQuery {
     pub before: Option<i64>,
 }
 
-/// What has happened and who did it, newest first: safety records, journals of runs, versions of their models, tokens
+/// What has happened and who did it, newest first: safety records, journals of runs, versions of their models, and tokens where the
+/// caller may know of them
 #[utoipa::path(get, path = "/log", operation_id = "log", tag = "daemon", params(LogQuery),
     responses((status = 200, description = "The entries", body = Vec<LogEntry>), Refusals))]
-pub async fn log(State(lab): State<Lab>, Query(query): Query<LogQuery>) -> Answer<Vec<LogEntry>> {
-    Ok(Json(lab.log(query.run, query.before).await?))
+pub async fn log(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Query(query): Query<LogQuery>,
+) -> Answer<Vec<LogEntry>> {
+    let mut entries = lab.log(query.run, query.before).await?;
+    if caller.access == Access::Read {
+        entries.retain(|entry| entry.kind != OF_TOKENS);
+    }
+    Ok(Json(entries))
 }

@@ -6,6 +6,7 @@ mod calibrations;
 mod dashboard;
 mod door;
 mod extract;
+mod headers;
 mod health;
 mod identifications;
 mod live;
@@ -13,9 +14,11 @@ mod log;
 mod models;
 mod notes;
 mod own_effects;
+mod presence;
 mod problem;
 mod procedures;
 mod revisions;
+mod rights;
 mod runs;
 mod size;
 #[cfg(test)]
@@ -23,15 +26,21 @@ mod specification;
 mod tables;
 mod tokens;
 mod transfer;
+mod tries;
 
+pub use door::Surroundings;
 pub use health::Health;
+pub use presence::Presence;
 pub use problem::Problem;
 
 use crate::lab::Lab;
 use crate::view::LiveMessage;
-use axum::extract::DefaultBodyLimit;
+use axum::extract::{DefaultBodyLimit, Request};
 use axum::routing::{any, get};
 use axum::{Router, middleware};
+use door::Door;
+use std::sync::Arc;
+use tokio::sync::Semaphore;
 use tower_http::CompressionLevel;
 use tower_http::compression::CompressionLayer;
 use tower_http::trace::TraceLayer;
@@ -79,10 +88,10 @@ impl Modify for Token {
 }
 
 fn operations() -> OpenApiRouter<Lab> {
-    let uploads = OpenApiRouter::new()
-        .routes(routes!(transfer::import))
-        .routes(routes!(tables::write))
-        .layer(DefaultBodyLimit::max(size::UPLOAD_LIMIT_BYTES));
+    let turns = Arc::new(Semaphore::new(size::UPLOADS));
+    let uploads = sized(OpenApiRouter::new().routes(routes!(transfer::import)), size::UPLOAD_LIMIT_BYTES)
+        .layer(middleware::from_fn(move |request, next| size::queue(turns.clone(), request, next)));
+    let tables = sized(OpenApiRouter::new().routes(routes!(tables::write)), size::TABLE_LIMIT_BYTES);
     let rest = OpenApiRouter::new()
         .routes(routes!(bench::list))
         .routes(routes!(bench::get))
@@ -142,10 +151,16 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(tokens::list, tokens::make))
         .routes(routes!(tokens::revoke))
         .routes(routes!(health::health))
-        .routes(routes!(health::specification))
-        .layer(middleware::from_fn(size::guard))
-        .layer(DefaultBodyLimit::max(size::BODY_LIMIT_BYTES));
-    OpenApiRouter::with_openapi(Description::openapi()).nest("/api/v1", rest.merge(uploads))
+        .routes(routes!(health::specification));
+    let rest = sized(rest, size::BODY_LIMIT_BYTES);
+    OpenApiRouter::with_openapi(Description::openapi()).nest("/api/v1", rest.merge(tables).merge(uploads))
+}
+
+/// Routes whose bodies have at most so many bytes.
+fn sized(routes: OpenApiRouter<Lab>, limit: usize) -> OpenApiRouter<Lab> {
+    routes
+        .layer(middleware::from_fn(move |request, next| size::guard(limit, request, next)))
+        .layer(DefaultBodyLimit::max(limit))
 }
 
 /// The OpenAPI 3.1 description of all operations.
@@ -154,8 +169,9 @@ pub fn specification() -> utoipa::openapi::OpenApi {
 }
 
 /// Everything that the daemon serves. `/api` never falls back to the dashboard.
-pub fn router(lab: Lab) -> Router {
+pub fn router(lab: Lab, surroundings: Surroundings) -> Router {
     let (rest, _) = operations().split_for_parts();
+    let door = Door::new(lab.clone(), surroundings);
     rest.route("/api", get(health::no_such_route))
         .route("/api/{*rest}", any(health::no_such_route))
         .method_not_allowed_fallback(health::no_such_method)
@@ -164,10 +180,15 @@ pub fn router(lab: Lab) -> Router {
                 .with_state(lab.clone())
                 .layer(CompressionLayer::new().quality(CompressionLevel::Best)),
         )
-        .with_state(lab.clone())
-        .layer(middleware::from_fn_with_state(lab, door::guard))
-        .layer(middleware::from_fn(size::take_in))
+        .with_state(lab)
+        .layer(middleware::from_fn_with_state(door, door::guard))
+        .layer(middleware::from_fn(size::hear_out))
         .layer(middleware::from_fn(problem::name_instance))
-        .layer(middleware::from_fn(dashboard::security_headers))
-        .layer(TraceLayer::new_for_http())
+        .layer(middleware::from_fn(move |request, next| headers::add(surroundings, request, next)))
+        .layer(TraceLayer::new_for_http().make_span_with(span))
+}
+
+/// What is told of a request in the log. Neither its query nor its headers: both may carry a token.
+fn span(request: &Request) -> tracing::Span {
+    tracing::debug_span!("request", method = %request.method(), path = request.uri().path())
 }

@@ -3,7 +3,7 @@
 use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::{Problem, Refusals};
 use crate::lab::{Caller, Lab};
-use crate::view::{Diagnosis, Effect, Fit, Model, NewDiagnosis, NewModel, ResidualSet};
+use crate::view::{Access, Diagnosis, Effect, Fit, Model, NewDiagnosis, NewModel, ResidualSet};
 use axum::Extension;
 use axum::extract::State;
 use axum::http::header;
@@ -82,11 +82,20 @@ pub async fn residuals(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Re
     Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
 }
 
-/// Finds where a model version fails and what it lacks, and keeps the answer
+/// Finds where a model version fails and what it lacks, and keeps the answer; who only reads gets the last one that is kept
 #[utoipa::path(post, path = "/diagnoses", tag = "diagnoses", request_body = NewDiagnosis,
     responses((status = 201, description = "The diagnosis", body = Diagnosis), Refusals))]
-pub async fn diagnose(State(lab): State<Lab>, Json(new): Json<NewDiagnosis>) -> Created<Diagnosis> {
-    created(lab.diagnose(new.model).await?)
+pub async fn diagnose(
+    State(lab): State<Lab>,
+    Extension(caller): Extension<Caller>,
+    Json(new): Json<NewDiagnosis>,
+) -> Created<Diagnosis> {
+    match caller.access {
+        Access::Read => created(lab.diagnoses(new.model).await?.pop().ok_or_else(|| {
+            Problem::forbidden("this version has no diagnosis yet, and this token only reads: a new one would be kept")
+        })?),
+        _ => created(lab.diagnose(new.model).await?),
+    }
 }
 
 /// One diagnosis

@@ -4,7 +4,7 @@ use crate::lab::LabError;
 use crate::view::Place;
 use axum::extract::Request;
 use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
-use axum::http::{StatusCode, header};
+use axum::http::{HeaderValue, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ use utoipa::{IntoResponses, ToSchema};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
     /// `urn:jointbench:` and the kind: `not_found`, `invalid`, `formula`, `file_refused`, `conflict`, `over`, `bench_fault`, `malformed`,
-    /// `forbidden`, `unauthorized`, `not_allowed`, `too_large`, `internal`.
+    /// `forbidden`, `unauthorized`, `not_allowed`, `too_large`, `busy`, `internal`.
     #[serde(rename = "type")]
     #[schema(value_type = String)]
     pub type_: Box<str>,
@@ -44,6 +44,10 @@ pub struct Problem {
 
 /// Kind of what no waiting will change.
 const OVER: &str = "over";
+/// Kind of what waiting alone changes.
+const BUSY: &str = "busy";
+/// When a client asks again that was refused for want of room [s].
+const RETRY_AFTER: HeaderValue = HeaderValue::from_static("1");
 
 impl Problem {
     pub fn new(status: StatusCode, kind: &str, title: &str, detail: impl Into<String>) -> Self {
@@ -83,6 +87,21 @@ impl Problem {
 
     pub fn too_large(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "The request is too large", detail)
+    }
+
+    /// A limit that others fill at the moment.
+    pub fn busy(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::SERVICE_UNAVAILABLE, BUSY, "Too much at once", detail)
+    }
+
+    /// Every connection but the reserved ones is taken.
+    pub fn full() -> Self {
+        Self::busy("every connection is taken; health and the software stop are still answered: try again in a second")
+    }
+
+    /// Too many wrong tokens from one address.
+    pub fn too_many(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::TOO_MANY_REQUESTS, BUSY, "Too many wrong tokens", detail)
     }
 
     pub fn no_method(method: &str, path: &str) -> Self {
@@ -162,7 +181,10 @@ impl IntoResponse for Problem {
         let body = serde_json::to_vec(&self).unwrap_or_default();
         let mut response = (status, [(header::CONTENT_TYPE, "application/problem+json")], body).into_response();
         if status == StatusCode::UNAUTHORIZED {
-            response.headers_mut().insert(header::WWW_AUTHENTICATE, header::HeaderValue::from_static("Bearer"));
+            response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+        }
+        if self.type_.ends_with(BUSY) {
+            response.headers_mut().insert(header::RETRY_AFTER, RETRY_AFTER);
         }
         response.extensions_mut().insert(self);
         response

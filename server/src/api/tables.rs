@@ -17,6 +17,9 @@ pub struct TableQuery {
     /// Kind of file.
     #[param(inline)]
     pub format: TableFormat,
+    /// Begin texts of a CSV that a spreadsheet would take for a formula (= + - @) with an apostrophe.
+    #[serde(default)]
+    pub spreadsheet_safe: bool,
 }
 
 /// Any table as a file: what a picture shows, with the digits that it has. Nothing is kept
@@ -29,6 +32,6 @@ pub async fn write(
     Query(query): Query<TableQuery>,
     Json(table): Json<Table>,
 ) -> Result<Response, Problem> {
-    let bytes = lab.write_table(table, query.format).await?;
+    let bytes = lab.write_table(table, query.format, query.spreadsheet_safe).await?;
     Ok(([(header::CONTENT_TYPE, query.format.media_type())], bytes).into_response())
 }

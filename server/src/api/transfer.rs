@@ -23,6 +23,10 @@ pub struct ExportQuery {
     pub from_s: Option<f64>,
     /// End of the stretch; the last row where left out.
     pub to_s: Option<f64>,
+    /// Begin names of a CSV that a spreadsheet would take for a formula (= + - @) with an apostrophe; such a name comes
+    /// back as another one.
+    #[serde(default)]
+    pub spreadsheet_safe: bool,
 }
 
 /// The run, or a stretch of it, as one file in full resolution, which `import` takes back unchanged
@@ -36,7 +40,10 @@ pub async fn export(
     Path(id): Path<i64>,
     Query(query): Query<ExportQuery>,
 ) -> Result<Response, Problem> {
-    let bytes = lab.export(id, query.format, query.from_s, query.to_s).await?;
+    let bytes = match query.spreadsheet_safe && query.format == FileFormat::Csv {
+        true => lab.export_for_spreadsheets(id, query.from_s, query.to_s).await?,
+        false => lab.export(id, query.format, query.from_s, query.to_s).await?,
+    };
     let name = format!("attachment; filename=\"run-{id}.{}\"", query.format.extension());
     let headers = [(header::CONTENT_TYPE, query.format.media_type().to_owned()), (header::CONTENT_DISPOSITION, name)];
     Ok((headers, bytes).into_response())

@@ -9,7 +9,7 @@ use super::run::{LOOK_EVERY, choose_bench, is_over, parameters};
 use crate::view::{Autopilot, AutopilotState, AutopilotStep, Diagnosis, Model, NewAutopilot, NewExperiment, Run};
 
 pub fn autopilot(arguments: &Arguments) -> Done {
-    let client = Client::new(&arguments.reach);
+    let client = Client::new(&arguments.reach)?;
     let bench = choose_bench(&client, arguments.bench.as_deref())?;
     let mut autopilot: Autopilot = match arguments.after {
         Some(diagnosis) => client.post(&format!("/diagnoses/{diagnosis}/experiment"), &NewExperiment { bench })?,

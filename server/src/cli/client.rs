@@ -2,10 +2,14 @@
 
 use super::arguments::Reach;
 use super::exit::Exit;
+use super::secrets;
 use crate::api::Problem;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::path::Path;
+use std::sync::Arc;
 use ureq::http::Response;
+use ureq::tls::{PemItem, RootCerts, TlsConfig, parse_pem};
 use ureq::{Agent, Body};
 
 const DEFAULT_DAEMON: &str = "http://127.0.0.1:8080";
@@ -17,14 +21,15 @@ pub struct Client {
 }
 
 impl Client {
-    pub fn new(reach: &Reach) -> Self {
-        let agent = Agent::new_with_config(Agent::config_builder().http_status_as_error(false).build());
+    pub fn new(reach: &Reach) -> Result<Self, Exit> {
+        let tls = TlsConfig::builder().root_certs(trusted(reach.ca_file.as_deref())?).build();
+        let agent = Agent::new_with_config(Agent::config_builder().http_status_as_error(false).tls_config(tls).build());
         let address = reach.daemon.as_deref().unwrap_or(DEFAULT_DAEMON).trim_end_matches('/');
         let base = match address.contains("://") {
             true => format!("{address}/api/v1"),
             false => format!("http://{address}/api/v1"),
         };
-        Self { agent, base, bearer: reach.token.as_ref().map(|token| format!("Bearer {token}")) }
+        Ok(Self { agent, base, bearer: secrets::of_client(reach)?.map(|token| format!("Bearer {token}")) })
     }
 
     /// A page of the dashboard.
@@ -88,5 +93,21 @@ impl Client {
     fn json<T: DeserializeOwned>(&self, bytes: &[u8]) -> Result<T, Exit> {
         serde_json::from_slice(bytes)
             .map_err(|fault| Exit::failed(format!("the daemon speaks another version of the API: {fault}")))
+    }
+}
+
+/// Whose signature a daemon at https:// is believed for.
+fn trusted(file: Option<&Path>) -> Result<RootCerts, Exit> {
+    let Some(file) = file else { return Ok(RootCerts::WebPki) };
+    let pem = super::files::read(file)?;
+    let certificates: Vec<_> = parse_pem(&pem)
+        .filter_map(|item| match item {
+            Ok(PemItem::Certificate(certificate)) => Some(certificate),
+            _ => None,
+        })
+        .collect();
+    match certificates.is_empty() {
+        true => Err(Exit::bad_input(format!("{}: no PEM certificate in it: give another --ca-file", file.display()))),
+        false => Ok(RootCerts::Specific(Arc::new(certificates))),
     }
 }

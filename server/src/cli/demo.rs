@@ -30,14 +30,14 @@ pub fn demo(arguments: Demo) -> Done {
     let benches = vec![BenchDescription::mock(BENCH, mock)];
     let stays = !arguments.exit;
     runtime()?.block_on(async {
-        let daemon = Daemon::start(settings(arguments.place, "jointbench-data/demo", benches)).await?;
-        let address = daemon.address;
+        let daemon = Daemon::start(settings(arguments.place, "jointbench-data/demo", benches)?).await?;
+        let address = format!("{}://{}", daemon.scheme, daemon.address);
         let end = tokio::select! {
             shown = show(&daemon.lab, &hidden) => match shown {
                 Ok(run) => {
                     if stays {
                         println!();
-                        println!("dashboard: http://{address}/  (model workbench of this run: http://{address}/workbench/{run})");
+                        println!("dashboard: {address}/  (model workbench of this run: {address}/workbench/{run})");
                         println!("Ctrl-C ends.");
                         asked_to_end().await;
                     }

@@ -4,6 +4,7 @@ use crate::lab::LabError;
 use jointbench_files::{FileError, OptionFault};
 use jointbench_model::{FormulaFault, ModelError, words};
 use std::path::Path;
+use std::process::ExitCode;
 
 #[derive(Debug, Clone)]
 pub struct Exit {
@@ -20,6 +21,14 @@ impl Exit {
         let exit = Exit::from(fault);
         let names: Vec<String> = files.iter().map(|file| file.as_ref().display().to_string()).collect();
         Exit { said: format!("{}: {}", words::list(&names), exit.said), ..exit }
+    }
+
+    /// Says it on standard error.
+    pub fn tell(&self) -> ExitCode {
+        if !self.said.is_empty() {
+            eprintln!("jointbench: {}", self.said);
+        }
+        ExitCode::from(self.code)
     }
 
     pub fn failed(said: impl Into<String>) -> Self {

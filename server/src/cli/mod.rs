@@ -20,6 +20,7 @@ mod reproduce;
 mod require;
 mod run;
 mod runs;
+mod secrets;
 mod serve;
 mod steer;
 mod transfer;
@@ -35,6 +36,9 @@ pub use exit::Exit;
 /// or bad input, 3 could not be decided.
 pub fn main() -> ExitCode {
     jointbench_model::one_heap();
+    if let Err(exit) = secrets::take_out_of_sight() {
+        return exit.tell();
+    }
     let arguments = Arguments::parse();
     // `jointbench fit … | head` ends quietly. Never where a bench is ours: its end is the engine's business.
     if !matches!(arguments.command, Command::Demo(_) | Command::Serve(_) | Command::Worker) {
@@ -69,11 +73,6 @@ pub fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(exit) => {
-            if !exit.said.is_empty() {
-                eprintln!("jointbench: {}", exit.said);
-            }
-            ExitCode::from(exit.code)
-        }
+        Err(exit) => exit.tell(),
     }
 }

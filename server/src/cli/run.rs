@@ -17,7 +17,7 @@ pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 type Found = Result<Identification, Exit>;
 
 pub fn run(arguments: &Arguments) -> Done {
-    let client = Client::new(&arguments.reach);
+    let client = Client::new(&arguments.reach)?;
     arguments.junit.iter().try_for_each(|path| files::writable(path))?;
     let ended = demand_what_can_be_found(&client, arguments).and_then(|()| start(&client, arguments));
     let found =

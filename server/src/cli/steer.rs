@@ -7,7 +7,7 @@ use super::run::{LOOK_EVERY, choose_bench, ending, is_over, wait};
 use crate::view::{self, Acknowledgement, Bench, Run, RunList, RunState, Safe};
 
 pub fn stop(arguments: &Stop) -> Done {
-    let client = Client::new(&arguments.reach);
+    let client = Client::new(&arguments.reach)?;
     let id = named_or_on(&client, arguments.run)?;
     let how = if arguments.now { "abort" } else { "stop" };
     let _: Run = client.post(&format!("/runs/{id}/{how}"), &())?;
@@ -30,7 +30,7 @@ pub fn resume(arguments: &Steer) -> Done {
 
 /// Returns when the run has come to where it was told to.
 fn steer(arguments: &Steer, how: &str, wanted: RunState) -> Done {
-    let client = Client::new(&arguments.reach);
+    let client = Client::new(&arguments.reach)?;
     let id = named_or_on(&client, arguments.run)?;
     let mut run: Run = client.post(&format!("/runs/{id}/{how}"), &())?;
     while run.summary.state != wanted && !is_over(run.summary.state) {
@@ -45,7 +45,7 @@ fn steer(arguments: &Steer, how: &str, wanted: RunState) -> Done {
 }
 
 pub fn reset(arguments: &Reset) -> Done {
-    let client = Client::new(&arguments.reach);
+    let client = Client::new(&arguments.reach)?;
     let name = choose_bench(&client, arguments.bench.as_deref())?;
     let word = Acknowledgement { reason: arguments.reason.clone() };
     let bench: Bench = client.post(&format!("/bench/{name}/acknowledge"), &word)?;

@@ -36,12 +36,23 @@ pub fn import(arguments: &Import) -> Done {
 pub fn export(arguments: &Export) -> Done {
     let runtime = runtime()?;
     let (run, format) = (arguments.run, format(arguments)?);
+    let safe = arguments.spreadsheet_safe;
+    if safe && format != FileFormat::Csv {
+        return Err(Exit::bad_input(
+            "--spreadsheet-safe is for --format csv: only a CSV has cells that become formulas",
+        ));
+    }
     let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
         Way::Folder(lab) => runtime.block_on(async {
-            Ok::<_, LabError>((lab.export(run, format, None, None).await?, lab.export_meta(run).await?))
+            let bytes = match safe {
+                true => lab.export_for_spreadsheets(run, None, None).await?,
+                false => lab.export(run, format, None, None).await?,
+            };
+            Ok::<_, LabError>((bytes, lab.export_meta(run).await?))
         })?,
         Way::Daemon(client) => {
-            let bytes = client.get_bytes(&format!("/runs/{run}/export?format={}", format.extension()))?;
+            let safe = if safe { "&spreadsheet_safe=true" } else { "" };
+            let bytes = client.get_bytes(&format!("/runs/{run}/export?format={}{safe}", format.extension()))?;
             (bytes, String::from_utf8_lossy(&client.get_bytes(&format!("/runs/{run}/meta"))?).into_owned())
         }
     };
@@ -86,7 +97,7 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
     // A folder that is named outweighs an address of the environment, and an address that is named a folder.
     let outweighed = place.data.is_some() && place.reach.daemon == std::env::var("JOINTBENCH_URL").ok();
     if place.reach.daemon.is_some() && !outweighed {
-        return Ok(Way::Daemon(Client::new(&place.reach)));
+        return Ok(Way::Daemon(Client::new(&place.reach)?));
     }
     let data = place.data.as_deref().unwrap_or(Path::new("jointbench-data"));
     if !makes_it && !crate::store::Store::is_in(data) {
@@ -99,7 +110,7 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
         Ok(store) => Ok(Way::Folder(Lab::of_store(store))),
         Err(in_use @ crate::store::StoreError::InUse { .. }) => {
             // Most likely by the daemon on this machine's usual address, but another one may be there.
-            let client = Client::new(&place.reach);
+            let client = Client::new(&place.reach)?;
             match client.get::<Health>("/health") {
                 Ok(health) if in_use.to_string().contains(&format!("(process {})", health.process)) => {
                     Ok(Way::Daemon(client))

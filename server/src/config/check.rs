@@ -12,6 +12,9 @@ use jointbench_instrument::spelling::plainly;
 use serde::Serialize;
 use toml::Spanned;
 
+/// Of a bench.
+const LONGEST_NAME: usize = 64;
+
 pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mistakes> {
     let mut wrong = Collector::new(text);
     let raw: RawFile = match toml::from_str(text) {
@@ -40,8 +43,9 @@ pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mis
 fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<BenchDescription> {
     let name = raw.name.get_ref();
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
-    if name.is_empty() || !name.chars().all(plain) {
-        wrong.add(raw.name.span(), format!("name {name:?}: use letters, digits, -, _ and . (it is part of addresses)"));
+    if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
+        let message = "use 1 to 64 letters, digits, -, _ and . (it is part of addresses)";
+        wrong.add(raw.name.span(), format!("name {name:?}: {message}"));
     }
     let source = match (&raw.mock, &raw.joint) {
         (Some(mock), None) if !raw.has_instruments() => check_mock(mock, wrong).map(Source::Mock),

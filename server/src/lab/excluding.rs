@@ -1,6 +1,6 @@
 //! Stretches of a measurement that a person takes out of a fit.
 
-use super::{Answer, LabError};
+use super::{Answer, LabError, names};
 use crate::view::Exclusion;
 use jointbench_instrument::{RunTable, Trace};
 
@@ -23,6 +23,7 @@ pub fn check(stretches: &[Exclusion]) -> Answer<()> {
                 "the stretch from {from_s} s to {to_s} s is excluded without a reason: write one"
             )));
         }
+        names::checked_text("the reason of an excluded stretch", reason, names::LONGEST_SENTENCE)?;
     }
     Ok(())
 }

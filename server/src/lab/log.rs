@@ -8,6 +8,8 @@ use jiff::{SignedDuration, Timestamp};
 
 /// So many runs are told of at a time.
 const RUNS: u32 = 12;
+/// Kind of the entries that tell of tokens.
+pub const OF_TOKENS: &str = "token";
 
 impl Lab {
     /// Newest first: of one run, or of the newest runs, or those `before` one, and of the benches and tokens in their time.
@@ -103,7 +105,7 @@ impl Lab {
     async fn token_log(&self) -> Answer<Vec<LogEntry>> {
         let told = |(at, text, by): (String, String, String)| LogEntry {
             at,
-            kind: "token".into(),
+            kind: OF_TOKENS.into(),
             text,
             by: Some(by),
             ..LogEntry::default()

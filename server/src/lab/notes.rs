@@ -1,11 +1,10 @@
 //! What people say about runs: notes and tags.
 
+use super::names::{self, LONGEST_NOTE, LONGEST_TAG};
 use super::{Answer, Lab, LabError};
 use crate::store::NoteRecord;
 use crate::view::{NewNote, Note, Run};
 
-const LONGEST_NOTE: usize = 4000;
-const LONGEST_TAG: usize = 40;
 const MOST_TAGS: usize = 20;
 
 impl Lab {
@@ -14,10 +13,7 @@ impl Lab {
     }
 
     pub async fn write_note(&self, run: i64, new: &NewNote) -> Answer<Note> {
-        let text = new.text.trim();
-        if text.is_empty() || text.chars().count() > LONGEST_NOTE {
-            return Err(LabError::Invalid(format!("text: write 1 to {LONGEST_NOTE} characters")));
-        }
+        let text = names::checked_text("text", &new.text, LONGEST_NOTE)?;
         Ok(view(self.inner.store.save_note(run, new.at_s, text).await?))
     }
 
@@ -28,8 +24,7 @@ impl Lab {
             return Err(LabError::Invalid(format!("tags: at most {MOST_TAGS}, these are {}", tags.len())));
         }
         // What the search could not ask for.
-        let odd =
-            |tag: &&String| tag.is_empty() || tag.chars().count() > LONGEST_TAG || tag.contains(['"', ' ', '\t', '\n']);
+        let odd = |tag: &&String| names::checked("tag", tag, LONGEST_TAG).is_err() || tag.contains(['"', ' ']);
         if let Some(tag) = tags.iter().find(odd) {
             return Err(LabError::Invalid(format!("tag {tag:?}: write one word of at most {LONGEST_TAG} characters")));
         }

@@ -1,7 +1,7 @@
 //! Effects that users write: checked, kept, and offered to every model of their kind.
 
 use super::models::{blocking, effect_view, find_kind};
-use super::{Answer, Lab, LabError, reread};
+use super::{Answer, Lab, LabError, names, reread};
 use crate::store::OwnEffectRecord;
 use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage, FormulaSignal, LiveMessage};
 use jointbench_instrument::Kind;
@@ -178,6 +178,7 @@ fn trading(own: &str, pairs: &[TradeOff]) -> Vec<String> {
 
 fn parse(definition: &EffectDefinition) -> Answer<OwnEffect> {
     find_kind(&definition.kind)?;
+    names::check_effect(definition)?;
     let definition: Definition = reread(definition)?;
     OwnEffect::try_from(definition).map_err(|fault| LabError::Formula(fault.into()))
 }

@@ -1,5 +1,6 @@
 //! Tables that a page shows, as files. What is visible was chosen, binned and tried on the page, so the page says what it is.
 
+use super::spreadsheet::defused_columns;
 use super::{Answer, Lab, LabError};
 use crate::view::{Cell, Table};
 use jointbench_files::{TableColumn, write_table_csv, write_table_parquet};
@@ -24,8 +25,12 @@ impl TableFormat {
 }
 
 impl Lab {
-    pub async fn write_table(&self, table: Table, format: TableFormat) -> Answer<Vec<u8>> {
-        let columns = columns(table)?;
+    /// `spreadsheet_safe`: no text of a CSV becomes a formula.
+    pub async fn write_table(&self, table: Table, format: TableFormat, spreadsheet_safe: bool) -> Answer<Vec<u8>> {
+        let mut columns = columns(table)?;
+        if spreadsheet_safe && format == TableFormat::Csv {
+            columns = defused_columns(columns);
+        }
         let write = move || {
             let mut bytes = Vec::new();
             match format {

@@ -1,7 +1,7 @@
 //! Who calls. Those tokens that the daemon was started with decide whether one is needed at all, and are never revoked here:
 //! whoever can start the daemon can always come in.
 
-use super::{Answer, Lab, LabError, reread};
+use super::{Answer, Lab, LabError, names, reread};
 use crate::store::TokenRecord;
 use crate::view::{Access, MadeToken, NewToken, Token, word};
 use jiff::{SignedDuration, Timestamp};
@@ -9,7 +9,9 @@ use sha2::{Digest, Sha256};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use tokio::sync::watch;
 
-const LONGEST_NAME: usize = 40;
+/// Of a token that somebody thought of. One that is made here has more.
+const SHORTEST_TOKEN: usize = 16;
+const FEWEST_CHARACTERS: usize = 6;
 /// So often it is kept that a token was used.
 const USED_EVERY: SignedDuration = SignedDuration::from_secs(60);
 /// Names of who comes without a token, and of those tokens that the daemon was started with.
@@ -158,10 +160,7 @@ impl Lab {
     }
 
     pub async fn make_token(&self, new: &NewToken, by: &Caller) -> Answer<MadeToken> {
-        let name = new.name.trim();
-        if name.is_empty() || name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
-            return Err(LabError::Invalid(format!("name: write 1 to {LONGEST_NAME} characters in one line")));
-        }
+        let name = names::checked("name", &new.name, names::LONGEST_TOKEN_NAME)?;
         if new.access == Access::Open {
             return Err(LabError::Invalid("access: choose full or read".into()));
         }
@@ -209,7 +208,43 @@ impl Lab {
     }
 }
 
+/// Why a token is too easily found; `None` where it is not.
+pub fn weakness(token: &str) -> Option<String> {
+    let different = token.chars().collect::<std::collections::BTreeSet<_>>().len();
+    let why = match token.chars().count() {
+        length if length < SHORTEST_TOKEN => format!("has {length} characters, fewer than {SHORTEST_TOKEN}"),
+        _ if different < FEWEST_CHARACTERS => {
+            format!("has {different} different characters, fewer than {FEWEST_CHARACTERS}")
+        }
+        _ if token.chars().any(|c| !(c.is_ascii_graphic() || c == ' ')) => {
+            "has a character that is not ASCII, which no request can carry".to_owned()
+        }
+        _ => return None,
+    };
+    Some(format!("{why}: make one with `openssl rand -hex 24`"))
+}
+
 /// What is made here is long and random: nobody finds it by trying, and a plain hash keeps it.
 fn hash(secret: &str) -> [u8; 32] {
     Sha256::digest(secret.as_bytes()).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::weakness;
+
+    #[test]
+    fn a_weak_token_is_told_with_the_way_to_a_better_one() {
+        for (token, said) in [
+            ("hunter2", "7 characters"),
+            ("aaaaaaaaaaaaaaaaaaaaaaaa", "1 different"),
+            ("0101010101010101", "2 different"),
+            ("correct höorse battery", "not ASCII"),
+        ] {
+            let why = weakness(token).unwrap();
+            assert!(why.contains(said) && why.contains("openssl rand"), "{token}: {why}");
+        }
+        assert_eq!(weakness("correct horse battery"), None);
+        assert_eq!(weakness("9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822c"), None);
+    }
 }

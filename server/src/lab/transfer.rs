@@ -67,6 +67,7 @@ pub struct ImportRequest {
 impl Lab {
     /// Takes a file in as a run. It is read and checked whole before anything is kept, and kept in one transaction.
     pub async fn import(&self, request: ImportRequest, by: &str) -> Answer<Run> {
+        let request = request.with_names()?;
         let name = request.name.clone().unwrap_or_else(|| request.file_name.clone());
         let source =
             json!({ "file": request.file_name, "map": request.map, "scale": request.scale, "leave": request.leave });

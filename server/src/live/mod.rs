@@ -8,15 +8,21 @@ pub use hub::{Hub, Piece, Rows};
 
 use crate::lab::Lab;
 use crate::view::LiveMessage;
+use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
 use outbox::{Frame, Outbox};
 use std::time::Duration;
 use tokio::sync::broadcast::Receiver;
 use tokio::sync::broadcast::error::RecvError;
-use tokio::time::{MissedTickBehavior, interval};
+use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, timeout};
 
 /// At most 30 frames a second.
 const FRAME_EVERY: Duration = Duration::from_millis(34);
+
+/// So often a client is asked whether it is still there, where nothing else is sent.
+const PING_EVERY: Duration = Duration::from_secs(20);
+/// A client that answers nothing for so long is gone; one that accepts nothing for so long, too.
+const SILENCE: Duration = Duration::from_secs(60);
 
 /// Serves one client until it leaves.
 pub async fn serve(mut socket: WebSocket, lab: Lab) {
@@ -27,6 +33,9 @@ pub async fn serve(mut socket: WebSocket, lab: Lab) {
     }
     let mut tick = interval(FRAME_EVERY);
     tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut ping = interval_at(Instant::now() + PING_EVERY, PING_EVERY);
+    ping.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut heard_at = Instant::now();
     loop {
         tokio::select! {
             _ = tick.tick() => {
@@ -36,9 +45,14 @@ pub async fn serve(mut socket: WebSocket, lab: Lab) {
                         Frame::Text(text) => Message::Text(text.into()),
                         Frame::Binary(bytes) => Message::Binary(bytes.into()),
                     };
-                    if socket.send(message).await.is_err() {
+                    if !sent(&mut socket, message).await {
                         return;
                     }
+                }
+            }
+            _ = ping.tick() => {
+                if heard_at.elapsed() > SILENCE || !sent(&mut socket, Message::Ping(Bytes::new())).await {
+                    return;
                 }
             }
             piece = pieces.recv() => match piece {
@@ -47,11 +61,17 @@ pub async fn serve(mut socket: WebSocket, lab: Lab) {
                 Err(RecvError::Closed) => return,
             },
             // A client has nothing to say; reading answers its pings and notices when it leaves.
-            heard = socket.recv() => if !matches!(heard, Some(Ok(_))) {
-                return;
+            heard = socket.recv() => match heard {
+                Some(Ok(_)) => heard_at = Instant::now(),
+                _ => return,
             },
         }
     }
+}
+
+/// Whether the client has taken it.
+async fn sent(socket: &mut WebSocket, message: Message) -> bool {
+    matches!(timeout(SILENCE, socket.send(message)).await, Ok(Ok(())))
 }
 
 /// What came in while the client was being written to.

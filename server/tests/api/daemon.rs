@@ -1,7 +1,7 @@
 //! A daemon for one test, on a free port and a folder of its own, and a client for it.
 
 use jointbench::config::BenchDescription;
-use jointbench::daemon::{Daemon, DaemonSettings};
+use jointbench::daemon::{Daemon, DaemonSettings, Network};
 use jointbench::lab::LabError;
 use jointbench_devices::{Joint, MockSettings};
 use serde_json::Value;
@@ -32,6 +32,7 @@ pub fn settings(data: &Path, pace: Option<f64>) -> DaemonSettings {
         data: data.to_owned(),
         token: None,
         read_token: None,
+        network: Network::default(),
         benches: vec![BenchDescription::mock(BENCH, mock)],
         program: env!("CARGO_BIN_EXE_jointbench").into(),
     }
@@ -100,6 +101,14 @@ impl TestDaemon {
 
     pub fn post_with(&self, path: &str, body: &[u8], headers: &[(&str, &str)]) -> (u16, Value) {
         read(self.post_raw(path, body, headers))
+    }
+
+    pub fn put_with(&self, path: &str, body: &[u8], headers: &[(&str, &str)]) -> (u16, Value) {
+        let mut request = self.agent.put(self.url(path));
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        read(request.send(body).unwrap())
     }
 
     pub fn post_raw(&self, path: &str, body: &[u8], headers: &[(&str, &str)]) -> ureq::http::Response<ureq::Body> {

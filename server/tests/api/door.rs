@@ -1,8 +1,12 @@
 //! Who may come in.
 
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon, refused, settings};
+use jointbench::listener::TlsFiles;
 use serde_json::Value;
 use tempfile::TempDir;
+
+pub const FULL: &str = "correct horse battery";
+pub const READS: &str = "looking horse battery";
 
 #[test]
 fn a_foreign_page_may_neither_change_nor_listen() {
@@ -33,14 +37,15 @@ fn page(daemon: &TestDaemon) -> String {
 fn beyond_loopback_the_token_opens_the_api() {
     let daemon = TestDaemon::start_with(None, |settings| {
         settings.listen = "0.0.0.0:0".parse().unwrap();
-        settings.token = Some("correct horse".into());
-        settings.read_token = Some("looking horse".into());
+        settings.network.behind_proxy = true;
+        settings.token = Some(FULL.into());
+        settings.read_token = Some(READS.into());
     });
     assert!(page(&daemon).contains("data-token"), "the page asks for a token before it is refused");
     let (status, problem) = daemon.get("/api/v1/bench");
     assert_eq!((status, problem["type"].as_str()), (401, Some("urn:jointbench:unauthorized")));
-    assert_eq!(daemon.get_with("/api/v1/bench", &[("authorization", "Bearer wrong horse")]).0, 401);
-    for (token, access, changes) in [("correct horse", "full", 404), ("looking horse", "read", 403)] {
+    assert_eq!(daemon.get_with("/api/v1/bench", &[("authorization", "Bearer wrong horse battery")]).0, 401);
+    for (token, access, changes) in [(FULL, "full", 404), (READS, "read", 403)] {
         let bearer = [("authorization", &*format!("Bearer {token}"))];
         assert_eq!(daemon.get_with("/api/v1/health", &bearer).1["access"], access);
         assert_eq!(daemon.post_with("/api/v1/runs/1/pause", b"", &bearer).0, changes, "{token}");
@@ -54,8 +59,8 @@ fn tokens_are_made_listed_and_revoked_by_whoever_may_do_everything_and_nobody_is
     let daemon = || {
         TestDaemon::start_with(None, |settings| {
             settings.data = data.path().to_owned();
-            settings.token = Some("correct horse".into());
-            settings.read_token = Some("looking horse".into());
+            settings.token = Some(FULL.into());
+            settings.read_token = Some(READS.into());
         })
     };
     let mut first = daemon();
@@ -69,7 +74,7 @@ fn tokens_are_made_listed_and_revoked_by_whoever_may_do_everything_and_nobody_is
     let revoke = |daemon: &TestDaemon, with: &str, id: &Value| {
         daemon.delete_with(&format!("/api/v1/tokens/{id}"), &[("authorization", &*bearer(with))])
     };
-    let (status, anna) = make(&first, "correct horse", r#"{"name": " Anna ", "access": "full"}"#);
+    let (status, anna) = make(&first, FULL, r#"{"name": " Anna ", "access": "full"}"#);
     assert_eq!((status, &anna["name"], &anna["made_by"]), (201, &"Anna".into(), &"operator".into()), "{anna}");
     let anna_s = anna["secret"].as_str().unwrap().to_owned();
     let (status, wall) = make(&first, &anna_s, r#"{"name": "wall screen", "access": "read"}"#);
@@ -110,15 +115,11 @@ fn tokens_are_made_listed_and_revoked_by_whoever_may_do_everything_and_nobody_is
     assert_eq!(revoke(&second, &anna_s, &anna["id"]).0, 409, "nobody locks themselves out");
     assert_eq!(revoke(&second, &anna_s, &wall["id"]).0, 204);
     assert_eq!(list(&second, &wall_s).0, 401);
-    assert_eq!(revoke(&second, "correct horse", &anna["id"]).0, 204);
-    assert_eq!(revoke(&second, "correct horse", &anna["id"]).0, 404);
+    assert_eq!(revoke(&second, FULL, &anna["id"]).0, 204);
+    assert_eq!(revoke(&second, FULL, &anna["id"]).0, 404);
     assert_eq!(list(&second, &anna_s).0, 401);
-    assert_eq!(list(&second, "correct horse").1.as_array().unwrap().len(), 2);
-    assert_eq!(
-        make(&second, "correct horse", r#"{"name": "Anna", "access": "read"}"#).0,
-        201,
-        "the name is free again"
-    );
+    assert_eq!(list(&second, FULL).1.as_array().unwrap().len(), 2);
+    assert_eq!(make(&second, FULL, r#"{"name": "Anna", "access": "read"}"#).0, 201, "the name is free again");
 }
 
 #[test]
@@ -140,7 +141,20 @@ fn a_daemon_that_cannot_start_says_why() {
     let data = TempDir::new().unwrap();
     let mut open = settings(data.path(), None);
     open.listen = "0.0.0.0:0".parse().unwrap();
+    let error = refused(open.clone());
+    assert!(error.to_string().contains("give a token"), "{error}");
+    open.token = Some("correct horse".into());
+    let error = refused(open.clone());
+    assert!(error.to_string().contains("openssl rand -hex 24"), "{error}");
+    open.token = Some(FULL.into());
+    let error = refused(open.clone());
+    assert!(error.to_string().contains("--tls-cert"), "{error}");
+    open.network.tls = Some(TlsFiles { certificate: "/no/cert.pem".into(), key: "/no/key.pem".into() });
     let error = refused(open);
+    assert!(error.to_string().contains("/no/cert.pem"), "{error}");
+    let mut proxied = settings(data.path(), None);
+    proxied.network.behind_proxy = true;
+    let error = refused(proxied);
     assert!(error.to_string().contains("give a token"), "{error}");
 
     let running = TestDaemon::start();

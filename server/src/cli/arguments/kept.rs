@@ -49,6 +49,9 @@ pub struct Export {
     /// File to write; a CSV gets its facts beside it as NAME.meta.json [default: run-N.csv, run-N.parquet or run-N.mat]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Begin cells of text in a CSV that a spreadsheet would take for a formula (= + - @) with an apostrophe
+    #[arg(long)]
+    pub spreadsheet_safe: bool,
     #[command(flatten)]
     pub store: StorePlace,
 }

@@ -2,10 +2,12 @@
 
 mod kept;
 mod model;
+mod place;
 mod steer;
 
 pub use kept::{Export, Identify, Import, Report, Reproduce, Runs, StorePlace};
 pub use model::{Model, ModelCommand};
+pub use place::{Place, Reach, ServedTokens};
 pub use steer::{Reset, Steer, Stop};
 
 use super::log::LogForm;
@@ -13,7 +15,6 @@ use super::own::OwnEffects;
 use super::ports::Ports;
 use super::require::Requirement;
 use clap::{Args, Parser, Subcommand};
-use std::net::SocketAddr;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -121,31 +122,6 @@ pub struct Serve {
     pub place: Place,
 }
 
-/// Where a daemon lives.
-#[derive(Debug, Args)]
-pub struct Place {
-    /// Folder of the store; made where it is missing [default: jointbench-data, or jointbench-data/demo for the demo]
-    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA")]
-    pub data: Option<PathBuf>,
-    /// Address and port of API and dashboard; port 0 takes a free one
-    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080", value_parser = address)]
-    pub listen: SocketAddr,
-    /// Needed to listen beyond loopback; callers send it as `Authorization: Bearer TOKEN`. Whoever has it makes and
-    /// revokes further ones, a name for each, on the dashboard's page of settings
-    #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
-    pub token: Option<String>,
-    /// A second token, for those who only look; it can press the software stop, too
-    #[arg(long, value_name = "TOKEN", env = "JOINTBENCH_READ_TOKEN", hide_env_values = true)]
-    pub read_token: Option<String>,
-    /// Write the traffic of every instrument down in this folder, to read and to replay
-    #[arg(long, value_name = "DIR")]
-    pub record: Option<PathBuf>,
-}
-
-fn address(text: &str) -> Result<SocketAddr, String> {
-    text.parse().map_err(|_| "expected an address and a port, such as 127.0.0.1:8203".to_owned())
-}
-
 #[derive(Debug, Args)]
 pub struct Check {
     /// Bench description: a file, or the name of a ready-made one
@@ -160,17 +136,6 @@ pub struct Check {
 pub struct Listed {
     /// Only this one, with all there is to say of it
     pub id: Option<String>,
-}
-
-/// How to reach a running daemon.
-#[derive(Debug, Args)]
-pub struct Reach {
-    /// Address of the daemon [default: http://127.0.0.1:8080]
-    #[arg(long, value_name = "URL", env = "JOINTBENCH_URL")]
-    pub daemon: Option<String>,
-    /// Token of a daemon that listens beyond loopback
-    #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
-    pub token: Option<String>,
 }
 
 #[derive(Debug, Args)]

@@ -1,0 +1,172 @@
+//! Tokens, from where nobody else reads them: files, credentials of systemd, the environment.
+
+use super::arguments::{Reach, ServedTokens};
+use super::exit::Exit;
+use std::ffi::{OsStr, OsString};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// A token is one short line.
+const LONGEST_BYTES: u64 = 4096;
+/// The files that systemd hands over (`LoadCredential=`) are here.
+const CREDENTIALS: &str = "CREDENTIALS_DIRECTORY";
+const CREDENTIAL: &str = "jointbench-token";
+const READ_CREDENTIAL: &str = "jointbench-read-token";
+/// Options whose value is a secret, with the variables that carry it unseen.
+const SECRET: [(&str, &str); 2] = [("--token", "JOINTBENCH_TOKEN"), ("--read-token", "JOINTBENCH_READ_TOKEN")];
+
+/// The tokens that a daemon is started with: that which may do everything, and that which only reads.
+pub fn of_daemon(given: &ServedTokens) -> Result<[Option<String>; 2], Exit> {
+    let token = choose(given.token_file.as_deref(), given.token.clone(), credential(CREDENTIAL))?;
+    let read = choose(given.read_token_file.as_deref(), given.read_token.clone(), credential(READ_CREDENTIAL))?;
+    Ok([token, read])
+}
+
+/// The token that a client sends.
+pub fn of_client(reach: &Reach) -> Result<Option<String>, Exit> {
+    choose(reach.token_file.as_deref(), reach.token.clone(), None)
+}
+
+/// A file that is named, else what is given, else a credential.
+fn choose(file: Option<&Path>, given: Option<String>, credential: Option<PathBuf>) -> Result<Option<String>, Exit> {
+    match (file, given, credential) {
+        (Some(file), _, _) => read(file).map(Some),
+        (None, Some(given), _) => Ok(Some(given)),
+        (None, None, credential) => credential.as_deref().map(read).transpose(),
+    }
+}
+
+fn credential(name: &str) -> Option<PathBuf> {
+    let file = PathBuf::from(std::env::var_os(CREDENTIALS)?).join(name);
+    file.is_file().then_some(file)
+}
+
+fn read(file: &Path) -> Result<String, Exit> {
+    let refused = |why: String| Exit::bad_input(format!("token file {}: {why}", file.display()));
+    let opened = std::fs::File::open(file).map_err(|fault| refused(format!("cannot be read ({fault})")))?;
+    warn_if_shared(file, &opened);
+    let mut text = String::new();
+    opened.take(LONGEST_BYTES).read_to_string(&mut text).map_err(|fault| refused(format!("is no text ({fault})")))?;
+    match text.trim() {
+        "" => Err(refused("is empty: make one with `openssl rand -hex 24`".into())),
+        token if token.contains('\n') => Err(refused("has more than one line: write the token alone".into())),
+        token => Ok(token.to_owned()),
+    }
+}
+
+#[cfg(unix)]
+fn warn_if_shared(file: &Path, opened: &std::fs::File) {
+    use std::os::unix::fs::PermissionsExt;
+    const OTHERS: u32 = 0o007;
+    if opened.metadata().is_ok_and(|opened| opened.permissions().mode() & OTHERS != 0) {
+        let file = file.display();
+        eprintln!("jointbench: token file {file} is open to every user of this computer: chmod 600 {file}");
+    }
+}
+
+#[cfg(not(unix))]
+fn warn_if_shared(_: &Path, _: &std::fs::File) {}
+
+/// Takes tokens out of the arguments, where every user of the computer sees them (`ps`): the program starts itself again in its
+/// own place, with the tokens in its environment. Returns where none was there.
+pub fn take_out_of_sight() -> Result<(), Exit> {
+    let given: Vec<OsString> = std::env::args_os().skip(1).collect();
+    let (rest, secrets) = parted(&given);
+    match secrets.is_empty() {
+        true => Ok(()),
+        false => start_again(&rest, &secrets),
+    }
+}
+
+type Secrets = Vec<(&'static str, OsString)>;
+
+/// The arguments without the tokens, and the tokens by their variables.
+fn parted(given: &[OsString]) -> (Vec<OsString>, Secrets) {
+    let (mut rest, mut secrets) = (Vec::new(), Secrets::new());
+    let mut left = given.iter();
+    while let Some(one) = left.next() {
+        if one == "--" {
+            rest.push(one.clone());
+            rest.extend(left.by_ref().cloned());
+            break;
+        }
+        let text = one.to_str().unwrap_or_default();
+        let option = SECRET.into_iter().find(|(option, _)| text.split('=').next() == Some(option));
+        let value = option.and_then(|(option, _)| match text.strip_prefix(option) {
+            Some("") => left.next().cloned(),
+            value => value.map(|value| OsString::from(value.trim_start_matches('='))),
+        });
+        match (option, value) {
+            (Some((_, variable)), Some(value)) => secrets.push((variable, value)),
+            // Without a value it is the business of whoever reads the arguments.
+            _ => rest.push(one.clone()),
+        }
+    }
+    (rest, secrets)
+}
+
+#[cfg(unix)]
+fn start_again(rest: &[OsString], secrets: &Secrets) -> Result<(), Exit> {
+    use std::os::unix::process::CommandExt;
+    warn("and it is taken out of that list now");
+    let name = std::env::args_os().next().unwrap_or_else(|| OsStr::new("jointbench").to_owned());
+    // By its path, so that lists of processes go on to call it by its name.
+    let program = std::env::current_exe().unwrap_or_else(|_| crate::program::own());
+    let mut command = std::process::Command::new(program);
+    command.arg0(name).args(rest).envs(secrets.iter().map(|(variable, value)| (variable, value)));
+    // It returns only where it has failed.
+    Err(Exit::failed(format!("the token cannot be taken out of sight ({}): give --token-file", command.exec())))
+}
+
+#[cfg(not(unix))]
+fn start_again(_: &[OsString], _: &Secrets) -> Result<(), Exit> {
+    warn("and stays there");
+    Ok(())
+}
+
+fn warn(what_becomes_of_it: &str) {
+    eprintln!(
+        "jointbench: a token among the arguments is seen by every user of this computer and kept by shells, {what_becomes_of_it}: \
+         use --token-file or JOINTBENCH_TOKEN"
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arguments(line: &str) -> Vec<OsString> {
+        line.split(' ').map(OsString::from).collect()
+    }
+
+    #[test]
+    fn tokens_leave_the_arguments_and_nothing_else_does() {
+        let secret = |variable, value: &str| (variable, OsString::from(value));
+        for (line, rest, secrets) in [
+            ("serve --token abc --listen x", "serve --listen x", vec![secret("JOINTBENCH_TOKEN", "abc")]),
+            ("serve --token=a=b", "serve", vec![secret("JOINTBENCH_TOKEN", "a=b")]),
+            ("serve --read-token r", "serve", vec![secret("JOINTBENCH_READ_TOKEN", "r")]),
+            ("serve --token-file f --tokens", "serve --token-file f --tokens", vec![]),
+            ("serve --token", "serve --token", vec![]),
+            ("runs -- --token abc", "runs -- --token abc", vec![]),
+        ] {
+            assert_eq!(parted(&arguments(line)), (arguments(rest), secrets), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_file_holds_one_token_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("token");
+        let of = |text: &str| {
+            std::fs::write(&file, text).unwrap();
+            choose(Some(&file), Some("given".into()), None).map_err(|exit| exit.said)
+        };
+        assert_eq!(of("correct horse battery\n").unwrap().as_deref(), Some("correct horse battery"));
+        assert!(of(" \n").unwrap_err().contains("openssl rand"));
+        assert!(of("one\ntwo").unwrap_err().contains("more than one line"));
+        assert_eq!(choose(None, Some("given".into()), Some(file)).unwrap().as_deref(), Some("given"));
+        let none = choose(Some(Path::new("/no/such/file")), None, None).unwrap_err();
+        assert!(none.code == 2 && none.said.contains("/no/such/file"), "{}", none.said);
+    }
+}

@@ -1,0 +1,89 @@
+//! Requests of one connection, each carried out in a task of its own.
+
+use super::body::{Arriving, Leaving};
+use super::seats::Seat;
+use super::stage::Stage;
+use super::{Demand, Limits};
+use crate::api::{Presence, Problem};
+use axum::Router;
+use axum::body::Body;
+use axum::extract::ConnectInfo;
+use axum::response::{IntoResponse, Response};
+use hyper::body::Incoming;
+use hyper::service::Service;
+use hyper::{Request, StatusCode};
+use std::convert::Infallible;
+use std::net::SocketAddr;
+use std::pin::Pin;
+use std::sync::Arc;
+use tokio::task::{JoinError, JoinHandle};
+use tokio_util::task::AbortOnDropHandle;
+use tower::ServiceExt;
+
+pub struct Answering {
+    pub router: Router,
+    pub peer: SocketAddr,
+    pub limits: Arc<Limits>,
+    pub seat: Arc<Seat>,
+}
+
+type Answer = hyper::Response<Leaving>;
+
+impl Service<Request<Incoming>> for Answering {
+    type Response = Answer;
+    type Error = Infallible;
+    type Future = Pin<Box<dyn Future<Output = Result<Answer, Infallible>> + Send>>;
+
+    /// Begins to carry the request out before this returns: a client that hangs up at once drops the future that is
+    /// returned here, not the request. Only what changes nothing ends with its client.
+    fn call(&self, request: Request<Incoming>) -> Self::Future {
+        let progress = self.seat.progress.clone();
+        progress.enter(Stage::Answer);
+        let demand = Demand::of(request.method(), request.uri().path());
+        if !self.seat.admits(demand) {
+            return Box::pin(async { Ok(Problem::full().into_response().map(|body| Leaving::new(body, None))) });
+        }
+        let (changes, presence) = (!request.method().is_safe(), Presence::default());
+        let answer = self.begin(request, demand, presence.clone());
+        Box::pin(async move {
+            let answered = match changes {
+                true => {
+                    let guard = presence.guard();
+                    let answered = answer.await;
+                    guard.disarm();
+                    answered
+                }
+                false => AbortOnDropHandle::new(answer).await,
+            };
+            let response = answered.unwrap_or_else(|fault| failed(&fault));
+            let follows = match response.status() {
+                StatusCode::SWITCHING_PROTOCOLS => {
+                    progress.enter(Stage::Stream);
+                    None
+                }
+                _ => Some(progress),
+            };
+            Ok(response.map(|body| Leaving::new(body, follows)))
+        })
+    }
+}
+
+impl Answering {
+    fn begin(&self, request: Request<Incoming>, demand: Demand, presence: Presence) -> JoinHandle<Response> {
+        let (limits, progress) = (self.limits.clone(), self.seat.progress.clone());
+        let mut request = request.map(|body| Body::new(Arriving::new(body, demand, limits, progress)));
+        request.extensions_mut().insert(ConnectInfo(self.peer));
+        request.extensions_mut().insert(presence);
+        let router = self.router.clone();
+        tokio::spawn(async move {
+            let Ok(response) = router.oneshot(request).await;
+            response
+        })
+    }
+}
+
+fn failed(fault: &JoinError) -> Response {
+    tracing::error!(%fault, "a request has panicked");
+    let detail = "the request failed inside the daemon; its log says where";
+    Problem::new(StatusCode::INTERNAL_SERVER_ERROR, "internal", "The daemon failed", detail).into_response()
+}

@@ -1,0 +1,113 @@
+//! The accept loop: connections within limits, below the router.
+//!
+//! What is promised here: a request that has arrived is carried out, whatever its client does then; no client can keep
+//! another one out by being slow; [`Demand::Vital`] requests are answered when every other connection is taken.
+
+mod answering;
+mod body;
+mod demand;
+mod limits;
+mod seats;
+mod stage;
+mod tls;
+mod wire;
+
+pub use demand::Demand;
+pub use limits::Limits;
+pub use tls::{Tls, TlsFiles};
+
+use answering::Answering;
+use axum::Router;
+use hyper::server::conn::http1;
+use hyper_util::rt::TokioIo;
+use seats::{Seat, Seats};
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::task::JoinSet;
+use wire::Wire;
+
+/// So often it is looked for clients that have taken longer than they may.
+const LOOK_EVERY: Duration = Duration::from_millis(250);
+/// Pause after the system has refused a connection, for want of files above all.
+const REFUSED_PAUSE: Duration = Duration::from_millis(50);
+
+/// What connections share.
+#[derive(Clone)]
+struct Shared {
+    router: Router,
+    tls: Option<Tls>,
+    limits: Arc<Limits>,
+}
+
+/// Serves until it is dropped, which closes every connection.
+pub async fn serve(listener: TcpListener, router: Router, tls: Option<Tls>, limits: Limits) {
+    let limits = Arc::new(limits);
+    let seats = Seats::new(limits.clone());
+    let mut connections = JoinSet::new();
+    if let Some(tls) = tls.clone() {
+        connections.spawn(async move { tls.follow().await });
+    }
+    let shared = Shared { router, tls, limits };
+    let mut look = tokio::time::interval(LOOK_EVERY);
+    loop {
+        tokio::select! {
+            accepted = listener.accept() => match accepted {
+                Ok((stream, peer)) => match seats.take() {
+                    Some(seat) => drop(connections.spawn(connection(shared.clone(), stream, peer, seat))),
+                    None => tracing::warn!(%peer, "a connection is refused: every other one is being answered"),
+                },
+                Err(fault) => {
+                    tracing::warn!(%fault, "a connection is refused by the system");
+                    tokio::time::sleep(REFUSED_PAUSE).await;
+                }
+            },
+            Some(ended) = connections.join_next() => if let Err(fault) = ended {
+                tracing::error!(%fault, "a connection has panicked");
+            },
+            _ = look.tick() => seats.close_overdue(),
+        }
+    }
+}
+
+async fn connection(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: Seat) {
+    let close = seat.close.clone();
+    tokio::select! {
+        () = close.cancelled() => tracing::debug!(%peer, "connection closed: it has waited for its client for too long"),
+        () = greet(shared, stream, peer, seat) => {}
+    }
+}
+
+async fn greet(shared: Shared, stream: TcpStream, peer: SocketAddr, seat: Seat) {
+    // Small answers leave at once. A client that has hung up already makes this fail, and has sent something all the same.
+    let _ = stream.set_nodelay(true);
+    match &shared.tls {
+        None => converse(&shared, stream, peer, seat).await,
+        Some(tls) => match tls.accept(stream).await {
+            Ok(stream) => converse(&shared, stream, peer, seat).await,
+            Err(fault) => tracing::debug!(%peer, %fault, "no TLS connection"),
+        },
+    }
+}
+
+async fn converse<S>(shared: &Shared, stream: S, peer: SocketAddr, seat: Seat)
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+{
+    let seat = Arc::new(seat);
+    let wire = Wire::new(stream, seat.clone(), shared.limits.write_stall);
+    let service = Answering { router: shared.router.clone(), peer, limits: shared.limits.clone(), seat };
+    let served = http1::Builder::new()
+        // Our own clocks tell a head that is on its way from a connection at rest.
+        .header_read_timeout(None)
+        .max_headers(limits::HEADERS)
+        .max_buf_size(limits::HEAD_BYTES)
+        .serve_connection(TokioIo::new(wire), service)
+        .with_upgrades()
+        .await;
+    if let Err(fault) = served {
+        tracing::debug!(%peer, %fault, "connection ended");
+    }
+}

@@ -1,0 +1,98 @@
+//! TLS, with certificate and key from files that may be exchanged while the daemon runs.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, PoisonError, RwLock};
+use std::time::{Duration, SystemTime};
+use tokio::net::TcpStream;
+use tokio_rustls::TlsAcceptor;
+use tokio_rustls::rustls::pki_types::pem::PemObject;
+use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer};
+use tokio_rustls::rustls::{self, ServerConfig};
+use tokio_rustls::server::TlsStream;
+
+/// So often it is looked whether the files have changed.
+const LOOK_EVERY: Duration = Duration::from_secs(60);
+
+/// PEM files: the certificate with those between it and the authority, and its key.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TlsFiles {
+    pub certificate: PathBuf,
+    pub key: PathBuf,
+}
+
+/// The side of the daemon in every handshake. Cheap to clone.
+#[derive(Clone)]
+pub struct Tls {
+    files: TlsFiles,
+    now: Arc<RwLock<Loaded>>,
+}
+
+struct Loaded {
+    config: Arc<ServerConfig>,
+    written: Written,
+}
+
+/// When the files were last written, as far as that is known.
+type Written = [Option<SystemTime>; 2];
+
+impl Tls {
+    /// Reads the files; says which one is wrong, and how.
+    pub fn open(files: TlsFiles) -> Result<Self, String> {
+        let loaded = load(&files)?;
+        Ok(Self { files, now: Arc::new(RwLock::new(loaded)) })
+    }
+
+    pub async fn accept(&self, stream: TcpStream) -> std::io::Result<TlsStream<TcpStream>> {
+        let config = self.now.read().unwrap_or_else(PoisonError::into_inner).config.clone();
+        TlsAcceptor::from(config).accept(stream).await
+    }
+
+    /// Takes exchanged files for new connections, for as long as it is awaited.
+    pub async fn follow(&self) {
+        loop {
+            tokio::time::sleep(LOOK_EVERY).await;
+            self.look();
+        }
+    }
+
+    fn look(&self) {
+        let before = self.now.read().unwrap_or_else(PoisonError::into_inner).written;
+        if written(&self.files) == before {
+            return;
+        }
+        match load(&self.files) {
+            Ok(loaded) => {
+                *self.now.write().unwrap_or_else(PoisonError::into_inner) = loaded;
+                tracing::info!(certificate = %self.files.certificate.display(), "new certificate loaded");
+            }
+            // Certificate and key are rarely exchanged in one moment: the next look may find a pair.
+            Err(fault) => tracing::warn!(fault, "the new certificate is not used; the old one still is"),
+        }
+    }
+}
+
+fn load(files: &TlsFiles) -> Result<Loaded, String> {
+    let written = written(files);
+    let unreadable = |path: &Path, what: &str, fault: String| format!("{}: no {what} in it ({fault})", path.display());
+    let chain: Result<Vec<_>, _> =
+        CertificateDer::pem_file_iter(&files.certificate).and_then(|certificates| certificates.collect());
+    let chain = chain.map_err(|fault| unreadable(&files.certificate, "PEM certificate", fault.to_string()))?;
+    if chain.is_empty() {
+        return Err(unreadable(&files.certificate, "PEM certificate", "it has none".into()));
+    }
+    let key = PrivateKeyDer::from_pem_file(&files.key)
+        .map_err(|fault| unreadable(&files.key, "PEM private key", fault.to_string()))?;
+    let unusable = |fault: rustls::Error| {
+        format!("{} and {} cannot be used together ({fault})", files.certificate.display(), files.key.display())
+    };
+    let mut config = ServerConfig::builder_with_provider(Arc::new(rustls::crypto::ring::default_provider()))
+        .with_safe_default_protocol_versions()
+        .and_then(|builder| builder.with_no_client_auth().with_single_cert(chain, key))
+        .map_err(unusable)?;
+    config.alpn_protocols = vec![b"http/1.1".to_vec()];
+    Ok(Loaded { config: Arc::new(config), written })
+}
+
+fn written(files: &TlsFiles) -> Written {
+    [&files.certificate, &files.key].map(|file| file.metadata().and_then(|file| file.modified()).ok())
+}
