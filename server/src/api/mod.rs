@@ -81,7 +81,9 @@ impl Modify for Token {
     fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
         let scheme = HttpBuilder::new()
             .scheme(HttpAuthScheme::Bearer)
-            .description(Some("Needed where the daemon was started with one (`--token`); more are made at `/tokens`"))
+            .description(Some(
+                "Needed where the daemon was started with one (`--token-file`); more are made at `/tokens`",
+            ))
             .build();
         document.components.get_or_insert_default().add_security_scheme("token", SecurityScheme::Http(scheme));
     }

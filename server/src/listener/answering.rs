@@ -43,19 +43,13 @@ impl Service<Request<Incoming>> for Answering {
         if !self.seat.admits(demand) {
             return Box::pin(async { Ok(Problem::full().into_response().map(|body| Leaving::new(body, None))) });
         }
-        let (changes, presence) = (!request.method().is_safe(), Presence::default());
-        let answer = self.begin(request, demand, presence.clone());
+        let (is_safe, presence) = (request.method().is_safe(), Presence::default());
+        // From here on, not from the first poll: there may be none.
+        let guard = presence.guard();
+        let answer = Begun::new(is_safe, self.begin(request, demand, presence));
         Box::pin(async move {
-            let answered = match changes {
-                true => {
-                    let guard = presence.guard();
-                    let answered = answer.await;
-                    guard.disarm();
-                    answered
-                }
-                false => AbortOnDropHandle::new(answer).await,
-            };
-            let response = answered.unwrap_or_else(|fault| failed(&fault));
+            let response = answer.ended().await.unwrap_or_else(|fault| failed(&fault));
+            guard.disarm();
             let follows = match response.status() {
                 StatusCode::SWITCHING_PROTOCOLS => {
                     progress.enter(Stage::Stream);
@@ -79,6 +73,30 @@ impl Answering {
             let Ok(response) = router.oneshot(request).await;
             response
         })
+    }
+}
+
+/// A request on its way.
+enum Begun {
+    /// It ends with its client.
+    Safe(AbortOnDropHandle<Response>),
+    /// It goes on to its end.
+    Changing(JoinHandle<Response>),
+}
+
+impl Begun {
+    fn new(is_safe: bool, task: JoinHandle<Response>) -> Self {
+        match is_safe {
+            true => Begun::Safe(AbortOnDropHandle::new(task)),
+            false => Begun::Changing(task),
+        }
+    }
+
+    async fn ended(self) -> Result<Response, JoinError> {
+        match self {
+            Begun::Safe(task) => task.await,
+            Begun::Changing(task) => task.await,
+        }
     }
 }
 

@@ -96,3 +96,53 @@ fn load(files: &TlsFiles) -> Result<Loaded, String> {
 fn written(files: &TlsFiles) -> Written {
     [&files.certificate, &files.key].map(|file| file.metadata().and_then(|file| file.modified()).ok())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write(files: &TlsFiles, name: &str) {
+        let made = rcgen::generate_simple_self_signed([name.to_owned()]).unwrap();
+        std::fs::write(&files.certificate, made.cert.pem()).unwrap();
+        std::fs::write(&files.key, made.signing_key.serialize_pem()).unwrap();
+    }
+
+    #[test]
+    fn exchanged_files_are_taken_and_broken_ones_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = TlsFiles { certificate: folder.path().join("cert.pem"), key: folder.path().join("key.pem") };
+        write(&files, "first.lab");
+        let tls = Tls::open(files.clone()).unwrap();
+        let config = || tls.now.read().unwrap().config.clone();
+        let first = config();
+        tls.look();
+        assert!(Arc::ptr_eq(&first, &config()), "nothing has changed");
+        let later = |file: &Path| {
+            let file = std::fs::File::options().append(true).open(file).unwrap();
+            file.set_modified(SystemTime::now() + Duration::from_secs(5)).unwrap();
+        };
+        std::fs::write(&files.key, "no key").unwrap();
+        later(&files.key);
+        tls.look();
+        assert!(Arc::ptr_eq(&first, &config()), "the old one is still used");
+        write(&files, "second.lab");
+        later(&files.certificate);
+        tls.look();
+        assert!(!Arc::ptr_eq(&first, &config()));
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_used_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = TlsFiles { certificate: folder.path().join("cert.pem"), key: folder.path().join("key.pem") };
+        write(&files, "bench.lab");
+        let other = TlsFiles { key: files.certificate.clone(), ..files.clone() };
+        assert!(Tls::open(other).err().unwrap().contains("no PEM private key"));
+        let other = TlsFiles { certificate: files.key.clone(), ..files.clone() };
+        assert!(Tls::open(other).err().unwrap().contains("no PEM certificate"));
+        let mixed = TlsFiles { certificate: folder.path().join("other.pem"), ..files };
+        let made = rcgen::generate_simple_self_signed(["other.lab".to_owned()]).unwrap();
+        std::fs::write(&mixed.certificate, made.cert.pem()).unwrap();
+        assert!(Tls::open(mixed).err().unwrap().contains("cannot be used together"));
+    }
+}

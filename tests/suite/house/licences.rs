@@ -2,8 +2,9 @@
 
 use super::packages;
 
-/// SPDX ids that the product may contain. MPL-2.0 is file-wise copyleft: used unchanged (serialport).
-const ALLOWED: [&str; 14] = [
+/// SPDX ids that the product may contain. MPL-2.0 is file-wise copyleft: used unchanged (serialport). CDLA-Permissive-2.0 is for
+/// data: the list of public authorities (webpki-roots).
+const ALLOWED: [&str; 15] = [
     "MIT",
     "Apache-2.0",
     "Apache-2.0 WITH LLVM-exception",
@@ -18,6 +19,7 @@ const ALLOWED: [&str; 14] = [
     "MPL-2.0",
     "Unicode-3.0",
     "BSL-1.0",
+    "CDLA-Permissive-2.0",
 ];
 
 /// Whether an SPDX expression can be met: one side of every OR, both sides of every AND.
