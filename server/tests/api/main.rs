@@ -15,6 +15,7 @@ mod names;
 mod own_effects;
 mod presses;
 mod problems;
+mod process_list;
 mod readers;
 mod revisions;
 mod runs;
