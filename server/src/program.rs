@@ -15,6 +15,9 @@ pub fn own() -> PathBuf {
     std::env::current_exe().unwrap_or_else(|_| PathBuf::from("jointbench"))
 }
 
+/// The variables that tokens come in.
+pub const TOKENS: [&str; 2] = ["JOINTBENCH_TOKEN", "JOINTBENCH_READ_TOKEN"];
+
 static LOG_FORM: OnceLock<&'static str> = OnceLock::new();
 
 /// The form of the log, which the parts write in too.
@@ -31,6 +34,10 @@ pub fn part(program: &Path, name: &str) -> Command {
         // A list of processes shows the name, and not the way that leads to the file.
         use std::os::unix::process::CommandExt;
         command.arg0("jointbench");
+    }
+    // They open no door.
+    for variable in TOKENS {
+        command.env_remove(variable);
     }
     if let Some(form) = LOG_FORM.get() {
         command.args(["--log", form]);

@@ -2,6 +2,7 @@
 
 use super::arguments::{Reach, ServedTokens};
 use super::exit::Exit;
+use crate::program::TOKENS;
 use std::ffi::{OsStr, OsString};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -13,7 +14,7 @@ const CREDENTIALS: &str = "CREDENTIALS_DIRECTORY";
 const CREDENTIAL: &str = "jointbench-token";
 const READ_CREDENTIAL: &str = "jointbench-read-token";
 /// Options whose value is a secret, with the variables that carry it unseen.
-const SECRET: [(&str, &str); 2] = [("--token", "JOINTBENCH_TOKEN"), ("--read-token", "JOINTBENCH_READ_TOKEN")];
+const SECRET: [(&str, &str); 2] = [("--token", TOKENS[0]), ("--read-token", TOKENS[1])];
 
 /// The tokens that a daemon is started with: that which may do everything, and that which only reads.
 pub fn of_daemon(given: &ServedTokens) -> Result<[Option<String>; 2], Exit> {
