@@ -4,14 +4,19 @@ use crate::ReadOptions;
 use crate::error::{FileError, FileFault};
 use crate::facts::{self, EMBEDDED};
 use crate::raw::RawTable;
+use crate::{arrow_check, parquet_check};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{
     Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
 };
 use arrow_array::{Array, ArrowPrimitiveType, RecordBatch};
+use arrow_ipc::reader::FileReader;
 use arrow_schema::{ArrowError, DataType, Schema};
+use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::errors::ParquetError;
 use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Rows decoded at a time.
 const BATCH_ROWS: usize = 1 << 16;
@@ -19,24 +24,67 @@ const BATCH_ROWS: usize = 1 << 16;
 const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
 
 pub(crate) fn read_parquet(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<RawTable, FileError> {
-    let fault = |fault: String| FileFault::Columnar(fault).in_file(name);
-    let file = bytes::Bytes::copy_from_slice(bytes);
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|f| fault(f.to_string()))?;
-    let schema = builder.schema().clone();
-    let reader = builder.with_batch_size(BATCH_ROWS).build().map_err(|f| fault(f.to_string()))?;
-    collect(name, &schema, options, reader)
+    guarded(name, || {
+        let fault = |fault: ParquetError| FileFault::Columnar(fault.to_string()).in_file(name);
+        let file = bytes::Bytes::copy_from_slice(bytes);
+        let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(fault)?;
+        parquet_check::check(builder.metadata(), bytes.len() as u64, &options.bounds).map_err(|f| f.in_file(name))?;
+        let schema = builder.schema().clone();
+        let wanted = wanted(name, &schema, options)?;
+        let rows = builder.metadata().file_metadata().num_rows().max(0) as usize;
+        options.bounds.check_rows(rows, wanted.len()).map_err(|f| f.in_file(name))?;
+        let mask = ProjectionMask::roots(builder.parquet_schema(), wanted.iter().copied());
+        let reader = builder.with_projection(mask).with_batch_size(BATCH_ROWS).build().map_err(fault)?;
+        collect(name, &schema, &wanted, options, reader)
+    })
 }
 
 pub(crate) fn read_arrow(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<RawTable, FileError> {
-    let reader = arrow_ipc::reader::FileReader::try_new(Cursor::new(bytes), None)
-        .map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
-    let schema = reader.schema();
-    collect(name, &schema, options, reader)
+    guarded(name, || {
+        arrow_check::check(bytes, &options.bounds).map_err(|fault| fault.in_file(name))?;
+        let fault = |fault: ArrowError| FileFault::Columnar(fault.to_string()).in_file(name);
+        let whole = FileReader::try_new(Cursor::new(bytes), None).map_err(fault)?;
+        let schema = whole.schema();
+        let wanted = wanted(name, &schema, options)?;
+        let reader = FileReader::try_new(Cursor::new(bytes), Some(wanted.clone())).map_err(fault)?;
+        collect(name, &schema, &wanted, options, reader)
+    })
+}
+
+/// The decoders end some broken files by a panic. What such a file needs is the same refusal.
+fn guarded(name: &str, read: impl FnOnce() -> Result<RawTable, FileError>) -> Result<RawTable, FileError> {
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| {
+        let what = "its parts contradict each other: write it again".to_owned();
+        Err(FileFault::Columnar(what).in_file(name))
+    })
+}
+
+/// The columns that are read, by their places: all but those to leave. One that holds no numbers is refused before any of it
+/// is decoded.
+fn wanted(name: &str, schema: &Schema, options: &ReadOptions) -> Result<Vec<usize>, FileError> {
+    let names: Vec<String> = schema.fields().iter().map(|field| field.name().clone()).collect();
+    options.bounds.check_columns(&names).map_err(|fault| fault.in_file(name))?;
+    let fields = schema.fields().iter().enumerate().filter(|(_, field)| !options.leave.contains(field.name()));
+    fields
+        .map(|(place, field)| match is_numeric(field.data_type()) {
+            true => Ok(place),
+            false => {
+                let found = field.data_type().to_string();
+                Err(FileFault::NotNumeric { found }.in_file(name).in_column(field.name()))
+            }
+        })
+        .collect()
+}
+
+fn is_numeric(of: &DataType) -> bool {
+    use DataType as D;
+    of.is_integer() || matches!(of, D::Float64 | D::Float32 | D::Boolean)
 }
 
 fn collect(
     name: &str,
     schema: &Schema,
+    wanted: &[usize],
     options: &ReadOptions,
     batches: impl Iterator<Item = Result<RecordBatch, ArrowError>>,
 ) -> Result<RawTable, FileError> {
@@ -45,13 +93,16 @@ fn collect(
         embedded.map(|json| facts::parse_meta(&format!("{name}, embedded meta"), json.as_bytes())).transpose()?;
     let names: Vec<String> = schema.fields().iter().map(|field| field.name().clone()).collect();
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+    let mut rows = 0;
     for batch in batches {
         let batch = batch.map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
-        let arrays = batch.columns().iter().zip(&mut columns).zip(&names);
-        for ((array, column), column_name) in arrays.filter(|(_, name)| !options.leave.contains(name)) {
+        rows += batch.num_rows();
+        options.bounds.check_rows(rows, wanted.len()).map_err(|fault| fault.in_file(name))?;
+        for (array, place) in batch.columns().iter().zip(wanted) {
+            let column = &mut columns[*place];
             let first = column.len();
             append(array.as_ref(), column, options.leave_empty_rows).map_err(|(row, fault)| {
-                let mut error = fault.in_file(name).in_column(column_name);
+                let mut error = fault.in_file(name).in_column(&names[*place]);
                 error.place.row = row.map(|row| (first + row) as u64 + 1);
                 error
             })?;

@@ -3,27 +3,28 @@
 //! Between the columns stands what is most frequent in the line of names: a comma, a semicolon or a tab. Where it is no
 //! comma, a number may have a comma for its point.
 
-use crate::ReadOptions;
 use crate::error::{FileError, FileFault, Wrong};
 use crate::raw::RawTable;
+use crate::{Bounds, ReadOptions};
 use csv::ByteRecord;
 use std::io::Read;
 
 /// So many wrong rows are told of, beside how many there are.
 const TOLD_ROWS: usize = 5;
 
-/// A packed file that unpacks to more than this is refused before it fills the memory.
-const MOST_UNPACKED_BYTES: u64 = 4 << 30;
+/// Bytes that are unpacked between two looks at the bounds.
+const UNPACKED_AT_ONCE: u64 = 1 << 24;
 
-pub(crate) fn gunzip(name: &str, bytes: &[u8]) -> Result<Vec<u8>, FileError> {
-    let mut text = Vec::with_capacity(bytes.len() * 4);
-    let unpacked = flate2::read::MultiGzDecoder::new(bytes).take(MOST_UNPACKED_BYTES + 1).read_to_end(&mut text);
-    match unpacked {
-        Err(fault) => Err(FileFault::Gzip(fault.to_string()).in_file(name)),
-        Ok(size) if size as u64 > MOST_UNPACKED_BYTES => {
-            Err(FileFault::Gzip("it unpacks to more than 4 GiB".to_owned()).in_file(name))
+pub(crate) fn gunzip(name: &str, bytes: &[u8], bounds: &Bounds) -> Result<Vec<u8>, FileError> {
+    let mut text = Vec::new();
+    let mut packed = flate2::read::MultiGzDecoder::new(bytes);
+    loop {
+        let read = (&mut packed).take(UNPACKED_AT_ONCE).read_to_end(&mut text);
+        let read = read.map_err(|fault| FileFault::Gzip(fault.to_string()).in_file(name))?;
+        bounds.check_expanded(text.len() as u64, Some(bytes.len() as u64)).map_err(|fault| fault.in_file(name))?;
+        if read == 0 {
+            return Ok(text);
         }
-        Ok(_) => Ok(text),
     }
 }
 
@@ -44,12 +45,19 @@ pub(crate) fn read(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ra
     if !next(&mut record)? {
         return Err(FileFault::Empty.in_file(name));
     }
-    let names = column_names(&record).map_err(|fault| fault.at_line(name, line_of_record(text, &record)))?;
-    let rows = text.len() / (names.len() * 8);
+    let names = column_names(&record).and_then(|names| options.bounds.check_columns(&names).map(|()| names));
+    let names = names.map_err(|fault| fault.at_line(name, line_of_record(text, &record)))?;
+    let rows = (text.len() / (names.len() * 8)).min(options.bounds.rows);
     let mut columns: Vec<Vec<f64>> = names.iter().map(|_| Vec::with_capacity(rows)).collect();
     let left: Vec<bool> = names.iter().map(|name| options.leave.contains(name)).collect();
     let (mut wrong, mut wrong_rows) = (Vec::new(), 0);
+    let mut rows = 0;
     while next(&mut record)? {
+        rows += 1;
+        options
+            .bounds
+            .check_rows(rows, names.len())
+            .map_err(|fault| fault.at_line(name, line_of_record(text, &record)))?;
         let Err((column, fault)) = take(&record, &names, &left, options, separator, &mut columns) else { continue };
         wrong_rows += 1;
         if wrong.len() < TOLD_ROWS {
@@ -79,6 +87,7 @@ fn take(
     }
     let fields = columns.iter_mut().zip(record).zip(names).zip(left).filter(|(_, left)| !**left);
     for (((column, field), name), _) in fields {
+        options.bounds.check_cell(field.len()).map_err(|fault| (Some(name.clone()), fault))?;
         let empty = options.leave_empty_rows && field.trim_ascii().is_empty();
         let value = if empty { Some(f64::NAN) } else { number(field, separator) };
         let found = || FileFault::NotNumber { found: String::from_utf8_lossy(field).into_owned() };

@@ -72,6 +72,8 @@ pub enum FileFault {
     TooLong { found: String },
     #[error("not readable: {0}")]
     Columnar(String),
+    #[error("{0}")]
+    Bound(String),
     #[error("{what}: expected one object of facts, such as {{\"kind\": \"friction\", \"gear_ratio\": 50}}")]
     Meta { what: String },
     #[error("{fact} is {found}: expected {expected}")]

@@ -3,6 +3,8 @@
 //! What goes out comes in again bit by bit. What comes in is checked whole before anything is returned, and refused with
 //! file, line, column and what was expected.
 
+mod arrow_check;
+mod bounds;
 mod columnar;
 mod csv_in;
 mod csv_out;
@@ -10,16 +12,18 @@ mod error;
 mod facts;
 mod mat_out;
 mod options;
+mod parquet_check;
 mod parquet_out;
 mod raw;
 mod table_out;
 
-pub use csv_out::write_csv;
+pub use bounds::Bounds;
+pub use csv_out::{CsvWriter, write_csv};
 pub use error::{FileError, FileFault, Place, Wrong};
 pub use facts::{meta_json, meta_path_of, parse_meta};
-pub use mat_out::write_mat;
+pub use mat_out::{MatWriter, write_mat};
 pub use options::{OptionFault, ReadOptions, parse_map, parse_scale};
-pub use parquet_out::write_parquet;
+pub use parquet_out::{ParquetWriter, write_parquet};
 pub use raw::LEFT_OUT_ROWS;
 pub use table_out::{TableColumn, write_table_csv, write_table_parquet};
 
@@ -75,7 +79,7 @@ pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Run
 fn raw_table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<raw::RawTable, FileError> {
     match Form::of(name).ok_or_else(|| FileFault::UnknownForm.in_file(name))? {
         Form::Csv => csv_in::read(name, bytes, options),
-        Form::GzippedCsv => csv_in::read(name, &csv_in::gunzip(name, bytes)?, options),
+        Form::GzippedCsv => csv_in::read(name, &csv_in::gunzip(name, bytes, &options.bounds)?, options),
         Form::Parquet => columnar::read_parquet(name, bytes, options),
         Form::Arrow => columnar::read_arrow(name, bytes, options),
     }

@@ -2,9 +2,9 @@
 //! doubles needs. Source: "MAT-File Format" (The MathWorks), chapter "Level 4 MAT-file format".
 
 use crate::facts::meta_json;
-use jointbench_instrument::{Meta, Trace};
+use jointbench_instrument::{Channel, Meta, Trace};
 use std::collections::HashSet;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
 /// Little-endian doubles, a full matrix.
 const NUMBERS: i32 = 0;
@@ -12,19 +12,48 @@ const NUMBERS: i32 = 0;
 const TEXT: i32 = 51;
 /// MATLAB cuts longer names.
 const LONGEST_NAME: usize = 63;
+/// The variable that holds the facts.
+const FACTS: &str = "meta_json";
+/// Bytes collected before they are handed on.
+const CHUNK: usize = 1 << 16;
 
 /// One column vector for each channel, and the facts as the text `meta_json`.
-pub fn write_mat(mut out: impl Write, meta: &Meta, trace: &Trace) -> io::Result<()> {
-    let mut taken = HashSet::from(["meta_json".to_owned()]);
+pub fn write_mat(out: impl Write, meta: &Meta, trace: &Trace) -> io::Result<()> {
+    let mut mat = MatWriter::new(out);
     for (channel, column) in trace.channels().iter().zip(trace.columns()) {
-        head(&mut out, NUMBERS, column.len(), 1, &free_name(&channel.name, &mut taken))?;
-        for value in column {
-            out.write_all(&value.to_le_bytes())?;
-        }
+        mat.begin(&channel.name, column.len())?;
+        mat.values(column)?;
     }
-    let facts = meta_json(meta, trace.channels());
-    head(&mut out, TEXT, 1, facts.len(), "meta_json")?;
-    out.write_all(facts.as_bytes())
+    mat.finish(meta, trace.channels())
+}
+
+/// The same, one column behind the other.
+pub struct MatWriter<W: Write> {
+    out: BufWriter<W>,
+    taken: HashSet<String>,
+}
+
+impl<W: Write> MatWriter<W> {
+    pub fn new(out: W) -> Self {
+        Self { out: BufWriter::with_capacity(CHUNK, out), taken: HashSet::from([FACTS.to_owned()]) }
+    }
+
+    /// Begins a column; `rows` values follow.
+    pub fn begin(&mut self, name: &str, rows: usize) -> io::Result<()> {
+        head(&mut self.out, NUMBERS, rows, 1, &free_name(name, &mut self.taken))
+    }
+
+    /// The next values of the column that was begun last.
+    pub fn values(&mut self, values: &[f64]) -> io::Result<()> {
+        values.iter().try_for_each(|value| self.out.write_all(&value.to_le_bytes()))
+    }
+
+    pub fn finish(mut self, meta: &Meta, channels: &[Channel]) -> io::Result<()> {
+        let facts = meta_json(meta, channels);
+        head(&mut self.out, TEXT, 1, facts.len(), FACTS)?;
+        self.out.write_all(facts.as_bytes())?;
+        self.out.flush()
+    }
 }
 
 fn head(out: &mut impl Write, kind: i32, rows: usize, columns: usize, name: &str) -> io::Result<()> {

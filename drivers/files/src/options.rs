@@ -1,5 +1,6 @@
 //! How a table with other names or units becomes a run table.
 
+use crate::Bounds;
 use jointbench_instrument::Meta;
 use std::path::PathBuf;
 
@@ -18,6 +19,7 @@ pub struct ReadOptions {
     pub leave: Vec<String>,
     /// A row with an empty cell stays out, and is a gap in time. How many did is a fact of the run.
     pub leave_empty_rows: bool,
+    pub bounds: Bounds,
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

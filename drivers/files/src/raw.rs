@@ -34,7 +34,8 @@ impl RawTable {
             match (row, Form::of(name)) {
                 (Some(row), Some(Form::Csv)) => place.line = csv_in::line_of(bytes, row),
                 (Some(row), Some(Form::GzippedCsv)) => {
-                    place.line = csv_in::gunzip(name, bytes).ok().and_then(|text| csv_in::line_of(&text, row));
+                    place.line =
+                        csv_in::gunzip(name, bytes, &options.bounds).ok().and_then(|text| csv_in::line_of(&text, row));
                 }
                 (Some(row), _) => place.row = Some(row as u64 + 1),
                 // A column as a whole is at fault: the line of column names.
