@@ -2,6 +2,7 @@
 
 use crate::api::{self, Surroundings};
 use crate::config::BenchDescription;
+use crate::job;
 use crate::lab::{Lab, LabError, Tokens, weakness};
 use crate::listener::{self, Limits, Tls, TlsFiles};
 use std::net::SocketAddr;
@@ -21,6 +22,8 @@ pub struct DaemonSettings {
     pub benches: Vec<BenchDescription>,
     /// The file of `jointbench`, for those parts of the daemon that are processes of their own.
     pub program: PathBuf,
+    /// What one computation on whole runs may take.
+    pub analysis: job::Limits,
 }
 
 /// How the daemon is reached.
@@ -51,7 +54,7 @@ impl Daemon {
         refuse_plain(&settings)?;
         let listener = TcpListener::bind(settings.listen).await.map_err(|fault| taken(settings.listen, &fault))?;
         let address = listener.local_addr().map_err(|fault| taken(settings.listen, &fault))?;
-        let lab = Lab::open(&settings.data, settings.benches, tokens, settings.program).await?;
+        let lab = Lab::open(&settings.data, settings.benches, tokens, settings.program, settings.analysis).await?;
         let router = api::router(lab.clone(), Surroundings { tls: tls.is_some(), behind_proxy });
         let scheme = if tls.is_some() { "https" } else { "http" };
         let server = tokio::spawn(listener::serve(listener, router, tls, limits));

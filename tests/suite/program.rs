@@ -52,7 +52,20 @@ pub struct Daemon {
 impl Daemon {
     /// Returns when the daemon has named its address.
     pub fn serve(data: &Path, config: &Path) -> Self {
-        let mut child = jointbench()
+        Self::start(jointbench(), data, config)
+    }
+
+    /// The same in an address space of so many KiB, which its processes have too.
+    #[cfg(unix)]
+    pub fn serve_within(address_space_kib: u64, data: &Path, config: &Path) -> Self {
+        let mut shell = Command::new("sh");
+        let limited = format!("ulimit -v {address_space_kib}; exec \"$0\" \"$@\"");
+        shell.args(["-c", &limited]).arg(&*PROGRAM);
+        Self::start(shell, data, config)
+    }
+
+    fn start(mut command: Command, data: &Path, config: &Path) -> Self {
+        let mut child = command
             .args(["serve", "--listen", "127.0.0.1:0", "--data"])
             .arg(data)
             .arg("--config")
@@ -84,6 +97,20 @@ impl Daemon {
     pub fn kill(mut self) {
         self.child.kill().expect("the daemon runs");
         self.child.wait().expect("the daemon ends");
+    }
+
+    /// Asks it to end, as a service manager does, and waits until it has.
+    #[cfg(unix)]
+    pub fn terminate(mut self) -> Duration {
+        let asked = Instant::now();
+        let process = self.child.id().to_string();
+        assert!(Command::new("kill").args(["-TERM", &process]).status().expect("kill runs").success());
+        self.child.wait().expect("the daemon ends");
+        asked.elapsed()
+    }
+
+    pub fn process(&self) -> u32 {
+        self.child.id()
     }
 
     pub fn get(&self, path: &str) -> serde_json::Value {

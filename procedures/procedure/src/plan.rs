@@ -14,7 +14,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// What a procedure may know about a bench before anything moves.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchFacts {
     pub name: String,
     pub simulated: bool,
@@ -30,6 +30,7 @@ pub struct BenchFacts {
     /// Motor current for each volt, where the joint's servo reads it as the voltage at a shunt.
     pub amperes_per_volt: Option<f64>,
     /// What an earlier run has found of the brake, where a procedure asks for it ([`crate::Procedure::brake_model`]).
+    #[serde(skip)]
     pub brake_model: Option<BrakeModel>,
     /// Whether the joint's drive takes a motor current beside a velocity.
     pub feeds_forward: bool,

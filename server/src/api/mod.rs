@@ -9,6 +9,7 @@ mod extract;
 mod headers;
 mod health;
 mod identifications;
+mod leaving;
 mod live;
 mod log;
 mod models;
@@ -27,6 +28,7 @@ mod tables;
 mod tokens;
 mod transfer;
 mod tries;
+mod weight;
 
 pub use door::Surroundings;
 pub use health::Health;
@@ -89,12 +91,25 @@ impl Modify for Token {
     }
 }
 
+/// Windows of samples, residuals or journals that are being made at the same time, of each kind.
+const ANSWERS_AT_ONCE: usize = 8;
+/// A table of many megabytes takes twenty times its size while it is read.
+const TABLES_AT_ONCE: usize = 2;
+
 fn operations() -> OpenApiRouter<Lab> {
+    // Each gate is of its own kind: whoever waits for residuals holds no samples up.
+    let gated = |at_once, routes: OpenApiRouter<Lab>| {
+        routes.layer(middleware::from_fn_with_state(weight::Gate::of(at_once), weight::one_by_one))
+    };
     let turns = Arc::new(Semaphore::new(size::UPLOADS));
     let uploads = sized(OpenApiRouter::new().routes(routes!(transfer::import)), size::UPLOAD_LIMIT_BYTES)
         .layer(middleware::from_fn(move |request, next| size::queue(turns.clone(), request, next)));
-    let tables = sized(OpenApiRouter::new().routes(routes!(tables::write)), size::TABLE_LIMIT_BYTES);
+    let tables = gated(TABLES_AT_ONCE, OpenApiRouter::new().routes(routes!(tables::write)));
+    let tables = sized(tables, size::TABLE_LIMIT_BYTES);
     let rest = OpenApiRouter::new()
+        .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(runs::samples))))
+        .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(models::residuals))))
+        .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(runs::events))))
         .routes(routes!(bench::list))
         .routes(routes!(bench::get))
         .routes(routes!(bench::stop))
@@ -114,11 +129,9 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(runs::abort))
         .routes(routes!(runs::go_on))
         .routes(routes!(runs::plan))
-        .routes(routes!(runs::events))
         .routes(routes!(notes::list, notes::write))
         .routes(routes!(notes::set_tags))
         .routes(routes!(notes::tags))
-        .routes(routes!(runs::samples))
         .routes(routes!(runs::statistics))
         .routes(routes!(runs::differences))
         .routes(routes!(identifications::get))
@@ -140,7 +153,6 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(revisions::evaluate))
         .routes(routes!(revisions::export))
         .routes(routes!(revisions::import))
-        .routes(routes!(models::residuals))
         .routes(routes!(models::fit))
         .routes(routes!(models::diagnoses, models::diagnose))
         .routes(routes!(models::diagnosis))
@@ -153,7 +165,8 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(tokens::list, tokens::make))
         .routes(routes!(tokens::revoke))
         .routes(routes!(health::health))
-        .routes(routes!(health::specification));
+        .routes(routes!(health::specification))
+        .layer(middleware::from_fn_with_state(weight::Scales::default(), weight::weigh));
     let rest = sized(rest, size::BODY_LIMIT_BYTES);
     OpenApiRouter::with_openapi(Description::openapi()).nest("/api/v1", rest.merge(tables).merge(uploads))
 }

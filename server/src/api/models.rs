@@ -1,6 +1,8 @@
 //! Effects, model versions and what they leave unexplained.
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
+use super::leaving::{DetachQuery, waited_for};
+use super::presence::Presence;
 use super::problem::{Problem, Refusals};
 use crate::lab::{Caller, Lab};
 use crate::view::{Access, Diagnosis, Effect, Fit, Model, NewDiagnosis, NewModel, ResidualSet};
@@ -27,14 +29,19 @@ pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -
 }
 
 /// Fits a set of effects to a run and keeps it as a version
-#[utoipa::path(post, path = "/models", tag = "models", request_body = NewModel,
+#[utoipa::path(post, path = "/models", tag = "models", params(DetachQuery), request_body = NewModel,
     responses((status = 201, description = "The version", body = Model), Refusals))]
 pub async fn create(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
+    presence: Presence,
+    Query(query): Query<DetachQuery>,
     Json(new): Json<NewModel>,
 ) -> Created<Model> {
-    created(lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude, new.tried, &caller.name).await?)
+    let fit = async move {
+        lab.create_model(&new.runs(), &new.effects, new.parent, new.exclude, new.tried, &caller.name).await
+    };
+    created(waited_for(presence, query, fit).await?)
 }
 
 /// Keeps a version that was only tried, or that gained next to nothing, as one of the run's
@@ -83,18 +90,20 @@ pub async fn residuals(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Re
 }
 
 /// Finds where a model version fails and what it lacks, and keeps the answer; who only reads gets the last one that is kept
-#[utoipa::path(post, path = "/diagnoses", tag = "diagnoses", request_body = NewDiagnosis,
+#[utoipa::path(post, path = "/diagnoses", tag = "diagnoses", params(DetachQuery), request_body = NewDiagnosis,
     responses((status = 201, description = "The diagnosis", body = Diagnosis), Refusals))]
 pub async fn diagnose(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
+    presence: Presence,
+    Query(query): Query<DetachQuery>,
     Json(new): Json<NewDiagnosis>,
 ) -> Created<Diagnosis> {
     match caller.access {
         Access::Read => created(lab.diagnoses(new.model).await?.pop().ok_or_else(|| {
             Problem::forbidden("this version has no diagnosis yet, and this token only reads: a new one would be kept")
         })?),
-        _ => created(lab.diagnose(new.model).await?),
+        _ => created(waited_for(presence, query, async move { lab.diagnose(new.model).await }).await?),
     }
 }
 

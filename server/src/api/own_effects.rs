@@ -1,6 +1,8 @@
 //! Effects that users write.
 
 use super::extract::{Answer, Created, Json, Path, created};
+use super::leaving::{DetachQuery, waited_for};
+use super::presence::Presence;
 use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
 use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage};
@@ -17,8 +19,9 @@ pub async fn define(State(lab): State<Lab>, Json(definition): Json<EffectDefinit
 /// Says what a formula means, or where it is wrong, and keeps nothing
 #[utoipa::path(post, path = "/effects/check", operation_id = "check_effect", tag = "effects", request_body = EffectTrial,
     responses((status = 200, description = "What the formula means", body = EffectCheck), Refusals))]
-pub async fn check(State(lab): State<Lab>, Json(trial): Json<EffectTrial>) -> Answer<EffectCheck> {
-    Ok(Json(lab.check_effect(&trial).await?))
+pub async fn check(State(lab): State<Lab>, presence: Presence, Json(trial): Json<EffectTrial>) -> Answer<EffectCheck> {
+    let check = async move { lab.check_effect(&trial).await };
+    Ok(Json(waited_for(presence, DetachQuery::default(), check).await?))
 }
 
 /// Forgets a user's effect; refused while a model uses it

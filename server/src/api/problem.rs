@@ -133,8 +133,9 @@ impl From<LabError> for Problem {
                 ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "formula", "The formula is wrong", detail)
             },
             LabError::Conflict(_) => Self::new(StatusCode::CONFLICT, "conflict", "Not at this moment", detail),
-            LabError::Busy(_) => Self::new(StatusCode::SERVICE_UNAVAILABLE, "busy", "Not at this moment", detail),
             LabError::Over(_) => Self::new(StatusCode::CONFLICT, OVER, "Not any more", detail),
+            LabError::Busy(_) => Self::new(StatusCode::SERVICE_UNAVAILABLE, BUSY, "Not at this moment", detail),
+            LabError::TooLarge(_) => Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "Too large", detail),
             LabError::Bench(_) => {
                 Self::new(StatusCode::SERVICE_UNAVAILABLE, "bench_fault", "The bench does not answer", detail)
             }

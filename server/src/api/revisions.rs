@@ -1,6 +1,8 @@
 //! Model versions beside each other, on other runs, and on their way out and in.
 
 use super::extract::{Answer, Created, Json, Path, Query, created};
+use super::leaving::{DetachQuery, waited_for};
+use super::presence::Presence;
 use super::problem::{Problem, Refusals};
 use crate::lab::{Caller, Lab};
 use crate::view::{Comparison, Evaluation, ImportedModel, ModelImport, NewEvaluation, Worth};
@@ -54,10 +56,12 @@ pub async fn with_effect(State(lab): State<Lab>, Path((id, effect)): Path<(i64, 
     responses((status = 200, description = "The error there", body = Evaluation), Refusals))]
 pub async fn evaluate(
     State(lab): State<Lab>,
+    presence: Presence,
     Path(id): Path<i64>,
     Json(new): Json<NewEvaluation>,
 ) -> Answer<Evaluation> {
-    Ok(Json(lab.evaluate(id, new.run).await?))
+    let evaluation = async move { lab.evaluate(id, new.run).await };
+    Ok(Json(waited_for(presence, DetachQuery::default(), evaluation).await?))
 }
 
 /// `json` comes in again; `c` is a C99 header, `lut` a CSV table, `mujoco` and `urdf` the attributes of a joint.

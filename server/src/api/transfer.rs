@@ -2,14 +2,20 @@
 
 use super::extract::{Created, Path, Query, created};
 use super::problem::{Problem, Refusals};
-use crate::lab::{Caller, FileFormat, ImportRequest, Lab};
+use crate::job::Streamed;
+use crate::lab::{Caller, ExportRequest, FileFormat, ImportRequest, Lab, LabError};
 use crate::view::Run;
 use axum::Extension;
+use axum::body::{Body, Bytes, HttpBody};
 use axum::extract::State;
-use axum::extract::multipart::{Multipart, MultipartError};
+use axum::extract::multipart::{Field, Multipart, MultipartError};
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
+use std::pin::Pin;
+use std::task::{Context, Poll};
+use tempfile::TempPath;
+use tokio::io::AsyncWriteExt;
 use utoipa::{IntoParams, ToSchema};
 
 #[derive(Debug, Clone, Copy, Deserialize, IntoParams)]
@@ -40,13 +46,12 @@ pub async fn export(
     Path(id): Path<i64>,
     Query(query): Query<ExportQuery>,
 ) -> Result<Response, Problem> {
-    let bytes = match query.spreadsheet_safe && query.format == FileFormat::Csv {
-        true => lab.export_for_spreadsheets(id, query.from_s, query.to_s).await?,
-        false => lab.export(id, query.format, query.from_s, query.to_s).await?,
-    };
+    let ExportQuery { format, from_s, to_s, spreadsheet_safe } = query;
+    let request = ExportRequest { run: id, format, from_s, to_s, spreadsheet_safe };
+    let pieces = Pieces(lab.export(request).await?);
     let name = format!("attachment; filename=\"run-{id}.{}\"", query.format.extension());
     let headers = [(header::CONTENT_TYPE, query.format.media_type().to_owned()), (header::CONTENT_DISPOSITION, name)];
-    Ok((headers, bytes).into_response())
+    Ok((headers, Body::new(pieces)).into_response())
 }
 
 /// The run's facts as `meta.json`: what an exported CSV needs beside it
@@ -95,24 +100,34 @@ pub async fn import(
     Query(query): Query<ImportQuery>,
     form: Multipart,
 ) -> Created<Run> {
-    let request = read_form(form, query.name).await?;
+    let (request, _lies) = read_form(&lab, form, query.name).await?;
     created(lab.import(request, &caller.name).await?)
 }
 
-async fn read_form(mut form: Multipart, name: Option<String>) -> Result<ImportRequest, Problem> {
-    let mut request = ImportRequest::default();
+/// All parts but the file together.
+const MOST_WORDS_BYTES: usize = 1 << 20;
+
+/// The file goes to the disk as it comes. It lies there for as long as the path that comes with the request.
+async fn read_form(lab: &Lab, mut form: Multipart, name: Option<String>) -> Result<(ImportRequest, TempPath), Problem> {
+    let (file, path) = lab.upload()?;
+    let mut file = tokio::fs::File::from_std(file);
+    let mut request = ImportRequest { file: path.to_path_buf(), name, ..ImportRequest::default() };
+    let mut words = Words::default();
     while let Some(part) = form.next_field().await.map_err(unreadable)? {
         let part_name = part.name().unwrap_or_default().to_owned();
         match part_name.as_str() {
+            "file" if !request.file_name.is_empty() => {
+                return Err(Problem::malformed("the part `file` is there twice: send one file in each request"));
+            }
             "file" => {
                 request.file_name = part.file_name().unwrap_or("run.csv").to_owned();
-                request.bytes = part.bytes().await.map_err(unreadable)?.to_vec();
+                write(part, &mut file).await?;
             }
-            "meta" => request.meta = Some(part.text().await.map_err(unreadable)?),
-            "map" => request.map.push(part.text().await.map_err(unreadable)?),
-            "scale" => request.scale.push(part.text().await.map_err(unreadable)?),
-            "leave" => request.leave.push(part.text().await.map_err(unreadable)?),
-            "leave_empty_rows" => request.leave_empty_rows = part.text().await.map_err(unreadable)? == "true",
+            "meta" => request.meta = Some(words.of(part).await?),
+            "map" => request.map.push(words.of(part).await?),
+            "scale" => request.scale.push(words.of(part).await?),
+            "leave" => request.leave.push(words.of(part).await?),
+            "leave_empty_rows" => request.leave_empty_rows = words.of(part).await? == "true",
             other => {
                 let expected = "file, meta, map, scale, leave or leave_empty_rows";
                 return Err(Problem::malformed(format!("part {other:?}: expected {expected}")));
@@ -122,8 +137,52 @@ async fn read_form(mut form: Multipart, name: Option<String>) -> Result<ImportRe
     if request.file_name.is_empty() {
         return Err(Problem::malformed("the part `file` is missing: send the run table as multipart/form-data"));
     }
-    request.name = name;
-    Ok(request)
+    Ok((request, path))
+}
+
+async fn write(mut part: Field<'_>, file: &mut tokio::fs::File) -> Result<(), Problem> {
+    let unkept = |fault: std::io::Error| LabError::Internal(format!("the file cannot be taken in: {fault}"));
+    while let Some(piece) = part.chunk().await.map_err(unreadable)? {
+        file.write_all(&piece).await.map_err(unkept)?;
+    }
+    file.flush().await.map_err(unkept)?;
+    Ok(())
+}
+
+/// The parts that are words, which lie in memory.
+#[derive(Default)]
+struct Words {
+    bytes: usize,
+}
+
+impl Words {
+    async fn of(&mut self, mut part: Field<'_>) -> Result<String, Problem> {
+        let mut text = Vec::new();
+        while let Some(piece) = part.chunk().await.map_err(unreadable)? {
+            self.bytes += piece.len();
+            if self.bytes > MOST_WORDS_BYTES {
+                let detail = format!("the parts beside the file have more than {MOST_WORDS_BYTES} bytes together");
+                return Err(Problem::too_large(detail));
+            }
+            text.extend_from_slice(&piece);
+        }
+        String::from_utf8(text).map_err(|_| Problem::malformed("a part beside the file is no text in UTF-8"))
+    }
+}
+
+/// A body that comes piece by piece; one that breaks off says so to the client.
+struct Pieces(Streamed);
+
+impl HttpBody for Pieces {
+    type Data = Bytes;
+    type Error = LabError;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+    ) -> Poll<Option<Result<http_body::Frame<Bytes>, LabError>>> {
+        self.0.poll_recv(context).map(|piece| piece.map(|piece| piece.map(http_body::Frame::data)))
+    }
 }
 
 fn unreadable(error: MultipartError) -> Problem {

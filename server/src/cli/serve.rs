@@ -5,18 +5,24 @@ use super::exit::{Done, Exit};
 use super::secrets;
 use crate::config::{self, BenchDescription};
 use crate::daemon::{Daemon, DaemonSettings, Network, asked_to_end};
+use crate::job::{GIB, Limits};
 use crate::listener::TlsFiles;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 pub fn serve(arguments: Serve) -> Done {
     let benches = describe(&arguments.config)?;
-    runtime()?.block_on(async {
+    let runtime = runtime()?;
+    let done = runtime.block_on(async {
         let daemon = Daemon::start(settings(arguments.place, "jointbench-data", benches)?).await?;
         println!("dashboard and API on {}://{}  (Ctrl-C ends)", daemon.scheme, daemon.address);
         asked_to_end().await;
         daemon.stop().await;
         Ok(())
-    })
+    });
+    // Everything that counts is kept: a thread that still reads or packs holds nothing up.
+    runtime.shutdown_timeout(LAST_MOMENT);
+    done
 }
 
 /// A description from a file, or a ready-made one by its name.
@@ -35,6 +41,7 @@ pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescripti
     }
     let [token, read_token] = secrets::of_daemon(&place.tokens)?;
     let tls = place.tls_cert.zip(place.tls_key).map(|(certificate, key)| TlsFiles { certificate, key });
+    let analysis = Limits { memory_bytes: (place.analysis_memory * GIB as f64) as u64, ..Limits::default() };
     Ok(DaemonSettings {
         listen: place.listen,
         data: place.data.unwrap_or_else(|| PathBuf::from(data)),
@@ -43,9 +50,17 @@ pub(super) fn settings(place: Place, data: &str, mut benches: Vec<BenchDescripti
         network: Network { tls, behind_proxy: place.behind_proxy, ..Network::default() },
         benches,
         program: crate::program::own(),
+        analysis,
     })
 }
 
+/// Threads for what blocks: files, and columns that are packed or unpacked. Each has a stack of 2 MiB, and a daemon may have
+/// an address space of 1 GiB in all.
+const BLOCKING_THREADS: usize = 32;
+const LAST_MOMENT: Duration = Duration::from_millis(500);
+
 pub(super) fn runtime() -> Result<tokio::runtime::Runtime, Exit> {
-    tokio::runtime::Runtime::new().map_err(|fault| Exit::failed(format!("the system gives no threads: {fault}")))
+    let mut runtime = tokio::runtime::Builder::new_multi_thread();
+    let runtime = runtime.enable_all().max_blocking_threads(BLOCKING_THREADS).build();
+    runtime.map_err(|fault| Exit::failed(format!("the system gives no threads: {fault}")))
 }

@@ -6,7 +6,8 @@ use super::exit::{Done, Exit};
 use super::files::{self, table, write};
 use super::serve::runtime;
 use crate::api::Health;
-use crate::lab::{ATTENTION, COPY_OF, FileFormat, ImportRequest, LOCAL, Lab, LabError};
+use crate::job::Job;
+use crate::lab::{ATTENTION, COPY_OF, ExportRequest, FileFormat, ImportRequest, LOCAL, Lab, LabError};
 use crate::view::Run;
 use jointbench_files::meta_path_of;
 use std::path::{Path, PathBuf};
@@ -44,11 +45,8 @@ pub fn export(arguments: &Export) -> Done {
     }
     let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
         Way::Folder(lab) => runtime.block_on(async {
-            let bytes = match safe {
-                true => lab.export_for_spreadsheets(run, None, None).await?,
-                false => lab.export(run, format, None, None).await?,
-            };
-            Ok::<_, LabError>((bytes, lab.export_meta(run).await?))
+            let request = ExportRequest { run, format, from_s: None, to_s: None, spreadsheet_safe: safe };
+            Ok::<_, LabError>((lab.answer(Job::Export(request)).await?, lab.export_meta(run).await?))
         })?,
         Way::Daemon(client) => {
             let safe = if safe { "&spreadsheet_safe=true" } else { "" };
@@ -125,7 +123,6 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
 }
 
 fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportRequest, Exit> {
-    let bytes = files::read(file)?;
     let beside = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
     let carries_its_own = !matches!(file.extension().and_then(|end| end.to_str()), Some("csv" | "gz"));
     let meta = match (meta, beside) {
@@ -136,7 +133,7 @@ fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportReq
     Ok(ImportRequest {
         name: None,
         file_name: file.display().to_string(),
-        bytes,
+        file: file.to_owned(),
         meta,
         map: columns.map.clone(),
         scale: columns.scale.clone(),
@@ -146,6 +143,7 @@ fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportReq
 }
 
 fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
+    let bytes = files::read(&request.file)?;
     // Long enough not to be in any file by chance.
     let boundary = format!("jointbench-{:032x}", rand::random::<u128>());
     let mut body = Vec::new();
@@ -156,7 +154,7 @@ fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
         body.extend_from_slice(b"\r\n");
     };
     let file_name = request.file_name.replace(['"', '\r', '\n'], "_");
-    part(&format!("\"file\"; filename=\"{file_name}\""), &request.bytes);
+    part(&format!("\"file\"; filename=\"{file_name}\""), &bytes);
     if let Some(meta) = &request.meta {
         part("\"meta\"", meta.as_bytes());
     }

@@ -1,6 +1,7 @@
 //! A run, also one that is on, beside the last model that its bench has: does the model still explain it?
 
 use super::{Answer, Lab, models::blocking, reread};
+use crate::job::Job;
 use crate::view::{Beside, Figure, FigureAxis, FigureForm, FigureSeries, Mark};
 use jointbench_model::{Fit, Options, ResidualSet, residuals};
 
@@ -12,6 +13,10 @@ const BAND_SIGMA: f64 = 2.0;
 impl Lab {
     /// `None` where the bench has no model of this kind from another run.
     pub async fn beside(&self, id: i64) -> Answer<Option<Beside>> {
+        self.work_out(Job::Beside { run: id }).await
+    }
+
+    pub(super) async fn beside_here(&self, id: i64) -> Answer<Option<Beside>> {
         let record = self.inner.store.run(id).await?;
         let Some(model) = self.inner.store.last_model(&record.bench, &record.kind, id).await? else {
             return Ok(None);

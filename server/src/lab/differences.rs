@@ -2,9 +2,11 @@
 
 use super::statistics::ROWS_AT_ONCE;
 use super::{Answer, Lab, LabError};
+use crate::job::Job;
 use crate::view::{Figure, FigureAxis, FigureForm, FigureSeries, Mark};
 use jointbench_instrument::Channel;
 use jointbench_model::words::spoken;
+use serde::{Deserialize, Serialize};
 
 /// Places along the axis.
 const PLACES: usize = 60;
@@ -20,7 +22,7 @@ const LOADS: usize = 8;
 const AT_REST: f64 = 0.01;
 
 /// What is looked at, and over what.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Alignment {
     pub channel: String,
     pub by: String,
@@ -35,6 +37,10 @@ impl Lab {
         if !(2..=AT_MOST).contains(&runs.len()) {
             return Err(LabError::Invalid(format!("{} runs: choose 2 to {AT_MOST}", runs.len())));
         }
+        self.work_out(Job::Differences { runs: runs.to_vec(), how: how.clone() }).await
+    }
+
+    pub(super) async fn differences_here(&self, runs: &[i64], how: &Alignment) -> Answer<Vec<Figure>> {
         let mut zeros = Vec::new();
         for run in runs {
             zeros.push(self.zero(*run, how).await?);

@@ -5,9 +5,11 @@
 //! * [`LabError::File`]: a measurement file or description was refused; carries file, line and column where known.
 //! * [`LabError::Formula`]: a user's effect is wrong at a character.
 //! * [`LabError::Conflict`]: right request, wrong moment (bench busy, bench blocked).
-//! * [`LabError::Busy`]: nothing is wrong with the request; the same may work in a moment (disk full, database held).
+//! * [`LabError::Busy`]: nothing is wrong with the request; the same may work in a moment (disk full, database held, too many
+//!   computations at once).
 //! * [`LabError::Over`]: too late for ever, whatever is waited for (a run that has ended, or was gone on with).
 //! * [`LabError::Bench`]: an instrument does not do what it should.
+//! * [`LabError::TooLarge`]: it needs more memory or time than it may have.
 //! * [`LabError::Setup`]: the daemon cannot start as it was asked to (port taken, folder unwritable, old database).
 //! * [`LabError::Internal`]: ours; the detail goes to the log as well.
 //!
@@ -32,6 +34,8 @@ pub enum LabError {
     #[error("{0}")]
     Bench(String),
     #[error("{0}")]
+    TooLarge(String),
+    #[error("{0}")]
     Setup(String),
     #[error("{0}")]
     Internal(String),
@@ -55,6 +59,7 @@ impl LabError {
             | LabError::Invalid(_)
             | LabError::File { .. }
             | LabError::Formula(_)
+            | LabError::TooLarge(_)
             | LabError::Setup(_) => 2,
         }
     }

@@ -1,15 +1,17 @@
 //! What to measure next: the menu of a bench, or of what a run itself has shown, put to the model.
 
 use super::{Answer, Lab, LabError, convert};
+use crate::job::Job;
 use crate::store::{DiagnosisRecord, ModelRecord};
 use crate::view;
 use jointbench_instrument::RunTable;
 use jointbench_model::{Next, Open, Options};
 use jointbench_procedure::{BenchFacts, menu};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 /// A bench with the parameters that its runs so far were made with.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Offer {
     pub bench: BenchFacts,
     pub parameters: Map<String, Value>,
@@ -32,16 +34,16 @@ pub fn next_run(run: &RunTable, open: &Open, offer: &Offer, options: &Options) -
 }
 
 impl Lab {
-    /// What can be measured next to these runs: on the bench named, else on the one that made the first of them, else what
+    /// What can be measured next to these runs: on the bench named, else on the one that made the first of them; `None`: what
     /// they have shown.
-    pub(super) async fn offer(&self, table: &RunTable, runs: &[i64], bench: Option<&str>) -> Answer<Offer> {
-        let Some(first) = runs.first() else { return Ok(Offer::shown_by(table)) };
+    pub(super) async fn offer(&self, runs: &[i64], bench: Option<&str>) -> Answer<Option<Offer>> {
+        let Some(first) = runs.first() else { return Ok(None) };
         let record = self.inner.store.run(*first).await?;
         let handle = match bench {
             Some(name) => self.handle(name)?,
             None => match self.handle(&record.bench) {
                 Ok(handle) => handle,
-                Err(_) => return Ok(Offer::shown_by(table)),
+                Err(_) => return Ok(None),
             },
         };
         let mut parameters = record.parameters;
@@ -49,7 +51,7 @@ impl Lab {
         if let Some(seed) = parameters.get("order_seed").and_then(Value::as_f64) {
             parameters.insert("order_seed".into(), (seed + runs.len() as f64 - 1.0).into());
         }
-        Ok(Offer { bench: handle.facts(), parameters })
+        Ok(Some(Offer { bench: handle.facts(), parameters }))
     }
 
     /// The run that a kept diagnosis asks for on this bench, with the model that was diagnosed.
@@ -60,13 +62,22 @@ impl Lab {
     ) -> Answer<(ModelRecord, Option<view::Experiment>)> {
         let record: DiagnosisRecord = self.inner.store.diagnosis(diagnosis).await?;
         let model = self.inner.store.model(record.model).await?;
+        let next = match self.offer(&model.runs(), Some(bench)).await? {
+            Some(offer) => self.work_out(Job::NextRun { diagnosis, offer }).await?,
+            None => None,
+        };
+        Ok((model, next))
+    }
+
+    pub(super) async fn next_run_here(&self, diagnosis: i64, offer: Offer) -> Answer<Option<view::Experiment>> {
+        let record = self.inner.store.diagnosis(diagnosis).await?;
+        let model = self.inner.store.model(record.model).await?;
         let table = self.tables(&model.runs()).await?;
-        let offer = self.offer(&table, &model.runs(), Some(bench)).await?;
         check_same_joint(&table, &offer.bench)?;
         let found: jointbench_model::Diagnosis = convert::reread(&record.diagnosis)?;
         let open = Open { own: self.own_effects(table.kind()).await?, ..Open::from(&found) };
         let next = super::models::blocking(move || Ok(next_run(&table, &open, &offer, &Options::default()))).await?;
-        Ok((model, next.experiment.map(|next| convert::reread(&next)).transpose()?))
+        next.experiment.map(|next| convert::reread(&next)).transpose()
     }
 }
 

@@ -1,8 +1,10 @@
 //! What a procedure makes of a run that is kept.
 
 use super::calibrations::applies;
+use super::working::{Subject as Turn, patiently};
 use super::{Answer, Lab, LabError, reread};
 use crate::bench::BenchHandle;
+use crate::job::Job;
 use crate::store::Subject;
 use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, word};
 use jointbench_procedure::RunState;
@@ -24,7 +26,7 @@ impl Lab {
     pub async fn earlier(&self, id: i64) -> Answer<Vec<Earlier>> {
         let record = self.inner.store.run(id).await?;
         let applied = self.inner.store.calibration(&record.bench, &record.procedure).await?;
-        let _turn = self.inner.earlier.lock().await;
+        let _turn = self.inner.turns.of(Turn::Earlier).await;
         let mut told = Vec::new();
         for (run, created_at) in self.inner.store.earlier(id, applied, EARLIER).await? {
             match self.quantities(run).await {
@@ -67,12 +69,26 @@ impl Lab {
     /// its run but samples.
     pub async fn identification(&self, id: i64) -> Answer<Identification> {
         let record = self.inner.store.run(id).await?;
-        let none = || {
-            LabError::NotFound(format!(
-                "run {id} ({}) has no result of a procedure: fit a model to it instead",
-                record.procedure
-            ))
-        };
+        if jointbench_procedure::procedure(&record.procedure).is_none() {
+            return Err(no_result(id, &record.procedure));
+        }
+        let found: Identification = self.work_out(Job::Identify { run: id }).await?;
+        let verdict = found.result.verdict;
+        if record.state.is_final() && record.verdict.as_ref() != Some(&word(verdict)) {
+            match self.inner.store.keep_verdict(id, &word(verdict)).await {
+                Ok(()) => self.hub().tell(LiveMessage::Verdict { run: id, verdict }),
+                // Without it the result stands all the same.
+                Err(fault) => {
+                    tracing::warn!(run.id = id, %fault, "what came of the run is not kept for the list of runs");
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    pub(super) async fn identify_here(&self, id: i64) -> Answer<Identification> {
+        let record = self.inner.store.run(id).await?;
+        let none = || no_result(id, &record.procedure);
         let procedure = jointbench_procedure::procedure(&record.procedure).ok_or_else(none)?;
         let values = Values::parse(procedure.schema(), &record.parameters)
             .map_err(|fault| LabError::Invalid(format!("run {id} was made by another version: {fault}")))?;
@@ -91,25 +107,14 @@ impl Lab {
             let before: Vec<String> = before.iter().map(i64::to_string).collect();
             found.summary = format!("Runs {} and {last} together: {}", before.join(", "), found.summary);
         }
-        let found = Identification {
+        Ok(Identification {
             run: id,
             applies: applies(&record.procedure),
-            procedure: record.procedure,
+            procedure: record.procedure.clone(),
             software: concat!("jointbench ", env!("CARGO_PKG_VERSION")).to_owned(),
             follow_up: procedure.follow_up(&found).map(|next| reread(&next)).transpose()?,
             result: reread(&found)?,
-        };
-        let verdict = found.result.verdict;
-        if record.state.is_final() && record.verdict.as_ref() != Some(&word(verdict)) {
-            match self.inner.store.keep_verdict(id, &word(verdict)).await {
-                Ok(()) => self.hub().tell(LiveMessage::Verdict { run: id, verdict }),
-                // Without it the result stands all the same.
-                Err(fault) => {
-                    tracing::warn!(run.id = id, %fault, "what came of the run is not kept for the list of runs");
-                }
-            }
-        }
-        Ok(found)
+        })
     }
 
     /// Has the list of runs say what came of a run, once it is over: who looks there has not asked for the result.
@@ -139,8 +144,12 @@ impl Lab {
 
     /// A procedure that makes nothing of its run, or not of this one, is no fault.
     async fn judge(&self, run: i64) {
-        if let Err(fault) = self.identification(run).await {
+        if let Err(fault) = patiently(|| self.identification(run)).await {
             tracing::debug!(run.id = run, %fault, "no result of the run");
         }
     }
+}
+
+fn no_result(run: i64, procedure: &str) -> LabError {
+    LabError::NotFound(format!("run {run} ({procedure}) has no result of a procedure: fit a model to it instead"))
 }

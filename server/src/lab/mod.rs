@@ -11,6 +11,7 @@ mod differences;
 mod error;
 mod excluding;
 mod experiment;
+mod export;
 mod identifications;
 mod log;
 mod models;
@@ -26,20 +27,23 @@ mod statistics;
 mod tables;
 mod tokens;
 mod transfer;
+mod working;
 
 pub use crate::store::{Order, RunFilter};
 pub use convert::{bench_view, reread, run_event, safe_view, state_view};
 pub use differences::Alignment;
 pub use error::LabError;
 pub use experiment::{Offer, next_run};
+pub use export::{ExportRequest, FileFormat};
 pub use log::OF_TOKENS;
 pub use models::diagnose;
 pub use tables::TableFormat;
 pub use tokens::{Caller, LOCAL, Tokens, weakness};
-pub use transfer::{ATTENTION, COPY_OF, FileFormat, ImportRequest};
+pub use transfer::{ATTENTION, COPY_OF, ImportRequest};
 
 use crate::bench::{Beginning, BenchHandle, store_leftovers, worker};
 use crate::config::BenchDescription;
+use crate::job::{Jobs, Limits};
 use crate::live::Hub;
 use crate::store::Store;
 use crate::view::AutopilotState;
@@ -48,6 +52,7 @@ use jointbench_procedure::{RunState, Safe};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use working::Turns;
 
 type Answer<T> = Result<T, LabError>;
 
@@ -65,12 +70,9 @@ struct Inner {
     /// The file of `jointbench`.
     program: PathBuf,
     flights: Flights,
-    /// Whose turn it is to work out what effects are worth.
-    worth: tokio::sync::Mutex<()>,
-    /// Whose turn it is to work out what earlier runs have found.
-    earlier: tokio::sync::Mutex<()>,
-    /// Whose turn it is to make a version that has no parent.
-    first: tokio::sync::Mutex<()>,
+    /// Where whole runs are computed on; `None`: here.
+    jobs: Option<Jobs>,
+    turns: Turns,
 }
 
 impl Lab {
@@ -81,10 +83,12 @@ impl Lab {
         descriptions: Vec<BenchDescription>,
         tokens: Tokens,
         program: PathBuf,
+        analysis: Limits,
     ) -> Answer<Lab> {
         let store = Store::open(data).await?;
         wait_for_workers(data).await;
         store_leftovers(data, &store).await?;
+        clear_uploads(data)?;
         interrupt_autopilots(&store).await?;
         let mut interrupted: BTreeMap<String, Vec<i64>> = BTreeMap::new();
         for run in store.interrupt_open_runs().await? {
@@ -115,11 +119,10 @@ impl Lab {
                 hub,
                 benches,
                 tokens,
+                jobs: Some(Jobs::new(&program, data, analysis)),
                 program,
                 flights: Flights::default(),
-                worth: Default::default(),
-                earlier: Default::default(),
-                first: Default::default(),
+                turns: Turns::default(),
             }),
         };
         lab.open_tokens().await?;
@@ -138,9 +141,8 @@ impl Lab {
                 tokens: Tokens::default(),
                 program: crate::program::own(),
                 flights: Flights::default(),
-                worth: Default::default(),
-                earlier: Default::default(),
-                first: Default::default(),
+                jobs: None,
+                turns: Turns::default(),
             }),
         }
     }
@@ -157,6 +159,7 @@ impl Lab {
     /// Ends all runs, secures all benches and closes the store.
     pub async fn shut_down(&self) {
         self.inner.flights.abort();
+        self.inner.jobs.iter().for_each(Jobs::end);
         let benches = self.inner.benches.clone();
         let ended = tokio::task::spawn_blocking(move || benches.iter().for_each(BenchHandle::shut_down)).await;
         if let Err(fault) = ended {
@@ -176,6 +179,21 @@ async fn wait_for_workers(data: &Path) {
     if let Err(fault) = waited {
         tracing::error!(%fault, "waiting for earlier workers failed");
     }
+}
+
+/// Where files lie that come in and are not runs yet.
+const UPLOADS: &str = "uploads";
+
+/// What a daemon that was killed had not taken in.
+fn clear_uploads(data: &Path) -> Answer<()> {
+    let folder = data.join(UPLOADS);
+    let unwritable = |fault: std::io::Error| {
+        LabError::Setup(format!("{} cannot be emptied ({fault}): change its permissions", folder.display()))
+    };
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(unwritable)?;
+    }
+    std::fs::create_dir_all(&folder).map_err(unwritable)
 }
 
 async fn interrupt_autopilots(store: &Store) -> Answer<()> {

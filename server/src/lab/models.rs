@@ -1,14 +1,32 @@
 //! Effects, model versions and diagnoses.
 
 use super::excluding;
+use super::working::{Subject as Turn, json, parsed};
 use super::{Answer, Lab, LabError, Offer, convert, next_run, reread};
-use crate::store::{ModelRecord, NewModel, Subject};
+use crate::job::Job;
+use crate::store::{ModelRecord, NewModel, Subject, packed, unpacked};
 use crate::view::{self, Diagnosis, Effect, Exclusion, LiveMessage, Model, ResidualSet, finite};
 use jointbench_instrument::{Kind, RunTable};
-use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options};
+use jointbench_model::{Fit, ModelError, ModelSpec, Open, Options, OwnEffect};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 /// What is kept of a version under which name.
 const RESIDUALS: &str = "residuals";
+
+/// What a fit found, ready to be kept. The residuals follow it, packed, where there are some.
+#[derive(Debug, Serialize, Deserialize)]
+struct Fitted {
+    kind: String,
+    effects: Vec<String>,
+    residual: String,
+    rms: f64,
+    validation_rms: f64,
+    noise_floor_rms: Option<f64>,
+    options: Map<String, Value>,
+    fit: Value,
+    diagnosis: Option<Value>,
+}
 
 impl Lab {
     /// Fits effects to runs of one joint, looked at together, and keeps the fit as a version of the first, with its
@@ -35,16 +53,17 @@ impl Lab {
         }
         let excluded = excluded.unwrap_or_default();
         excluding::check(&excluded)?;
+        let mut kind = None;
         for run in runs {
-            if !self.inner.store.run(*run).await?.state.is_final() {
+            let record = self.inner.store.run(*run).await?;
+            if !record.state.is_final() {
                 return Err(LabError::Conflict(format!("run {run} is still on: fit a model when it has ended")));
             }
+            kind.get_or_insert(record.kind);
         }
-        let whole = self.tables(runs).await?;
-        let table = excluding::without(whole.clone(), &excluded)?;
-        let spec = self.spec(table.kind(), effects).await?;
+        let spec = self.spec(find_kind(&kind.unwrap_or_default())?, effects).await?;
         let _turn = match parent {
-            None => Some(self.inner.first.lock().await),
+            None => Some(self.inner.turns.of(Turn::First(run)).await),
             Some(_) => None,
         };
         if parent.is_none()
@@ -52,41 +71,30 @@ impl Lab {
         {
             return convert::model(there);
         }
-        let options = Options::default();
-        let chosen = reread(&options)?;
-        let offer = self.offer(&table, runs, None).await?;
-        let (fit, diagnosis, left) = blocking(move || {
-            let (fit, diagnosis) = fit_and_diagnose(&table, &spec, &options, &offer)?;
-            let left = jointbench_model::residuals(&whole, &fit, &options).ok();
-            Ok((fit, diagnosis, left))
-        })
-        .await?;
-        let noise_floor_rms = diagnosis.as_ref().and_then(|diagnosis| diagnosis.noise_floor_rms).and_then(finite);
-        let checked: view::Fit = reread(&fit)?;
+        let offer = self.offer(runs, None).await?;
+        let job = Job::Fit { runs: runs.to_vec(), effects: effects.to_vec(), excluded: excluded.clone(), offer };
+        let answer = self.worked_out(job).await?;
+        let end = answer.iter().position(|byte| *byte == b'\n').unwrap_or(answer.len());
+        let (fitted, residuals) = (parsed::<Fitted>(&answer[..end])?, answer.get(end + 1..).unwrap_or_default());
         let new = NewModel {
             run,
             more_runs: more_runs.to_vec(),
             excluded: reread(&excluded)?,
             parent,
-            kind: fit.kind.to_string(),
-            effects: fit.effects.clone(),
-            residual: reread(&fit.residual)?,
-            rms: checked.rms,
-            validation_rms: checked.validation_rms,
-            noise_floor_rms,
-            options: chosen,
+            kind: fitted.kind,
+            effects: fitted.effects,
+            residual: fitted.residual,
+            rms: fitted.rms,
+            validation_rms: fitted.validation_rms,
+            noise_floor_rms: fitted.noise_floor_rms,
+            options: fitted.options,
             tried,
-            fit: reread(&fit)?,
+            fit: fitted.fit,
             by: by.to_owned(),
         };
-        let record = self.inner.store.save_model(&new).await?;
-        // Without them the version stands all the same; whoever asks for them is told why.
-        if let Some(json) = left.and_then(|left| written(&left, &excluded).ok()) {
-            self.inner.store.keep(Subject::Model(record.id), RESIDUALS, &json).await?;
-        }
-        if let Some(diagnosis) = &diagnosis {
-            self.inner.store.save_diagnosis(record.id, &reread(diagnosis)?).await?;
-        }
+        // Without residuals the version stands all the same; whoever asks for them is told why.
+        let residuals = Some((RESIDUALS, residuals)).filter(|(_, packed)| !packed.is_empty());
+        let record = self.inner.store.save_fitted(&new, residuals, fitted.diagnosis.as_ref()).await?;
         tracing::info!(
             run.id = run,
             model.id = record.id,
@@ -96,6 +104,46 @@ impl Lab {
         );
         self.hub().tell(LiveMessage::Model { run, model: record.id });
         convert::model(record)
+    }
+
+    /// Fits and diagnoses: [`Fitted`] as one line, then the residuals, packed.
+    pub(super) async fn fit_here(
+        &self,
+        runs: &[i64],
+        effects: &[String],
+        excluded: &[Exclusion],
+        offer: Option<Offer>,
+    ) -> Answer<Vec<u8>> {
+        let whole = self.tables(runs).await?;
+        let table = excluding::without(whole.clone(), excluded)?;
+        let spec = self.spec(table.kind(), effects).await?;
+        let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
+        let options = Options::default();
+        let chosen = reread(&options)?;
+        let (fit, diagnosis, left) = blocking(move || {
+            let (fit, diagnosis) = fit_and_diagnose(&table, &spec, &options, &offer)?;
+            let left = jointbench_model::residuals(&whole, &fit, &options).ok();
+            Ok((fit, diagnosis, left))
+        })
+        .await?;
+        let checked: view::Fit = reread(&fit)?;
+        let noise_floor_rms = diagnosis.as_ref().and_then(|diagnosis| diagnosis.noise_floor_rms).and_then(finite);
+        let mut answer = json(&Fitted {
+            kind: fit.kind.to_string(),
+            effects: fit.effects.clone(),
+            residual: reread(&fit.residual)?,
+            rms: checked.rms,
+            validation_rms: checked.validation_rms,
+            noise_floor_rms,
+            options: chosen,
+            fit: reread(&fit)?,
+            diagnosis: diagnosis.as_ref().map(reread).transpose()?,
+        })?;
+        if let Some(json) = left.and_then(|left| written(&left, excluded).ok()) {
+            answer.push(b'\n');
+            answer.extend(packed(&json)?);
+        }
+        Ok(answer)
     }
 
     /// Makes a version that was only tried, or that is idle, one of the run's.
@@ -142,37 +190,70 @@ impl Lab {
 
     /// What the version leaves of its runs, as JSON ([`ResidualSet`]). Kept with the version; worked out where it is not.
     pub async fn residuals(&self, id: i64) -> Answer<Vec<u8>> {
-        if let Some(kept) = self.inner.store.kept(Subject::Model(id), RESIDUALS).await? {
+        let subject = Subject::Model(id);
+        if let Some(kept) = self.inner.store.kept(subject, RESIDUALS).await? {
             return Ok(kept);
         }
+        let _turn = self.inner.turns.of(Turn::Residuals(id)).await;
+        if let Some(kept) = self.inner.store.kept(subject, RESIDUALS).await? {
+            return Ok(kept);
+        }
+        let packed = self.worked_out(Job::Residuals { model: id }).await?;
+        self.inner.store.keep_packed(subject, RESIDUALS, &packed).await?;
+        Ok(unpacked(&packed)?)
+    }
+
+    /// The residuals, packed.
+    pub(super) async fn residuals_here(&self, id: i64) -> Answer<Vec<u8>> {
         let model = self.inner.store.model(id).await?;
         let fit: Fit = reread(&model.fit)?;
         let table = self.tables(&model.runs()).await?;
         let left = blocking(move || jointbench_model::residuals(&table, &fit, &Options::default())).await?;
-        let json = written(&left, &reread::<_, Vec<Exclusion>>(&model.excluded)?)?;
-        self.inner.store.keep(Subject::Model(id), RESIDUALS, &json).await?;
-        Ok(json)
+        Ok(packed(&written(&left, &reread::<_, Vec<Exclusion>>(&model.excluded)?)?)?)
     }
 
     /// The diagnosis of a version. Data and version never change: the answer is made once, and again where users' effects
     /// have come, changed or gone since.
     pub async fn diagnose(&self, model: i64) -> Answer<Diagnosis> {
         let record = self.inner.store.model(model).await?;
-        let fit: Fit = reread(&record.fit)?;
-        let mut own = fit.own.clone();
-        own.extend(self.own_effects(fit.kind).await?.into_iter().filter(|o| !fit.own.iter().any(|f| f.id() == o.id())));
-        if let Some(kept) = self.inner.store.diagnoses(model).await?.pop() {
-            let known: jointbench_model::Diagnosis = reread(&kept.diagnosis)?;
-            if known.own == own {
-                return convert::diagnosis(kept, record.run);
-            }
+        if let Some(kept) = self.diagnosis_kept(&record).await? {
+            return Ok(kept);
         }
+        let _turn = self.inner.turns.of(Turn::Diagnosis(model)).await;
+        if let Some(kept) = self.diagnosis_kept(&record).await? {
+            return Ok(kept);
+        }
+        let offer = self.offer(&record.runs(), None).await?;
+        let diagnosis: Value = self.work_out(Job::Diagnose { model, offer }).await?;
+        let kept = self.inner.store.save_diagnosis(model, &diagnosis).await?;
+        convert::diagnosis(kept, record.run)
+    }
+
+    /// The last diagnosis, where it knows the effects that there are now.
+    async fn diagnosis_kept(&self, record: &ModelRecord) -> Answer<Option<Diagnosis>> {
+        let Some(kept) = self.inner.store.diagnoses(record.id).await?.pop() else { return Ok(None) };
+        let known: jointbench_model::Diagnosis = reread(&kept.diagnosis)?;
+        if known.own != self.own_of(&reread(&record.fit)?).await? {
+            return Ok(None);
+        }
+        convert::diagnosis(kept, record.run).map(Some)
+    }
+
+    pub(super) async fn diagnose_here(&self, model: i64, offer: Option<Offer>) -> Answer<Value> {
+        let record = self.inner.store.model(model).await?;
+        let own = self.own_of(&reread(&record.fit)?).await?;
         let table = self.fitted_table(&record).await?;
         let spec = ModelSpec::with_own(table.kind(), &record.effects, own)?;
-        let offer = self.offer(&table, &record.runs(), None).await?;
+        let offer = offer.unwrap_or_else(|| Offer::shown_by(&table));
         let diagnosis = blocking(move || diagnose(&table, &spec, &Options::default(), &offer)).await?;
-        let kept = self.inner.store.save_diagnosis(model, &reread(&diagnosis)?).await?;
-        convert::diagnosis(kept, record.run)
+        reread(&diagnosis)
+    }
+
+    /// Users' effects as a fit has them, and the others of its kind.
+    async fn own_of(&self, fit: &Fit) -> Answer<Vec<OwnEffect>> {
+        let mut own = fit.own.clone();
+        own.extend(self.own_effects(fit.kind).await?.into_iter().filter(|o| !fit.own.iter().any(|f| f.id() == o.id())));
+        Ok(own)
     }
 
     pub async fn diagnosis(&self, id: i64) -> Answer<Diagnosis> {

@@ -2,8 +2,11 @@
 
 use super::models::{blocking, effect_view, find_kind};
 use super::{Answer, Lab, LabError, names, reread};
+use crate::job::Job;
 use crate::store::OwnEffectRecord;
-use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLanguage, FormulaSignal, LiveMessage};
+use crate::view::{
+    Effect, EffectCheck, EffectDefinition, EffectTrial, FittedParameter, FormulaLanguage, FormulaSignal, LiveMessage,
+};
 use jointbench_instrument::Kind;
 use jointbench_model::formula::{self, Function};
 use jointbench_model::{Definition, Effect as _, ModelError, ModelSpec, Options, OwnEffect, TradeOff};
@@ -66,26 +69,33 @@ impl Lab {
             parameters: Vec::new(),
             like: Vec::new(),
         };
-        if let Some(run) = trial.run {
-            let runs: Vec<i64> = std::iter::once(run).chain(trial.more_runs.iter().copied()).collect();
-            let table = self.tables(&runs).await?;
-            let beside = trial.effects.as_ref().unwrap_or(&table.meta().baseline).iter();
-            let effects = beside.map(String::as_str).filter(|id| *id != own.id()).chain([own.id()]);
-            let others = self.own_effects(table.kind()).await?.into_iter().filter(|other| other.id() != own.id());
-            let spec = ModelSpec::with_own(table.kind(), effects, others.chain([own.clone()]).collect())?;
-            let id = own.id().to_owned();
-            let (found, like) = blocking(move || match jointbench_model::fit(&table, &spec, &Options::default()) {
-                Err(ModelError::Collinear { first, second }) if first == id => Ok((Vec::new(), vec![second])),
-                Err(ModelError::Collinear { first, second }) if second == id => Ok((Vec::new(), vec![first])),
-                fit => fit.map(|fit| {
-                    let found: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == id).collect();
-                    (found, trading(&id, &fit.trade_offs))
-                }),
-            })
-            .await?;
-            check = EffectCheck { like, parameters: reread(&found)?, ..check };
+        if trial.run.is_some() {
+            let (parameters, like) = self.work_out(Job::TryEffect { trial: trial.clone() }).await?;
+            check = EffectCheck { like, parameters, ..check };
         }
         Ok(check)
+    }
+
+    /// Its parameters where it is fitted to the run of the trial beside the other effects, and what it cannot be told from.
+    pub(super) async fn try_effect_here(&self, trial: &EffectTrial) -> Answer<(Vec<FittedParameter>, Vec<String>)> {
+        let own = parse(&trial.effect)?;
+        let runs: Vec<i64> = trial.run.iter().chain(&trial.more_runs).copied().collect();
+        let table = self.tables(&runs).await?;
+        let beside = trial.effects.as_ref().unwrap_or(&table.meta().baseline).iter();
+        let effects = beside.map(String::as_str).filter(|id| *id != own.id()).chain([own.id()]);
+        let others = self.own_effects(table.kind()).await?.into_iter().filter(|other| other.id() != own.id());
+        let spec = ModelSpec::with_own(table.kind(), effects, others.chain([own.clone()]).collect())?;
+        let id = own.id().to_owned();
+        let (found, like) = blocking(move || match jointbench_model::fit(&table, &spec, &Options::default()) {
+            Err(ModelError::Collinear { first, second }) if first == id => Ok((Vec::new(), vec![second])),
+            Err(ModelError::Collinear { first, second }) if second == id => Ok((Vec::new(), vec![first])),
+            fit => fit.map(|fit| {
+                let found: Vec<_> = fit.parameters.into_iter().filter(|p| p.effect == id).collect();
+                (found, trading(&id, &fit.trade_offs))
+            }),
+        })
+        .await?;
+        Ok((reread(&found)?, like))
     }
 
     /// Keeps an effect; one of the same id becomes its next version.

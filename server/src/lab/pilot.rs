@@ -3,6 +3,7 @@
 //! Every run goes through [`Lab::start_run`], so through plan, limits and guard like any other. After a further run the
 //! model starts anew from the effects that were given: what was added on less data has to earn its place again.
 
+use super::working::patiently;
 use super::{Answer, Lab, LabError, reread};
 use crate::view::{
     AutopilotAction, AutopilotState, AutopilotStep, Experiment, Finding, LiveMessage, Model, NewAutopilot, Run,
@@ -228,7 +229,8 @@ impl Pilot {
             Some(parent) => Some(self.lab.model(parent).await?.validation_rms),
             None => None,
         };
-        let model = self.lab.create_model(&self.runs, effects, parent, None, false, &self.by).await?;
+        let fit = || self.lab.create_model(&self.runs, effects, parent, None, false, &self.by);
+        let model = patiently(fit).await?;
         let step = AutopilotStep { before_rms, ..AutopilotStep::new(AutopilotAction::Fit, "") };
         let found = self.diagnosed(&model, step).await?;
         Ok((model, found))
@@ -236,7 +238,8 @@ impl Pilot {
 
     async fn add(&mut self, before: &Model, best: &Suggestion) -> Answer<(Model, Finding)> {
         let effects: Vec<String> = before.effects.iter().cloned().chain([best.effect.clone()]).collect();
-        let model = self.lab.create_model(&self.runs, &effects, Some(before.id), None, false, &self.by).await?;
+        let fit = || self.lab.create_model(&self.runs, &effects, Some(before.id), None, false, &self.by);
+        let model = patiently(fit).await?;
         let tied = match best.confounded_with.as_slice() {
             [] => String::new(),
             rivals => format!(" (these runs cannot tell it from {})", rivals.join(", ")),
@@ -249,7 +252,7 @@ impl Pilot {
 
     /// Keeps a step about a model with what its diagnosis says.
     async fn diagnosed(&mut self, model: &Model, step: AutopilotStep) -> Answer<Finding> {
-        let kept = self.lab.diagnose(model.id).await?;
+        let kept = patiently(|| self.lab.diagnose(model.id)).await?;
         let step = AutopilotStep {
             text: step.text.clone() + &kept.finding.summary,
             model: Some(model.id),

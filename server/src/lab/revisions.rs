@@ -1,11 +1,13 @@
 //! Model versions beside each other, on other runs, and on their way out and in.
 
 use super::models::blocking;
+use super::working::Subject as Turn;
 use super::{Answer, Lab, LabError, convert, reread};
+use crate::job::Job;
 use crate::store::{NewModel, Subject};
 use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite};
 use jointbench_model::transfer::{Format, ModelFile, export};
-use jointbench_model::{Fit, ModelSpec, Options};
+use jointbench_model::{Fit, ModelSpec, Options, OwnEffect};
 
 /// What is kept of a version under which name.
 const WORTH: &str = "worth";
@@ -17,6 +19,10 @@ impl Lab {
             Some(run) => run,
             None => self.inner.store.model(first).await?.run,
         };
+        self.work_out(Job::Compare { first, second, run }).await
+    }
+
+    pub(super) async fn compare_here(&self, first: i64, second: i64, run: i64) -> Answer<Comparison> {
         let (first, second) = (self.fit(first).await?, self.fit(second).await?);
         let table = self.measurement(run).await?;
         reread(&blocking(move || jointbench_model::compare(&first, &second, &table)).await?)
@@ -25,10 +31,17 @@ impl Lab {
     /// The error outside the fit without each effect in turn. The order in which effects were added says nothing of it.
     /// Kept; worked out for one version at a time, so that a page that is opened again does not have it done twice.
     pub async fn worth(&self, model: i64) -> Answer<Vec<Worth>> {
-        let _turn = self.inner.worth.lock().await;
+        let _turn = self.inner.turns.of(Turn::Worth(model)).await;
         if let Some(kept) = self.inner.store.kept(Subject::Model(model), WORTH).await? {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
+        let worth: Vec<Worth> = self.work_out(Job::Worth { model }).await?;
+        let json = serde_json::to_vec(&worth).map_err(|fault| LabError::Internal(fault.to_string()))?;
+        self.inner.store.keep(Subject::Model(model), WORTH, &json).await?;
+        Ok(worth)
+    }
+
+    pub(super) async fn worth_here(&self, model: i64) -> Answer<Vec<Worth>> {
         let record = self.inner.store.model(model).await?;
         let fit: Fit = reread(&record.fit)?;
         let table = self.fitted_table(&record).await?;
@@ -45,10 +58,7 @@ impl Lab {
             };
             Worth { effect, without_rms, reason }
         };
-        let worth: Vec<Worth> = blocking(move || Ok(effects.into_iter().map(said).collect())).await?;
-        let json = serde_json::to_vec(&worth).map_err(|fault| LabError::Internal(fault.to_string()))?;
-        self.inner.store.keep(Subject::Model(model), WORTH, &json).await?;
-        Ok(worth)
+        blocking(move || Ok(effects.into_iter().map(said).collect())).await
     }
 
     /// What an effect more would add to the prediction at each point of the version's residuals, all fitted again with it.
@@ -59,21 +69,8 @@ impl Lab {
             return serde_json::from_slice(&kept).map_err(|fault| LabError::Internal(fault.to_string()));
         }
         let record = self.inner.store.model(model).await?;
-        let before: Fit = reread(&record.fit)?;
-        let whole = self.tables(&record.runs()).await?;
-        let fitted = self.fitted_table(&record).await?;
-        let mut own = before.own.clone();
-        let theirs = self.own_effects(before.kind).await?;
-        own.extend(theirs.into_iter().filter(|one| one.id() == effect && !before.own.iter().any(|o| o.id() == effect)));
-        let changes = own.iter().any(|one| one.id() == effect);
-        let spec = ModelSpec::with_own(before.kind, record.effects.iter().chain([&effect]), own)?;
-        let added: Vec<f64> = blocking(move || {
-            let options = Options::default();
-            let after = jointbench_model::fit(&fitted, &spec, &options)?;
-            let [before, after] = [before, after].map(|fit| jointbench_model::residuals(&whole, &fit, &options));
-            Ok(after?.predicted.iter().zip(before?.predicted).map(|(after, before)| after - before).collect())
-        })
-        .await?;
+        let changes = self.own_with(&reread(&record.fit)?, &effect).await?.iter().any(|one| one.id() == effect);
+        let added: Vec<f64> = self.work_out(Job::WithEffect { model, effect }).await?;
         if !changes {
             let json = serde_json::to_vec(&added).map_err(|fault| LabError::Internal(fault.to_string()))?;
             self.inner.store.keep(Subject::Model(model), &kept_as, &json).await?;
@@ -81,7 +78,36 @@ impl Lab {
         Ok(added)
     }
 
+    /// Users' effects of a fit, and the one that is asked for, where a user wrote it.
+    async fn own_with(&self, fit: &Fit, effect: &str) -> Answer<Vec<OwnEffect>> {
+        let mut own = fit.own.clone();
+        let theirs = self.own_effects(fit.kind).await?;
+        own.extend(theirs.into_iter().filter(|one| one.id() == effect && !fit.own.iter().any(|o| o.id() == effect)));
+        Ok(own)
+    }
+
+    pub(super) async fn with_effect_here(&self, model: i64, effect: &str) -> Answer<Vec<f64>> {
+        let record = self.inner.store.model(model).await?;
+        let before: Fit = reread(&record.fit)?;
+        let whole = self.tables(&record.runs()).await?;
+        let fitted = self.fitted_table(&record).await?;
+        let own = self.own_with(&before, effect).await?;
+        let effects = record.effects.iter().map(String::as_str).chain([effect]);
+        let spec = ModelSpec::with_own(before.kind, effects, own)?;
+        blocking(move || {
+            let options = Options::default();
+            let after = jointbench_model::fit(&fitted, &spec, &options)?;
+            let [before, after] = [before, after].map(|fit| jointbench_model::residuals(&whole, &fit, &options));
+            Ok(after?.predicted.iter().zip(before?.predicted).map(|(after, before)| after - before).collect())
+        })
+        .await
+    }
+
     pub async fn evaluate(&self, model: i64, run: i64) -> Answer<Evaluation> {
+        self.work_out(Job::Evaluate { model, run }).await
+    }
+
+    pub(super) async fn evaluate_here(&self, model: i64, run: i64) -> Answer<Evaluation> {
         let fit = self.fit(model).await?;
         let table = self.measurement(run).await?;
         reread(&blocking(move || jointbench_model::evaluate(&fit, &table)).await?)
@@ -95,24 +121,16 @@ impl Lab {
 
     /// Keeps an exported model as a version of a run. Its numbers stay as they are; its errors are those on the run.
     pub async fn import_model(&self, import: ModelImport, by: &str) -> Answer<ImportedModel> {
-        let file: ModelFile = serde_json::from_value(import.model.into())
-            .map_err(|fault| LabError::Invalid(format!("this is no exported model: {fault}")))?;
-        let fit = file.check()?;
-        let table = self.measurement(import.run).await?;
-        if fit.kind != table.kind() {
+        let file: serde_json::Value = import.model.into();
+        let kept = exported(file.clone())?;
+        let (run, kind) = (import.run, self.inner.store.run(import.run).await?.kind);
+        if kept.kind.name() != kind.as_str() {
             return Err(LabError::Invalid(format!(
-                "this is a {} model, and run {} is of the kind {}: choose a run of the model's kind (jointbench runs kind:{})",
-                fit.kind,
-                import.run,
-                table.kind(),
-                fit.kind
+                "this is a {} model, and run {run} is of the kind {kind}: choose a run of the model's kind (jointbench runs kind:{})",
+                kept.kind, kept.kind
             )));
         }
-        let (kept, held) = (fit.clone(), blocking(move || jointbench_model::evaluate(&fit, &table)).await?);
-        if !held.rms.is_finite() {
-            let why = "this model predicts numbers on the run that are not finite: check its parameters";
-            return Err(LabError::Invalid(why.to_owned()));
-        }
+        let held: Evaluation = self.work_out(Job::EvaluateFile { file, run }).await?;
         self.bring_effects(&kept.own).await?;
         let new = NewModel {
             run: import.run,
@@ -136,7 +154,24 @@ impl Lab {
         Ok(ImportedModel { model: convert::model(record)?, notes: held.notes })
     }
 
+    pub(super) async fn evaluate_file_here(&self, file: serde_json::Value, run: i64) -> Answer<Evaluation> {
+        let fit = exported(file)?;
+        let table = self.measurement(run).await?;
+        let held = blocking(move || jointbench_model::evaluate(&fit, &table)).await?;
+        if !held.rms.is_finite() {
+            let why = "this model predicts numbers on the run that are not finite: check its parameters";
+            return Err(LabError::Invalid(why.to_owned()));
+        }
+        reread(&held)
+    }
+
     async fn fit(&self, model: i64) -> Answer<Fit> {
         reread(&self.inner.store.model(model).await?.fit)
     }
+}
+
+fn exported(file: serde_json::Value) -> Answer<Fit> {
+    let file: ModelFile = serde_json::from_value(file)
+        .map_err(|fault| LabError::Invalid(format!("this is no exported model: {fault}")))?;
+    Ok(file.check()?)
 }

@@ -1,8 +1,7 @@
 //! Text that a spreadsheet would take for a formula. Whoever opens an export may not know where its names come from.
 
-use super::{Answer, Lab, LabError};
-use jointbench_files::{TableColumn, write_csv};
-use jointbench_instrument::{Channel, Trace};
+use jointbench_files::TableColumn;
+use jointbench_instrument::Channel;
 
 /// Text as a spreadsheet shows it and never computes it: an apostrophe before what begins a formula. A number stays one.
 pub fn defused(text: String) -> String {
@@ -22,25 +21,9 @@ pub fn defused_columns(columns: Vec<(String, TableColumn)>) -> Vec<(String, Tabl
     columns.into_iter().map(|(name, values)| (defused(name), column(values))).collect()
 }
 
-impl Lab {
-    /// As [`Lab::export`] to a CSV, with names of columns that no spreadsheet takes for formulas.
-    pub async fn export_for_spreadsheets(&self, id: i64, from_s: Option<f64>, to_s: Option<f64>) -> Answer<Vec<u8>> {
-        let rows = self.inner.store.rows_between(id, from_s, to_s).await?;
-        let trace = self.inner.store.trace(id, None, rows).await?;
-        let failed = |fault: String| LabError::Internal(format!("writing the file failed: {fault}"));
-        let write = move || {
-            let mut bytes = Vec::new();
-            write_csv(&mut bytes, &renamed(trace)).map(|()| bytes)
-        };
-        let written = tokio::task::spawn_blocking(write).await.map_err(|fault| failed(fault.to_string()))?;
-        written.map_err(|fault| failed(fault.to_string()))
-    }
-}
-
-fn renamed(trace: Trace) -> Trace {
-    let channels =
-        trace.channels().iter().map(|channel| Channel { name: defused(channel.name.clone()), ..channel.clone() });
-    Trace::from_columns(channels.collect(), trace.columns().to_vec())
+/// The same for the names of channels.
+pub fn defused_channels(channels: Vec<Channel>) -> Vec<Channel> {
+    channels.into_iter().map(|channel| Channel { name: defused(channel.name), ..channel }).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Figures of a window of samples.
 
 use super::{Answer, Lab};
+use crate::job::Job;
 use crate::view::ChannelStatistics;
 
 /// So many rows are in memory at a time, whatever the window.
@@ -9,6 +10,17 @@ pub(super) const ROWS_AT_ONCE: u64 = 1 << 18;
 impl Lab {
     /// From every row with `from_s ≤ time ≤ to_s`: a picture's smallest and largest values give no mean.
     pub async fn statistics(
+        &self,
+        id: i64,
+        channels: Option<&[String]>,
+        from_s: Option<f64>,
+        to_s: Option<f64>,
+    ) -> Answer<Vec<ChannelStatistics>> {
+        let channels = channels.map(<[String]>::to_vec);
+        self.work_out(Job::Statistics { run: id, channels, from_s, to_s }).await
+    }
+
+    pub(super) async fn statistics_here(
         &self,
         id: i64,
         channels: Option<&[String]>,

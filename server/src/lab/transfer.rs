@@ -1,59 +1,37 @@
-//! Run tables in and out.
+//! Run tables in. A file is read and checked in a process of its own, which lays its rows down in a file of known form; the
+//! daemon takes them from there into the store, a block at a time and in one transaction.
 
-use super::{Answer, Lab, LabError};
-use crate::store::{NewRun, RunFilter, RunRecord};
+use super::statistics::ROWS_AT_ONCE;
+use super::{Answer, Lab, LabError, UPLOADS};
+use crate::job::Job;
+use crate::store::{BLOCK_ROWS, NewRun, RunFilter};
 use crate::view::Run;
-use jointbench_files::{
-    LEFT_OUT_ROWS, ReadOptions, meta_json, parse_map, parse_meta, parse_scale, read_bytes, write_csv, write_mat,
-    write_parquet,
-};
-use jointbench_instrument::{Meta, RunTable, Trace};
-use serde::Deserialize;
+use jointbench_files::{Bounds, LEFT_OUT_ROWS, ReadOptions, parse_map, parse_meta, parse_scale, read_bytes};
+use jointbench_instrument::{Channel, Meta, RunTable, Trace};
+use serde::{Deserialize, Serialize};
 use serde_json::json;
-use utoipa::ToSchema;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum FileFormat {
-    Csv,
-    Parquet,
-    /// For MATLAB, Octave and SciPy; out only
-    Mat,
-}
-
-impl FileFormat {
-    pub fn extension(self) -> &'static str {
-        match self {
-            FileFormat::Csv => "csv",
-            FileFormat::Parquet => "parquet",
-            FileFormat::Mat => "mat",
-        }
-    }
-
-    pub fn media_type(self) -> &'static str {
-        match self {
-            FileFormat::Csv => "text/csv; charset=utf-8",
-            FileFormat::Parquet => "application/vnd.apache.parquet",
-            FileFormat::Mat => "application/x-matlab-data",
-        }
-    }
-}
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use tempfile::{NamedTempFile, TempPath};
+use tokio::sync::mpsc;
 
 /// In the provenance of an import: the run that holds the same samples.
 pub const COPY_OF: &str = "copy_of";
 /// In the provenance of an import: what its columns and facts contradict or lack, in sentences.
 pub const ATTENTION: &str = "attention";
 /// Among the facts that leave with a run of a simulated bench, so that it does not come back as one of hardware.
-const SIMULATED: &str = "simulated";
+pub(super) const SIMULATED: &str = "simulated";
 
 /// A measured file with what is needed to read it.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct ImportRequest {
     /// To keep the run under; the file's name where empty.
     pub name: Option<String>,
     /// Tells the form, and stands in messages.
     pub file_name: String,
-    pub bytes: Vec<u8>,
+    /// Where the bytes lie.
+    pub file: PathBuf,
     pub meta: Option<String>,
     /// `column=name in the file`.
     pub map: Vec<String>,
@@ -64,35 +42,58 @@ pub struct ImportRequest {
     pub leave_empty_rows: bool,
 }
 
+/// What was found in a file, but for its rows.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Found {
+    kind: String,
+    meta: Meta,
+    channels: Vec<Channel>,
+    rows: usize,
+    attention: Vec<String>,
+    copy_of: Option<i64>,
+}
+
 impl Lab {
+    /// A file for what comes in, gone when the path is dropped.
+    pub fn upload(&self) -> Answer<(File, TempPath)> {
+        let made = match &self.inner.jobs {
+            Some(jobs) => NamedTempFile::new_in(jobs.data().join(UPLOADS)),
+            None => NamedTempFile::new(),
+        };
+        let unwritable = |fault| LabError::Internal(format!("no file for what comes in: {fault}"));
+        Ok(made.map_err(unwritable)?.into_parts())
+    }
+
     /// Takes a file in as a run. It is read and checked whole before anything is kept, and kept in one transaction.
     pub async fn import(&self, request: ImportRequest, by: &str) -> Answer<Run> {
         let request = request.with_names()?;
         let name = request.name.clone().unwrap_or_else(|| request.file_name.clone());
         let source =
             json!({ "file": request.file_name, "map": request.map, "scale": request.scale, "leave": request.leave });
-        let table = tokio::task::spawn_blocking(move || read(&request))
-            .await
-            .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))??;
-        self.keep_table(&name, source, table, by).await
+        let (_, rows) = self.upload()?;
+        let uploaded = self.inner.jobs.is_some();
+        let found = self.work_out(Job::Import { request, rows: rows.to_path_buf(), uploaded }).await?;
+        self.keep(&name, source, found, &rows, by).await
     }
 
-    async fn keep_table(&self, name: &str, mut source: serde_json::Value, table: RunTable, by: &str) -> Answer<Run> {
-        let kind = table.kind().to_string();
-        let mut attention = jointbench_model::prepare::attention(&table);
-        if let Some(rows) = table.meta().other.get(LEFT_OUT_ROWS) {
-            attention.push(format!("rows left out for an empty cell: {rows}"));
-        }
+    async fn keep(
+        &self,
+        name: &str,
+        mut source: serde_json::Value,
+        found: Found,
+        rows: &Path,
+        by: &str,
+    ) -> Answer<Run> {
+        let Found { kind, mut meta, channels, rows: count, attention, copy_of } = found;
         if !attention.is_empty() {
             source[ATTENTION] = attention.into();
         }
-        let (mut meta, trace) = table.into_parts();
+        if let Some(original) = copy_of {
+            source[COPY_OF] = original.into();
+        }
         let simulated = meta.other.get(SIMULATED) == Some(&true.into());
         if simulated {
             meta.other.remove(SIMULATED);
-        }
-        if let Some(original) = self.original_of(&kind, &trace).await? {
-            source[COPY_OF] = original.into();
         }
         let provenance = json!({
             "software": concat!("jointbench ", env!("CARGO_PKG_VERSION")),
@@ -108,55 +109,59 @@ impl Lab {
             provenance: super::reread(&provenance)?,
             meta: super::reread(&meta)?,
         };
-        let rows = trace.len();
-        let run = self.inner.store.import(&new, &[], trace).await?;
-        tracing::info!(run.id = run, name, rows, "run imported");
+        let run = self.inner.store.import_parts(&new, parts(rows, channels, count)).await?;
+        tracing::info!(run.id = run, name, rows = count, "run imported");
         self.run(run).await
+    }
+
+    /// Reads and checks a file, and lays its rows down.
+    pub(super) async fn read_here(&self, request: ImportRequest, rows: &Path, uploaded: bool) -> Answer<Found> {
+        let bounds = if uploaded { Bounds::UPLOADED } else { Bounds::default() };
+        let table = tokio::task::spawn_blocking(move || read(&request, bounds))
+            .await
+            .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))??;
+        let mut attention = jointbench_model::prepare::attention(&table);
+        if let Some(rows) = table.meta().other.get(LEFT_OUT_ROWS) {
+            attention.push(format!("rows left out for an empty cell: {rows}"));
+        }
+        let kind = table.kind().to_string();
+        let (meta, trace) = table.into_parts();
+        let copy_of = self.original_of(&kind, &trace).await?;
+        lay_down(&trace, rows).map_err(unkept)?;
+        Ok(Found { kind, meta, rows: trace.len(), channels: trace.channels().to_vec(), attention, copy_of })
     }
 
     /// The first run of the store that holds the same samples.
     async fn original_of(&self, kind: &str, trace: &Trace) -> Answer<Option<i64>> {
-        let rows = trace.len() as u64;
-        let search = Some(format!("kind:{kind} rows={rows}"));
+        let search = Some(format!("kind:{kind} rows={}", trace.len()));
         let (_, alike) = self.inner.store.runs(&RunFilter { limit: u32::MAX, search, ..RunFilter::default() }).await?;
         for run in alike.iter().rev() {
-            if self.inner.store.trace(run.id, None, 0..rows).await?.columns() == trace.columns() {
+            if self.holds(run.id, trace).await? {
                 return Ok(Some(run.id));
             }
         }
         Ok(None)
     }
 
-    /// The run, or a stretch of it, as a file, which [`Lab::import`] takes back unchanged.
-    pub async fn export(&self, id: i64, format: FileFormat, from_s: Option<f64>, to_s: Option<f64>) -> Answer<Vec<u8>> {
-        let (meta, _) = self.leaving(id).await?;
-        let rows = self.inner.store.rows_between(id, from_s, to_s).await?;
-        let trace = self.inner.store.trace(id, None, rows).await?;
-        tokio::task::spawn_blocking(move || write(&meta, &trace, format))
-            .await
-            .map_err(|fault| LabError::Internal(format!("writing the file failed: {fault}")))?
-    }
-
-    /// The facts of a run as they leave with it.
-    async fn leaving(&self, id: i64) -> Answer<(Meta, RunRecord)> {
-        let (mut meta, record) = self.facts(id).await?;
-        if record.simulated {
-            meta.other.insert(SIMULATED.to_owned(), true.into());
+    async fn holds(&self, run: i64, trace: &Trace) -> Answer<bool> {
+        let rows = trace.len();
+        for first in (0..rows).step_by(ROWS_AT_ONCE as usize) {
+            let last = rows.min(first + ROWS_AT_ONCE as usize);
+            let there = self.inner.store.trace(run, None, first as u64..last as u64).await?;
+            let same = there.columns().iter().zip(trace.columns()).all(|(there, here)| *there == here[first..last]);
+            if there.columns().len() != trace.columns().len() || !same {
+                return Ok(false);
+            }
         }
-        Ok((meta, record))
-    }
-
-    /// The facts of a run as `meta.json`, for a table that cannot carry them itself.
-    pub async fn export_meta(&self, id: i64) -> Answer<String> {
-        let (meta, record) = self.leaving(id).await?;
-        Ok(meta_json(&meta, &record.channels))
+        Ok(true)
     }
 }
 
-fn read(request: &ImportRequest) -> Answer<RunTable> {
+fn read(request: &ImportRequest, bounds: Bounds) -> Answer<RunTable> {
     let mut options = ReadOptions {
         leave: request.leave.clone(),
         leave_empty_rows: request.leave_empty_rows,
+        bounds,
         ..ReadOptions::default()
     };
     for pair in &request.map {
@@ -168,16 +173,80 @@ fn read(request: &ImportRequest) -> Answer<RunTable> {
     if let Some(meta) = &request.meta {
         options.meta = Some(parse_meta("meta.json", meta.as_bytes())?);
     }
-    Ok(read_bytes(&request.file_name, &request.bytes, &options)?)
+    let bytes = std::fs::read(&request.file).map_err(unkept)?;
+    Ok(read_bytes(&request.file_name, &bytes, &options)?)
 }
 
-fn write(meta: &jointbench_instrument::Meta, trace: &Trace, format: FileFormat) -> Answer<Vec<u8>> {
-    let mut bytes = Vec::new();
-    match format {
-        FileFormat::Csv => write_csv(&mut bytes, trace),
-        FileFormat::Parquet => write_parquet(&mut bytes, meta, trace),
-        FileFormat::Mat => write_mat(&mut bytes, meta, trace),
+fn unkept(fault: io::Error) -> LabError {
+    LabError::Internal(format!("the rows of the file cannot be laid down: {fault}"))
+}
+
+/// Block by block, column by column, each value as eight bytes, the lowest first.
+fn lay_down(trace: &Trace, file: &Path) -> io::Result<()> {
+    let mut out = BufWriter::new(File::create(file)?);
+    for first in (0..trace.len()).step_by(BLOCK_ROWS) {
+        for column in trace.columns() {
+            for value in &column[first..column.len().min(first + BLOCK_ROWS)] {
+                out.write_all(&value.to_le_bytes())?;
+            }
+        }
     }
-    .map_err(|fault| LabError::Internal(format!("writing the file failed: {fault}")))?;
-    Ok(bytes)
+    out.flush()
+}
+
+/// The blocks of such a file, read while the ones before are being stored.
+fn parts(file: &Path, channels: Vec<Channel>, rows: usize) -> mpsc::Receiver<io::Result<Trace>> {
+    let (give, take) = mpsc::channel(1);
+    let file = file.to_owned();
+    tokio::task::spawn_blocking(move || {
+        let mut from = match File::open(&file) {
+            Ok(file) => BufReader::new(file),
+            Err(fault) => return drop(give.blocking_send(Err(fault))),
+        };
+        for first in (0..rows).step_by(BLOCK_ROWS) {
+            let part = part(&mut from, &channels, BLOCK_ROWS.min(rows - first));
+            let failed = part.is_err();
+            if give.blocking_send(part).is_err() || failed {
+                return;
+            }
+        }
+    });
+    take
+}
+
+fn part(from: &mut impl Read, channels: &[Channel], rows: usize) -> io::Result<Trace> {
+    let mut columns = Vec::with_capacity(channels.len());
+    let mut bytes = vec![0; rows * size_of::<f64>()];
+    for _ in channels {
+        from.read_exact(&mut bytes)?;
+        columns.push(bytes.as_chunks().0.iter().map(|value| f64::from_le_bytes(*value)).collect());
+    }
+    Ok(Trace::from_columns(channels.to_vec(), columns))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn rows_that_are_laid_down_are_taken_up_again() {
+        let rows = BLOCK_ROWS + 3;
+        let column = |step: f64| (0..rows).map(|row| row as f64 * step).collect::<Vec<f64>>();
+        let channels = vec![Channel::new("time_s"), Channel::counted("motor_position_rad", 1e-4)];
+        let trace = Trace::from_columns(channels.clone(), vec![column(0.004), column(-1e-4)]);
+        let file = NamedTempFile::new().unwrap();
+        lay_down(&trace, file.path()).unwrap();
+
+        let mut taken = vec![Vec::new(); 2];
+        let mut blocks = parts(file.path(), channels.clone(), rows);
+        while let Some(part) = blocks.recv().await {
+            let part = part.unwrap();
+            taken.iter_mut().zip(part.columns()).for_each(|(all, part)| all.extend_from_slice(part));
+        }
+        assert_eq!(Trace::from_columns(channels.clone(), taken), trace);
+
+        file.as_file().set_len(100).unwrap();
+        let cut = parts(file.path(), channels, rows).recv().await.unwrap();
+        assert_eq!(cut.unwrap_err().kind(), io::ErrorKind::UnexpectedEof);
+    }
 }

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use sqlx::{QueryBuilder, Sqlite, SqliteConnection};
 use std::ops::Range;
 use std::sync::Arc;
+use tokio::sync::mpsc;
 
 /// Rows, events and state of a run that belong together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,6 +62,23 @@ impl Store {
             count.bind(*number as i64).bind(run).execute(&mut *writer).await?;
         }
         Ok(writer.commit().await?)
+    }
+
+    /// A run that comes whole and in parts, each with the same channels: all of it, or nothing.
+    pub async fn import_parts(
+        &self,
+        new: &NewRun,
+        mut parts: mpsc::Receiver<std::io::Result<Trace>>,
+    ) -> Result<RunId, StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let run = insert_run(&mut writer, new).await?;
+        while let Some(part) = parts.recv().await {
+            let part = part.map_err(|fault| StoreError::Database(format!("a part cannot be read: {fault}")))?;
+            append(&mut writer, run, RunState::Running, &[], part).await?;
+        }
+        append(&mut writer, run, RunState::Completed, &[], Trace::default()).await?;
+        writer.commit().await?;
+        Ok(run)
     }
 
     /// A run that comes whole, as a file: all of it, or nothing.

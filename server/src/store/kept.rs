@@ -1,6 +1,7 @@
 //! What was worked out of a model version or of a complete run: once, then only read. Runs and fits never change.
 
 use super::{Store, StoreError};
+use sqlx::SqliteConnection;
 
 /// Another release may work it out otherwise.
 const SOFTWARE: &str = env!("CARGO_PKG_VERSION");
@@ -25,17 +26,12 @@ impl Subject {
 impl Store {
     /// Keeps an answer as the API tells it.
     pub async fn keep(&self, subject: Subject, what: &str, json: &[u8]) -> Result<(), StoreError> {
-        let packed = zstd::encode_all(json, LEVEL).map_err(|fault| StoreError::Damaged(fault.to_string()))?;
-        let (subject, id) = subject.parts();
-        sqlx::query("INSERT OR REPLACE INTO kept (subject, id, what, software, packed) VALUES (?, ?, ?, ?, ?)")
-            .bind(subject)
-            .bind(id)
-            .bind(what)
-            .bind(SOFTWARE)
-            .bind(packed)
-            .execute(&self.writer)
-            .await?;
-        Ok(())
+        self.keep_packed(subject, what, &packed(json)?).await
+    }
+
+    /// The same, where it was [`packed`] before.
+    pub async fn keep_packed(&self, subject: Subject, what: &str, packed: &[u8]) -> Result<(), StoreError> {
+        keep(&mut *self.writer.acquire().await?, subject, what, packed).await
     }
 
     /// `None` where it has to be worked out.
@@ -49,8 +45,34 @@ impl Store {
                 .bind(SOFTWARE)
                 .fetch_optional(&self.readers)
                 .await?;
-        packed
-            .map(|packed| zstd::decode_all(&packed[..]).map_err(|fault| StoreError::Damaged(fault.to_string())))
-            .transpose()
+        packed.map(|packed| unpacked(&packed)).transpose()
     }
+}
+
+/// An answer as it is kept.
+pub fn packed(json: &[u8]) -> Result<Vec<u8>, StoreError> {
+    zstd::encode_all(json, LEVEL).map_err(|fault| StoreError::Damaged(fault.to_string()))
+}
+
+/// The answer that was [`packed`].
+pub fn unpacked(packed: &[u8]) -> Result<Vec<u8>, StoreError> {
+    zstd::decode_all(packed).map_err(|fault| StoreError::Damaged(fault.to_string()))
+}
+
+pub(super) async fn keep(
+    writer: &mut SqliteConnection,
+    subject: Subject,
+    what: &str,
+    packed: &[u8],
+) -> Result<(), StoreError> {
+    let (subject, id) = subject.parts();
+    sqlx::query("INSERT OR REPLACE INTO kept (subject, id, what, software, packed) VALUES (?, ?, ?, ?, ?)")
+        .bind(subject)
+        .bind(id)
+        .bind(what)
+        .bind(SOFTWARE)
+        .bind(packed)
+        .execute(writer)
+        .await?;
+    Ok(())
 }

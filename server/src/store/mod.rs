@@ -31,7 +31,7 @@ mod view;
 
 pub use commit::RunCommit;
 pub use error::StoreError;
-pub use kept::Subject;
+pub use kept::{Subject, packed, unpacked};
 pub use order::Order;
 pub use records::{
     AutopilotRecord, CalibrationRecord, DiagnosisRecord, EventRecord, ModelRecord, NewModel, NewRun, NoteRecord,
@@ -54,8 +54,8 @@ pub struct Store {
     writer: SqlitePool,
     /// Readers see the last commit and never wait for the writer.
     readers: SqlitePool,
-    /// Held for as long as the store is open: one daemon for each data folder.
-    lock: Arc<File>,
+    /// Held for as long as the store is open: one daemon for each data folder. `None` where it only reads.
+    lock: Option<Arc<File>>,
     /// Whether a mock bench has a full disk.
     is_full: Arc<AtomicBool>,
 }

@@ -1,11 +1,11 @@
 //! Model versions, a tree that only grows, and the diagnoses of its nodes.
 
 use super::runs::{exists, json, now};
-use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, VersionRecord};
+use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, Subject, VersionRecord, kept};
 use jointbench_procedure::RunId;
 use serde_json::Value;
-use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
+use sqlx::{Row, SqliteConnection};
 
 fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
     Ok(ModelRecord {
@@ -34,47 +34,42 @@ fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
 impl Store {
     /// Keeps a fit as a version. What was added and removed is told from the parent's effects.
     pub async fn save_model(&self, new: &NewModel) -> Result<ModelRecord, StoreError> {
+        self.save_fitted(new, None, None).await
+    }
+
+    /// The same together with what was worked out of it, packed and under its name, and its diagnosis: all of it or nothing.
+    pub async fn save_fitted(
+        &self,
+        new: &NewModel,
+        kept: Option<(&str, &[u8])>,
+        diagnosis: Option<&Value>,
+    ) -> Result<ModelRecord, StoreError> {
+        let before = self.effects_before(new).await?;
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let id = insert_model(&mut writer, new, &before).await?;
+        if let Some((what, packed)) = kept {
+            kept::keep(&mut writer, Subject::Model(id), what, packed).await?;
+        }
+        if let Some(diagnosis) = diagnosis {
+            insert_diagnosis(&mut writer, id, diagnosis, &now()).await?;
+        }
+        writer.commit().await?;
+        self.model(id).await
+    }
+
+    /// The effects of the parent; none without one.
+    async fn effects_before(&self, new: &NewModel) -> Result<Vec<String>, StoreError> {
         for run in std::iter::once(new.run).chain(new.more_runs.iter().copied()) {
             exists(&mut *self.readers.acquire().await?, run).await?;
         }
         let parent = match new.parent {
             Some(parent) => self.model(parent).await?,
-            None => return self.insert_model(new, &[]).await,
+            None => return Ok(Vec::new()),
         };
         if parent.run != new.run {
             return Err(StoreError::OtherRun { parent: parent.id, run: new.run });
         }
-        self.insert_model(new, &parent.effects).await
-    }
-
-    async fn insert_model(&self, new: &NewModel, before: &[String]) -> Result<ModelRecord, StoreError> {
-        let without = |these: &[String], those: &[String]| {
-            these.iter().filter(|effect| !those.contains(effect)).cloned().collect::<Vec<String>>()
-        };
-        let id = sqlx::query_scalar(
-            "INSERT INTO models (run, more_runs, excluded, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
-             noise_floor_rms, options, who, created_at, made_to_try) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
-        )
-        .bind(new.run)
-        .bind(serde_json::to_string(&new.more_runs)?)
-        .bind(serde_json::to_string(&new.excluded)?)
-        .bind(new.parent)
-        .bind(&new.kind)
-        .bind(serde_json::to_string(&new.effects)?)
-        .bind(serde_json::to_string(&without(&new.effects, before))?)
-        .bind(serde_json::to_string(&without(before, &new.effects))?)
-        .bind(serde_json::to_string(&new.fit)?)
-        .bind(&new.residual)
-        .bind(new.rms)
-        .bind(new.validation_rms)
-        .bind(new.noise_floor_rms)
-        .bind(serde_json::to_string(&new.options)?)
-        .bind(&new.by)
-        .bind(now())
-        .bind(new.tried)
-        .fetch_one(&self.writer)
-        .await?;
-        self.model(id).await
+        Ok(parent.effects)
     }
 
     /// Makes a version that was only tried, or that is idle, one of the run's.
@@ -129,13 +124,8 @@ impl Store {
     pub async fn save_diagnosis(&self, model: i64, diagnosis: &Value) -> Result<DiagnosisRecord, StoreError> {
         self.model(model).await?;
         let created_at = now();
-        let inserted = sqlx::query("INSERT INTO diagnoses (model, diagnosis, created_at) VALUES (?, ?, ?)")
-            .bind(model)
-            .bind(serde_json::to_string(diagnosis)?)
-            .bind(&created_at)
-            .execute(&self.writer)
-            .await?;
-        Ok(DiagnosisRecord { id: inserted.last_insert_rowid(), model, diagnosis: diagnosis.clone(), created_at })
+        let id = insert_diagnosis(&mut *self.writer.acquire().await?, model, diagnosis, &created_at).await?;
+        Ok(DiagnosisRecord { id, model, diagnosis: diagnosis.clone(), created_at })
     }
 
     pub async fn diagnosis(&self, id: i64) -> Result<DiagnosisRecord, StoreError> {
@@ -157,6 +147,51 @@ impl Store {
                 .await?;
         rows.into_iter().map(diagnosis_record).collect()
     }
+}
+
+async fn insert_model(writer: &mut SqliteConnection, new: &NewModel, before: &[String]) -> Result<i64, StoreError> {
+    let without = |these: &[String], those: &[String]| {
+        these.iter().filter(|effect| !those.contains(effect)).cloned().collect::<Vec<String>>()
+    };
+    let id = sqlx::query_scalar(
+        "INSERT INTO models (run, more_runs, excluded, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
+         noise_floor_rms, options, who, created_at, made_to_try) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
+    )
+    .bind(new.run)
+    .bind(serde_json::to_string(&new.more_runs)?)
+    .bind(serde_json::to_string(&new.excluded)?)
+    .bind(new.parent)
+    .bind(&new.kind)
+    .bind(serde_json::to_string(&new.effects)?)
+    .bind(serde_json::to_string(&without(&new.effects, before))?)
+    .bind(serde_json::to_string(&without(before, &new.effects))?)
+    .bind(serde_json::to_string(&new.fit)?)
+    .bind(&new.residual)
+    .bind(new.rms)
+    .bind(new.validation_rms)
+    .bind(new.noise_floor_rms)
+    .bind(serde_json::to_string(&new.options)?)
+    .bind(&new.by)
+    .bind(now())
+    .bind(new.tried)
+    .fetch_one(writer)
+    .await?;
+    Ok(id)
+}
+
+async fn insert_diagnosis(
+    writer: &mut SqliteConnection,
+    model: i64,
+    diagnosis: &Value,
+    created_at: &str,
+) -> Result<i64, StoreError> {
+    let inserted = sqlx::query("INSERT INTO diagnoses (model, diagnosis, created_at) VALUES (?, ?, ?)")
+        .bind(model)
+        .bind(serde_json::to_string(diagnosis)?)
+        .bind(created_at)
+        .execute(writer)
+        .await?;
+    Ok(inserted.last_insert_rowid())
 }
 
 fn diagnosis_record(

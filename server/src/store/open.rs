@@ -18,7 +18,8 @@ const APPLICATION_ID: i64 = 0x4a42_656e;
 /// Commits of the recorder stay under 1 ms in 99 of 100 cases with pages of this size.
 const PAGE_BYTES: u32 = 16_384;
 const FILE_NAME: &str = "jointbench.db";
-const MAPPED_BYTES: &str = "1073741824";
+/// Of each connection. Five of them must fit beside everything else in an address space of 1 GiB.
+const MAPPED_BYTES: &str = "33554432";
 const READERS: u32 = 4;
 /// For a database that another program holds, and for the one connection that writes.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -48,7 +49,20 @@ impl Store {
         migrate(&writer, &file).await?;
         give_back(&mut *writer.acquire().await?).await?;
         let readers = pool(READERS).connect_with(options.read_only(true)).await?;
-        Ok(Store { writer, readers, lock: Arc::new(lock), is_full })
+        Ok(Store { writer, readers, lock: Some(Arc::new(lock)), is_full })
+    }
+
+    /// Opens the store beside the daemon that has it, to read: what was committed is there, and nothing can be written.
+    pub async fn open_to_read(folder: &Path) -> Result<Store, StoreError> {
+        let file = folder.join(FILE_NAME);
+        let options = SqliteConnectOptions::new()
+            .filename(&file)
+            .read_only(true)
+            .busy_timeout(Duration::from_secs(5))
+            .pragma("mmap_size", MAPPED_BYTES)
+            .disable_statement_logging();
+        let readers = pool(2).connect_with(options).await.map_err(|fault| not_ours(fault, &file))?;
+        Ok(Store { writer: readers.clone(), readers, lock: None, is_full: Arc::default() })
     }
 
     /// Whether a store was made in the folder.
@@ -61,7 +75,7 @@ impl Store {
         self.readers.close().await;
         self.writer.close().await;
         // Clones of the store may live on, in requests for example: the folder is free all the same.
-        if let Err(fault) = self.lock.unlock() {
+        if let Some(Err(fault)) = self.lock.as_ref().map(|lock| lock.unlock()) {
             tracing::warn!(%fault, "the data folder stays locked until the process ends");
         }
     }

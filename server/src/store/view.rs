@@ -4,7 +4,7 @@ use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
 use super::samples::{Chosen, choose, read};
 use super::{Store, StoreError, View, ViewColumn};
 use jointbench_procedure::RunId;
-use sqlx::SqliteConnection;
+use sqlx::{QueryBuilder, SqliteConnection};
 use std::ops::Range;
 
 /// Smallest and largest values of bins in a row.
@@ -169,11 +169,11 @@ impl Points {
     }
 
     /// Bins that start at `first_row`, each of `width` rows.
-    fn take_bins(&mut self, grid: Grid, first_row: i64, width: usize, bins: &Extremes) {
+    fn take_bins(&mut self, grid: Grid, first_row: i64, width: usize, smallest: &[f64], largest: &[f64]) {
         let mut row = first_row;
         let mut point = grid.point(row);
         let mut next = grid.first_row(point + 1);
-        for (min, max) in bins.min.iter().zip(&bins.max) {
+        for (min, max) in smallest.iter().zip(largest) {
             while row >= next && point + 1 < self.min.len() {
                 point += 1;
                 next = grid.first_row(point + 1);
@@ -208,18 +208,31 @@ async fn from_samples(
     px: usize,
 ) -> Result<Vec<ViewColumn>, StoreError> {
     let grid = Grid::of(&rows, px);
-    let trace = read(reader, run, chosen.clone(), rows.clone()).await?;
-    let points = trace.columns().iter().map(|values| {
-        let mut points = Points::new(px);
-        for point in 0..px {
-            let (from, to) = (grid.first_row(point) - rows.start, grid.first_row(point + 1) - rows.start);
-            let bin = pyramid::extremes(&values[from as usize..to as usize], usize::MAX);
-            points.take(point, bin.min[0], bin.max[0]);
-        }
-        points
-    });
-    let points = points.collect();
+    let mut points: Vec<Points> = chosen.iter().map(|_| Points::new(px)).collect();
+    take_samples(reader, run, &chosen, rows, grid, &mut points).await?;
     Ok(finish(chosen, points))
+}
+
+/// A picture of many pixels is made of millions of rows: never all of them at once.
+const ROWS_AT_ONCE: usize = 1 << 16;
+const SPANS_AT_ONCE: i64 = 64;
+
+async fn take_samples(
+    reader: &mut SqliteConnection,
+    run: RunId,
+    chosen: &[Chosen],
+    rows: Range<i64>,
+    grid: Grid,
+    points: &mut [Points],
+) -> Result<(), StoreError> {
+    for first in rows.clone().step_by(ROWS_AT_ONCE) {
+        let last = rows.end.min(first + ROWS_AT_ONCE as i64);
+        let trace = read(reader, run, chosen.to_vec(), first..last).await?;
+        for (values, points) in trace.columns().iter().zip(&mut *points) {
+            points.take_bins(grid, first, 1, values, values);
+        }
+    }
+    Ok(())
 }
 
 async fn from_pyramid(
@@ -232,37 +245,41 @@ async fn from_pyramid(
 ) -> Result<Vec<ViewColumn>, StoreError> {
     let grid = Grid::of(&rows, px);
     let mut points: Vec<Points> = chosen.iter().map(|_| Points::new(px)).collect();
-    let sql = match coarse {
-        true => {
-            "SELECT first_row, rows, coarse FROM spans WHERE run = ? AND first_row >= ? AND first_row + rows <= ? ORDER BY first_row"
-        }
-        false => {
-            "SELECT first_row, rows, fine FROM spans WHERE run = ? AND first_row >= ? AND first_row + rows <= ? ORDER BY first_row"
-        }
-    };
-    let spans: Vec<(i64, i64, Vec<u8>)> =
-        sqlx::query_as(sql).bind(run).bind(rows.start).bind(rows.end).fetch_all(&mut *reader).await?;
-    for (first_row, count, packed) in &spans {
-        for ((place, _), points) in chosen.iter().zip(&mut points) {
-            let (width, bins) = match coarse {
-                true => (COARSE_ROWS, pyramid::unpack_coarse(packed, *count as usize, *place)?),
-                false => (FINE_ROWS, pyramid::unpack_fine(packed, *count as usize, *place)?),
-            };
-            points.take_bins(grid, *first_row, width, &bins);
-        }
-    }
+    let column = if coarse { "coarse" } else { "fine" };
     // What lies before and behind the whole blocks: cut blocks and the tail, sample by sample.
-    let inner = match (spans.first(), spans.last()) {
-        (Some((first, _, _)), Some((last, count, _))) => *first..last + count,
-        _ => rows.start..rows.start,
-    };
-    for edge in [rows.start..inner.start, inner.end..rows.end] {
-        if !edge.is_empty() {
-            let trace = read(reader, run, chosen.clone(), edge.clone()).await?;
-            for (values, points) in trace.columns().iter().zip(&mut points) {
-                points.take_bins(grid, edge.start, 1, &Extremes { min: values.clone(), max: values.clone() });
+    let mut inner = rows.start..rows.start;
+    loop {
+        let from = if inner.is_empty() { rows.start } else { inner.end };
+        let spans = spans(reader, run, column, from..rows.end).await?;
+        for (first_row, count, packed) in &spans {
+            for ((place, _), points) in chosen.iter().zip(&mut points) {
+                let (width, bins) = match coarse {
+                    true => (COARSE_ROWS, pyramid::unpack_coarse(packed, *count as usize, *place)?),
+                    false => (FINE_ROWS, pyramid::unpack_fine(packed, *count as usize, *place)?),
+                };
+                points.take_bins(grid, *first_row, width, &bins.min, &bins.max);
             }
         }
+        let (Some((first, _, _)), Some((last, count, _))) = (spans.first(), spans.last()) else { break };
+        inner = if inner.is_empty() { *first } else { inner.start }..last + count;
+    }
+    for edge in [rows.start..inner.start, inner.end..rows.end] {
+        take_samples(reader, run, &chosen, edge, grid, &mut points).await?;
     }
     Ok(finish(chosen, points))
+}
+
+/// First row, rows and packed bins of the next whole blocks in a range.
+async fn spans(
+    reader: &mut SqliteConnection,
+    run: RunId,
+    column: &str,
+    rows: Range<i64>,
+) -> Result<Vec<(i64, i64, Vec<u8>)>, StoreError> {
+    let mut query = QueryBuilder::new("SELECT first_row, rows, ");
+    query.push(column).push(" FROM spans WHERE run = ").push_bind(run);
+    query.push(" AND first_row >= ").push_bind(rows.start);
+    query.push(" AND first_row + rows <= ").push_bind(rows.end);
+    query.push(" ORDER BY first_row LIMIT ").push_bind(SPANS_AT_ONCE);
+    Ok(query.build_query_as().fetch_all(reader).await?)
 }

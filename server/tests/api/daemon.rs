@@ -2,6 +2,7 @@
 
 use jointbench::config::BenchDescription;
 use jointbench::daemon::{Daemon, DaemonSettings, Network};
+use jointbench::job::Limits;
 use jointbench::lab::LabError;
 use jointbench_devices::{Joint, MockSettings};
 use serde_json::Value;
@@ -35,6 +36,7 @@ pub fn settings(data: &Path, pace: Option<f64>) -> DaemonSettings {
         network: Network::default(),
         benches: vec![BenchDescription::mock(BENCH, mock)],
         program: env!("CARGO_BIN_EXE_jointbench").into(),
+        analysis: Limits::default(),
     }
 }
 

@@ -8,6 +8,7 @@ mod disk;
 mod door;
 mod headers;
 mod import;
+mod jobs;
 mod limits;
 mod live;
 mod log;

@@ -1,5 +1,8 @@
 //! The daemon on a bad day, through REST.
 
+#[cfg(unix)]
+mod limits;
+
 use crate::program::{Daemon, run, stderr, stdout};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

@@ -45,6 +45,9 @@ pub enum Command {
     /// What the daemon starts for each bench: holds its instruments, by orders on its standard input
     #[command(hide = true)]
     Worker,
+    /// One computation of a daemon, which starts it
+    #[command(hide = true)]
+    Job,
     /// Check a bench description and let its instruments identify themselves; moves nothing
     Check(Check),
     /// List this computer's serial ports: what is behind them, and what may not be opened and why

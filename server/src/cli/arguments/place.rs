@@ -10,6 +10,9 @@ pub struct Place {
     /// Folder of the store; made where it is missing [default: jointbench-data, or jointbench-data/demo for the demo]
     #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA")]
     pub data: Option<PathBuf>,
+    /// Memory that a fit, a diagnosis or an import may take, each in a process of its own [GiB]
+    #[arg(long, value_name = "GIB", default_value_t = 4.0, value_parser = gibibytes)]
+    pub analysis_memory: f64,
     /// Write the traffic of every instrument down in this folder, to read and to replay
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
@@ -47,6 +50,14 @@ pub struct ServedTokens {
     /// File with that second token [default: the systemd credential jointbench-read-token]
     #[arg(long, value_name = "FILE", env = "JOINTBENCH_READ_TOKEN_FILE")]
     pub read_token_file: Option<PathBuf>,
+}
+
+/// Less than a quarter holds no run of a usual length.
+fn gibibytes(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(size) if (0.25..=1024.0).contains(&size) => Ok(size),
+        _ => Err("expected a number of GiB from 0.25 to 1024, such as 4".to_owned()),
+    }
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {

@@ -1,0 +1,113 @@
+//! The inside of a job's process: `jointbench job`.
+
+use super::reply::{Head, Refusal};
+use super::{Job, Request};
+use crate::lab::{Lab, LabError};
+use crate::store::Store;
+use std::io::{self, BufRead, Read, Write};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Steps behind everything else on the processor.
+#[cfg(unix)]
+const NICE: i32 = 10;
+/// Blocking threads, each with a stack of its own: reading a run takes one for each channel in turn.
+const BLOCKING_THREADS: usize = 16;
+
+/// Reads a request, answers it, and ends. Exit code 0 says that the answer is whole.
+pub fn main() -> ExitCode {
+    let mut line = String::new();
+    let read = io::stdin().lock().read_line(&mut line);
+    let Ok(request) = read.map_err(drop).and_then(|_| serde_json::from_str::<Request<Job>>(&line).map_err(drop)) else {
+        eprintln!("jointbench job: the daemon starts this by itself, with a request on standard input");
+        return ExitCode::from(2);
+    };
+    stay_small(request.memory_bytes);
+    // What happens here is told to the daemon by how this process ends.
+    std::panic::set_hook(Box::new(|panic| eprintln!("{panic}")));
+    end_with_whoever_asked();
+    let begun = Arc::<AtomicBool>::default();
+    let out = Answering { begun: begun.clone() };
+    match answer(request, out) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) if begun.load(Ordering::Acquire) => {
+            eprintln!("{fault}");
+            ExitCode::FAILURE
+        }
+        Err(fault) => match said(&Head::Refused(Refusal::from(fault)).line()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(_) => ExitCode::FAILURE,
+        },
+    }
+}
+
+fn answer(request: Request<Job>, mut out: Answering) -> Result<(), LabError> {
+    let mut runtime = tokio::runtime::Builder::new_current_thread();
+    let runtime = runtime.enable_all().max_blocking_threads(BLOCKING_THREADS).build();
+    let runtime = runtime.map_err(|fault| LabError::Internal(format!("no threads: {fault}")))?;
+    runtime.block_on(async move {
+        let lab = Lab::of_store(Store::open_to_read(&request.data).await?);
+        match request.job {
+            Job::Export(request) => lab.export_into(request, out).await,
+            job => {
+                let bytes = lab.answer(job).await?;
+                out.write_all(&bytes).map_err(|fault| LabError::Internal(fault.to_string()))
+            }
+        }
+    })
+}
+
+/// A limit to the memory of this process, and the last place on the processor. Where the system is short of memory it ends
+/// this process before the daemon.
+#[cfg(unix)]
+fn stay_small(memory_bytes: u64) {
+    use rustix::process::{Resource, Rlimit, getrlimit, nice, setrlimit};
+    let most = getrlimit(Resource::As).maximum.unwrap_or(u64::MAX).min(memory_bytes);
+    if let Err(fault) = setrlimit(Resource::As, Rlimit { current: Some(most), maximum: Some(most) }) {
+        tracing::warn!(%fault, "the memory of a computation is not limited");
+    }
+    // Without either the computation is as it would be anyway.
+    let _ = nice(NICE);
+    let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
+}
+
+/// Such a system has other means, and the limit of time holds.
+#[cfg(not(unix))]
+fn stay_small(_: u64) {}
+
+/// The daemon holds the other end of standard input: when it goes, also by `kill -9`, nobody waits any more.
+fn end_with_whoever_asked() {
+    let watch = || {
+        let _ = io::stdin().lock().read(&mut [0]);
+        std::process::exit(1);
+    };
+    let _ = std::thread::Builder::new().stack_size(64 << 10).spawn(watch);
+}
+
+/// Standard output, with the head of an answer before its first byte.
+struct Answering {
+    begun: Arc<AtomicBool>,
+}
+
+impl Write for Answering {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if !self.begun.swap(true, Ordering::AcqRel) {
+            said(&Head::Answer.line())?;
+        }
+        said(bytes)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Past the line buffer of standard output, which would look for line ends in tables.
+fn said(bytes: &[u8]) -> io::Result<()> {
+    let out = io::stdout();
+    let mut out = out.lock();
+    out.write_all(bytes)?;
+    out.flush()
+}

@@ -1,0 +1,125 @@
+//! Computations on whole runs, each in a process of its own.
+//!
+//! A fit needs memory and time by the size of its run, and a table that comes from outside may be made to need too much of
+//! both. The daemon starts itself anew for each of them (`jointbench job`): with a limit to its memory, behind everything
+//! else on the processor, and killed as soon as nobody waits for it any more. Such a process only reads the store. What is to
+//! be kept it hands back, and the daemon keeps it in one transaction.
+//!
+//! ```text
+//! stdin      one line, a request as JSON; then open for as long as somebody waits
+//! stdout     one line, whether it is answered or refused; then the answer, as its job makes it
+//! ```
+
+mod inside;
+mod lane;
+mod process;
+mod reply;
+
+pub use inside::main;
+pub use process::{Jobs, Streamed};
+
+use crate::lab::{Alignment, ExportRequest, ImportRequest, Offer};
+use crate::view::{EffectTrial, Exclusion};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What is computed. Runs and models are named by their numbers in the store.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum Job {
+    Fit {
+        runs: Vec<i64>,
+        effects: Vec<String>,
+        excluded: Vec<Exclusion>,
+        offer: Option<Offer>,
+    },
+    Diagnose {
+        model: i64,
+        offer: Option<Offer>,
+    },
+    NextRun {
+        diagnosis: i64,
+        offer: Offer,
+    },
+    Residuals {
+        model: i64,
+    },
+    Compare {
+        first: i64,
+        second: i64,
+        run: i64,
+    },
+    Worth {
+        model: i64,
+    },
+    WithEffect {
+        model: i64,
+        effect: String,
+    },
+    Evaluate {
+        model: i64,
+        run: i64,
+    },
+    /// An exported model on a run, before it is taken in.
+    EvaluateFile {
+        file: serde_json::Value,
+        run: i64,
+    },
+    TryEffect {
+        trial: EffectTrial,
+    },
+    Identify {
+        run: i64,
+    },
+    Beside {
+        run: i64,
+    },
+    Statistics {
+        run: i64,
+        channels: Option<Vec<String>>,
+        from_s: Option<f64>,
+        to_s: Option<f64>,
+    },
+    Differences {
+        runs: Vec<i64>,
+        how: Alignment,
+    },
+    Export(ExportRequest),
+    /// Rows are laid down in a file; a file that was `uploaded` has closer bounds than one of the user's own.
+    Import {
+        request: ImportRequest,
+        rows: PathBuf,
+        uploaded: bool,
+    },
+}
+
+impl Job {
+    /// Files wait for each other, not for computations: a slow reader of an export holds up no fit.
+    fn moves_a_file(&self) -> bool {
+        matches!(self, Job::Export(_) | Job::Import { .. })
+    }
+}
+
+/// What one computation may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Address space of its process.
+    pub memory_bytes: u64,
+    pub time: Duration,
+}
+
+pub const GIB: u64 = 1 << 30;
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits { memory_bytes: 4 * GIB, time: Duration::from_secs(600) }
+    }
+}
+
+/// What the process is told.
+#[derive(Debug, Serialize, Deserialize)]
+struct Request<J> {
+    data: PathBuf,
+    memory_bytes: u64,
+    job: J,
+}

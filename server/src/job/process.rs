@@ -1,0 +1,269 @@
+//! The daemon's side: starts the process of a job, hears what it answers, and ends it when nobody waits any more.
+
+use super::lane::{Lane, Turn, ending};
+use super::reply::Head;
+use super::{GIB, Job, Limits, Request};
+use crate::lab::LabError;
+use axum::body::Bytes;
+use std::path::{Path, PathBuf};
+use std::process::{ExitStatus, Stdio};
+use std::sync::Arc;
+use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader};
+use tokio::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command};
+use tokio::sync::{mpsc, watch};
+use tokio::task::JoinHandle;
+use tokio::time::Instant;
+
+/// The largest answer that is taken in whole. What is larger goes through piece by piece ([`Jobs::stream`]).
+const MOST_ANSWERED_BYTES: u64 = 128 << 20;
+/// A head is one line with a sentence in it.
+const MOST_HEAD_BYTES: u64 = 1 << 20;
+/// What a process has said of itself: its last words are in there.
+const MOST_COMPLAINT_BYTES: u64 = 16 << 10;
+/// Bytes that go through at a time, and how many such pieces wait for a slow reader.
+const PIECE_BYTES: usize = 64 << 10;
+const PIECES: usize = 4;
+
+/// Starts the jobs of one daemon. Clones share its lanes.
+#[derive(Debug, Clone)]
+pub struct Jobs {
+    inner: Arc<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    program: PathBuf,
+    data: PathBuf,
+    limits: Limits,
+    computing: Lane,
+    moving: Lane,
+    ending: watch::Sender<bool>,
+}
+
+/// An answer piece by piece. Its process ends when this is dropped.
+pub type Streamed = mpsc::Receiver<Result<Bytes, LabError>>;
+
+impl Jobs {
+    /// `program` is the file of `jointbench`, `data` the folder of the store.
+    pub fn new(program: &Path, data: &Path, limits: Limits) -> Jobs {
+        let (program, data) = (program.to_owned(), data.to_owned());
+        let (computing, moving, ending) = Default::default();
+        Jobs { inner: Arc::new(Inner { program, data, limits, computing, moving, ending }) }
+    }
+
+    /// The folder of the store.
+    pub fn data(&self) -> &Path {
+        &self.inner.data
+    }
+
+    /// The answer. Dropping the future ends the process; so do [`Jobs::end`] and the limit of time.
+    pub async fn run(&self, job: &Job) -> Result<Vec<u8>, LabError> {
+        let mut process = self.start(job).await?;
+        let mut answer = Vec::new();
+        while let Some(piece) = process.piece().await? {
+            if answer.len() as u64 + piece.len() as u64 > MOST_ANSWERED_BYTES {
+                return Err(LabError::TooLarge(format!(
+                    "the answer is larger than {} MiB: choose a shorter run, or exclude stretches of it",
+                    MOST_ANSWERED_BYTES >> 20
+                )));
+            }
+            answer.extend_from_slice(&piece);
+        }
+        Ok(answer)
+    }
+
+    /// The same, for answers that may be of any size. What is refused before the first piece is refused here.
+    pub async fn stream(&self, job: &Job) -> Result<Streamed, LabError> {
+        let mut process = self.start(job).await?;
+        let (give, take) = mpsc::channel(PIECES);
+        tokio::spawn(async move {
+            loop {
+                let piece = tokio::select! {
+                    piece = process.piece() => piece,
+                    () = give.closed() => return,
+                };
+                let Some(piece) = piece.transpose() else { return };
+                let is_last = piece.is_err();
+                // A reader who stops reading holds the process no longer than its time.
+                let given = process.in_time(async { Ok(give.send(piece).await) }).await;
+                if is_last || !matches!(given, Ok(Ok(()))) {
+                    return;
+                }
+            }
+        });
+        Ok(take)
+    }
+
+    /// Ends all processes, and lets none begin any more.
+    pub fn end(&self) {
+        self.inner.computing.close();
+        self.inner.moving.close();
+        self.inner.ending.send_replace(true);
+    }
+
+    async fn start(&self, job: &Job) -> Result<Process, LabError> {
+        let inner = &self.inner;
+        let lane = if job.moves_a_file() { &inner.moving } else { &inner.computing };
+        let turn = lane.enter().await?;
+        let request = Request { data: inner.data.clone(), memory_bytes: inner.limits.memory_bytes, job };
+        let mut line = serde_json::to_vec(&request).map_err(|fault| LabError::Internal(fault.to_string()))?;
+        line.push(b'\n');
+        let mut process = Process::spawn(inner, turn)?;
+        process.ask(&line).await?;
+        Ok(process)
+    }
+}
+
+/// One job on its way. Dropping it kills the process.
+struct Process {
+    child: Child,
+    /// Open for as long as somebody waits.
+    asked: ChildStdin,
+    said: BufReader<ChildStdout>,
+    complaint: JoinHandle<String>,
+    limits: Limits,
+    until: Instant,
+    ending: watch::Receiver<bool>,
+    _turn: Turn,
+}
+
+impl Process {
+    fn spawn(inner: &Inner, turn: Turn) -> Result<Process, LabError> {
+        let mut command = Command::new(&inner.program);
+        #[cfg(unix)]
+        command.arg0("jointbench");
+        let piped = command.arg("job").stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // Tokens stand in the environment.
+        let spawned = piped.env_clear().kill_on_drop(true).spawn();
+        let mut child =
+            spawned.map_err(|fault| LabError::Internal(format!("no computation can be started: {fault}")))?;
+        let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
+        let (Some(asked), Some(said), Some(complaint)) = pipes else { unreachable!("all three are piped") };
+        Ok(Process {
+            child,
+            asked,
+            said: BufReader::new(said),
+            complaint: tokio::spawn(hear(complaint)),
+            limits: inner.limits,
+            until: Instant::now() + inner.limits.time,
+            ending: inner.ending.subscribe(),
+            _turn: turn,
+        })
+    }
+
+    /// Hands the request in and waits for the head of the reply.
+    async fn ask(&mut self, line: &[u8]) -> Result<(), LabError> {
+        let mut head = String::new();
+        let (asked, said) = (&mut self.asked, &mut self.said);
+        let hear = async {
+            // A process that ends at once does not read: its end tells why.
+            let _ = asked.write_all(line).await;
+            said.take(MOST_HEAD_BYTES).read_line(&mut head).await
+        };
+        in_time(self.until, &mut self.ending, self.limits, hear).await?;
+        match serde_json::from_str(&head) {
+            Ok(Head::Answer) => Ok(()),
+            Ok(Head::Refused(refusal)) => Err(self.limits.told(refusal.into())),
+            Err(_) => Err(self.died().await),
+        }
+    }
+
+    /// The next piece; `None` behind the last one of an answer that is whole.
+    async fn piece(&mut self) -> Result<Option<Bytes>, LabError> {
+        let mut piece = vec![0; PIECE_BYTES];
+        let read = in_time(self.until, &mut self.ending, self.limits, self.said.read(&mut piece)).await?;
+        piece.truncate(read);
+        if read > 0 {
+            return Ok(Some(piece.into()));
+        }
+        match in_time(self.until, &mut self.ending, self.limits, self.child.wait()).await?.success() {
+            true => Ok(None),
+            false => Err(self.died().await),
+        }
+    }
+
+    async fn in_time<T>(&mut self, what: impl Future<Output = std::io::Result<T>>) -> Result<T, LabError> {
+        in_time(self.until, &mut self.ending, self.limits, what).await
+    }
+
+    /// Why there is no answer.
+    async fn died(&mut self) -> LabError {
+        let ended = async { self.child.wait().await };
+        let status = match in_time(self.until, &mut self.ending, self.limits, ended).await {
+            Ok(status) => status,
+            Err(fault) => return fault,
+        };
+        let complaint = (&mut self.complaint).await.unwrap_or_default();
+        tracing::warn!(%status, complaint = complaint.trim(), "a computation died");
+        match lacked_memory(status, &complaint) {
+            true => self.limits.too_much_memory(),
+            false => LabError::Internal(format!("the computation failed ({status}): {}", last_line(&complaint))),
+        }
+    }
+}
+
+async fn hear(complaint: ChildStderr) -> String {
+    let mut complaint = BufReader::new(complaint);
+    let mut words = Vec::new();
+    let _ = (&mut complaint).take(MOST_COMPLAINT_BYTES).read_to_end(&mut words).await;
+    // Nothing blocks on a full pipe.
+    let _ = tokio::io::copy(&mut complaint, &mut tokio::io::sink()).await;
+    String::from_utf8_lossy(&words).into_owned()
+}
+
+async fn in_time<T>(
+    until: Instant,
+    ends: &mut watch::Receiver<bool>,
+    limits: Limits,
+    what: impl Future<Output = std::io::Result<T>>,
+) -> Result<T, LabError> {
+    tokio::select! {
+        done = what => done.map_err(|fault| LabError::Internal(format!("the computation failed: {fault}"))),
+        () = tokio::time::sleep_until(until) => Err(limits.too_long()),
+        _ = ends.wait_for(|ends| *ends) => Err(ending()),
+    }
+}
+
+/// An allocation that fails ends a Rust program by SIGABRT; a system that is short of memory ends it by SIGKILL.
+fn lacked_memory(status: ExitStatus, complaint: &str) -> bool {
+    #[cfg(unix)]
+    let killed = std::os::unix::process::ExitStatusExt::signal(&status) == Some(9);
+    #[cfg(not(unix))]
+    let killed = false;
+    killed || says_memory(complaint)
+}
+
+/// Rust's own words, those of the system (ENOMEM, and EAGAIN for the stack of a thread), and those of SQLite.
+fn says_memory(words: &str) -> bool {
+    let known = ["memory allocation of", "Cannot allocate memory", "out of memory", "Resource temporarily unavailable"];
+    known.iter().any(|known| words.contains(known))
+}
+
+fn last_line(words: &str) -> &str {
+    words.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it said nothing")
+}
+
+impl Limits {
+    fn too_much_memory(self) -> LabError {
+        LabError::TooLarge(format!(
+            "this needs more than {} GiB of memory: choose fewer rows (exclude stretches, or import every n-th row), or start \
+             the daemon with a larger --analysis-memory",
+            self.memory_bytes as f64 / GIB as f64
+        ))
+    }
+
+    fn too_long(self) -> LabError {
+        LabError::TooLarge(format!(
+            "this takes longer than {} s: choose fewer rows (exclude stretches, or import every n-th row), or fewer effects",
+            self.time.as_secs()
+        ))
+    }
+
+    /// A refusal that only says in other words that memory was short.
+    fn told(self, error: LabError) -> LabError {
+        match &error {
+            LabError::Internal(text) if says_memory(text) => self.too_much_memory(),
+            _ => error,
+        }
+    }
+}

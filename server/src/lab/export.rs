@@ -1,0 +1,142 @@
+//! Run tables out, a stretch at a time, so that a run of any length needs little memory.
+
+use super::spreadsheet::defused_channels;
+use super::statistics::ROWS_AT_ONCE;
+use super::transfer::SIMULATED;
+use super::{Answer, Lab, LabError};
+use crate::job::{Job, Streamed};
+use crate::store::RunRecord;
+use jointbench_files::{CsvWriter, MatWriter, ParquetWriter, meta_json};
+use jointbench_instrument::{Channel, Meta};
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+use std::ops::Range;
+use utoipa::ToSchema;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum FileFormat {
+    Csv,
+    Parquet,
+    /// For MATLAB, Octave and SciPy; out only
+    Mat,
+}
+
+impl FileFormat {
+    pub fn extension(self) -> &'static str {
+        match self {
+            FileFormat::Csv => "csv",
+            FileFormat::Parquet => "parquet",
+            FileFormat::Mat => "mat",
+        }
+    }
+
+    pub fn media_type(self) -> &'static str {
+        match self {
+            FileFormat::Csv => "text/csv; charset=utf-8",
+            FileFormat::Parquet => "application/vnd.apache.parquet",
+            FileFormat::Mat => "application/x-matlab-data",
+        }
+    }
+}
+
+/// A run, or a stretch of it, as a file.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct ExportRequest {
+    pub run: i64,
+    pub format: FileFormat,
+    /// On the run's clock; its first row where left out.
+    pub from_s: Option<f64>,
+    pub to_s: Option<f64>,
+    /// No name of a column in a CSV is a formula to a spreadsheet.
+    pub spreadsheet_safe: bool,
+}
+
+impl Lab {
+    /// The file, piece by piece, which [`Lab::import`] takes back unchanged.
+    pub async fn export(&self, request: ExportRequest) -> Answer<Streamed> {
+        // What cannot be found is refused before a process is started.
+        self.inner.store.run(request.run).await?;
+        let job = Job::Export(request);
+        match &self.inner.jobs {
+            Some(jobs) => jobs.stream(&job).await,
+            None => {
+                let (give, take) = tokio::sync::mpsc::channel(1);
+                let whole = self.answer(job).await?;
+                // There is room for one.
+                let _ = give.try_send(Ok(whole.into()));
+                Ok(take)
+            }
+        }
+    }
+
+    /// Writes the file.
+    pub(crate) async fn export_into(&self, request: ExportRequest, out: impl Write + Send + 'static) -> Answer<()> {
+        let ExportRequest { run, format, from_s, to_s, spreadsheet_safe } = request;
+        let (meta, record) = self.leaving(run).await?;
+        let rows = self.inner.store.rows_between(run, from_s, to_s).await?;
+        let channels = record.channels;
+        match format {
+            FileFormat::Csv => {
+                let channels = if spreadsheet_safe { defused_channels(channels) } else { channels };
+                let mut csv = CsvWriter::new(out, &channels);
+                for stretch in stretches(&rows) {
+                    csv.write(&self.inner.store.trace(run, None, stretch).await?).map_err(failed)?;
+                }
+                csv.finish().map_err(failed)
+            }
+            FileFormat::Parquet => {
+                let mut parquet = ParquetWriter::new(out, &meta, &channels).map_err(failed)?;
+                for stretch in stretches(&rows) {
+                    parquet.write(&self.inner.store.trace(run, None, stretch).await?).map_err(failed)?;
+                }
+                parquet.finish().map_err(failed)
+            }
+            FileFormat::Mat => self.export_columns(run, rows, &channels, MatWriter::new(out), &meta).await,
+        }
+    }
+
+    /// A MAT file holds one channel behind the other.
+    async fn export_columns(
+        &self,
+        run: i64,
+        rows: Range<u64>,
+        channels: &[Channel],
+        mut mat: MatWriter<impl Write + Send>,
+        meta: &Meta,
+    ) -> Answer<()> {
+        for channel in channels {
+            mat.begin(&channel.name, (rows.end - rows.start) as usize).map_err(failed)?;
+            for stretch in stretches(&rows) {
+                let name = [channel.name.clone()];
+                let column = self.inner.store.trace(run, Some(&name), stretch).await?;
+                mat.values(&column.columns()[0]).map_err(failed)?;
+            }
+        }
+        mat.finish(meta, channels).map_err(failed)
+    }
+
+    /// The facts of a run as they leave with it.
+    async fn leaving(&self, id: i64) -> Answer<(Meta, RunRecord)> {
+        let (mut meta, record) = self.facts(id).await?;
+        if record.simulated {
+            meta.other.insert(SIMULATED.to_owned(), true.into());
+        }
+        Ok((meta, record))
+    }
+
+    /// The facts of a run as `meta.json`, for a table that cannot carry them itself.
+    pub async fn export_meta(&self, id: i64) -> Answer<String> {
+        let (meta, record) = self.leaving(id).await?;
+        Ok(meta_json(&meta, &record.channels))
+    }
+}
+
+fn stretches(rows: &Range<u64>) -> impl Iterator<Item = Range<u64>> + use<> {
+    let end = rows.end;
+    rows.clone().step_by(ROWS_AT_ONCE as usize).map(move |first| first..end.min(first + ROWS_AT_ONCE))
+}
+
+fn failed(fault: io::Error) -> LabError {
+    LabError::Internal(format!("writing the file failed: {fault}"))
+}
