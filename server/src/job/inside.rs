@@ -62,9 +62,9 @@ fn answer(request: Request<Job>, mut out: Answering) -> Result<(), LabError> {
 /// this process before the daemon.
 #[cfg(unix)]
 fn stay_small(memory_bytes: u64) {
-    use rustix::process::{Resource, Rlimit, getrlimit, nice, setrlimit};
-    let most = getrlimit(Resource::As).maximum.unwrap_or(u64::MAX).min(memory_bytes);
-    if let Err(fault) = setrlimit(Resource::As, Rlimit { current: Some(most), maximum: Some(most) }) {
+    use rustix::process::{Resource, Rlimit, nice, setrlimit};
+    let limit = Rlimit { current: Some(memory_bytes), maximum: Some(memory_bytes) };
+    if let Err(fault) = setrlimit(Resource::As, limit) {
         tracing::warn!(%fault, "the memory of a computation is not limited");
     }
     // Without either the computation is as it would be anyway.

@@ -47,6 +47,8 @@ impl Jobs {
     /// `program` is the file of `jointbench`, `data` the folder of the store.
     pub fn new(program: &Path, data: &Path, limits: Limits) -> Jobs {
         let (program, data) = (program.to_owned(), data.to_owned());
+        // A process has no more than the one that starts it.
+        let limits = Limits { memory_bytes: limits.memory_bytes.min(own_memory_bytes()), ..limits };
         let (computing, moving, ending) = Default::default();
         Jobs { inner: Arc::new(Inner { program, data, limits, computing, moving, ending }) }
     }
@@ -224,6 +226,16 @@ async fn in_time<T>(
     }
 }
 
+#[cfg(unix)]
+fn own_memory_bytes() -> u64 {
+    rustix::process::getrlimit(rustix::process::Resource::As).maximum.unwrap_or(u64::MAX)
+}
+
+#[cfg(not(unix))]
+fn own_memory_bytes() -> u64 {
+    u64::MAX
+}
+
 /// An allocation that fails ends a Rust program by SIGABRT; a system that is short of memory ends it by SIGKILL.
 fn lacked_memory(status: ExitStatus, complaint: &str) -> bool {
     #[cfg(unix)]
@@ -262,7 +274,7 @@ impl Limits {
     /// A refusal that only says in other words that memory was short.
     fn told(self, error: LabError) -> LabError {
         match &error {
-            LabError::Internal(text) if says_memory(text) => self.too_much_memory(),
+            LabError::Internal(text) | LabError::Setup(text) if says_memory(text) => self.too_much_memory(),
             _ => error,
         }
     }

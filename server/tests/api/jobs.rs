@@ -58,11 +58,11 @@ fn computing(data: &Path) -> usize {
 
 #[test]
 fn a_computation_that_needs_too_much_says_so() {
-    let daemon = TestDaemon::start_with(None, |settings| settings.analysis.memory_bytes = 64 << 20);
+    let daemon = TestDaemon::start_with(None, |settings| settings.analysis.memory_bytes = 32 << 20);
     let (status, problem) = upload(&daemon, &table(MANY), &[("meta", META)]);
     assert_eq!(status, 413, "{problem}");
     let said = problem["detail"].as_str().unwrap();
-    assert!(said.contains("0.0625 GiB of memory") && said.contains("--analysis-memory"), "{said}");
+    assert!(said.contains("0.03125 GiB of memory") && said.contains("--analysis-memory"), "{said}");
     assert_eq!(daemon.get("/api/v1/runs").1["total"], 0, "nothing is kept");
 }
 
