@@ -105,7 +105,7 @@ mod tests {
         let tries = Tries::default();
         let address = |n: u32| IpAddr::from(std::net::Ipv4Addr::from_bits(n));
         assert_eq!((tries.count(address(0)), tries.count(address(0)), tries.count(address(1))), (1, 2, 1));
-        (2..3000).for_each(|n| drop(tries.count(address(n))));
+        (2..3000).for_each(|n| assert!(tries.count(address(n)) > 0));
         assert_eq!(tries.known.lock().unwrap().len(), MOST_ADDRESSES);
         assert_eq!(tries.count(address(0)), 1, "the quietest was forgotten");
         let six = |text: &str| text.parse::<IpAddr>().unwrap();

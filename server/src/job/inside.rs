@@ -35,7 +35,7 @@ pub fn main() -> ExitCode {
             eprintln!("{fault}");
             ExitCode::FAILURE
         }
-        Err(fault) => match said(&Head::Refused(Refusal::from(fault)).line()) {
+        Err(fault) => match said(&Head::Refused(Box::new(Refusal::from(fault))).line()) {
             Ok(()) => ExitCode::SUCCESS,
             Err(_) => ExitCode::FAILURE,
         },

@@ -165,7 +165,7 @@ impl Process {
         in_time(self.until, &mut self.ending, self.limits, hear).await?;
         match serde_json::from_str(&head) {
             Ok(Head::Answer) => Ok(()),
-            Ok(Head::Refused(refusal)) => Err(self.limits.told(refusal.into())),
+            Ok(Head::Refused(refusal)) => Err(self.limits.told((*refusal).into())),
             Err(_) => Err(self.died().await),
         }
     }

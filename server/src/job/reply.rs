@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum Head {
     /// The answer follows.
     Answer,
-    Refused(Refusal),
+    Refused(Box<Refusal>),
 }
 
 /// A [`LabError`] on its way out of the process that refused.
@@ -152,10 +152,10 @@ mod tests {
         ];
         for error in errors {
             let said = format!("{error:?}");
-            let line = Head::Refused(error.into()).line();
+            let line = Head::Refused(Box::new(error.into())).line();
             assert_eq!(line.iter().filter(|byte| **byte == b'\n').count(), 1);
             let Head::Refused(refusal) = serde_json::from_slice(&line).unwrap() else { panic!("{said}") };
-            assert_eq!(format!("{:?}", LabError::from(refusal)), said);
+            assert_eq!(format!("{:?}", LabError::from(*refusal)), said);
         }
     }
 }
