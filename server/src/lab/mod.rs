@@ -38,7 +38,7 @@ pub use transfer::{ATTENTION, COPY_OF, FileFormat, ImportRequest};
 use crate::bench::{Beginning, BenchHandle, store_leftovers, worker};
 use crate::config::BenchDescription;
 use crate::live::Hub;
-use crate::store::Store;
+use crate::store::{Store, StoreHealth};
 use crate::view::AutopilotState;
 use autopilot::Flights;
 use jointbench_procedure::{RunState, Safe};
@@ -122,6 +122,7 @@ impl Lab {
         lab.open_tokens().await?;
         lab.wait_until_secured().await;
         lab.judge_what_was_left();
+        tokio::spawn(lab.inner.store.clone().check_daily());
         Ok(lab)
     }
 
@@ -145,6 +146,11 @@ impl Lab {
     /// The file of `jointbench`, for parts of the daemon that are processes of their own.
     pub fn program(&self) -> &Path {
         &self.inner.program
+    }
+
+    /// Whether all that is stored could be read, when that was looked at last.
+    pub fn store_health(&self) -> StoreHealth {
+        self.inner.store.health()
     }
 
     pub fn hub(&self) -> &Hub {

@@ -1,6 +1,8 @@
 //! What was worked out of a model version or of a complete run: once, then only read. Runs and fits never change.
 
+use super::seal::KEPT;
 use super::{Store, StoreError};
+use sqlx::Row;
 
 /// Another release may work it out otherwise.
 const SOFTWARE: &str = env!("CARGO_PKG_VERSION");
@@ -27,30 +29,37 @@ impl Store {
     pub async fn keep(&self, subject: Subject, what: &str, json: &[u8]) -> Result<(), StoreError> {
         let packed = zstd::encode_all(json, LEVEL).map_err(|fault| StoreError::Damaged(fault.to_string()))?;
         let (subject, id) = subject.parts();
-        sqlx::query("INSERT OR REPLACE INTO kept (subject, id, what, software, packed) VALUES (?, ?, ?, ?, ?)")
+        let cells = [subject.into(), id.into(), what.into(), SOFTWARE.into(), packed[..].into()];
+        let checksum = KEPT.seal(&cells);
+        sqlx::query(
+            "INSERT OR REPLACE INTO kept (subject, id, what, software, packed, checksum) VALUES (?, ?, ?, ?, ?, ?)",
+        )
+        .bind(subject)
+        .bind(id)
+        .bind(what)
+        .bind(SOFTWARE)
+        .bind(packed)
+        .bind(checksum)
+        .execute(&self.writer)
+        .await?;
+        Ok(())
+    }
+
+    /// `None` where it has to be worked out, also because what was kept is damaged.
+    pub async fn kept(&self, subject: Subject, what: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        let (subject, id) = subject.parts();
+        let row = sqlx::query("SELECT * FROM kept WHERE subject = ? AND id = ? AND what = ? AND software = ?")
             .bind(subject)
             .bind(id)
             .bind(what)
             .bind(SOFTWARE)
-            .bind(packed)
-            .execute(&self.writer)
+            .fetch_optional(&self.readers)
             .await?;
-        Ok(())
-    }
-
-    /// `None` where it has to be worked out.
-    pub async fn kept(&self, subject: Subject, what: &str) -> Result<Option<Vec<u8>>, StoreError> {
-        let (subject, id) = subject.parts();
-        let packed: Option<Vec<u8>> =
-            sqlx::query_scalar("SELECT packed FROM kept WHERE subject = ? AND id = ? AND what = ? AND software = ?")
-                .bind(subject)
-                .bind(id)
-                .bind(what)
-                .bind(SOFTWARE)
-                .fetch_optional(&self.readers)
-                .await?;
-        packed
-            .map(|packed| zstd::decode_all(&packed[..]).map_err(|fault| StoreError::Damaged(fault.to_string())))
-            .transpose()
+        let Some(row) = row else { return Ok(None) };
+        if let Err(fault) = KEPT.check(&row) {
+            tracing::warn!(%fault, "worked out anew");
+            return Ok(None);
+        }
+        Ok(zstd::decode_all(row.try_get::<&[u8], _>("packed")?).ok())
     }
 }

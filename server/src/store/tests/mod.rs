@@ -1,6 +1,7 @@
 //! The store against a folder of its own.
 
 mod crash;
+mod damage;
 mod keeping;
 mod opening;
 mod viewing;
