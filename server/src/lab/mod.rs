@@ -80,6 +80,7 @@ impl Lab {
         program: PathBuf,
     ) -> Answer<Lab> {
         let store = Store::open(data).await?;
+        store.block_where_missing(descriptions.iter().map(|description| description.name.as_str())).await?;
         wait_for_workers(data).await;
         store_leftovers(data, &store).await?;
         interrupt_autopilots(&store).await?;

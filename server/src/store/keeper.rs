@@ -2,11 +2,12 @@
 //! has ended. No commit waits for it.
 
 use super::mark::{Mark, MarkFile};
+use super::open::PATIENCE;
 use super::runs::now;
 use super::{Store, StoreError};
 use serde::{Deserialize, Serialize};
 use sqlx::sqlite::SqliteConnectOptions;
-use sqlx::{ConnectOptions, Connection, SqliteConnection};
+use sqlx::{AssertSqlSafe, ConnectOptions, Connection, SqliteConnection, SqlitePool};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tokio::sync::{Mutex, watch};
@@ -15,7 +16,8 @@ use utoipa::ToSchema;
 
 /// The hook runs before its commit is on the disk: the change is looked for again after these pauses, twice as long each time.
 const FIRST_PAUSE: Duration = Duration::from_millis(2);
-const LOOKS: u32 = 12;
+/// A transaction that has changed nothing that is counted is waited for no longer.
+const LONGEST_PAUSE: Duration = Duration::from_secs(4);
 /// A checkpoint that a reader or a writer was in the way of is tried again.
 const RETRY: Duration = Duration::from_millis(250);
 
@@ -47,14 +49,17 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    pub async fn start(options: &SqliteConnectOptions, folder: PathBuf, signals: Signals) -> Result<Self, StoreError> {
-        // A checkpoint never waits while it keeps the writer out.
-        let database = options.clone().busy_timeout(Duration::ZERO).connect().await?;
+    pub async fn start(
+        options: &SqliteConnectOptions,
+        writer: SqlitePool,
+        folder: PathBuf,
+        signals: Signals,
+    ) -> Result<Self, StoreError> {
+        let database = options.connect().await?;
         let file =
             MarkFile::open(&folder).map_err(|fault| StoreError::Unwritable { folder, what: fault.to_string() })?;
-        let mut work = Work { database, file, marked: -1, ended: 0, is_due: true };
-        work.look().await?;
-        work.checkpoint().await?;
+        let mut work = Work { database, writer, file, marked: -1, ended: 0, is_due: true };
+        work.turn().await?;
         let task = tokio::spawn(work.go_on(signals.subscribe()));
         Ok(Self { signals, task: Mutex::new(Some(task)) })
     }
@@ -70,8 +75,18 @@ impl Keeper {
     }
 }
 
+impl Drop for Keeper {
+    fn drop(&mut self) {
+        if let Some(task) = self.task.get_mut().take() {
+            task.abort();
+        }
+    }
+}
+
 struct Work {
+    /// Only read from.
     database: SqliteConnection,
+    writer: SqlitePool,
     file: MarkFile,
     /// The last change that was marked.
     marked: i64,
@@ -83,15 +98,24 @@ struct Work {
 
 impl Work {
     async fn go_on(mut self, mut signals: watch::Receiver<Signal>) {
+        // Before the next look, while a change may be on its way.
+        let mut pause = None;
         loop {
             tokio::select! {
-                told = signals.changed() => if told.is_err() { break },
-                () = tokio::time::sleep(RETRY), if self.is_due => {}
+                told = signals.changed() => {
+                    if told.is_err() {
+                        break;
+                    }
+                    pause = Some(FIRST_PAUSE);
+                }
+                () = tokio::time::sleep(pause.unwrap_or(RETRY)), if pause.is_some() || self.is_due => {}
             }
             let ends = *signals.borrow_and_update() == Signal::End;
-            if let Err(fault) = self.turn(ends).await {
+            if let Err(fault) = self.turn().await {
                 tracing::warn!(%fault, "the last change was not marked");
             }
+            // What was found may be an earlier change than the one that was told: looks go on.
+            pause = pause.map(|pause| pause * 2).filter(|pause| *pause <= LONGEST_PAUSE);
             if ends {
                 break;
             }
@@ -101,45 +125,39 @@ impl Work {
         }
     }
 
-    async fn turn(&mut self, ends: bool) -> Result<(), StoreError> {
-        let mut pause = FIRST_PAUSE;
-        let looks = if ends || self.is_due { 1 } else { LOOKS };
-        for look in 1..=looks {
-            if self.look().await? || look == looks {
-                break;
-            }
-            tokio::time::sleep(pause).await;
-            pause *= 2;
-        }
-        if self.is_due {
-            self.checkpoint().await?;
+    async fn turn(&mut self) -> Result<(), StoreError> {
+        self.look().await?;
+        // On the writer's own connection: none of its transactions finds the database locked.
+        if self.is_due
+            && let Some(mut writer) = self.writer.try_acquire()
+        {
+            self.is_due = !checkpoint(&mut writer).await?;
         }
         Ok(())
     }
 
-    /// Whether there was a new change, which is marked then. What a reader sees is on the disk.
-    async fn look(&mut self) -> Result<bool, StoreError> {
+    /// Marks the last change. What a reader sees is on the disk.
+    async fn look(&mut self) -> Result<(), StoreError> {
         let (store, changes, ended) = state(&mut self.database).await?;
         self.is_due |= ended > self.ended;
         self.ended = ended;
         if changes == self.marked {
-            return Ok(false);
+            return Ok(());
         }
         let written = self.file.write(&Mark { store, changes });
         written.map_err(|fault| StoreError::Database(format!("jointbench.mark: {fault}")))?;
         self.marked = changes;
-        Ok(true)
-    }
-
-    async fn checkpoint(&mut self) -> Result<(), StoreError> {
-        self.is_due = !checkpoint(&mut self.database).await?;
         Ok(())
     }
 }
 
-/// Moves the write-ahead file into the database and empties it; `false` where somebody is in the way.
-pub async fn checkpoint(database: &mut SqliteConnection) -> Result<bool, StoreError> {
-    let (busy, _, _): (i64, i64, i64) = sqlx::query_as("PRAGMA wal_checkpoint(TRUNCATE)").fetch_one(database).await?;
+/// Moves the write-ahead file into the database and empties it; `false` where a reader is in the way, who is not waited for.
+async fn checkpoint(writer: &mut SqliteConnection) -> Result<bool, StoreError> {
+    sqlx::query("PRAGMA busy_timeout = 0").execute(&mut *writer).await?;
+    let done = sqlx::query_as::<_, (i64, i64, i64)>("PRAGMA wal_checkpoint(TRUNCATE)").fetch_one(&mut *writer).await;
+    let patience = format!("PRAGMA busy_timeout = {}", PATIENCE.as_millis());
+    sqlx::query(AssertSqlSafe(patience)).execute(writer).await?;
+    let (busy, _, _) = done?;
     Ok(busy == 0)
 }
 
@@ -189,11 +207,22 @@ impl Store {
     pub async fn losses(&self) -> Result<Vec<Loss>, StoreError> {
         losses(&mut *self.readers.acquire().await?).await
     }
+
+    /// Blocks these benches, too, where changes were missing when the store was opened: what is left may not know them.
+    pub async fn block_where_missing(&self, benches: impl IntoIterator<Item = &str>) -> Result<(), StoreError> {
+        let Some(loss) = &self.missing else { return Ok(()) };
+        for bench in benches {
+            if self.bench_block(bench).await?.is_none() {
+                self.block_bench(bench, None, &reason(loss)).await?;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// To be called when the store is opened, before anything is written: says what is missing, keeps that, and blocks every
 /// bench, since a stop may be among it.
-pub(super) async fn look_back(database: &mut SqliteConnection, folder: &Path) -> Result<(), StoreError> {
+pub(super) async fn look_back(database: &mut SqliteConnection, folder: &Path) -> Result<Option<Loss>, StoreError> {
     let mark = Mark::read(folder);
     let (store, ..) = state(database).await?;
     if let Some(other) = mark.as_ref().filter(|mark| mark.store != store) {
@@ -202,7 +231,7 @@ pub(super) async fn look_back(database: &mut SqliteConnection, folder: &Path) ->
             "jointbench.db is not the store that this folder held: that one was removed"
         );
     }
-    let Some(loss) = missing(database, mark.as_ref()).await? else { return Ok(()) };
+    let Some(loss) = missing(database, mark.as_ref()).await? else { return Ok(None) };
     tracing::error!("{loss}");
     let mut writer = database.begin_with("BEGIN IMMEDIATE").await?;
     sqlx::query("INSERT INTO store_losses (first, last, noticed_at) VALUES (?, ?, ?)")
@@ -217,9 +246,13 @@ pub(super) async fn look_back(database: &mut SqliteConnection, folder: &Path) ->
         sqlx::query_scalar("SELECT bench FROM bench_safety UNION SELECT bench FROM runs WHERE procedure <> 'import'")
             .fetch_all(&mut *writer)
             .await?;
-    let reason = format!("{loss}. A stop may be among them: look at the bench before it is released");
     for bench in benches {
-        super::safety::block(&mut writer, &bench, &reason).await?;
+        super::safety::block(&mut writer, &bench, &reason(&loss)).await?;
     }
-    Ok(writer.commit().await?)
+    writer.commit().await?;
+    Ok(Some(loss))
+}
+
+fn reason(loss: &Loss) -> String {
+    format!("{loss}. A stop may be among them: look at the bench before it is released")
 }

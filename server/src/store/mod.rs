@@ -35,8 +35,8 @@ mod tokens;
 mod verify;
 mod view;
 
-pub use commit::RunCommit;
 pub use backup::{backup, restore};
+pub use commit::RunCommit;
 pub use error::StoreError;
 pub use keeper::Loss;
 pub use kept::Subject;
@@ -46,7 +46,7 @@ pub use records::{
     OwnEffectRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, VersionRecord, View, ViewColumn,
 };
 pub use search::Search;
-pub use verify::{Finding, Readable, StoreHealth, VerifyReport, verify};
+pub use verify::{DamagedRecord, Readable, StoreHealth, VerifyReport, verify};
 
 use keeper::Keeper;
 use lock::FolderLock;
@@ -67,6 +67,8 @@ pub struct Store {
     /// Held for as long as the store is open: one daemon for each data folder.
     lock: Arc<FolderLock>,
     keeper: Arc<Keeper>,
+    /// What was missing when it was opened.
+    missing: Option<Loss>,
     /// What the last check has found.
     health: Arc<RwLock<StoreHealth>>,
     /// Whether a mock bench has a full disk.

@@ -1,7 +1,7 @@
 //! Model versions, a tree that only grows, and the diagnoses of its nodes.
 
 use super::runs::{exists, json, now};
-use super::seal::{DIAGNOSES, MODELS};
+use super::seal::{DIAGNOSES, MODELS, whole};
 use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, VersionRecord};
 use jointbench_procedure::RunId;
 use serde_json::Value;
@@ -196,10 +196,4 @@ fn diagnosis_record(row: &SqliteRow) -> Result<DiagnosisRecord, StoreError> {
         diagnosis: json(row, "diagnosis")?,
         created_at: row.try_get("created_at")?,
     })
-}
-
-/// Those rows that can be read: one that is damaged does not hide the others.
-fn whole<T>(rows: &[SqliteRow], record: impl Fn(&SqliteRow) -> Result<T, StoreError>) -> Vec<T> {
-    let told = |row| record(row).inspect_err(|fault| tracing::error!(%fault, "a record is left out of a list")).ok();
-    rows.iter().filter_map(told).collect()
 }

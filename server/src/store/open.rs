@@ -21,7 +21,7 @@ pub(super) const FILE_NAME: &str = "jointbench.db";
 const MAPPED_BYTES: &str = "1073741824";
 const READERS: u32 = 4;
 /// For a database that another program holds, and for the one connection that writes.
-const PATIENCE: Duration = Duration::from_secs(5);
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 impl Store {
     /// Opens the store in `folder`, which is made where it is missing.
@@ -48,12 +48,12 @@ impl Store {
         let writer = writer.connect_with(options.clone()).await.map_err(|fault| not_ours(fault, &file))?;
         migrate(&writer, &file).await?;
         give_back(&mut *writer.acquire().await?).await?;
-        look_back(&mut *writer.acquire().await?, folder).await?;
-        let keeper = Keeper::start(&options, folder.into(), signals).await?;
+        let missing = look_back(&mut *writer.acquire().await?, folder).await?;
+        let keeper = Keeper::start(&options, writer.clone(), folder.into(), signals).await?;
         let readers = pool(READERS).connect_with(options.read_only(true)).await?;
         let lost = losses(&mut *readers.acquire().await?).await?;
         let health = Arc::new(RwLock::new(StoreHealth { lost, ..StoreHealth::default() }));
-        Ok(Store { writer, readers, lock: Arc::new(lock), keeper: Arc::new(keeper), health, is_full })
+        Ok(Store { writer, readers, lock: Arc::new(lock), keeper: Arc::new(keeper), health, missing, is_full })
     }
 
     /// Whether a store was made in the folder.
@@ -83,7 +83,7 @@ pub(super) async fn to_read(folder: &Path) -> Result<SqliteConnection, StoreErro
 
 /// The same for a database that lies anywhere.
 pub(super) async fn file_to_read(file: &Path) -> Result<SqliteConnection, StoreError> {
-    let options = SqliteConnectOptions::new().filename(file).read_only(true).busy_timeout(Duration::from_secs(5));
+    let options = SqliteConnectOptions::new().filename(file).read_only(true).busy_timeout(PATIENCE);
     let connected = options.disable_statement_logging().connect().await;
     let mut database = connected.map_err(|fault| not_ours(fault, file))?;
     check_ours(&mut database, file).await?;

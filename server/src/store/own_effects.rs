@@ -1,7 +1,7 @@
 //! Effects that users write: the latest version of each is what new models may hold.
 
 use super::runs::{json, now};
-use super::seal::OWN_EFFECTS;
+use super::seal::{OWN_EFFECTS, whole};
 use super::{OwnEffectRecord, Store, StoreError};
 use serde_json::Value;
 use sqlx::Row;
@@ -14,8 +14,7 @@ impl Store {
     /// By kind and id. A damaged one is left out, and the log names it.
     pub async fn own_effects(&self) -> Result<Vec<OwnEffectRecord>, StoreError> {
         let rows = sqlx::query(LATEST).fetch_all(&self.readers).await?;
-        let whole = |row| record(row).inspect_err(|fault| tracing::error!(%fault, "an own effect is left out")).ok();
-        let mut records: Vec<OwnEffectRecord> = rows.iter().filter_map(whole).collect();
+        let mut records = whole(&rows, record);
         records.sort_by(|a, b| (&a.kind, &a.effect).cmp(&(&b.kind, &b.effect)));
         Ok(records)
     }

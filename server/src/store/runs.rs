@@ -143,7 +143,11 @@ impl Store {
     }
 
     /// The same, newest first, where SQLite cannot read through the table: each run by its number.
-    async fn one_by_one(&self, search: &Search, filter: &RunFilter) -> Result<(u64, Vec<RunRecord>), StoreError> {
+    pub(super) async fn one_by_one(
+        &self,
+        search: &Search,
+        filter: &RunFilter,
+    ) -> Result<(u64, Vec<RunRecord>), StoreError> {
         let last: Option<i64> = sqlx::query_scalar("SELECT seq FROM sqlite_sequence WHERE name = 'runs'")
             .fetch_optional(&self.readers)
             .await?;

@@ -176,6 +176,12 @@ impl Sealed {
     }
 }
 
+/// Those rows that can be read: one that is damaged does not hide the others.
+pub fn whole<T>(rows: &[SqliteRow], record: impl Fn(&SqliteRow) -> Result<T, StoreError>) -> Vec<T> {
+    let told = |row| record(row).inspect_err(|fault| tracing::error!(%fault, "a record is left out of a list")).ok();
+    rows.iter().filter_map(told).collect()
+}
+
 fn cell<'r>(row: &'r SqliteRow, column: &str) -> Result<Cell<'r>, sqlx::Error> {
     let value = row.try_get_raw(column)?;
     if value.is_null() {

@@ -1,5 +1,7 @@
 //! The daemon on a bad day, through REST.
 
+mod integrity;
+
 use crate::program::{Daemon, run, stderr, stdout};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

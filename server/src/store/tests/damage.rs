@@ -3,21 +3,25 @@
 use super::super::{NewModel, RunFilter, Search, StoreError};
 use super::*;
 use serde_json::{Map, json};
+use sqlx::AssertSqlSafe;
 
-/// Changes what is stored behind the store's back, as a failing disk does.
-async fn damage(store: &Store, sql: &'static str) {
-    let triggers: Vec<String> = sqlx::query_scalar("SELECT name FROM sqlite_schema WHERE type = 'trigger'")
+/// Changes what is stored behind the store's back, as a failing disk does: no trigger and no condition is in the way.
+pub async fn damage(store: &Store, sql: &str) {
+    let triggers: Vec<(String, String)> = sqlx::query_as("SELECT name, sql FROM sqlite_schema WHERE type = 'trigger'")
         .fetch_all(&store.writer)
         .await
         .unwrap();
     let mut writer = store.writer.acquire().await.unwrap();
-    for trigger in triggers {
-        let drop = sqlx::AssertSqlSafe(format!("DROP TRIGGER {trigger}"));
-        sqlx::query(drop).execute(&mut *writer).await.unwrap();
+    let drop_all = triggers.iter().map(|(name, _)| format!("DROP TRIGGER {name}"));
+    let check_nothing = "PRAGMA ignore_check_constraints = 1".to_owned();
+    for prepare in drop_all.chain([check_nothing]) {
+        sqlx::query(AssertSqlSafe(prepare)).execute(&mut *writer).await.unwrap();
     }
-    sqlx::query("PRAGMA ignore_check_constraints = 1").execute(&mut *writer).await.unwrap();
-    let hit = sqlx::query(sql).execute(&mut *writer).await.unwrap().rows_affected();
+    let hit = sqlx::query(AssertSqlSafe(sql.to_owned())).execute(&mut *writer).await.unwrap().rows_affected();
     assert!(hit > 0, "{sql}");
+    for (_, again) in triggers {
+        sqlx::query(AssertSqlSafe(again)).execute(&mut *writer).await.unwrap();
+    }
 }
 
 fn check_names(fault: StoreError, names: &[&str]) {
@@ -27,7 +31,7 @@ fn check_names(fault: StoreError, names: &[&str]) {
     }
 }
 
-fn model(run: RunId) -> NewModel {
+pub fn model(run: RunId) -> NewModel {
     NewModel {
         run,
         more_runs: Vec::new(),

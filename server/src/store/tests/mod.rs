@@ -3,7 +3,9 @@
 mod crash;
 mod damage;
 mod keeping;
+mod losing;
 mod opening;
+mod verifying;
 mod viewing;
 
 use super::{NewRun, Store};

@@ -1,7 +1,7 @@
 //! The check that a daemon makes beside its work.
 
 use super::super::{Loss, Store};
-use super::Finding;
+use super::DamagedRecord;
 use serde::{Deserialize, Serialize};
 use std::sync::PoisonError;
 use std::time::Duration;
@@ -19,7 +19,7 @@ pub struct StoreHealth {
     /// `null` until the first check is over; there is one a day.
     #[schema(format = DateTime)]
     pub checked_at: Option<String>,
-    pub damaged: Vec<Finding>,
+    pub damaged: Vec<DamagedRecord>,
     /// Changes that were acknowledged once and were missing when the store was opened.
     pub lost: Vec<Loss>,
 }

@@ -8,7 +8,7 @@ mod report;
 mod samples;
 
 pub use daily::StoreHealth;
-pub use report::{Finding, Readable, VerifyReport};
+pub use report::{DamagedRecord, Readable, VerifyReport};
 
 use super::keeper::{losses, missing};
 use super::mark::Mark;

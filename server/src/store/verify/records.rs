@@ -107,7 +107,7 @@ impl Store {
     async fn seal_slice(&self, sealed: &Sealed, key: &str, behind: i64) -> Result<Option<i64>, StoreError> {
         let Sealed { table, checksum, .. } = sealed;
         let sql = format!(
-            "SELECT *, {key} AS slice_key FROM {table} WHERE {checksum} IS NULL AND ({key} = 0 OR {key} > ?) ORDER BY {key} LIMIT {SLICE}"
+            "SELECT *, {key} AS slice_key FROM {table} WHERE {checksum} IS NULL AND ({key} = 0 OR {key} > ?) ORDER BY slice_key LIMIT {SLICE}"
         );
         let rows = sqlx::query(AssertSqlSafe(sql)).bind(behind).fetch_all(&self.readers).await?;
         let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;

@@ -17,7 +17,7 @@ pub struct VerifyReport {
     pub records: u64,
     /// Records of an older release, which have no checksum yet.
     pub without_checksum: u64,
-    pub damaged: Vec<Finding>,
+    pub damaged: Vec<DamagedRecord>,
     /// Of runs with damage: how much of each table can be read.
     pub readable: Vec<Readable>,
     /// Changes that were acknowledged once and are missing.
@@ -26,7 +26,7 @@ pub struct VerifyReport {
 
 /// One damaged record.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct Finding {
+pub struct DamagedRecord {
     pub run: Option<i64>,
     /// `file` where SQLite's own check found it.
     pub table: String,
@@ -48,7 +48,7 @@ impl VerifyReport {
     }
 
     pub(super) fn add(&mut self, run: Option<i64>, table: &str, what: String) {
-        self.damaged.push(Finding { run, table: table.to_owned(), what });
+        self.damaged.push(DamagedRecord { run, table: table.to_owned(), what });
     }
 
     /// So many records of a table were read, and so many could not be.
