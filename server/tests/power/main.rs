@@ -40,7 +40,7 @@ fn nothing_acknowledged_is_lost_when_the_power_fails() {
 #[test]
 fn nothing_acknowledged_is_lost_when_memory_runs_out() {
     let disk = Disk::build();
-    let tries = if every() { 200 } else { TRIES };
+    let tries = if every() { 100 } else { TRIES / 2 };
     let mut acknowledged = 0;
     for one in 0..tries {
         // From what fails at once to what is enough.
