@@ -2,10 +2,11 @@
 
 use super::extract::{Answer, Json};
 use super::problem::{Problem, Refusals};
-use crate::lab::Caller;
+use crate::lab::{Caller, Lab};
+use crate::store::StoreHealth;
 use crate::view::Access;
 use axum::Extension;
-use axum::extract::Request;
+use axum::extract::{Request, State};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -18,18 +19,23 @@ pub struct Health {
     pub dashboard_missing: Option<String>,
     /// What the caller may do.
     pub access: Access,
+    /// What the last check of the store has found.
+    #[serde(default)]
+    #[schema(required = true)]
+    pub store: StoreHealth,
 }
 
 /// Whether the daemon is there
 #[utoipa::path(get, path = "/health", tag = "daemon",
     responses((status = 200, description = "It is", body = Health), Refusals))]
-pub async fn health(Extension(caller): Extension<Caller>) -> Answer<Health> {
+pub async fn health(State(lab): State<Lab>, Extension(caller): Extension<Caller>) -> Answer<Health> {
     let dashboard_missing = jointbench_ui::missing().map(str::to_owned);
     Ok(Json(Health {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         process: std::process::id(),
         dashboard_missing,
         access: caller.access,
+        store: lab.store_health(),
     }))
 }
 

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod autopilot;
+mod backup;
 mod check;
 mod client;
 mod demo;
@@ -24,6 +25,7 @@ mod secrets;
 mod serve;
 mod steer;
 mod transfer;
+mod verify;
 
 use crate::bench::worker;
 use arguments::{Arguments, Command};
@@ -70,6 +72,9 @@ pub fn main() -> ExitCode {
         Command::Export(arguments) => transfer::export(&arguments),
         Command::Identify(arguments) => identify::identify(&arguments),
         Command::Report(arguments) => identify::report(&arguments),
+        Command::Backup(arguments) => backup::backup(&arguments),
+        Command::Restore(arguments) => backup::restore(&arguments),
+        Command::Verify(arguments) => verify::verify(&arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
     };
     match done {

@@ -56,7 +56,7 @@ pub fn runs(arguments: &Runs) -> Done {
 fn line(run: &RunSummary) -> String {
     let duration = run.duration_s.map(|s| format!("{s:.0} s")).unwrap_or_default();
     let day = run.created_at.get(..16).unwrap_or(&run.created_at).replace('T', " ");
-    let reason = run.reason.as_ref().map(|reason| format!("  {reason}")).unwrap_or_default();
+    let reason = run.damaged.as_ref().or(run.reason.as_ref()).map(|reason| format!("  {reason}")).unwrap_or_default();
     let not_stored = run.not_stored.as_ref().map(|why| format!("  not yet stored: {why}")).unwrap_or_default();
     let (id, state, procedure, rows) = (run.id, word(run.state), &run.procedure, run.rows);
     // Of a long path the end tells more.

@@ -106,6 +106,7 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
         // Figures of a model that cannot be read any more are none.
         model: record.model.as_ref().and_then(|model| reread(model).ok()),
         not_stored: None,
+        damaged: record.damaged.clone(),
     }
 }
 
@@ -140,6 +141,9 @@ pub fn run_event(record: EventRecord) -> view::RunEvent {
     whole.insert("kind".to_owned(), Value::from(record.kind.clone()));
     let text = match serde_json::from_value::<EventKind>(Value::Object(whole)) {
         Ok(kind) => sentence(&kind),
+        Err(_) if record.kind == "damaged" => {
+            record.data.get("text").and_then(Value::as_str).unwrap_or_default().to_owned()
+        }
         // Written by another version.
         Err(_) => record.kind.replace('_', " "),
     };

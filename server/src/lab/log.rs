@@ -64,6 +64,10 @@ impl Lab {
         };
         let by = run.provenance.get("by").and_then(|by| by.as_str()).map(str::to_owned);
         log.push(LogEntry { kind: kind.into(), text: text.into(), by, ..of_run.clone() });
+        if let Some(damaged) = &run.damaged {
+            log.push(LogEntry { kind: "damaged".into(), text: damaged.clone(), grave: true, ..of_run });
+            return Ok(());
+        }
         for record in self.inner.store.events(run.id, 0).await? {
             let event = run_event(record);
             log.push(LogEntry {

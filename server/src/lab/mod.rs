@@ -45,7 +45,7 @@ use crate::bench::{Beginning, BenchHandle, store_leftovers, worker};
 use crate::config::BenchDescription;
 use crate::job::{Jobs, Limits};
 use crate::live::Hub;
-use crate::store::Store;
+use crate::store::{Store, StoreHealth};
 use crate::view::AutopilotState;
 use autopilot::Flights;
 use jointbench_procedure::{RunState, Safe};
@@ -86,6 +86,7 @@ impl Lab {
         analysis: Limits,
     ) -> Answer<Lab> {
         let store = Store::open(data).await?;
+        store.block_where_missing(descriptions.iter().map(|description| description.name.as_str())).await?;
         wait_for_workers(data).await;
         store_leftovers(data, &store).await?;
         clear_uploads(data)?;
@@ -128,6 +129,7 @@ impl Lab {
         lab.open_tokens().await?;
         lab.wait_until_secured().await;
         lab.judge_what_was_left();
+        tokio::spawn(lab.inner.store.clone().check_daily());
         Ok(lab)
     }
 
@@ -150,6 +152,11 @@ impl Lab {
     /// The file of `jointbench`, for parts of the daemon that are processes of their own.
     pub fn program(&self) -> &Path {
         &self.inner.program
+    }
+
+    /// Whether all that is stored could be read, when that was looked at last.
+    pub fn store_health(&self) -> StoreHealth {
+        self.inner.store.health()
     }
 
     pub fn hub(&self) -> &Hub {

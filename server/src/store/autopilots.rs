@@ -1,6 +1,7 @@
 //! Autopilots and their steps, which are only appended to.
 
 use super::runs::{json, now};
+use super::seal::AUTOPILOT_STEPS;
 use super::{AutopilotRecord, Store, StoreError};
 use serde_json::{Map, Value};
 use sqlx::Row;
@@ -34,10 +35,13 @@ impl Store {
                 .await?;
         step["sequence"] = (last + 1).into();
         step["at"] = now().into();
-        sqlx::query("INSERT INTO autopilot_steps (autopilot, sequence, step) VALUES (?, ?, ?)")
+        let text = serde_json::to_string(&step)?;
+        let cells = [autopilot.into(), (last + 1).into(), (&text).into()];
+        sqlx::query("INSERT INTO autopilot_steps (autopilot, sequence, step, checksum) VALUES (?, ?, ?, ?)")
             .bind(autopilot)
             .bind(last + 1)
-            .bind(serde_json::to_string(&step)?)
+            .bind(&text)
+            .bind(AUTOPILOT_STEPS.seal(&cells))
             .execute(&mut *writer)
             .await?;
         writer.commit().await?;
@@ -72,30 +76,34 @@ impl Store {
         self.with_steps(&row.ok_or(StoreError::NoAutopilot(id))?).await
     }
 
-    /// All autopilots, newest first.
+    /// All autopilots, newest first. A damaged one is left out, and the log names it.
     pub async fn autopilots(&self) -> Result<Vec<AutopilotRecord>, StoreError> {
         let rows = sqlx::query("SELECT * FROM autopilots ORDER BY id DESC").fetch_all(&self.readers).await?;
         let mut records = Vec::new();
         for row in &rows {
-            records.push(self.with_steps(row).await?);
+            match self.with_steps(row).await {
+                Err(fault @ StoreError::Damaged(_)) => tracing::error!(%fault, "an autopilot is left out"),
+                record => records.push(record?),
+            }
         }
         Ok(records)
     }
 
     async fn with_steps(&self, row: &SqliteRow) -> Result<AutopilotRecord, StoreError> {
         let id: i64 = row.try_get("id")?;
-        let steps: Vec<String> =
-            sqlx::query_scalar("SELECT step FROM autopilot_steps WHERE autopilot = ? ORDER BY sequence")
-                .bind(id)
-                .fetch_all(&self.readers)
-                .await?;
+        let query = "SELECT * FROM autopilot_steps WHERE autopilot = ? ORDER BY sequence";
+        let steps = sqlx::query(query).bind(id).fetch_all(&self.readers).await?;
+        let step = |row| {
+            AUTOPILOT_STEPS.check(row)?;
+            json(row, "step")
+        };
         Ok(AutopilotRecord {
             id,
             bench: row.try_get("bench")?,
             request: json(row, "request")?,
             state: row.try_get("state")?,
             reason: row.try_get("reason")?,
-            steps: steps.iter().map(|step| serde_json::from_str(step)).collect::<Result<_, _>>()?,
+            steps: steps.iter().map(step).collect::<Result<_, StoreError>>()?,
             created_at: row.try_get("created_at")?,
             finished_at: row.try_get("finished_at")?,
         })

@@ -1,26 +1,32 @@
 //! Whose result the next runs of a bench use.
 
 use super::runs::now;
+use super::seal::CALIBRATIONS;
 use super::{CalibrationRecord, Store, StoreError};
 use jointbench_procedure::RunId;
-
-type Row = (i64, String, Option<RunId>, String, String);
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
 
 impl Store {
-    /// The newest entries of a bench, newest first.
+    /// The newest entries of a bench, newest first. A damaged one applies no run, and who applied it says what is wrong with it.
     pub async fn calibrations(&self, bench: &str, limit: u32) -> Result<Vec<CalibrationRecord>, StoreError> {
-        let query = "SELECT id, procedure, run, who, at FROM calibrations WHERE bench = ? ORDER BY id DESC LIMIT ?";
-        let rows: Vec<Row> = sqlx::query_as(query).bind(bench).bind(limit).fetch_all(&self.readers).await?;
-        let record = |(id, procedure, run, by, at)| CalibrationRecord { id, procedure, run, by, at };
-        Ok(rows.into_iter().map(record).collect())
+        let query = "SELECT * FROM calibrations WHERE bench = ? ORDER BY id DESC LIMIT ?";
+        let rows = sqlx::query(query).bind(bench).bind(limit).fetch_all(&self.readers).await?;
+        let damaged = |row: &SqliteRow, fault: StoreError| CalibrationRecord {
+            id: row.try_get("id").unwrap_or_default(),
+            procedure: row.try_get("procedure").unwrap_or_default(),
+            run: None,
+            by: fault.to_string(),
+            at: row.try_get("at").unwrap_or_default(),
+        };
+        Ok(rows.iter().map(|row| record(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
     }
 
     /// The run that was applied to a bench last, where that holds.
     pub async fn calibration(&self, bench: &str, procedure: &str) -> Result<Option<RunId>, StoreError> {
-        let query = "SELECT run FROM calibrations WHERE bench = ? AND procedure = ? ORDER BY id DESC LIMIT 1";
-        let newest: Option<(Option<RunId>,)> =
-            sqlx::query_as(query).bind(bench).bind(procedure).fetch_optional(&self.readers).await?;
-        Ok(newest.and_then(|(run,)| run))
+        let query = "SELECT * FROM calibrations WHERE bench = ? AND procedure = ? ORDER BY id DESC LIMIT 1";
+        let newest = sqlx::query(query).bind(bench).bind(procedure).fetch_optional(&self.readers).await?;
+        Ok(newest.as_ref().map(record).transpose()?.and_then(|newest| newest.run))
     }
 
     pub async fn calibrate(
@@ -30,14 +36,28 @@ impl Store {
         run: Option<RunId>,
         by: &str,
     ) -> Result<(), StoreError> {
-        sqlx::query("INSERT INTO calibrations (bench, procedure, run, who, at) VALUES (?, ?, ?, ?, ?)")
+        let at = now();
+        let cells = [bench.into(), procedure.into(), run.into(), by.into(), (&at).into()];
+        sqlx::query("INSERT INTO calibrations (bench, procedure, run, who, at, checksum) VALUES (?, ?, ?, ?, ?, ?)")
             .bind(bench)
             .bind(procedure)
             .bind(run)
             .bind(by)
-            .bind(now())
+            .bind(&at)
+            .bind(CALIBRATIONS.seal(&cells))
             .execute(&self.writer)
             .await?;
         Ok(())
     }
+}
+
+fn record(row: &SqliteRow) -> Result<CalibrationRecord, StoreError> {
+    CALIBRATIONS.check(row)?;
+    Ok(CalibrationRecord {
+        id: row.try_get("id")?,
+        procedure: row.try_get("procedure")?,
+        run: row.try_get("run")?,
+        by: row.try_get("who")?,
+        at: row.try_get("at")?,
+    })
 }

@@ -6,8 +6,9 @@
 
 use super::codec;
 use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
-use super::runs::{channels, insert_events, insert_run, now};
+use super::runs::{channels, insert_events, insert_run, now, seal_state};
 use super::samples::{TailPiece, tail};
+use super::seal::{BLOCKS, CHANNELS, COARSE, Cell, FINE, SPANS, TAIL};
 use super::{BLOCK_ROWS, NewRun, Store, StoreError};
 use jointbench_instrument::{Channel, Trace};
 use jointbench_procedure::{Event, RunId, RunState};
@@ -124,9 +125,9 @@ pub(super) async fn append(
     .bind(state != RunState::Queued)
     .bind(&now)
     .bind(run)
-    .execute(writer)
+    .execute(&mut *writer)
     .await?;
-    Ok(())
+    seal_state(writer, run).await
 }
 
 async fn keep_rows(
@@ -204,9 +205,11 @@ fn with_tail(pieces: Vec<TailPiece>, rows: Trace) -> Result<Trace, StoreError> {
 }
 
 async fn insert_channels(writer: &mut SqliteConnection, run: RunId, channels: &[Channel]) -> Result<(), StoreError> {
-    let mut insert = QueryBuilder::<Sqlite>::new("INSERT INTO channels (run, place, name, resolution) ");
+    let mut insert = QueryBuilder::<Sqlite>::new("INSERT INTO channels (run, place, name, resolution, checksum) ");
     insert.push_values(channels.iter().enumerate(), |mut row, (place, channel)| {
+        let cells = [run.into(), (place as i64).into(), (&channel.name).into(), channel.resolution.into()];
         row.push_bind(run).push_bind(place as i64).push_bind(channel.name.clone()).push_bind(channel.resolution);
+        row.push_bind(CHANNELS.seal(&cells));
     });
     insert.build().execute(writer).await?;
     Ok(())
@@ -217,13 +220,16 @@ async fn insert_tail(writer: &mut SqliteConnection, run: RunId, first_row: i64, 
     let count = rows.len() as i64;
     let data = tokio::task::spawn_blocking(move || pyramid::pack_columns(rows.columns(), &resolutions(&rows)));
     let data = data.await.map_err(|fault| StoreError::Database(fault.to_string()))?;
-    sqlx::query("INSERT INTO tail (run, first_row, rows, from_s, to_s, data) VALUES (?, ?, ?, ?, ?, ?)")
+    let cells = [run.into(), first_row.into(), count.into(), from_s.into(), to_s.into(), data[..].into()];
+    let checksum = TAIL.seal(&cells);
+    sqlx::query("INSERT INTO tail (run, first_row, rows, from_s, to_s, data, checksum) VALUES (?, ?, ?, ?, ?, ?, ?)")
         .bind(run)
         .bind(first_row)
         .bind(count)
         .bind(from_s)
         .bind(to_s)
         .bind(data)
+        .bind(checksum)
         .execute(writer)
         .await?;
     Ok(())
@@ -267,13 +273,22 @@ impl PackedBlock {
 
     async fn insert(self, writer: &mut SqliteConnection, run: RunId, offset: i64) -> Result<(), StoreError> {
         let (first_row, rows) = (offset + self.rows.start as i64, self.rows.len() as i64);
-        let mut insert = QueryBuilder::<Sqlite>::new("INSERT INTO blocks (run, channel, first_row, rows, data) ");
+        let mut insert =
+            QueryBuilder::<Sqlite>::new("INSERT INTO blocks (run, channel, first_row, rows, data, checksum) ");
         insert.push_values(self.columns.into_iter().enumerate(), |mut row, (channel, data)| {
+            let cells = [run.into(), (channel as i64).into(), first_row.into(), rows.into(), data[..].into()];
+            let checksum = BLOCKS.seal(&cells);
             row.push_bind(run).push_bind(channel as i64).push_bind(first_row).push_bind(rows).push_bind(data);
+            row.push_bind(checksum);
         });
         insert.build().execute(&mut *writer).await?;
+        let place: [Cell<'_>; 3] = [run.into(), first_row.into(), rows.into()];
+        let ends = SPANS.seal(&[&place[..], &[self.from_s.into(), self.to_s.into()]].concat());
+        let coarse = COARSE.seal(&[&place[..], &[self.coarse[..].into()]].concat());
+        let fine = FINE.seal(&[&place[..], &[self.fine[..].into()]].concat());
         sqlx::query(
-            "INSERT INTO spans (run, first_row, rows, from_s, to_s, coarse, fine) VALUES (?, ?, ?, ?, ?, ?, ?)",
+            "INSERT INTO spans (run, first_row, rows, from_s, to_s, coarse, fine, checksum, coarse_checksum, fine_checksum) \
+             VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         )
         .bind(run)
         .bind(first_row)
@@ -282,6 +297,9 @@ impl PackedBlock {
         .bind(self.to_s)
         .bind(self.coarse)
         .bind(self.fine)
+        .bind(ends)
+        .bind(coarse)
+        .bind(fine)
         .execute(writer)
         .await?;
         Ok(())

@@ -15,6 +15,10 @@ pub enum StoreError {
     Newer { file: PathBuf, schema: i64 },
     #[error("{} was written by an older jointbench that cannot be carried over ({what}): move it away, or choose another folder with --data", .file.display())]
     Old { file: PathBuf, what: String },
+    #[error("{}: {what}", .file.display())]
+    Copy { file: PathBuf, what: String },
+    #[error("there is no store in {}: name its folder with --data", .folder.display())]
+    NoStore { folder: PathBuf },
     #[error("the disk is full: free some space and try again")]
     DiskFull,
     #[error(
@@ -48,17 +52,34 @@ pub enum StoreError {
     OtherChannels { run: RunId },
     #[error("model version {parent} belongs to another run than {run}")]
     OtherRun { parent: i64, run: RunId },
-    #[error("the database is damaged ({0}): restore it from a backup")]
+    #[error("the database is damaged ({0}): `jointbench verify` lists all that is damaged; restore it from a backup")]
     Damaged(String),
     #[error("the database refused: {0}")]
     Database(String),
 }
 
 impl StoreError {
+    /// Of damage that SQLite itself found: in what of a run.
+    pub(super) fn within(self, run: RunId, table: &str) -> Self {
+        match self {
+            StoreError::Damaged(what) => StoreError::Damaged(format!("table {table}, run {run}: {what}")),
+            other => other,
+        }
+    }
+
     /// The daemon cannot start as it was asked to.
     pub fn is_setup(&self) -> bool {
         use StoreError as E;
-        matches!(self, E::Unwritable { .. } | E::InUse { .. } | E::Foreign { .. } | E::Newer { .. } | E::Old { .. })
+        matches!(
+            self,
+            E::Unwritable { .. }
+                | E::InUse { .. }
+                | E::Foreign { .. }
+                | E::Newer { .. }
+                | E::Old { .. }
+                | E::NoStore { .. }
+                | E::Copy { .. }
+        )
     }
 
     /// Nothing is wrong with what was to be stored: the same may be stored later.
@@ -86,6 +107,10 @@ impl From<sqlx::Error> for StoreError {
     fn from(fault: sqlx::Error) -> Self {
         if matches!(fault, sqlx::Error::PoolTimedOut) {
             return StoreError::Held;
+        }
+        // A value that is not of its column's type, or text that is no UTF-8.
+        if matches!(fault, sqlx::Error::ColumnDecode { .. } | sqlx::Error::Decode(_)) {
+            return StoreError::Damaged(fault.to_string());
         }
         let code = fault.as_database_error().and_then(|fault| fault.code()?.parse::<i32>().ok());
         // The extended code holds the primary one in its low byte.

@@ -1,23 +1,34 @@
 //! What was wrong with the instruments of a bench.
 
+use super::seal::INSTRUMENT_FAULTS;
 use super::{Store, StoreError};
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
 
 impl Store {
-    /// The newest faults of an instrument, newest first: when, and what.
+    /// The newest faults of an instrument, newest first: when, and what. The text of a damaged one says that it is.
     pub async fn faults(&self, bench: &str, instrument: &str, limit: u32) -> Result<Vec<(String, String)>, StoreError> {
-        let query =
-            "SELECT at, text FROM instrument_faults WHERE bench = ? AND instrument = ? ORDER BY id DESC LIMIT ?";
-        Ok(sqlx::query_as(query).bind(bench).bind(instrument).bind(limit).fetch_all(&self.readers).await?)
+        let query = "SELECT * FROM instrument_faults WHERE bench = ? AND instrument = ? ORDER BY id DESC LIMIT ?";
+        let rows = sqlx::query(query).bind(bench).bind(instrument).bind(limit).fetch_all(&self.readers).await?;
+        let damaged = |row: &SqliteRow, fault: StoreError| (row.try_get("at").unwrap_or_default(), fault.to_string());
+        Ok(rows.iter().map(|row| told(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
     }
 
     pub async fn keep_fault(&self, bench: &str, instrument: &str, at: &str, text: &str) -> Result<(), StoreError> {
-        sqlx::query("INSERT INTO instrument_faults (bench, instrument, at, text) VALUES (?, ?, ?, ?)")
+        let cells = [bench.into(), instrument.into(), text.into(), at.into()];
+        sqlx::query("INSERT INTO instrument_faults (bench, instrument, at, text, checksum) VALUES (?, ?, ?, ?, ?)")
             .bind(bench)
             .bind(instrument)
             .bind(at)
             .bind(text)
+            .bind(INSTRUMENT_FAULTS.seal(&cells))
             .execute(&self.writer)
             .await?;
         Ok(())
     }
+}
+
+fn told(row: &SqliteRow) -> Result<(String, String), StoreError> {
+    INSTRUMENT_FAULTS.check(row)?;
+    Ok((row.try_get("at")?, row.try_get("text")?))
 }

@@ -1,7 +1,8 @@
 //! What was worked out of a model version or of a complete run: once, then only read. Runs and fits never change.
 
+use super::seal::KEPT;
 use super::{Store, StoreError};
-use sqlx::SqliteConnection;
+use sqlx::{Row, SqliteConnection};
 
 /// Another release may work it out otherwise.
 const SOFTWARE: &str = env!("CARGO_PKG_VERSION");
@@ -34,18 +35,22 @@ impl Store {
         keep(&mut *self.writer.acquire().await?, subject, what, packed).await
     }
 
-    /// `None` where it has to be worked out.
+    /// `None` where it has to be worked out, also because what was kept is damaged.
     pub async fn kept(&self, subject: Subject, what: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let (subject, id) = subject.parts();
-        let packed: Option<Vec<u8>> =
-            sqlx::query_scalar("SELECT packed FROM kept WHERE subject = ? AND id = ? AND what = ? AND software = ?")
-                .bind(subject)
-                .bind(id)
-                .bind(what)
-                .bind(SOFTWARE)
-                .fetch_optional(&self.readers)
-                .await?;
-        packed.map(|packed| unpacked(&packed)).transpose()
+        let row = sqlx::query("SELECT * FROM kept WHERE subject = ? AND id = ? AND what = ? AND software = ?")
+            .bind(subject)
+            .bind(id)
+            .bind(what)
+            .bind(SOFTWARE)
+            .fetch_optional(&self.readers)
+            .await?;
+        let Some(row) = row else { return Ok(None) };
+        if let Err(fault) = KEPT.check(&row) {
+            tracing::warn!(%fault, "worked out anew");
+            return Ok(None);
+        }
+        Ok(unpacked(row.try_get::<&[u8], _>("packed")?).ok())
     }
 }
 
@@ -66,13 +71,17 @@ pub(super) async fn keep(
     packed: &[u8],
 ) -> Result<(), StoreError> {
     let (subject, id) = subject.parts();
-    sqlx::query("INSERT OR REPLACE INTO kept (subject, id, what, software, packed) VALUES (?, ?, ?, ?, ?)")
-        .bind(subject)
-        .bind(id)
-        .bind(what)
-        .bind(SOFTWARE)
-        .bind(packed)
-        .execute(writer)
-        .await?;
+    let checksum = KEPT.seal(&[subject.into(), id.into(), what.into(), SOFTWARE.into(), packed.into()]);
+    sqlx::query(
+        "INSERT OR REPLACE INTO kept (subject, id, what, software, packed, checksum) VALUES (?, ?, ?, ?, ?, ?)",
+    )
+    .bind(subject)
+    .bind(id)
+    .bind(what)
+    .bind(SOFTWARE)
+    .bind(packed)
+    .bind(checksum)
+    .execute(writer)
+    .await?;
     Ok(())
 }

@@ -5,13 +5,17 @@
 //! rows of each commit lie in the `tail` as they came. What was measured never changes: the schema's triggers refuse it.
 
 mod autopilots;
+mod backup;
 mod calibrations;
 pub mod codec;
 mod commit;
 mod error;
 mod faults;
 mod full_disk;
+mod keeper;
 mod kept;
+mod lock;
+mod mark;
 mod migrations;
 mod models;
 mod notes;
@@ -23,14 +27,18 @@ mod records;
 mod runs;
 mod safety;
 mod samples;
+pub mod seal;
 mod search;
 #[cfg(test)]
 mod tests;
 mod tokens;
+mod verify;
 mod view;
 
+pub use backup::{backup, restore};
 pub use commit::RunCommit;
 pub use error::StoreError;
+pub use keeper::Loss;
 pub use kept::{Subject, packed, unpacked};
 pub use order::Order;
 pub use records::{
@@ -38,11 +46,13 @@ pub use records::{
     OwnEffectRecord, RunFilter, RunRecord, SafetyRecord, TokenRecord, VersionRecord, View, ViewColumn,
 };
 pub use search::Search;
+pub use verify::{DamagedRecord, Readable, StoreHealth, VerifyReport, verify};
 
+use keeper::Keeper;
+use lock::FolderLock;
 use sqlx::SqlitePool;
-use std::fs::File;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, RwLock};
 
 /// Rows of a full block.
 pub const BLOCK_ROWS: usize = 32_768;
@@ -55,7 +65,13 @@ pub struct Store {
     /// Readers see the last commit and never wait for the writer.
     readers: SqlitePool,
     /// Held for as long as the store is open: one daemon for each data folder. `None` where it only reads.
-    lock: Option<Arc<File>>,
+    lock: Option<Arc<FolderLock>>,
+    /// `None` where it only reads.
+    keeper: Option<Arc<Keeper>>,
+    /// What was missing when it was opened.
+    missing: Option<Loss>,
+    /// What the last check has found.
+    health: Arc<RwLock<StoreHealth>>,
     /// Whether a mock bench has a full disk.
     is_full: Arc<AtomicBool>,
 }

@@ -1,6 +1,7 @@
 //! Model versions, a tree that only grows, and the diagnoses of its nodes.
 
 use super::runs::{exists, json, now};
+use super::seal::{DIAGNOSES, MODELS, whole};
 use super::{DiagnosisRecord, ModelRecord, NewModel, Store, StoreError, Subject, VersionRecord, kept};
 use jointbench_procedure::RunId;
 use serde_json::Value;
@@ -8,6 +9,7 @@ use sqlx::sqlite::SqliteRow;
 use sqlx::{Row, SqliteConnection};
 
 fn record(row: &SqliteRow) -> Result<ModelRecord, StoreError> {
+    MODELS.check(row)?;
     Ok(ModelRecord {
         id: row.try_get("id")?,
         run: row.try_get("run")?,
@@ -93,32 +95,32 @@ impl Store {
         row.as_ref().map(record).transpose()
     }
 
-    /// All versions of a run, oldest first: parents before their children.
+    /// All versions of a run, oldest first: parents before their children. A damaged one is left out, and the log names it.
     pub async fn models(&self, run: RunId) -> Result<Vec<ModelRecord>, StoreError> {
         exists(&mut *self.readers.acquire().await?, run).await?;
         let rows = sqlx::query("SELECT * FROM models_told WHERE run = ? ORDER BY id")
             .bind(run)
             .fetch_all(&self.readers)
             .await?;
-        rows.iter().map(record).collect()
+        Ok(whole(&rows, record))
     }
 
     /// What was changed in the versions of a run, oldest first, without their fits.
     pub async fn versions(&self, run: RunId) -> Result<Vec<VersionRecord>, StoreError> {
-        let query = "SELECT id, parent, added, removed, who, created_at FROM models WHERE run = ? ORDER BY id";
+        let query = "SELECT * FROM models WHERE run = ? ORDER BY id";
         let rows = sqlx::query(query).bind(run).fetch_all(&self.readers).await?;
-        rows.iter()
-            .map(|row| {
-                Ok(VersionRecord {
-                    id: row.try_get("id")?,
-                    parent: row.try_get("parent")?,
-                    added: json(row, "added")?,
-                    removed: json(row, "removed")?,
-                    by: row.try_get("who")?,
-                    created_at: row.try_get("created_at")?,
-                })
+        let version = |row: &SqliteRow| {
+            MODELS.check(row)?;
+            Ok(VersionRecord {
+                id: row.try_get("id")?,
+                parent: row.try_get("parent")?,
+                added: json(row, "added")?,
+                removed: json(row, "removed")?,
+                by: row.try_get("who")?,
+                created_at: row.try_get("created_at")?,
             })
-            .collect()
+        };
+        Ok(whole(&rows, version))
     }
 
     pub async fn save_diagnosis(&self, model: i64, diagnosis: &Value) -> Result<DiagnosisRecord, StoreError> {
@@ -129,23 +131,18 @@ impl Store {
     }
 
     pub async fn diagnosis(&self, id: i64) -> Result<DiagnosisRecord, StoreError> {
-        let row: Option<(i64, i64, String, String)> =
-            sqlx::query_as("SELECT id, model, diagnosis, created_at FROM diagnoses WHERE id = ?")
-                .bind(id)
-                .fetch_optional(&self.readers)
-                .await?;
-        diagnosis_record(row.ok_or(StoreError::NoDiagnosis(id))?)
+        let row = sqlx::query("SELECT * FROM diagnoses WHERE id = ?").bind(id).fetch_optional(&self.readers).await?;
+        diagnosis_record(&row.ok_or(StoreError::NoDiagnosis(id))?)
     }
 
-    /// The diagnoses of a model version, oldest first.
+    /// The diagnoses of a model version, oldest first. A damaged one is left out, and the log names it.
     pub async fn diagnoses(&self, model: i64) -> Result<Vec<DiagnosisRecord>, StoreError> {
         self.model(model).await?;
-        let rows: Vec<(i64, i64, String, String)> =
-            sqlx::query_as("SELECT id, model, diagnosis, created_at FROM diagnoses WHERE model = ? ORDER BY id")
-                .bind(model)
-                .fetch_all(&self.readers)
-                .await?;
-        rows.into_iter().map(diagnosis_record).collect()
+        let rows = sqlx::query("SELECT * FROM diagnoses WHERE model = ? ORDER BY id")
+            .bind(model)
+            .fetch_all(&self.readers)
+            .await?;
+        Ok(whole(&rows, diagnosis_record))
     }
 }
 
@@ -153,27 +150,56 @@ async fn insert_model(writer: &mut SqliteConnection, new: &NewModel, before: &[S
     let without = |these: &[String], those: &[String]| {
         these.iter().filter(|effect| !those.contains(effect)).cloned().collect::<Vec<String>>()
     };
+    let more_runs = serde_json::to_string(&new.more_runs)?;
+    let excluded = serde_json::to_string(&new.excluded)?;
+    let effects = serde_json::to_string(&new.effects)?;
+    let added = serde_json::to_string(&without(&new.effects, before))?;
+    let removed = serde_json::to_string(&without(before, &new.effects))?;
+    let fit = serde_json::to_string(&new.fit)?;
+    let options = serde_json::to_string(&new.options)?;
+    let created_at = now();
+    let checksum = MODELS.seal(&[
+        new.run.into(),
+        new.parent.into(),
+        (&new.kind).into(),
+        (&effects).into(),
+        (&added).into(),
+        (&removed).into(),
+        (&fit).into(),
+        (&new.residual).into(),
+        new.rms.into(),
+        new.validation_rms.into(),
+        new.noise_floor_rms.into(),
+        (&options).into(),
+        (&created_at).into(),
+        (&more_runs).into(),
+        (&excluded).into(),
+        (&new.by).into(),
+        new.tried.into(),
+    ]);
     let id = sqlx::query_scalar(
         "INSERT INTO models (run, more_runs, excluded, parent, kind, effects, added, removed, fit, residual, rms, validation_rms, \
-         noise_floor_rms, options, who, created_at, made_to_try) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
+         noise_floor_rms, options, who, created_at, made_to_try, checksum) \
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
     )
     .bind(new.run)
-    .bind(serde_json::to_string(&new.more_runs)?)
-    .bind(serde_json::to_string(&new.excluded)?)
+    .bind(more_runs)
+    .bind(excluded)
     .bind(new.parent)
     .bind(&new.kind)
-    .bind(serde_json::to_string(&new.effects)?)
-    .bind(serde_json::to_string(&without(&new.effects, before))?)
-    .bind(serde_json::to_string(&without(before, &new.effects))?)
-    .bind(serde_json::to_string(&new.fit)?)
+    .bind(effects)
+    .bind(added)
+    .bind(removed)
+    .bind(fit)
     .bind(&new.residual)
     .bind(new.rms)
     .bind(new.validation_rms)
     .bind(new.noise_floor_rms)
-    .bind(serde_json::to_string(&new.options)?)
+    .bind(options)
     .bind(&new.by)
-    .bind(now())
+    .bind(created_at)
     .bind(new.tried)
+    .bind(checksum)
     .fetch_one(writer)
     .await?;
     Ok(id)
@@ -185,17 +211,19 @@ async fn insert_diagnosis(
     diagnosis: &Value,
     created_at: &str,
 ) -> Result<i64, StoreError> {
-    let inserted = sqlx::query("INSERT INTO diagnoses (model, diagnosis, created_at) VALUES (?, ?, ?)")
-        .bind(model)
-        .bind(serde_json::to_string(diagnosis)?)
-        .bind(created_at)
-        .execute(writer)
-        .await?;
+    let text = serde_json::to_string(diagnosis)?;
+    let cells = [model.into(), (&text).into(), created_at.into()];
+    let insert = sqlx::query("INSERT INTO diagnoses (model, diagnosis, created_at, checksum) VALUES (?, ?, ?, ?)");
+    let inserted = insert.bind(model).bind(&text).bind(created_at).bind(DIAGNOSES.seal(&cells)).execute(writer).await?;
     Ok(inserted.last_insert_rowid())
 }
 
-fn diagnosis_record(
-    (id, model, diagnosis, created_at): (i64, i64, String, String),
-) -> Result<DiagnosisRecord, StoreError> {
-    Ok(DiagnosisRecord { id, model, diagnosis: serde_json::from_str(&diagnosis)?, created_at })
+fn diagnosis_record(row: &SqliteRow) -> Result<DiagnosisRecord, StoreError> {
+    DIAGNOSES.check(row)?;
+    Ok(DiagnosisRecord {
+        id: row.try_get("id")?,
+        model: row.try_get("model")?,
+        diagnosis: json(row, "diagnosis")?,
+        created_at: row.try_get("created_at")?,
+    })
 }

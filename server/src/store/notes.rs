@@ -1,38 +1,45 @@
 //! What people say about runs.
 
 use super::runs::{exists, now};
+use super::seal::NOTES;
 use super::{NoteRecord, Store, StoreError};
 use jointbench_procedure::RunId;
-
-type Row = (i64, Option<f64>, String, String);
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
 
 impl Store {
-    /// In the order in which they were written.
+    /// In the order in which they were written. The text of a damaged one says what is wrong with it.
     pub async fn notes(&self, run: RunId) -> Result<Vec<NoteRecord>, StoreError> {
         let mut reader = self.readers.begin().await?;
         exists(&mut reader, run).await?;
-        let rows: Vec<Row> = sqlx::query_as("SELECT id, at_s, text, created_at FROM notes WHERE run = ? ORDER BY id")
-            .bind(run)
-            .fetch_all(&mut *reader)
-            .await?;
-        Ok(rows.into_iter().map(record).collect())
+        let rows =
+            sqlx::query("SELECT * FROM notes WHERE run = ? ORDER BY id").bind(run).fetch_all(&mut *reader).await?;
+        let damaged = |row: &SqliteRow, fault: StoreError| NoteRecord {
+            id: row.try_get("id").unwrap_or_default(),
+            at_s: None,
+            text: fault.to_string(),
+            created_at: row.try_get("created_at").unwrap_or_default(),
+        };
+        Ok(rows.iter().map(|row| record(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
     }
 
     /// Keeps a note, about a moment of the run where one is given.
     pub async fn save_note(&self, run: RunId, at_s: Option<f64>, text: &str) -> Result<NoteRecord, StoreError> {
         let mut writer = self.writer.begin().await?;
         exists(&mut writer, run).await?;
-        let row: Row = sqlx::query_as(
-            "INSERT INTO notes (run, at_s, text, created_at) VALUES (?, ?, ?, ?) RETURNING id, at_s, text, created_at",
-        )
-        .bind(run)
-        .bind(at_s)
-        .bind(text)
-        .bind(now())
-        .fetch_one(&mut *writer)
-        .await?;
+        let created_at = now();
+        let cells = [run.into(), at_s.into(), text.into(), (&created_at).into()];
+        let row =
+            sqlx::query("INSERT INTO notes (run, at_s, text, created_at, checksum) VALUES (?, ?, ?, ?, ?) RETURNING *")
+                .bind(run)
+                .bind(at_s)
+                .bind(text)
+                .bind(&created_at)
+                .bind(NOTES.seal(&cells))
+                .fetch_one(&mut *writer)
+                .await?;
         writer.commit().await?;
-        Ok(record(row))
+        record(&row)
     }
 
     /// The run has these tags from now on, and no others.
@@ -58,6 +65,12 @@ impl Store {
     }
 }
 
-fn record((id, at_s, text, created_at): Row) -> NoteRecord {
-    NoteRecord { id, at_s, text, created_at }
+fn record(row: &SqliteRow) -> Result<NoteRecord, StoreError> {
+    NOTES.check(row)?;
+    Ok(NoteRecord {
+        id: row.try_get("id")?,
+        at_s: row.try_get("at_s")?,
+        text: row.try_get("text")?,
+        created_at: row.try_get("created_at")?,
+    })
 }

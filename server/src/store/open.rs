@@ -1,33 +1,33 @@
 //! Opening: one daemon for each data folder, one schema, settings that keep what was committed.
 
 use super::full_disk::{give_back, limit};
+use super::keeper::{Keeper, Signal, Signals, look_back, losses};
+use super::lock::FolderLock;
 use super::migrations::Migrations;
-use super::{Store, StoreError};
+use super::{Store, StoreError, StoreHealth};
 use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{ConnectOptions, Connection, SqliteConnection, SqlitePool};
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, Write};
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, RwLock};
 use std::time::Duration;
 
 /// Marks the file as ours: "JBen".
 const APPLICATION_ID: i64 = 0x4a42_656e;
 /// Commits of the recorder stay under 1 ms in 99 of 100 cases with pages of this size.
 const PAGE_BYTES: u32 = 16_384;
-const FILE_NAME: &str = "jointbench.db";
+pub(super) const FILE_NAME: &str = "jointbench.db";
 /// Of each connection. Five of them must fit beside everything else in an address space of 1 GiB.
 const MAPPED_BYTES: &str = "33554432";
 const READERS: u32 = 4;
 /// For a database that another program holds, and for the one connection that writes.
-const PATIENCE: Duration = Duration::from_secs(5);
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 
 impl Store {
     /// Opens the store in `folder`, which is made where it is missing.
     pub async fn open(folder: &Path) -> Result<Store, StoreError> {
-        let lock = lock(folder)?;
+        let lock = FolderLock::take(folder)?;
         let file = folder.join(FILE_NAME);
         let options = SqliteConnectOptions::new()
             .filename(&file)
@@ -44,12 +44,18 @@ impl Store {
         let options = options.page_size(PAGE_BYTES).journal_mode(SqliteJournalMode::Wal);
         let options = options.synchronous(SqliteSynchronous::Full);
         let is_full = Arc::<AtomicBool>::default();
-        let writer = writer(is_full.clone());
+        let (signals, _) = tokio::sync::watch::channel(Signal::Commits(0));
+        let writer = writer(is_full.clone(), signals.clone());
         let writer = writer.connect_with(options.clone()).await.map_err(|fault| not_ours(fault, &file))?;
         migrate(&writer, &file).await?;
         give_back(&mut *writer.acquire().await?).await?;
+        let missing = look_back(&mut *writer.acquire().await?, folder).await?;
+        let keeper = Keeper::start(&options, writer.clone(), folder.into(), signals).await?;
         let readers = pool(READERS).connect_with(options.read_only(true)).await?;
-        Ok(Store { writer, readers, lock: Some(Arc::new(lock)), is_full })
+        let lost = losses(&mut *readers.acquire().await?).await?;
+        let health = Arc::new(RwLock::new(StoreHealth { lost, ..StoreHealth::default() }));
+        let (lock, keeper) = (Some(Arc::new(lock)), Some(Arc::new(keeper)));
+        Ok(Store { writer, readers, lock, keeper, health, missing, is_full })
     }
 
     /// Opens the store beside the daemon that has it, to read: what was committed is there, and nothing can be written.
@@ -58,11 +64,20 @@ impl Store {
         let options = SqliteConnectOptions::new()
             .filename(&file)
             .read_only(true)
-            .busy_timeout(Duration::from_secs(5))
+            .busy_timeout(PATIENCE)
             .pragma("mmap_size", MAPPED_BYTES)
             .disable_statement_logging();
         let readers = pool(2).connect_with(options).await.map_err(|fault| not_ours(fault, &file))?;
-        Ok(Store { writer: readers.clone(), readers, lock: None, is_full: Arc::default() })
+        let health = Arc::default();
+        Ok(Store {
+            writer: readers.clone(),
+            readers,
+            lock: None,
+            keeper: None,
+            health,
+            missing: None,
+            is_full: Arc::default(),
+        })
     }
 
     /// Whether a store was made in the folder.
@@ -74,11 +89,31 @@ impl Store {
     pub async fn close(&self) {
         self.readers.close().await;
         self.writer.close().await;
+        if let Some(keeper) = &self.keeper {
+            keeper.end().await;
+        }
         // Clones of the store may live on, in requests for example: the folder is free all the same.
-        if let Some(Err(fault)) = self.lock.as_ref().map(|lock| lock.unlock()) {
+        if let Some(Err(fault)) = self.lock.as_ref().map(|lock| lock.release()) {
             tracing::warn!(%fault, "the data folder stays locked until the process ends");
         }
     }
+}
+
+/// A connection that cannot write, also while a daemon has the folder.
+pub(super) async fn to_read(folder: &Path) -> Result<SqliteConnection, StoreError> {
+    if !Store::is_in(folder) {
+        return Err(StoreError::NoStore { folder: folder.into() });
+    }
+    file_to_read(&folder.join(FILE_NAME)).await
+}
+
+/// The same for a database that lies anywhere.
+pub(super) async fn file_to_read(file: &Path) -> Result<SqliteConnection, StoreError> {
+    let options = SqliteConnectOptions::new().filename(file).read_only(true).busy_timeout(PATIENCE);
+    let connected = options.disable_statement_logging().connect().await;
+    let mut database = connected.map_err(|fault| not_ours(fault, file))?;
+    check_ours(&mut database, file).await?;
+    Ok(database)
 }
 
 fn pool(most: u32) -> SqlitePoolOptions {
@@ -87,10 +122,17 @@ fn pool(most: u32) -> SqlitePoolOptions {
 
 /// The one connection that writes. On a full disk SQLite may end a transaction by itself; to sqlx it is still on then, and none
 /// could begin any more: such a connection is exchanged for another.
-fn writer(is_full: Arc<AtomicBool>) -> SqlitePoolOptions {
+fn writer(is_full: Arc<AtomicBool>, signals: Signals) -> SqlitePoolOptions {
     let writer = pool(1).after_connect(move |connection, _| {
-        let full = is_full.load(Ordering::Acquire);
-        Box::pin(limit(connection, full))
+        let (full, signals) = (is_full.load(Ordering::Acquire), signals.clone());
+        Box::pin(async move {
+            limit(connection, full).await?;
+            connection.lock_handle().await?.set_commit_hook(move || {
+                signals.send_modify(|signal| *signal = signal.next());
+                true
+            });
+            Ok(())
+        })
     });
     writer.after_release(|connection, _| {
         Box::pin(async move {
@@ -99,29 +141,6 @@ fn writer(is_full: Arc<AtomicBool>) -> SqlitePoolOptions {
             Ok(!connection.is_in_transaction())
         })
     })
-}
-
-fn lock(folder: &Path) -> Result<File, StoreError> {
-    let unwritable = |fault: std::io::Error| StoreError::Unwritable { folder: folder.into(), what: fault.to_string() };
-    fs::create_dir_all(folder).map_err(unwritable)?;
-    let path = folder.join("lock");
-    let mut file =
-        OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(unwritable)?;
-    match file.try_lock() {
-        Ok(()) => {}
-        Err(TryLockError::WouldBlock) => {
-            let mut holder = String::new();
-            let holder = match file.read_to_string(&mut holder) {
-                Ok(_) if !holder.trim().is_empty() => format!(" (process {})", holder.trim()),
-                _ => String::new(),
-            };
-            return Err(StoreError::InUse { folder: folder.into(), holder });
-        }
-        Err(TryLockError::Error(fault)) => return Err(unwritable(fault)),
-    }
-    let told = file.set_len(0).and_then(|()| file.rewind()).and_then(|()| write!(file, "{}", std::process::id()));
-    told.map_err(unwritable)?;
-    Ok(file)
 }
 
 fn not_ours(fault: sqlx::Error, file: &Path) -> StoreError {

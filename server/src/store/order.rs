@@ -18,7 +18,7 @@ const COLUMNS: [(&str, &str); 9] = [
     ),
     (
         "coulomb",
-        "(SELECT (SELECT p.value ->> '$.value' FROM json_each(models_told.fit, '$.parameters') AS p \
+        "(SELECT (SELECT p.value ->> '$.value' FROM json_each(IIF(json_valid(models_told.fit), models_told.fit, '{}'), '$.parameters') AS p \
          WHERE p.value ->> '$.effect' = 'coulomb') FROM models_told WHERE run = runs_told.id AND NOT idle AND NOT tried ORDER BY id DESC LIMIT 1)",
     ),
 ];

@@ -1,19 +1,20 @@
 //! Effects that users write: the latest version of each is what new models may hold.
 
-use super::runs::now;
+use super::runs::{json, now};
+use super::seal::{OWN_EFFECTS, whole};
 use super::{OwnEffectRecord, Store, StoreError};
 use serde_json::Value;
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
 
-const LATEST: &str = "SELECT kind, effect, version, definition, created_at FROM own_effects AS own \
+const LATEST: &str = "SELECT * FROM own_effects AS own \
                       WHERE version = (SELECT max(version) FROM own_effects WHERE kind = own.kind AND effect = own.effect)";
 
-type Row = (String, String, i64, String, String);
-
 impl Store {
-    /// In the order in which they were first written.
+    /// By kind and id. A damaged one is left out, and the log names it.
     pub async fn own_effects(&self) -> Result<Vec<OwnEffectRecord>, StoreError> {
-        let rows: Vec<Row> = sqlx::query_as(LATEST).fetch_all(&self.readers).await?;
-        let mut records: Vec<OwnEffectRecord> = rows.into_iter().map(record).collect::<Result<_, _>>()?;
+        let rows = sqlx::query(LATEST).fetch_all(&self.readers).await?;
+        let mut records = whole(&rows, record);
         records.sort_by(|a, b| (&a.kind, &a.effect).cmp(&(&b.kind, &b.effect)));
         Ok(records)
     }
@@ -29,24 +30,35 @@ impl Store {
         if let Some(latest) = latest.filter(|latest| latest.definition == *definition) {
             return Ok(latest);
         }
-        let row: Row = sqlx::query_as(
-            "INSERT INTO own_effects (kind, effect, version, definition, created_at) \
-             SELECT ?1, ?2, coalesce(max(version), 0) + 1, ?3, ?4 FROM own_effects WHERE kind = ?1 AND effect = ?2 \
-             RETURNING kind, effect, version, definition, created_at",
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let version: i64 =
+            sqlx::query_scalar("SELECT COALESCE(MAX(version), 0) + 1 FROM own_effects WHERE kind = ? AND effect = ?")
+                .bind(kind)
+                .bind(effect)
+                .fetch_one(&mut *writer)
+                .await?;
+        let (text, created_at) = (serde_json::to_string(definition)?, now());
+        let cells = [kind.into(), effect.into(), version.into(), (&text).into(), (&created_at).into()];
+        let row = sqlx::query(
+            "INSERT INTO own_effects (kind, effect, version, definition, created_at, checksum) \
+             VALUES (?, ?, ?, ?, ?, ?) RETURNING *",
         )
         .bind(kind)
         .bind(effect)
-        .bind(serde_json::to_string(definition)?)
-        .bind(now())
-        .fetch_one(&self.writer)
+        .bind(version)
+        .bind(&text)
+        .bind(&created_at)
+        .bind(OWN_EFFECTS.seal(&cells))
+        .fetch_one(&mut *writer)
         .await?;
-        record(row)
+        writer.commit().await?;
+        record(&row)
     }
 
     /// Forgets an effect with all its versions; refused while a model uses it.
     pub async fn delete_own_effect(&self, kind: &str, effect: &str) -> Result<(), StoreError> {
         let user: Option<(i64,)> = sqlx::query_as(
-            "SELECT models.id FROM models, json_each(models.fit, '$.own') AS own \
+            "SELECT models.id FROM models, json_each(IIF(json_valid(models.fit), models.fit, '{}'), '$.own') AS own \
              WHERE models.kind = ? AND json_extract(own.value, '$.id') = ? ORDER BY models.id LIMIT 1",
         )
         .bind(kind)
@@ -68,6 +80,13 @@ impl Store {
     }
 }
 
-fn record((kind, effect, version, definition, created_at): Row) -> Result<OwnEffectRecord, StoreError> {
-    Ok(OwnEffectRecord { kind, effect, version, definition: serde_json::from_str(&definition)?, created_at })
+fn record(row: &SqliteRow) -> Result<OwnEffectRecord, StoreError> {
+    OWN_EFFECTS.check(row)?;
+    Ok(OwnEffectRecord {
+        kind: row.try_get("kind")?,
+        effect: row.try_get("effect")?,
+        version: row.try_get("version")?,
+        definition: json(row, "definition")?,
+        created_at: row.try_get("created_at")?,
+    })
 }

@@ -50,6 +50,38 @@ pub struct RunRecord {
     pub verdict: Option<String>,
     /// Figures of the last version, as the list tells them.
     pub model: Option<Value>,
+    /// What is wrong with it, in a list: the other fields are what can be read.
+    pub damaged: Option<String>,
+}
+
+impl RunRecord {
+    /// Of a run that is known to be there, and nothing else.
+    pub(super) fn unreadable(id: RunId, damaged: String) -> Self {
+        RunRecord {
+            id,
+            bench: String::new(),
+            procedure: String::new(),
+            kind: String::new(),
+            simulated: false,
+            state: RunState::Interrupted,
+            safe: None,
+            reason: None,
+            created_at: String::new(),
+            started_at: None,
+            finished_at: None,
+            rows: 0,
+            duration_s: None,
+            parameters: Map::new(),
+            provenance: Map::new(),
+            meta: Map::new(),
+            channels: Vec::new(),
+            tags: Vec::new(),
+            note: None,
+            verdict: None,
+            model: None,
+            damaged: Some(damaged),
+        }
+    }
 }
 
 /// Which runs to list.

@@ -1,6 +1,7 @@
 //! Runs and their journal.
 
 use super::commit::append;
+use super::seal::{CHANNELS, EVENTS, RUN_STATES, RUNS};
 use super::search::Search;
 use super::{EventRecord, NewRun, RunFilter, RunRecord, Store, StoreError};
 use jiff::Timestamp;
@@ -19,7 +20,7 @@ const TOLD: &str = "SELECT runs_told.*, \
     (SELECT json_object('id', id, 'validation_rms', validation_rms, 'noise_floor_rms', noise_floor_rms, \
         'unit', json_extract(fit, '$.unit'), \
         'coulomb', (SELECT json(p.value) FROM json_each(models_told.fit, '$.parameters') AS p WHERE p.value ->> '$.effect' = 'coulomb')) \
-        FROM models_told WHERE run = runs_told.id AND NOT idle AND NOT tried ORDER BY id DESC LIMIT 1) AS model \
+        FROM models_told WHERE run = runs_told.id AND NOT idle AND NOT tried AND json_valid(fit) ORDER BY id DESC LIMIT 1) AS model \
     FROM runs_told";
 
 /// Now, as it is written in the store.
@@ -33,6 +34,8 @@ fn word<T: DeserializeOwned>(text: &str) -> Result<T, StoreError> {
 }
 
 fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreError> {
+    RUNS.check(row)?;
+    RUN_STATES.check(row)?;
     Ok(RunRecord {
         id: row.try_get("id")?,
         bench: row.try_get("bench")?,
@@ -55,12 +58,33 @@ fn record(row: &SqliteRow, channels: Vec<Channel>) -> Result<RunRecord, StoreErr
         verdict: row.try_get("verdict")?,
         model: row.try_get::<Option<&str>, _>("model")?.map(serde_json::from_str).transpose()?,
         channels,
+        damaged: None,
     })
+}
+
+/// What can be read of a run that is damaged.
+fn damaged(row: &SqliteRow, fault: StoreError) -> RunRecord {
+    let text = |column| row.try_get(column).unwrap_or_default();
+    let state = row.try_get::<&str, _>("state").map_err(StoreError::from).and_then(word);
+    RunRecord {
+        id: row.try_get("id").unwrap_or_default(),
+        bench: text("bench"),
+        procedure: text("procedure"),
+        kind: text("kind"),
+        simulated: row.try_get("simulated").unwrap_or_default(),
+        state: state.unwrap_or(RunState::Interrupted),
+        reason: row.try_get("reason").unwrap_or_default(),
+        created_at: text("created_at"),
+        finished_at: row.try_get("finished_at").unwrap_or_default(),
+        rows: row.try_get::<i64, _>("rows").unwrap_or_default() as u64,
+        damaged: Some(fault.to_string()),
+        ..RunRecord::unreadable(0, String::new())
+    }
 }
 
 /// A column that holds JSON.
 pub(super) fn json<T: DeserializeOwned>(row: &SqliteRow, column: &str) -> Result<T, StoreError> {
-    Ok(serde_json::from_str(row.try_get(column)?)?)
+    serde_json::from_str(row.try_get(column)?).map_err(|fault| StoreError::Damaged(format!("column {column}: {fault}")))
 }
 
 impl Store {
@@ -88,12 +112,24 @@ impl Store {
         let mut query = QueryBuilder::new(TOLD);
         query.push(" WHERE id = ").push_bind(run);
         let row = query.build().fetch_optional(&mut *reader).await?;
-        record(&row.ok_or(StoreError::NoRun(run))?, channels(&mut reader, run).await?)
+        let row = row.ok_or(StoreError::NoRun(run))?;
+        record(&row, channels(&mut reader, run).await?).map_err(|fault| match fault {
+            StoreError::Damaged(what) if !what.starts_with("table") => RUNS.damaged(&row, &what),
+            other => other,
+        })
     }
 
-    /// A page of the runs that match, and how many match. The page's runs come without their channels.
+    /// A page of the runs that match, and how many match. The page's runs come without their channels. One that is damaged is
+    /// listed with what can be read of it.
     pub async fn runs(&self, filter: &RunFilter) -> Result<(u64, Vec<RunRecord>), StoreError> {
         let search = Search::parse(filter.search.as_deref().unwrap_or_default())?;
+        match self.page(&search, filter).await {
+            Err(StoreError::Damaged(_)) => self.one_by_one(&search, filter).await,
+            page => page,
+        }
+    }
+
+    async fn page(&self, search: &Search, filter: &RunFilter) -> Result<(u64, Vec<RunRecord>), StoreError> {
         let mut reader = self.readers.begin().await?;
         let mut count = QueryBuilder::new("SELECT COUNT(*) FROM runs_told");
         search.push(&mut count);
@@ -103,8 +139,33 @@ impl Store {
         filter.order.push(&mut page);
         page.push(" LIMIT ").push_bind(filter.limit).push(" OFFSET ").push_bind(filter.offset);
         let rows = page.build().fetch_all(&mut *reader).await?;
-        let runs = rows.iter().map(|row| record(row, Vec::new())).collect::<Result<_, _>>()?;
-        Ok((total as u64, runs))
+        Ok((total as u64, rows.iter().map(listed).collect()))
+    }
+
+    /// The same, newest first, where SQLite cannot read through the table: each run by its number.
+    pub(super) async fn one_by_one(
+        &self,
+        search: &Search,
+        filter: &RunFilter,
+    ) -> Result<(u64, Vec<RunRecord>), StoreError> {
+        let last: Option<i64> = sqlx::query_scalar("SELECT seq FROM sqlite_sequence WHERE name = 'runs'")
+            .fetch_optional(&self.readers)
+            .await?;
+        let mut runs = Vec::new();
+        for run in (1..=last.unwrap_or_default()).rev() {
+            let mut query = QueryBuilder::new(TOLD);
+            search.push(&mut query);
+            query.push(if search.is_empty() { " WHERE id = " } else { " AND id = " }).push_bind(run);
+            match query.build().fetch_optional(&self.readers).await.map_err(StoreError::from) {
+                Ok(row) => runs.extend(row.as_ref().map(listed)),
+                Err(fault @ StoreError::Damaged(_)) => {
+                    runs.push(RunRecord::unreadable(run, fault.within(run, "runs").to_string()));
+                }
+                Err(fault) => return Err(fault),
+            }
+        }
+        let total = runs.len() as u64;
+        Ok((total, runs.into_iter().skip(filter.offset as usize).take(filter.limit as usize).collect()))
     }
 
     /// Complete runs of the same bench and procedure before this one, newest first. A mock bench and a real one of the same
@@ -126,26 +187,20 @@ impl Store {
 
     /// The last run that went on with this one.
     pub async fn continued_by(&self, run: RunId) -> Result<Option<RunId>, StoreError> {
-        let query = "SELECT MAX(id) FROM runs WHERE json_extract(meta, '$.continues.run') = ?";
+        let query = "SELECT MAX(id) FROM runs WHERE IIF(json_valid(meta), meta, '{}') ->> '$.continues.run' = ?";
         Ok(sqlx::query_scalar(query).bind(run).fetch_one(&self.readers).await?)
     }
 
-    /// The journal behind `after`, in order.
+    /// The journal behind `after`, in order. The kind of a damaged entry is `damaged`.
     pub async fn events(&self, run: RunId, after: u64) -> Result<Vec<EventRecord>, StoreError> {
         let mut reader = self.readers.begin().await?;
         exists(&mut reader, run).await?;
-        let rows: Vec<(i64, f64, String, String)> = sqlx::query_as(
-            "SELECT sequence, at_s, kind, data FROM events WHERE run = ? AND sequence > ? ORDER BY sequence",
-        )
-        .bind(run)
-        .bind(after as i64)
-        .fetch_all(&mut *reader)
-        .await?;
-        rows.into_iter()
-            .map(|(sequence, at_s, kind, data)| {
-                Ok(EventRecord { sequence: sequence as u64, at_s, kind, data: serde_json::from_str(&data)? })
-            })
-            .collect()
+        let rows = sqlx::query("SELECT * FROM events WHERE run = ? AND sequence > ? ORDER BY sequence")
+            .bind(run)
+            .bind(after as i64)
+            .fetch_all(&mut *reader);
+        let rows = rows.await.map_err(|fault| StoreError::from(fault).within(run, "events"))?;
+        Ok(rows.iter().map(|row| event(row).unwrap_or_else(|fault| damaged_event(row, fault))).collect())
     }
 
     /// Says of a run that is over how it ended, how it was secured, and why, where its own last commit could not say so.
@@ -172,6 +227,7 @@ impl Store {
             append(&mut writer, run, state, &[end], Trace::default()).await?;
         } else {
             keep_reason(&mut writer, run, reason).await?;
+            seal_state(&mut writer, run).await?;
         }
         Ok(writer.commit().await?)
     }
@@ -190,29 +246,72 @@ impl Store {
                 .fetch_one(&self.writer)
                 .await?;
             let event = Event { at_s, kind: EventKind::State { state: RunState::Interrupted, reason: None } };
-            self.commit(run, RunState::Interrupted, &[event], Default::default()).await?;
-            interrupted.push(self.run(run).await?);
+            match self.commit(run, RunState::Interrupted, &[event], Default::default()).await {
+                Err(fault @ StoreError::Damaged(_)) => {
+                    tracing::error!(run, %fault, "a run is ended with its last rows left as they are");
+                    self.end_damaged(run).await?;
+                }
+                done => done?,
+            }
+            let mut query = QueryBuilder::new(TOLD);
+            query.push(" WHERE id = ").push_bind(run);
+            interrupted.push(listed(&query.build().fetch_one(&self.readers).await?));
         }
         Ok(interrupted)
+    }
+
+    /// Interrupts a run without touching its journal and its last rows.
+    async fn end_damaged(&self, run: RunId) -> Result<(), StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let end = sqlx::query("UPDATE runs SET state = ?, finished_at = ? WHERE id = ?");
+        end.bind(RunState::Interrupted.name()).bind(now()).bind(run).execute(&mut *writer).await?;
+        seal_state(&mut writer, run).await?;
+        Ok(writer.commit().await?)
     }
 }
 
 pub(super) async fn insert_run(writer: &mut SqliteConnection, new: &NewRun) -> Result<RunId, StoreError> {
+    let created_at = now();
+    let parameters = serde_json::to_string(&new.parameters)?;
+    let provenance = serde_json::to_string(&new.provenance)?;
+    let meta = serde_json::to_string(&new.meta)?;
+    let checksum = RUNS.seal(&[
+        (&new.bench).into(),
+        (&new.procedure).into(),
+        (&new.kind).into(),
+        new.simulated.into(),
+        (&created_at).into(),
+        (&parameters).into(),
+        (&provenance).into(),
+        (&meta).into(),
+    ]);
     let inserted = sqlx::query(
-        "INSERT INTO runs (bench, procedure, kind, simulated, state, created_at, parameters, provenance, meta) \
-         VALUES (?, ?, ?, ?, 'queued', ?, ?, ?, ?)",
+        "INSERT INTO runs (bench, procedure, kind, simulated, state, created_at, parameters, provenance, meta, checksum) \
+         VALUES (?, ?, ?, ?, 'queued', ?, ?, ?, ?, ?)",
     )
     .bind(&new.bench)
     .bind(&new.procedure)
     .bind(&new.kind)
     .bind(new.simulated)
-    .bind(now())
-    .bind(serde_json::to_string(&new.parameters)?)
-    .bind(serde_json::to_string(&new.provenance)?)
-    .bind(serde_json::to_string(&new.meta)?)
+    .bind(created_at)
+    .bind(parameters)
+    .bind(provenance)
+    .bind(meta)
+    .bind(checksum)
     .execute(writer)
     .await?;
     Ok(inserted.last_insert_rowid())
+}
+
+/// To be called at the end of each transaction that changes how far a run has come.
+pub(super) async fn seal_state(writer: &mut SqliteConnection, run: RunId) -> Result<(), StoreError> {
+    let row = sqlx::query("SELECT id, state, safe, reason, started_at, finished_at, rows FROM runs WHERE id = ?")
+        .bind(run)
+        .fetch_one(&mut *writer)
+        .await?;
+    let seal = sqlx::query("UPDATE runs SET state_checksum = ? WHERE id = ?");
+    seal.bind(RUN_STATES.of_row(&row)?).bind(run).execute(writer).await?;
+    Ok(())
 }
 
 /// Appends to the journal; what an event says about safety is taken over into the run and the bench, and why a run ended
@@ -232,12 +331,15 @@ pub(super) async fn insert_events(
             other => Map::from_iter([("kind".to_owned(), other)]),
         };
         let kind = data.remove("kind").and_then(|kind| Some(kind.as_str()?.to_owned())).unwrap_or_default();
-        sqlx::query("INSERT INTO events (run, sequence, at_s, kind, data) VALUES (?, ?, ?, ?, ?)")
+        let data = serde_json::to_string(&data)?;
+        let cells = [run.into(), sequence.into(), event.at_s.into(), (&kind).into(), (&data).into()];
+        sqlx::query("INSERT INTO events (run, sequence, at_s, kind, data, checksum) VALUES (?, ?, ?, ?, ?, ?)")
             .bind(run)
             .bind(sequence)
             .bind(event.at_s)
-            .bind(kind)
-            .bind(serde_json::to_string(&data)?)
+            .bind(&kind)
+            .bind(&data)
+            .bind(EVENTS.seal(&cells))
             .execute(&mut *writer)
             .await?;
         match &event.kind {
@@ -257,12 +359,31 @@ async fn keep_reason(writer: &mut SqliteConnection, run: RunId, reason: Option<&
 }
 
 pub(super) async fn channels(reader: &mut SqliteConnection, run: RunId) -> Result<Vec<Channel>, StoreError> {
-    let rows: Vec<(String, Option<f64>)> =
-        sqlx::query_as("SELECT name, resolution FROM channels WHERE run = ? ORDER BY place")
-            .bind(run)
-            .fetch_all(reader)
-            .await?;
-    Ok(rows.into_iter().map(|(name, resolution)| Channel { name, resolution }).collect())
+    let rows = sqlx::query("SELECT * FROM channels WHERE run = ? ORDER BY place").bind(run).fetch_all(reader).await?;
+    let channel = |row: &SqliteRow| {
+        CHANNELS.check(row)?;
+        Ok(Channel { name: row.try_get("name")?, resolution: row.try_get("resolution")? })
+    };
+    rows.iter().map(channel).collect()
+}
+
+fn listed(row: &SqliteRow) -> RunRecord {
+    record(row, Vec::new()).unwrap_or_else(|fault| damaged(row, fault))
+}
+
+fn event(row: &SqliteRow) -> Result<EventRecord, StoreError> {
+    EVENTS.check(row)?;
+    let sequence = row.try_get::<i64, _>("sequence")? as u64;
+    Ok(EventRecord { sequence, at_s: row.try_get("at_s")?, kind: row.try_get("kind")?, data: json(row, "data")? })
+}
+
+fn damaged_event(row: &SqliteRow, fault: StoreError) -> EventRecord {
+    EventRecord {
+        sequence: row.try_get::<i64, _>("sequence").unwrap_or_default() as u64,
+        at_s: row.try_get("at_s").unwrap_or_default(),
+        kind: "damaged".to_owned(),
+        data: Map::from_iter([("text".to_owned(), fault.to_string().into())]),
+    }
 }
 
 pub(super) async fn exists(reader: &mut SqliteConnection, run: RunId) -> Result<(), StoreError> {

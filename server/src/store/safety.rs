@@ -1,29 +1,47 @@
 //! Which bench must not move until a person has looked at it.
 
 use super::runs::now;
+use super::seal::BENCH_SAFETY;
 use super::{SafetyRecord, Store, StoreError};
 use jointbench_procedure::{RunId, Safe};
-use sqlx::SqliteConnection;
-
-type Row = (bool, bool, String, Option<RunId>, Option<String>, String);
+use sqlx::sqlite::SqliteRow;
+use sqlx::{Row, SqliteConnection};
 
 impl Store {
     /// Why the bench must not move, or `None`.
+    ///
+    /// Where the newest entry is damaged nobody knows whether it was a release: a block is entered behind it.
     pub async fn bench_block(&self, bench: &str) -> Result<Option<SafetyRecord>, StoreError> {
-        Ok(self.safety(bench, 1).await?.pop().filter(|newest| newest.blocked))
+        let newest = match self.newest_entry(bench).await {
+            Err(StoreError::Damaged(what)) => {
+                let reason = format!("the newest entry of the safety record is damaged ({what}): look at the bench");
+                self.block_bench(bench, None, &reason).await?;
+                self.newest_entry(bench).await?
+            }
+            newest => newest?,
+        };
+        Ok(newest.filter(|newest| newest.blocked))
     }
 
-    /// The newest entries of a bench, newest first.
+    async fn newest_entry(&self, bench: &str) -> Result<Option<SafetyRecord>, StoreError> {
+        let query = "SELECT * FROM bench_safety WHERE bench = ? ORDER BY id DESC LIMIT 1";
+        let row = sqlx::query(query).bind(bench).fetch_optional(&self.readers).await?;
+        row.as_ref().map(record).transpose()
+    }
+
+    /// The newest entries of a bench, newest first. A damaged one is told as a block, with what is wrong with it for its reason.
     pub async fn safety(&self, bench: &str, limit: u32) -> Result<Vec<SafetyRecord>, StoreError> {
-        let entries: Vec<Row> = sqlx::query_as(
-            "SELECT blocked, stopped, reason, run, who, at FROM bench_safety WHERE bench = ? ORDER BY id DESC LIMIT ?",
-        )
-        .bind(bench)
-        .bind(limit)
-        .fetch_all(&self.readers)
-        .await?;
-        let record = |(blocked, stopped, reason, run, by, at)| SafetyRecord { blocked, stopped, reason, run, by, at };
-        Ok(entries.into_iter().map(record).collect())
+        let query = "SELECT * FROM bench_safety WHERE bench = ? ORDER BY id DESC LIMIT ?";
+        let rows = sqlx::query(query).bind(bench).bind(limit).fetch_all(&self.readers).await?;
+        let damaged = |row: &SqliteRow, fault: StoreError| SafetyRecord {
+            blocked: true,
+            stopped: false,
+            reason: fault.to_string(),
+            run: None,
+            by: None,
+            at: row.try_get("at").unwrap_or_default(),
+        };
+        Ok(rows.iter().map(|row| record(row).unwrap_or_else(|fault| damaged(row, fault))).collect())
     }
 
     /// Enters a block that began a while ago; one that is there already is left alone.
@@ -73,6 +91,18 @@ impl Store {
     }
 }
 
+fn record(row: &SqliteRow) -> Result<SafetyRecord, StoreError> {
+    BENCH_SAFETY.check(row)?;
+    Ok(SafetyRecord {
+        blocked: row.try_get("blocked")?,
+        stopped: row.try_get("stopped")?,
+        reason: row.try_get("reason")?,
+        run: row.try_get("run")?,
+        by: row.try_get("who")?,
+        at: row.try_get("at")?,
+    })
+}
+
 #[derive(Clone, Copy, PartialEq)]
 enum Word {
     Block,
@@ -99,8 +129,17 @@ async fn enter(
 }
 
 async fn insert(writer: &mut SqliteConnection, bench: &str, record: &SafetyRecord) -> Result<(), StoreError> {
+    let cells = [
+        bench.into(),
+        record.blocked.into(),
+        record.stopped.into(),
+        (&record.reason).into(),
+        record.run.into(),
+        record.by.as_ref().into(),
+        (&record.at).into(),
+    ];
     sqlx::query(
-        "INSERT INTO bench_safety (bench, blocked, stopped, reason, run, who, at) VALUES (?, ?, ?, ?, ?, ?, ?)",
+        "INSERT INTO bench_safety (bench, blocked, stopped, reason, run, who, at, checksum) VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
     )
     .bind(bench)
     .bind(record.blocked)
@@ -109,9 +148,15 @@ async fn insert(writer: &mut SqliteConnection, bench: &str, record: &SafetyRecor
     .bind(record.run)
     .bind(&record.by)
     .bind(&record.at)
+    .bind(BENCH_SAFETY.seal(&cells))
     .execute(writer)
     .await?;
     Ok(())
+}
+
+/// Blocks a bench for a reason of the store's own.
+pub(super) async fn block(writer: &mut SqliteConnection, bench: &str, reason: &str) -> Result<(), StoreError> {
+    enter(writer, bench, Word::Block, None, reason, None).await
 }
 
 /// Keeps what securing has reached with the run, and blocks the bench where that is not known to be safe.

@@ -3,10 +3,12 @@
 use super::codec::{self, Broken};
 use super::pyramid;
 use super::runs::{channels, exists};
+use super::seal::{BLOCKS, TAIL};
 use super::{BLOCK_ROWS, Store, StoreError};
 use jointbench_instrument::{Channel, Trace};
 use jointbench_procedure::RunId;
-use sqlx::SqliteConnection;
+use sqlx::sqlite::SqliteRow;
+use sqlx::{Row, SqliteConnection};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -54,12 +56,9 @@ pub(super) async fn read(
         let (place, rows, tail) = (*place, rows.clone(), tail.clone());
         let blocks = blocks(reader, run, place, &rows).await?;
         columns.push(tokio::task::spawn_blocking(move || {
-            let pieces: Vec<Piece<'_>> = blocks
-                .iter()
-                .map(Piece::of_block)
-                .chain(tail.iter().map(|piece| Piece::of_tail(piece, place)))
-                .collect();
-            unpack(&pieces, &rows, threads)
+            let tail = tail.iter().map(|piece| Ok(Piece::of_tail(piece, place)));
+            let pieces = blocks.iter().map(Piece::of_block).chain(tail).collect::<Result<Vec<_>, StoreError>>()?;
+            unpack(&pieces, &rows, threads).map_err(|fault| fault.within(run, "blocks"))
         }));
     }
     let mut unpacked = Vec::new();
@@ -69,25 +68,22 @@ pub(super) async fn read(
     Ok(Trace::from_columns(chosen.into_iter().map(|(_, channel)| channel).collect(), unpacked))
 }
 
-/// One packed column of a block: first row, rows, data.
-type Block = (i64, i64, Vec<u8>);
-
 async fn blocks(
     reader: &mut SqliteConnection,
     run: RunId,
     place: usize,
     rows: &Range<i64>,
-) -> Result<Vec<Block>, StoreError> {
-    Ok(sqlx::query_as(
-        "SELECT first_row, rows, data FROM blocks \
+) -> Result<Vec<SqliteRow>, StoreError> {
+    let rows = sqlx::query(
+        "SELECT run, channel, first_row, rows, data, checksum FROM blocks \
          WHERE run = ? AND channel = ? AND first_row > ? AND first_row < ? ORDER BY first_row",
     )
     .bind(run)
     .bind(place as i64)
     .bind(rows.start.saturating_sub(BLOCK_ROWS as i64))
     .bind(rows.end)
-    .fetch_all(reader)
-    .await?)
+    .fetch_all(reader);
+    rows.await.map_err(|fault| StoreError::from(fault).within(run, "blocks"))
 }
 
 /// One channel's packed rows, in a block of its own or among the other channels of a commit.
@@ -100,8 +96,10 @@ struct Piece<'a> {
 }
 
 impl<'a> Piece<'a> {
-    fn of_block((first_row, rows, data): &'a Block) -> Self {
-        Piece { first_row: *first_row, rows: *rows, data, place: None }
+    fn of_block(row: &'a SqliteRow) -> Result<Self, StoreError> {
+        BLOCKS.check(row)?;
+        let (first_row, rows) = (row.try_get("first_row")?, row.try_get("rows")?);
+        Ok(Piece { first_row, rows, data: row.try_get("data")?, place: None })
     }
 
     fn of_tail(tail: &'a TailPiece, place: usize) -> Self {
@@ -165,6 +163,8 @@ fn unpack_share(share: &[Piece<'_>], rows: &Range<i64>, mut values: &mut [f64]) 
 pub(super) struct TailPiece {
     pub first_row: i64,
     pub rows: i64,
+    /// The time of its last row.
+    pub to_s: Option<f64>,
     pub data: Vec<u8>,
 }
 
@@ -174,15 +174,26 @@ pub(super) async fn tail(
     run: RunId,
     rows: Range<i64>,
 ) -> Result<Vec<TailPiece>, StoreError> {
-    let pieces: Vec<(i64, i64, Vec<u8>)> = sqlx::query_as(
-        "SELECT first_row, rows, data FROM tail WHERE run = ? AND first_row + rows > ? AND first_row < ? ORDER BY first_row",
-    )
-    .bind(run)
-    .bind(rows.start)
-    .bind(rows.end)
-    .fetch_all(reader)
-    .await?;
-    Ok(pieces.into_iter().map(|(first_row, rows, data)| TailPiece { first_row, rows, data }).collect())
+    let rows =
+        sqlx::query("SELECT * FROM tail WHERE run = ? AND first_row + rows > ? AND first_row < ? ORDER BY first_row")
+            .bind(run)
+            .bind(rows.start)
+            .bind(rows.end)
+            .fetch_all(reader);
+    let rows = rows.await.map_err(|fault| StoreError::from(fault).within(run, "tail"))?;
+    rows.iter().map(TailPiece::of).collect()
+}
+
+impl TailPiece {
+    fn of(row: &SqliteRow) -> Result<Self, StoreError> {
+        TAIL.check(row)?;
+        Ok(Self {
+            first_row: row.try_get("first_row")?,
+            rows: row.try_get("rows")?,
+            to_s: row.try_get("to_s")?,
+            data: row.try_get("data")?,
+        })
+    }
 }
 
 impl From<Broken> for StoreError {

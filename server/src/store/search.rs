@@ -66,6 +66,10 @@ impl Search {
         ))
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// ` WHERE …`, with every value bound.
     pub fn push(&self, query: &mut QueryBuilder<Sqlite>) {
         for (i, (without, condition)) in self.0.iter().enumerate() {

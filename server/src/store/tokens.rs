@@ -1,6 +1,7 @@
 //! Tokens that were made while the daemon ran. Of their secrets only hashes come here.
 
 use super::runs::now;
+use super::seal::whole;
 use super::{Store, StoreError, TokenRecord};
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
@@ -18,11 +19,11 @@ fn record(row: &SqliteRow) -> Result<TokenRecord, StoreError> {
 }
 
 impl Store {
-    /// Those that open something, oldest first.
+    /// Those that open something, oldest first. A damaged one opens nothing, and the log names it.
     pub async fn tokens(&self) -> Result<Vec<TokenRecord>, StoreError> {
         let rows =
             sqlx::query("SELECT * FROM tokens WHERE revoked_at IS NULL ORDER BY id").fetch_all(&self.readers).await?;
-        rows.iter().map(record).collect()
+        Ok(whole(&rows, record))
     }
 
     /// Those that were made and revoked: when, what and by whom.

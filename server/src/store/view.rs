@@ -1,10 +1,12 @@
 //! A window of a run at the width of a picture: no more points than pixels, and never a hidden spike.
 
 use super::pyramid::{self, COARSE_ROWS, FINE_ROWS};
-use super::samples::{Chosen, choose, read};
+use super::samples::{Chosen, choose, read, tail};
+use super::seal::{COARSE, FINE, SPANS};
 use super::{Store, StoreError, View, ViewColumn};
 use jointbench_procedure::RunId;
-use sqlx::{QueryBuilder, SqliteConnection};
+use sqlx::sqlite::SqliteRow;
+use sqlx::{Row, SqliteConnection};
 use std::ops::Range;
 
 /// Smallest and largest values of bins in a row.
@@ -112,17 +114,23 @@ async fn row_at(
     rows: i64,
     before: impl Fn(f64) -> bool,
 ) -> Result<i64, StoreError> {
-    let pieces: Vec<(i64, i64, Option<f64>)> = sqlx::query_as(
-        "SELECT first_row, rows, to_s FROM spans WHERE run = ?1 UNION ALL \
-         SELECT first_row, rows, to_s FROM tail WHERE run = ?1 ORDER BY first_row",
-    )
-    .bind(run)
-    .fetch_all(&mut *reader)
-    .await?;
+    let spans =
+        sqlx::query("SELECT run, first_row, rows, from_s, to_s, checksum FROM spans WHERE run = ? ORDER BY first_row")
+            .bind(run)
+            .fetch_all(&mut *reader);
+    let spans = spans.await.map_err(|fault| StoreError::from(fault).within(run, "spans"))?;
+    let mut pieces = spans.iter().map(ends).collect::<Result<Vec<_>, _>>()?;
+    pieces.extend(tail(reader, run, 0..rows).await?.iter().map(|piece| (piece.first_row, piece.rows, piece.to_s)));
     let at = pieces.partition_point(|(_, _, to_s)| to_s.is_some_and(&before));
     let Some((first, count, _)) = pieces.get(at) else { return Ok(rows) };
     let piece = read(reader, run, vec![time.clone()], *first..first + count).await?;
     Ok(first + piece.columns()[0].partition_point(|time_s| before(*time_s)) as i64)
+}
+
+/// First row, rows, and time of the last row.
+fn ends(span: &SqliteRow) -> Result<(i64, i64, Option<f64>), StoreError> {
+    SPANS.check(span)?;
+    Ok((span.try_get("first_row")?, span.try_get("rows")?, span.try_get("to_s")?))
 }
 
 /// The points of one channel while they are gathered.
@@ -245,12 +253,11 @@ async fn from_pyramid(
 ) -> Result<Vec<ViewColumn>, StoreError> {
     let grid = Grid::of(&rows, px);
     let mut points: Vec<Points> = chosen.iter().map(|_| Points::new(px)).collect();
-    let column = if coarse { "coarse" } else { "fine" };
     // What lies before and behind the whole blocks: cut blocks and the tail, sample by sample.
     let mut inner = rows.start..rows.start;
     loop {
         let from = if inner.is_empty() { rows.start } else { inner.end };
-        let spans = spans(reader, run, column, from..rows.end).await?;
+        let spans = spans(reader, run, coarse, from..rows.end).await?;
         for (first_row, count, packed) in &spans {
             for ((place, _), points) in chosen.iter().zip(&mut points) {
                 let (width, bins) = match coarse {
@@ -273,13 +280,28 @@ async fn from_pyramid(
 async fn spans(
     reader: &mut SqliteConnection,
     run: RunId,
-    column: &str,
+    coarse: bool,
     rows: Range<i64>,
 ) -> Result<Vec<(i64, i64, Vec<u8>)>, StoreError> {
-    let mut query = QueryBuilder::new("SELECT first_row, rows, ");
-    query.push(column).push(" FROM spans WHERE run = ").push_bind(run);
-    query.push(" AND first_row >= ").push_bind(rows.start);
-    query.push(" AND first_row + rows <= ").push_bind(rows.end);
-    query.push(" ORDER BY first_row LIMIT ").push_bind(SPANS_AT_ONCE);
-    Ok(query.build_query_as().fetch_all(reader).await?)
+    let (sql, sealed, column) = match coarse {
+        true => (
+            "SELECT run, first_row, rows, coarse, coarse_checksum FROM spans \
+             WHERE run = ? AND first_row >= ? AND first_row + rows <= ? ORDER BY first_row LIMIT ?",
+            &COARSE,
+            "coarse",
+        ),
+        false => (
+            "SELECT run, first_row, rows, fine, fine_checksum FROM spans \
+             WHERE run = ? AND first_row >= ? AND first_row + rows <= ? ORDER BY first_row LIMIT ?",
+            &FINE,
+            "fine",
+        ),
+    };
+    let spans = sqlx::query(sql).bind(run).bind(rows.start).bind(rows.end).bind(SPANS_AT_ONCE).fetch_all(reader);
+    let spans = spans.await.map_err(|fault| StoreError::from(fault).within(run, "spans"))?;
+    let span = |row: &SqliteRow| {
+        sealed.check(row)?;
+        Ok((row.try_get("first_row")?, row.try_get("rows")?, row.try_get(column)?))
+    };
+    spans.iter().map(span).collect()
 }

@@ -67,6 +67,9 @@ pub struct RunSummary {
     /// Why the end of the run is not yet stored: the rest is as the bench has told. It is stored as soon as that can be.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub not_stored: Option<String>,
+    /// What is wrong with its record, in a list: the other fields are what can be read, or empty.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damaged: Option<String>,
 }
 
 /// What a model version comes to, in short.

@@ -1,5 +1,6 @@
 //! The daemon on a bad day, through REST.
 
+mod integrity;
 #[cfg(unix)]
 mod limits;
 

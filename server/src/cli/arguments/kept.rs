@@ -57,6 +57,26 @@ pub struct Export {
 }
 
 #[derive(Debug, Args)]
+pub struct Backup {
+    /// The backup
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Folder of the store
+    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA", default_value = "jointbench-data")]
+    pub data: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Verify {
+    /// Folder of the store
+    #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA", default_value = "jointbench-data")]
+    pub data: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
 pub struct Identify {
     /// Number of the run
     pub run: i64,

@@ -5,7 +5,7 @@ mod model;
 mod place;
 mod steer;
 
-pub use kept::{Export, Identify, Import, Report, Reproduce, Runs, StorePlace};
+pub use kept::{Backup, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
 pub use steer::{Reset, Steer, Stop};
@@ -96,6 +96,12 @@ pub enum Command {
     Identify(Identify),
     /// Write a run as one page to send and to print
     Report(Report),
+    /// Write the store to one file, also while a run is on, and check the copy
+    Backup(Backup),
+    /// Put a backup in the place of a store that no daemon has; what was there is kept beside it
+    Restore(Backup),
+    /// Read all that a store holds and say what is damaged; exit code 1 where something is. Also beside a running daemon
+    Verify(Verify),
     /// Make the source documents' campaigns again on the mock bench, each table beside the document's
     Reproduce(Reproduce),
 }

@@ -1,8 +1,11 @@
 //! The store against a folder of its own.
 
 mod crash;
+mod damage;
 mod keeping;
+mod losing;
 mod opening;
+mod verifying;
 mod viewing;
 
 use super::{NewRun, Store};

@@ -1,0 +1,78 @@
+//! One daemon for each data folder.
+//!
+//! Two locks: a file `lock`, which names the process that has the folder, and the folder itself, which cannot be removed
+//! without the store. Never the database: closing any descriptor of it would drop the locks that SQLite has there.
+
+use super::StoreError;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, Write};
+use std::path::Path;
+
+/// The folder is held until this is released or dropped.
+#[derive(Debug)]
+pub struct FolderLock {
+    file: File,
+    /// `None` where the system cannot lock a folder.
+    folder: Option<File>,
+}
+
+impl FolderLock {
+    /// Makes the folder where it is missing, and takes it.
+    pub fn take(path: &Path) -> Result<Self, StoreError> {
+        let unwritable = |fault: io::Error| StoreError::Unwritable { folder: path.into(), what: fault.to_string() };
+        fs::create_dir_all(path).map_err(unwritable)?;
+        let lock = path.join("lock");
+        let mut file =
+            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(lock).map_err(unwritable)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(in_use(path, &mut file)),
+            Err(TryLockError::Error(fault)) => return Err(unwritable(fault)),
+        }
+        let folder = match lock_folder(path) {
+            Ok(folder) => folder,
+            // The holder's own file was removed.
+            Err(TryLockError::WouldBlock) => {
+                return Err(StoreError::InUse { folder: path.into(), holder: String::new() });
+            }
+            Err(TryLockError::Error(fault)) => return Err(unwritable(fault)),
+        };
+        let named = file.set_len(0).and_then(|()| file.rewind()).and_then(|()| write!(file, "{}", std::process::id()));
+        named.map_err(unwritable)?;
+        Ok(Self { file, folder })
+    }
+
+    /// Also while somebody holds the store.
+    pub fn release(&self) -> io::Result<()> {
+        self.file.unlock()?;
+        self.folder.as_ref().map_or(Ok(()), File::unlock)
+    }
+}
+
+#[cfg(unix)]
+fn lock_folder(path: &Path) -> Result<Option<File>, TryLockError> {
+    let folder = File::open(path).map_err(TryLockError::Error)?;
+    match folder.try_lock() {
+        Ok(()) => Ok(Some(folder)),
+        Err(TryLockError::WouldBlock) => Err(TryLockError::WouldBlock),
+        // Some network file systems lock files only.
+        Err(TryLockError::Error(fault)) => {
+            tracing::warn!(%fault, "the data folder itself cannot be locked: the file `lock` in it must stay");
+            Ok(None)
+        }
+    }
+}
+
+#[cfg(not(unix))]
+fn lock_folder(_: &Path) -> Result<Option<File>, TryLockError> {
+    Ok(None)
+}
+
+fn in_use(folder: &Path, file: &mut File) -> StoreError {
+    let mut holder = String::new();
+    let holder = match file.read_to_string(&mut holder) {
+        Ok(_) if !holder.trim().is_empty() => format!(" (process {})", holder.trim()),
+        _ => String::new(),
+    };
+    StoreError::InUse { folder: folder.into(), holder }
+}

@@ -1,0 +1,247 @@
+//! Checksums of what is stored: CRC-32 over the columns of a row, written with it and compared at each read.
+//!
+//! CRC-32 (ISO-HDLC, as in zlib and gzip) finds every error burst of up to 32 bits and every odd number of flipped bits in a
+//! block; of other damage it misses one case in 4·10⁹. Any tool can compute it again, and the crate was in the build already.
+//!
+//! Covered bytes: the name of the table, then each column in the order of [`Sealed::columns`] as one tag byte and its value:
+//! `0` NULL; `1` integer, `2` real, 8 bytes little endian; `3` text, `4` blob, with an 8-byte length before the bytes.
+
+use super::StoreError;
+use sqlx::sqlite::SqliteRow;
+use sqlx::{Decode, Row, Sqlite, TypeInfo, ValueRef};
+
+/// Which columns of a table a checksum covers, and the columns that name a row to a person.
+#[derive(Debug)]
+pub struct Sealed {
+    pub table: &'static str,
+    pub columns: &'static [&'static str],
+    /// The column of the checksum.
+    pub checksum: &'static str,
+    pub names: &'static [&'static str],
+}
+
+const fn sealed(table: &'static str, columns: &'static [&'static str], names: &'static [&'static str]) -> Sealed {
+    Sealed { table, columns, checksum: "checksum", names }
+}
+
+/// What a run was started with.
+pub const RUNS: Sealed = sealed(
+    "runs",
+    &["bench", "procedure", "kind", "simulated", "created_at", "parameters", "provenance", "meta"],
+    &["id"],
+);
+/// How far a run has come.
+pub const RUN_STATES: Sealed = Sealed {
+    checksum: "state_checksum",
+    ..sealed("runs", &["id", "state", "safe", "reason", "started_at", "finished_at", "rows"], &["id"])
+};
+pub const EVENTS: Sealed = sealed("events", &["run", "sequence", "at_s", "kind", "data"], &["run", "sequence"]);
+pub const CHANNELS: Sealed = sealed("channels", &["run", "place", "name", "resolution"], &["run", "place"]);
+pub const BLOCKS: Sealed =
+    sealed("blocks", &["run", "channel", "first_row", "rows", "data"], &["run", "channel", "first_row", "rows"]);
+pub const SPANS: Sealed =
+    sealed("spans", &["run", "first_row", "rows", "from_s", "to_s"], &["run", "first_row", "rows"]);
+pub const COARSE: Sealed = Sealed {
+    checksum: "coarse_checksum",
+    ..sealed("spans", &["run", "first_row", "rows", "coarse"], &["run", "first_row", "rows"])
+};
+pub const FINE: Sealed = Sealed {
+    checksum: "fine_checksum",
+    ..sealed("spans", &["run", "first_row", "rows", "fine"], &["run", "first_row", "rows"])
+};
+pub const TAIL: Sealed =
+    sealed("tail", &["run", "first_row", "rows", "from_s", "to_s", "data"], &["run", "first_row", "rows"]);
+pub const MODELS: Sealed = sealed(
+    "models",
+    &[
+        "run",
+        "parent",
+        "kind",
+        "effects",
+        "added",
+        "removed",
+        "fit",
+        "residual",
+        "rms",
+        "validation_rms",
+        "noise_floor_rms",
+        "options",
+        "created_at",
+        "more_runs",
+        "excluded",
+        "who",
+        "made_to_try",
+    ],
+    &["run", "id"],
+);
+pub const DIAGNOSES: Sealed = sealed("diagnoses", &["model", "diagnosis", "created_at"], &["model", "id"]);
+pub const BENCH_SAFETY: Sealed =
+    sealed("bench_safety", &["bench", "blocked", "stopped", "reason", "run", "who", "at"], &["bench", "id"]);
+pub const NOTES: Sealed = sealed("notes", &["run", "at_s", "text", "created_at"], &["run", "id"]);
+pub const CALIBRATIONS: Sealed =
+    sealed("calibrations", &["bench", "procedure", "run", "who", "at"], &["bench", "procedure", "id"]);
+pub const INSTRUMENT_FAULTS: Sealed =
+    sealed("instrument_faults", &["bench", "instrument", "text", "at"], &["bench", "instrument", "id"]);
+pub const OWN_EFFECTS: Sealed =
+    sealed("own_effects", &["kind", "effect", "version", "definition", "created_at"], &["effect", "version"]);
+pub const AUTOPILOT_STEPS: Sealed =
+    sealed("autopilot_steps", &["autopilot", "sequence", "step"], &["autopilot", "sequence"]);
+pub const KEPT: Sealed = sealed("kept", &["subject", "id", "what", "software", "packed"], &["subject", "id", "what"]);
+
+/// Every checksum that [`super::verify`] compares. What is only kept because it takes long is worked out anew instead.
+pub const ALL: [&Sealed; 17] = [
+    &RUNS,
+    &RUN_STATES,
+    &EVENTS,
+    &CHANNELS,
+    &BLOCKS,
+    &SPANS,
+    &COARSE,
+    &FINE,
+    &TAIL,
+    &MODELS,
+    &DIAGNOSES,
+    &BENCH_SAFETY,
+    &NOTES,
+    &CALIBRATIONS,
+    &INSTRUMENT_FAULTS,
+    &OWN_EFFECTS,
+    &AUTOPILOT_STEPS,
+];
+
+/// A value as SQLite stores it.
+#[derive(Debug, Clone, Copy)]
+pub enum Cell<'a> {
+    Null,
+    Integer(i64),
+    Real(f64),
+    Text(&'a [u8]),
+    Blob(&'a [u8]),
+}
+
+impl Sealed {
+    /// The checksum of these values, given in the order of [`Self::columns`].
+    pub fn seal(&self, cells: &[Cell<'_>]) -> i64 {
+        debug_assert_eq!(cells.len(), self.columns.len(), "{}", self.table);
+        let mut hasher = crc32fast::Hasher::new();
+        hasher.update(self.table.as_bytes());
+        for cell in cells {
+            match *cell {
+                Cell::Null => hasher.update(&[0]),
+                Cell::Integer(value) => {
+                    hasher.update(&[1]);
+                    hasher.update(&value.to_le_bytes());
+                }
+                Cell::Real(value) => {
+                    hasher.update(&[2]);
+                    hasher.update(&value.to_le_bytes());
+                }
+                Cell::Text(bytes) | Cell::Blob(bytes) => {
+                    hasher.update(&[if matches!(cell, Cell::Text(_)) { 3 } else { 4 }]);
+                    hasher.update(&(bytes.len() as u64).to_le_bytes());
+                    hasher.update(bytes);
+                }
+            }
+        }
+        i64::from(hasher.finalize())
+    }
+
+    /// The checksum that a row should have.
+    pub fn of_row(&self, row: &SqliteRow) -> Result<i64, StoreError> {
+        let cells = self.columns.iter().map(|column| cell(row, column)).collect::<Result<Vec<_>, _>>();
+        Ok(self.seal(&cells.map_err(|fault| self.damaged(row, &fault.to_string()))?))
+    }
+
+    /// Compares a row with its checksum; `false` where it has none, as rows of an older release.
+    ///
+    /// # Errors
+    /// [`StoreError::Damaged`] names run, table and row.
+    pub fn check(&self, row: &SqliteRow) -> Result<bool, StoreError> {
+        let Ok(Some(kept)) = row.try_get::<Option<i64>, _>(self.checksum) else { return Ok(false) };
+        if kept == self.of_row(row)? { Ok(true) } else { Err(self.damaged(row, "its checksum differs")) }
+    }
+
+    /// That something is wrong with a row.
+    pub fn damaged(&self, row: &SqliteRow, what: &str) -> StoreError {
+        let name = |column: &&str| {
+            let value = match cell(row, column) {
+                Ok(Cell::Integer(value)) => value.to_string(),
+                Ok(Cell::Text(bytes)) => String::from_utf8_lossy(bytes).into_owned(),
+                _ => "unreadable".to_owned(),
+            };
+            format!("{column} {value}")
+        };
+        let place: Vec<String> = self.names.iter().map(name).collect();
+        StoreError::Damaged(format!("table {}, {}: {what}", self.table, place.join(", ")))
+    }
+}
+
+/// Those rows that can be read: one that is damaged does not hide the others.
+pub fn whole<T>(rows: &[SqliteRow], record: impl Fn(&SqliteRow) -> Result<T, StoreError>) -> Vec<T> {
+    let told = |row| record(row).inspect_err(|fault| tracing::error!(%fault, "a record is left out of a list")).ok();
+    rows.iter().filter_map(told).collect()
+}
+
+fn cell<'r>(row: &'r SqliteRow, column: &str) -> Result<Cell<'r>, sqlx::Error> {
+    let value = row.try_get_raw(column)?;
+    if value.is_null() {
+        return Ok(Cell::Null);
+    }
+    let kind = value.type_info().into_owned();
+    let read = match kind.name() {
+        "INTEGER" => <i64 as Decode<Sqlite>>::decode(value).map(Cell::Integer),
+        "REAL" => <f64 as Decode<Sqlite>>::decode(value).map(Cell::real),
+        "TEXT" => <&[u8] as Decode<Sqlite>>::decode(value).map(Cell::Text),
+        _ => <&[u8] as Decode<Sqlite>>::decode(value).map(Cell::Blob),
+    };
+    read.map_err(sqlx::Error::Decode)
+}
+
+impl Cell<'_> {
+    /// SQLite stores NaN as NULL and −0 as 0.
+    fn real(value: f64) -> Self {
+        if value.is_nan() { Cell::Null } else { Cell::Real(value + 0.0) }
+    }
+}
+
+impl From<i64> for Cell<'_> {
+    fn from(value: i64) -> Self {
+        Cell::Integer(value)
+    }
+}
+
+impl From<bool> for Cell<'_> {
+    fn from(value: bool) -> Self {
+        Cell::Integer(value.into())
+    }
+}
+
+impl From<f64> for Cell<'_> {
+    fn from(value: f64) -> Self {
+        Cell::real(value)
+    }
+}
+
+impl<'a> From<&'a str> for Cell<'a> {
+    fn from(text: &'a str) -> Self {
+        Cell::Text(text.as_bytes())
+    }
+}
+
+impl<'a> From<&'a String> for Cell<'a> {
+    fn from(text: &'a String) -> Self {
+        Cell::Text(text.as_bytes())
+    }
+}
+
+impl<'a> From<&'a [u8]> for Cell<'a> {
+    fn from(bytes: &'a [u8]) -> Self {
+        Cell::Blob(bytes)
+    }
+}
+
+impl<'a, T: Into<Cell<'a>>> From<Option<T>> for Cell<'a> {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Cell::Null, Into::into)
+    }
+}

@@ -1,0 +1,63 @@
+//! The check that a daemon makes beside its work.
+
+use super::super::{Loss, Store};
+use super::DamagedRecord;
+use serde::{Deserialize, Serialize};
+use std::sync::PoisonError;
+use std::time::Duration;
+use utoipa::ToSchema;
+
+/// A start has other things to do first.
+const FIRST: Duration = Duration::from_secs(60);
+const DAY: Duration = Duration::from_secs(24 * 3600);
+/// Between two runs.
+const PACE: Duration = Duration::from_secs(1);
+
+/// Whether all that is stored could be read, when that was looked at last.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+pub struct StoreHealth {
+    /// `null` until the first check is over; there is one a day.
+    #[schema(format = DateTime)]
+    pub checked_at: Option<String>,
+    pub damaged: Vec<DamagedRecord>,
+    /// Changes that were acknowledged once and were missing when the store was opened.
+    pub lost: Vec<Loss>,
+}
+
+impl Store {
+    /// Never waits.
+    pub fn health(&self) -> StoreHealth {
+        self.health.read().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Checks all runs, one a second, once a day, until the store is closed.
+    pub async fn check_daily(self) {
+        let closed = self.readers.close_event();
+        let checks = async {
+            tokio::time::sleep(FIRST).await;
+            loop {
+                self.check_now(PACE).await;
+                tokio::time::sleep(DAY).await;
+            }
+        };
+        tokio::select! {
+            () = closed => {}
+            () = checks => {}
+        }
+    }
+
+    async fn check_now(&self, pace: Duration) {
+        let report = match self.check(pace).await {
+            Ok(report) => report,
+            Err(fault) => {
+                tracing::error!(%fault, "the store could not be checked");
+                return;
+            }
+        };
+        for finding in &report.damaged {
+            tracing::error!(run = finding.run, table = finding.table, what = finding.what, "damaged");
+        }
+        let health = StoreHealth { checked_at: Some(report.checked_at), damaged: report.damaged, lost: report.lost };
+        *self.health.write().unwrap_or_else(PoisonError::into_inner) = health;
+    }
+}

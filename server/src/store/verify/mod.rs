@@ -1,0 +1,138 @@
+//! Reads everything that is stored and says what is damaged, by run and table, and what can still be read.
+//!
+//! Only reading, also while a daemon has the folder. Samples are read block by block: memory stays small.
+
+mod daily;
+mod records;
+mod report;
+mod samples;
+
+pub use daily::StoreHealth;
+pub use report::{DamagedRecord, Readable, VerifyReport};
+
+use super::keeper::{losses, missing};
+use super::mark::Mark;
+use super::open::{file_to_read, to_read};
+use super::runs::now;
+use super::seal::{self, Sealed};
+use super::{Store, StoreError};
+use jointbench_procedure::RunId;
+use records::check_rows;
+use sqlx::{Connection, Row, SqliteConnection};
+use std::path::Path;
+use std::time::Duration;
+
+/// Tables whose rows belong to no run.
+const OF_NO_RUN: [&Sealed; 5] =
+    [&seal::BENCH_SAFETY, &seal::CALIBRATIONS, &seal::INSTRUMENT_FAULTS, &seal::OWN_EFFECTS, &seal::AUTOPILOT_STEPS];
+/// At most so many faults of SQLite's own check are listed.
+const MOST_FAULTS: &str = "PRAGMA integrity_check(100)";
+
+/// Checks the store in a folder as a whole.
+///
+/// # Errors
+/// [`StoreError::NoStore`] and the other reasons for which there is nothing to check. Damage is no error.
+pub async fn verify(folder: &Path) -> Result<VerifyReport, StoreError> {
+    // Before the database: a change that comes in between is no loss.
+    let mark = Mark::read(folder);
+    check_database(to_read(folder).await?, mark.as_ref()).await
+}
+
+/// The same of a database that lies alone, as a backup does.
+pub async fn verify_file(file: &Path) -> Result<VerifyReport, StoreError> {
+    check_database(file_to_read(file).await?, None).await
+}
+
+async fn check_database(mut database: SqliteConnection, mark: Option<&Mark>) -> Result<VerifyReport, StoreError> {
+    let mut report = VerifyReport { checked_at: now(), ..VerifyReport::default() };
+    check_file(&mut database, &mut report).await;
+    look_for_losses(&mut database, mark, &mut report).await;
+    for sealed in OF_NO_RUN {
+        check_rows(&mut database, sealed, None, &mut report).await;
+    }
+    for run in run_ids(&mut database, &mut report).await {
+        // In one transaction: a daemon may be at work on the run.
+        let mut reader = database.begin().await?;
+        check_run(&mut reader, run, &mut report).await;
+        reader.rollback().await?;
+    }
+    database.close().await?;
+    Ok(report)
+}
+
+impl Store {
+    /// Checks what is stored, a run each `pace`, on one of the reading connections. Rows of an older release get their
+    /// checksums. SQLite's own check, which cannot be done in parts, is left to [`verify`].
+    pub async fn check(&self, pace: Duration) -> Result<VerifyReport, StoreError> {
+        let mut report = VerifyReport { checked_at: now(), ..VerifyReport::default() };
+        report.lost = self.losses().await?;
+        for sealed in OF_NO_RUN {
+            check_rows(&mut *self.readers.acquire().await?, sealed, None, &mut report).await;
+        }
+        let runs = run_ids(&mut *self.readers.acquire().await?, &mut report).await;
+        for run in runs {
+            check_run(&mut *self.readers.begin().await?, run, &mut report).await;
+            tokio::time::sleep(pace).await;
+        }
+        if report.without_checksum > 0 {
+            self.seal_old_rows().await?;
+        }
+        Ok(report)
+    }
+}
+
+/// One run with all that belongs to it.
+async fn check_run(database: &mut SqliteConnection, run: RunId, report: &mut VerifyReport) {
+    report.runs += 1;
+    for sealed in [&seal::RUNS, &seal::RUN_STATES, &seal::CHANNELS, &seal::EVENTS] {
+        check_rows(database, sealed, Some(run), report).await;
+    }
+    samples::check(database, run, report).await;
+    for sealed in [&seal::NOTES, &seal::MODELS, &seal::DIAGNOSES] {
+        check_rows(database, sealed, Some(run), report).await;
+    }
+}
+
+/// By their numbers, where the table itself cannot be read through.
+async fn run_ids(database: &mut SqliteConnection, report: &mut VerifyReport) -> Vec<RunId> {
+    let ids = sqlx::query_scalar("SELECT id FROM runs ORDER BY id").fetch_all(&mut *database).await;
+    match ids {
+        Ok(ids) => ids,
+        Err(fault) => {
+            report.add(None, "runs", fault.to_string());
+            let last = sqlx::query_scalar::<_, i64>("SELECT seq FROM sqlite_sequence WHERE name = 'runs'");
+            (1..=last.fetch_optional(database).await.ok().flatten().unwrap_or_default()).collect()
+        }
+    }
+}
+
+/// SQLite's own check, with foreign keys.
+async fn check_file(database: &mut SqliteConnection, report: &mut VerifyReport) {
+    match sqlx::query_scalar::<_, String>(MOST_FAULTS).fetch_all(&mut *database).await {
+        Ok(said) => said.into_iter().filter(|said| said != "ok").for_each(|said| report.add(None, "file", said)),
+        Err(fault) => report.add(None, "file", fault.to_string()),
+    }
+    match sqlx::query("PRAGMA foreign_key_check").fetch_all(database).await {
+        Ok(rows) => {
+            for row in rows {
+                let text = |column: &str| row.try_get::<String, _>(column).unwrap_or_default();
+                let number = row.try_get::<Option<i64>, _>("rowid").ok().flatten().unwrap_or_default();
+                report.add(
+                    None,
+                    &text("table"),
+                    format!("row {number} names a row of {} that is not there", text("parent")),
+                );
+            }
+        }
+        Err(fault) => report.add(None, "file", fault.to_string()),
+    }
+}
+
+/// Both are part of the store since one release: of an older one they say nothing.
+async fn look_for_losses(database: &mut SqliteConnection, mark: Option<&Mark>, report: &mut VerifyReport) {
+    report.lost = losses(database).await.unwrap_or_default();
+    if let Ok(Some(loss)) = missing(database, mark).await {
+        report.add(None, "file", loss.to_string());
+        report.lost.push(loss);
+    }
+}

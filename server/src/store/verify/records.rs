@@ -1,0 +1,130 @@
+//! Records against their checksums.
+
+use super::super::seal::Sealed;
+use super::super::{Store, StoreError};
+use super::VerifyReport;
+use jointbench_procedure::RunId;
+use sqlx::sqlite::SqliteRow;
+use sqlx::{AssertSqlSafe, Row, SqliteConnection};
+use std::time::Duration;
+
+/// Rows that are read at a time.
+const SLICE: i64 = 64;
+/// Between two slices of rows that get their checksum: the writer is the recorder's first.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// All rows of a table, or those of a run. Where SQLite cannot read through it, each row for itself.
+pub async fn check_rows(
+    database: &mut SqliteConnection,
+    sealed: &Sealed,
+    run: Option<RunId>,
+    report: &mut VerifyReport,
+) {
+    let (mut whole, mut damaged) = (0, 0);
+    for id in row_ids(database, sealed, run, report).await {
+        let row = row(database, sealed, run, &id).await;
+        let checked = row.and_then(|row| row.as_ref().map_or(Ok(true), |row| sealed.check(row)));
+        match checked {
+            Ok(has_checksum) => {
+                whole += 1;
+                report.without_checksum += u64::from(!has_checksum);
+            }
+            Err(fault) => {
+                damaged += 1;
+                report.add(run, sealed.table, what(&fault));
+            }
+        }
+    }
+    report.count(run, sealed, whole, damaged);
+}
+
+/// What is wrong, without what to do about it.
+pub fn what(fault: &StoreError) -> String {
+    match fault {
+        StoreError::Damaged(what) => what.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// The number by which a row is found, and the condition that chooses those of a run.
+fn keys(sealed: &Sealed) -> (&'static str, &'static str) {
+    match sealed.table {
+        "runs" => ("id", "id = ?1"),
+        "channels" => ("place", "run = ?1"),
+        "events" => ("sequence", "run = ?1"),
+        "diagnoses" => ("id", "model IN (SELECT id FROM models WHERE run = ?1)"),
+        // The one key of two numbers.
+        "autopilot_steps" => ("(autopilot << 32) + sequence", "?1 IS NULL"),
+        "notes" | "models" => ("id", "run = ?1"),
+        _ => ("id", "?1 IS NULL"),
+    }
+}
+
+async fn row_ids(
+    database: &mut SqliteConnection,
+    sealed: &Sealed,
+    run: Option<RunId>,
+    report: &mut VerifyReport,
+) -> Vec<i64> {
+    let (key, of_run) = keys(sealed);
+    let sql = format!("SELECT {key} FROM {} WHERE {of_run} ORDER BY 1", sealed.table);
+    match sqlx::query_scalar(AssertSqlSafe(sql)).bind(run).fetch_all(database).await {
+        Ok(ids) => ids,
+        Err(fault) => {
+            report.add(run, sealed.table, fault.to_string());
+            report.count(run, sealed, 0, 1);
+            Vec::new()
+        }
+    }
+}
+
+async fn row(
+    database: &mut SqliteConnection,
+    sealed: &Sealed,
+    run: Option<RunId>,
+    id: &i64,
+) -> Result<Option<SqliteRow>, StoreError> {
+    let (key, of_run) = keys(sealed);
+    let sql = format!("SELECT * FROM {} WHERE {of_run} AND {key} = ?2", sealed.table);
+    Ok(sqlx::query(AssertSqlSafe(sql)).bind(run).bind(id).fetch_optional(database).await?)
+}
+
+impl Store {
+    /// Gives the rows of an older release their checksums, a slice at a time. What was damaged before stays unnoticed.
+    pub(super) async fn seal_old_rows(&self) -> Result<(), StoreError> {
+        for sealed in super::seal::ALL {
+            let key = if matches!(sealed.table, "channels" | "autopilot_steps") { "0" } else { "id" };
+            let mut behind = -1;
+            while let Some(last) = self.seal_slice(sealed, key, behind).await? {
+                behind = last;
+                tokio::time::sleep(PAUSE).await;
+            }
+        }
+        Ok(())
+    }
+
+    /// The key of the last row that got one; `None` where there was none left.
+    async fn seal_slice(&self, sealed: &Sealed, key: &str, behind: i64) -> Result<Option<i64>, StoreError> {
+        let Sealed { table, checksum, .. } = sealed;
+        let sql = format!(
+            "SELECT *, {key} AS slice_key FROM {table} WHERE {checksum} IS NULL AND ({key} = 0 OR {key} > ?) ORDER BY slice_key LIMIT {SLICE}"
+        );
+        let rows = sqlx::query(AssertSqlSafe(sql)).bind(behind).fetch_all(&self.readers).await?;
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        for row in &rows {
+            let names = sealed.names.iter().map(|name| format!("{name} IS ?"));
+            let these = names.collect::<Vec<_>>().join(" AND ");
+            let sql = format!("UPDATE {table} SET {checksum} = ? WHERE {checksum} IS NULL AND {these}");
+            let mut seal = sqlx::query(AssertSqlSafe(sql)).bind(sealed.of_row(row)?);
+            for name in sealed.names {
+                seal = match row.try_get::<i64, _>(*name) {
+                    Ok(number) => seal.bind(number),
+                    Err(_) => seal.bind(row.try_get::<String, _>(*name)?),
+                };
+            }
+            seal.execute(&mut *writer).await?;
+        }
+        writer.commit().await?;
+        Ok(rows.last().map(|row| row.try_get("slice_key")).transpose()?)
+    }
+}

@@ -1,0 +1,62 @@
+//! What a check has found.
+
+use super::super::Loss;
+use super::super::seal::Sealed;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// What a check of the store has found. It is whole where nothing is `damaged`.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+pub struct VerifyReport {
+    #[schema(format = DateTime)]
+    pub checked_at: String,
+    pub runs: u64,
+    /// Rows of samples.
+    pub rows: u64,
+    /// Stored records, with the blocks of samples among them.
+    pub records: u64,
+    /// Records of an older release, which have no checksum yet.
+    pub without_checksum: u64,
+    pub damaged: Vec<DamagedRecord>,
+    /// Of runs with damage: how much of each table can be read.
+    pub readable: Vec<Readable>,
+    /// Changes that were acknowledged once and are missing.
+    pub lost: Vec<Loss>,
+}
+
+/// One damaged record.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct DamagedRecord {
+    pub run: Option<i64>,
+    /// `file` where SQLite's own check found it.
+    pub table: String,
+    pub what: String,
+}
+
+/// How much of a table can be read of a run, or of all where `run` is `null`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Readable {
+    pub run: Option<i64>,
+    pub table: String,
+    pub readable: u64,
+    pub of: u64,
+}
+
+impl VerifyReport {
+    pub fn is_whole(&self) -> bool {
+        self.damaged.is_empty()
+    }
+
+    pub(super) fn add(&mut self, run: Option<i64>, table: &str, what: String) {
+        self.damaged.push(DamagedRecord { run, table: table.to_owned(), what });
+    }
+
+    /// So many records of a table were read, and so many could not be.
+    pub(super) fn count(&mut self, run: Option<i64>, sealed: &Sealed, whole: u64, damaged: u64) {
+        self.records += whole + damaged;
+        if damaged > 0 {
+            let table = sealed.table.to_owned();
+            self.readable.push(Readable { run, table, readable: whole, of: whole + damaged });
+        }
+    }
+}
