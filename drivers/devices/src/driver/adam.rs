@@ -52,6 +52,33 @@ impl AdamThermometer {
     fn registers(&self, first: u16, count: u8) -> ReadRegisters {
         ReadRegisters { slave: self.settings.slave, first, count }
     }
+
+    /// Which module answers, and what its channels are set to.
+    fn who(&mut self) -> Result<Identity, Fault> {
+        let name = self.link.probe(&self.registers(MODULE_NAME, 2))?;
+        if name[0] != ADAM_4015 {
+            let (expected, found) = ("ADAM 4015".into(), format!("module {:04X}", name[0]));
+            return Err(self.link.fault(FaultKind::WrongInstrument { expected, found }));
+        }
+        let found = Identity {
+            maker: "Advantech".into(),
+            model: format!("ADAM-{:04X}", name[0]),
+            // A module knows no serial number.
+            serial: format!("slave {}", self.settings.slave),
+            firmware: String::new(),
+        };
+        let identity = same(&mut self.link, &mut self.identity, found)?;
+        let codes = self.link.probe(&self.registers(TYPE_CODES, CHANNELS))?;
+        let range = |channel: &u8| {
+            let code = codes[usize::from(*channel)];
+            range_c(code).ok_or_else(|| {
+                let what = format!("channel {channel} has type code {code:02X}, which is no resistance thermometer");
+                self.link.fault(FaultKind::Reported { what })
+            })
+        };
+        self.ranges_c = self.settings.channels.iter().map(range).collect::<Result<_, _>>()?;
+        Ok(identity)
+    }
 }
 
 /// What 0 and 65535 mean, by type code (ADAM-4000 manual, table 5.2).
@@ -79,29 +106,7 @@ impl Recovers for AdamThermometer {
     fn drain_and_identify(&mut self) -> Result<Identity, Fault> {
         // Silence ends a frame: there is nothing to send.
         self.link.drain(b"", false)?;
-        let name = self.link.probe(&self.registers(MODULE_NAME, 2))?;
-        if name[0] != ADAM_4015 {
-            let (expected, found) = ("ADAM 4015".into(), format!("module {:04X}", name[0]));
-            return Err(self.link.fault(FaultKind::WrongInstrument { expected, found }));
-        }
-        let found = Identity {
-            maker: "Advantech".into(),
-            model: format!("ADAM-{:04X}", name[0]),
-            // A module knows no serial number.
-            serial: format!("slave {}", self.settings.slave),
-            firmware: String::new(),
-        };
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
-        let codes = self.link.probe(&self.registers(TYPE_CODES, CHANNELS))?;
-        let range = |channel: &u8| {
-            let code = codes[usize::from(*channel)];
-            range_c(code).ok_or_else(|| {
-                let what = format!("channel {channel} has type code {code:02X}, which is no resistance thermometer");
-                self.link.fault(FaultKind::Reported { what })
-            })
-        };
-        self.ranges_c = self.settings.channels.iter().map(range).collect::<Result<_, _>>()?;
-        Ok(identity)
+        self.who()
     }
 }
 
@@ -115,6 +120,10 @@ impl Instrument for AdamThermometer {
     }
 
     fn identify(&mut self) -> Result<Identity, Fault> {
+        if self.link.is_trusted() { self.who() } else { self.resume() }
+    }
+
+    fn recover(&mut self) -> Result<Identity, Fault> {
         self.resume()
     }
 

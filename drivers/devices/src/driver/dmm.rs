@@ -53,7 +53,7 @@ impl Recovers for DmmTorqueSensor {
         ClearStatus(self.line_end).encode(&mut clear);
         self.link.drain(&clear, false)?;
         let found = self.link.probe(&Identify(self.line_end))?;
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        let identity = same(&mut self.link, &mut self.identity, found)?;
         // Whatever it was set to, and after a loss of power too.
         self.link.probe(&Set(self.line_end, "CONF:VOLT:DC 10".into()))?;
         Ok(identity)
@@ -71,7 +71,8 @@ impl Instrument for DmmTorqueSensor {
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         let line_end = self.line_end;
-        self.ready()?.request(&Identify(line_end))
+        let found = self.ready()?.request(&Identify(line_end))?;
+        same(&mut self.link, &mut self.identity, found)
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {

@@ -59,7 +59,7 @@ impl Recovers for GcsStage {
             let found = format!("{} {}", found.maker, found.model);
             return Err(self.link.fault(FaultKind::WrongInstrument { expected: "PI C-887".into(), found }));
         }
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        let identity = same(&mut self.link, &mut self.identity, found)?;
         // What went wrong before belongs to nobody's next command.
         let error = self.link.probe(&QueryError)?;
         if error != 0 && error != STOPPED {
@@ -85,7 +85,8 @@ impl Instrument for GcsStage {
     }
 
     fn identify(&mut self) -> Result<Identity, Fault> {
-        self.ready()?.request(&Identify)
+        let found = self.ready()?.request(&Identify)?;
+        same(&mut self.link, &mut self.identity, found)
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {

@@ -66,7 +66,7 @@ impl LorenzSensor {
             serial: header.number::<4>(4).to_string(),
             firmware: String::new(),
         };
-        same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))
+        same(&mut self.link, &mut self.identity, found)
     }
 
     fn nm_per_count(&self) -> f64 {

@@ -24,12 +24,14 @@ use crate::transport::Link;
 use jointbench_instrument::roles::Identity;
 use jointbench_instrument::{Fault, FaultKind};
 
-/// The instrument that answers must be the one that answered when the bench was opened.
-fn same(known: &mut Option<Identity>, found: Identity) -> Result<Identity, FaultKind> {
+/// The instrument that answers must be the one that answered when the bench was opened. Where it is another, no request is
+/// answered any more before the first one is back.
+fn same(link: &mut Link, known: &mut Option<Identity>, found: Identity) -> Result<Identity, Fault> {
     match known {
         Some(known) if *known != found => {
+            link.distrust();
             let shown = |identity: &Identity| format!("{} {}", identity.model, identity.serial);
-            Err(FaultKind::WrongInstrument { expected: shown(known), found: shown(&found) })
+            Err(link.fault(FaultKind::WrongInstrument { expected: shown(known), found: shown(&found) }))
         }
         _ => Ok(known.insert(found).clone()),
     }

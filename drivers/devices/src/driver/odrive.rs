@@ -147,7 +147,7 @@ impl Recovers for OdriveJoint {
         // Ends a line that broke off; its error reply is thrown away with the rest.
         self.link.drain(b"\n", true)?;
         let found = self.link.probe(&ReadInfo)?;
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        let identity = same(&mut self.link, &mut self.identity, found)?;
         // Positions after a power-up count from elsewhere: no reading may follow one from before.
         if self.armed && self.link.probe(&ReadNumber { path: "axis0.current_state" })? != CLOSED_LOOP {
             self.armed = false;
@@ -168,7 +168,8 @@ impl Instrument for OdriveJoint {
     }
 
     fn identify(&mut self) -> Result<Identity, Fault> {
-        self.ready()?.request(&ReadInfo)
+        let found = self.ready()?.request(&ReadInfo)?;
+        same(&mut self.link, &mut self.identity, found)
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {

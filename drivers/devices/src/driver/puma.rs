@@ -175,7 +175,7 @@ impl Recovers for PumaAxis {
         self.link.drain(&wake, true)?;
         let (found, fresh) = self.facts()?;
         let was_known = self.identity.is_some();
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        let identity = same(&mut self.link, &mut self.identity, found)?;
         if fresh {
             self.probe(Clear)?;
             if was_known {
@@ -202,7 +202,8 @@ impl Instrument for PumaAxis {
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         self.ready()?;
-        Ok(self.facts()?.0)
+        let (found, _) = self.facts()?;
+        same(&mut self.link, &mut self.identity, found)
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {

@@ -80,6 +80,29 @@ impl QsbCounter {
         Ok(())
     }
 
+    /// Who answers, and whether it still counts from where it did.
+    fn who(&mut self) -> Result<Identity, Fault> {
+        let version = Version::from(self.link.probe(&ReadRegister(Register::Version))?.value);
+        let found = Identity {
+            maker: "US Digital".into(),
+            model: format!("QSB-{}", version.variant),
+            serial: format!("{:05X}", version.serial),
+            firmware: version.firmware.to_string(),
+        };
+        let identity = same(&mut self.link, &mut self.identity, found)?;
+        let lost = self.link.probe(&ReadRegister(Register::Status))?.value & POWER_WAS_LOST != 0;
+        if self.configured && !lost {
+            return Ok(identity);
+        }
+        let had_counted = std::mem::take(&mut self.configured);
+        self.configure()?;
+        if had_counted {
+            let what = "its power was interrupted, and it counts from 0 again: positions before and after do not fit";
+            return Err(self.link.fault(FaultKind::Reported { what: what.into() }));
+        }
+        Ok(identity)
+    }
+
     fn count_from(&mut self, value: u32) {
         (self.last, self.total) = (value, i64::from(value as i32));
     }
@@ -98,25 +121,7 @@ impl Recovers for QsbCounter {
         let mut quieten = Vec::new();
         Quieten.encode(&mut quieten);
         self.link.drain(&quieten, true)?;
-        let version = Version::from(self.link.probe(&ReadRegister(Register::Version))?.value);
-        let found = Identity {
-            maker: "US Digital".into(),
-            model: format!("QSB-{}", version.variant),
-            serial: format!("{:05X}", version.serial),
-            firmware: version.firmware.to_string(),
-        };
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
-        let lost = self.link.probe(&ReadRegister(Register::Status))?.value & POWER_WAS_LOST != 0;
-        if self.configured && !lost {
-            return Ok(identity);
-        }
-        let had_counted = std::mem::take(&mut self.configured);
-        self.configure()?;
-        if had_counted {
-            let what = "its power was interrupted, and it counts from 0 again: positions before and after do not fit";
-            return Err(self.link.fault(FaultKind::Reported { what: what.into() }));
-        }
-        Ok(identity)
+        self.who()
     }
 }
 
@@ -130,6 +135,10 @@ impl Instrument for QsbCounter {
     }
 
     fn identify(&mut self) -> Result<Identity, Fault> {
+        if self.link.is_trusted() { self.who() } else { self.resume() }
+    }
+
+    fn recover(&mut self) -> Result<Identity, Fault> {
         self.resume()
     }
 

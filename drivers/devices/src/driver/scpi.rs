@@ -74,9 +74,11 @@ impl ScpiSource {
         Ok(())
     }
 
-    /// A supply that switches off by itself, without a trip, has lost its state.
+    /// A supply that switches off by itself, without a trip, has lost its state, or is another one.
     fn still_on(&mut self, on: bool) -> Result<(), Fault> {
         if std::mem::replace(&mut self.on, on) && !on {
+            let found = self.link.probe(&Identify(self.line_end))?;
+            same(&mut self.link, &mut self.identity, found)?;
             let what = "the output is off although nobody switched it off: the supply's mains were interrupted".into();
             return Err(self.link.fault(FaultKind::Reported { what }));
         }
@@ -85,6 +87,10 @@ impl ScpiSource {
 
     fn output(&mut self, on: bool) -> Result<(), Fault> {
         self.set(self.dialect.output(on).into())?;
+        self.read_back(on)
+    }
+
+    fn read_back(&mut self, on: bool) -> Result<(), Fault> {
         if self.is_on()? != on {
             let what = format!("the output does not go {}", if on { "on" } else { "off" });
             return Err(self.link.fault(FaultKind::Reported { what }));
@@ -118,7 +124,7 @@ impl Recovers for ScpiSource {
             return Err(self.link.fault(FaultKind::WrongInstrument { expected, found }));
         };
         self.dialect = dialect;
-        let identity = same(&mut self.identity, found).map_err(|kind| self.link.fault(kind))?;
+        let identity = same(&mut self.link, &mut self.identity, found)?;
         let on = self.on && self.is_on()?;
         self.still_on(on)?;
         Ok(identity)
@@ -136,7 +142,8 @@ impl Instrument for ScpiSource {
 
     fn identify(&mut self) -> Result<Identity, Fault> {
         let line_end = self.line_end;
-        self.ready()?.request(&Identify(line_end))
+        let found = self.ready()?.request(&Identify(line_end))?;
+        same(&mut self.link, &mut self.identity, found)
     }
 
     fn recover(&mut self) -> Result<Identity, Fault> {
@@ -187,7 +194,14 @@ impl CurrentSource for ScpiSource {
     fn output_off(&mut self) -> Result<(), Fault> {
         // Out first, whatever the state of the link; then the question whether it was taken.
         self.command_off()?;
-        self.output(false)
+        match self.output(false) {
+            // Whichever supply answers, it is the one that feeds the coil. It may be one of another dialect.
+            Err(fault) if fault.is_wrong_instrument() => {
+                self.command_off()?;
+                self.read_back(false)
+            }
+            told => told,
+        }
     }
 
     fn command_off(&mut self) -> Result<(), Fault> {

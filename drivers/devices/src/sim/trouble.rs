@@ -25,7 +25,7 @@ pub enum Trouble {
     Unplugged,
     /// Without power while it lasts, and booted afresh at its end: what is not kept in memory is lost.
     PowerCycled,
-    /// Another unit of the same model answers.
+    /// Another unit of the same model answers, on the same port and in the same state, but that it sends no stream.
     Exchanged,
     /// Every request is refused, each protocol in its own way.
     Refusing,

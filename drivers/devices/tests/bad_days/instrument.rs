@@ -4,12 +4,21 @@ use super::{ask, settings, start};
 use jointbench_devices::driver::{LorenzSettings, Range};
 use jointbench_devices::sim::{MockInstrument, PlannedTrouble, Transport, Trouble};
 use jointbench_devices::{LorenzSensor, MockBench, MockSettings, PortSettings};
-use jointbench_instrument::roles::{Regulation, TorqueSensor};
+use jointbench_instrument::roles::{Instrument, Regulation, TorqueSensor};
 use jointbench_instrument::units::{Amperes, RadPerSec};
 use jointbench_instrument::{Bench, Fault, FaultKind};
 
 fn wait(bench: &Bench, seconds: f64) {
     bench.clock.sleep_until_s(bench.clock.now_s() + seconds);
+}
+
+fn name(bench: &mut Bench, instrument: MockInstrument) -> String {
+    let named: &mut dyn Instrument = match instrument {
+        MockInstrument::TorqueSensor => bench.torque_sensor.as_mut().unwrap().as_mut(),
+        MockInstrument::Brake => bench.brake.as_mut().unwrap().as_mut(),
+        _ => bench.joint.as_mut(),
+    };
+    named.name().to_owned()
 }
 
 fn check_reported(result: Result<(), Fault>, said: &str) {
@@ -73,6 +82,46 @@ fn another_unit_of_the_same_model_is_not_ours() {
         mock.trouble(instrument, Trouble::None);
         ask(&mut bench, instrument).unwrap();
     }
+}
+
+#[test]
+fn another_unit_is_named_where_no_cable_was_out() {
+    let (mock, mut bench) = start(Transport::Terminal);
+    for instrument in MockInstrument::JOINT_BENCH {
+        let name = name(&mut bench, instrument);
+        let known = bench.instrument(&name).unwrap().identify().unwrap();
+        mock.trouble(instrument, Trouble::Exchanged);
+        let fault = bench.instrument(&name).unwrap().identify().unwrap_err();
+        let FaultKind::WrongInstrument { expected, found } = &fault.kind else { panic!("{instrument:?}: {fault}") };
+        assert!(expected.contains(&known.serial) && !found.contains(&known.serial), "{instrument:?}: {fault}");
+        let again = ask(&mut bench, instrument).unwrap_err();
+        assert_eq!(again.kind, fault.kind, "{instrument:?} gives no reading");
+        mock.trouble(instrument, Trouble::None);
+        ask(&mut bench, instrument).unwrap();
+        assert_eq!(bench.instrument(&name).unwrap().identify().unwrap(), known);
+    }
+}
+
+#[test]
+fn a_supply_that_is_exchanged_for_one_just_switched_on_is_another_supply() {
+    let (mock, mut bench) = start(Transport::Terminal);
+    mock.trouble(MockInstrument::Brake, Trouble::PowerCycled);
+    mock.trouble(MockInstrument::Brake, Trouble::Exchanged);
+    let fault = ask(&mut bench, MockInstrument::Brake).unwrap_err();
+    assert!(matches!(fault.kind, FaultKind::WrongInstrument { .. }), "{fault}");
+}
+
+#[test]
+fn another_supply_is_switched_off_all_the_same() {
+    let (mock, mut bench) = start(Transport::Terminal);
+    let brake = bench.brake.as_mut().unwrap();
+    brake.set_current(Amperes(0.3)).unwrap();
+    mock.trouble(MockInstrument::Brake, Trouble::Exchanged);
+    brake.identify().unwrap_err();
+    brake.output_off().unwrap();
+    assert!(matches!(brake.read().unwrap_err().kind, FaultKind::WrongInstrument { .. }), "its readings are not ours");
+    mock.trouble(MockInstrument::Brake, Trouble::None);
+    assert_eq!(brake.read().unwrap().regulation, Regulation::Off);
 }
 
 #[test]

@@ -6,7 +6,9 @@ use jointbench_devices::{
     AdamSettings, AdamThermometer, DmmSettings, DmmTorqueSensor, GcsSettings, GcsStage, MockBench, MockSettings,
     PortSettings, QsbCounter, QsbSettings,
 };
-use jointbench_instrument::roles::{AlignmentStage, EncoderStatus, Pose, PositionCounter, Thermometer, TorqueSensor};
+use jointbench_instrument::roles::{
+    AlignmentStage, EncoderStatus, Instrument, Pose, PositionCounter, Thermometer, TorqueSensor,
+};
 use jointbench_instrument::units::{Amperes, RadPerSec};
 use jointbench_instrument::{Fault, FaultKind};
 
@@ -129,6 +131,28 @@ fn a_pulled_cable_is_named_and_another_unit_is_not_ours() {
         assert!(silent || matches!(fault.kind, FaultKind::Refused { .. }), "{instrument:?}: {fault}");
         mock.trouble(instrument, Trouble::None);
         ask().unwrap();
+    }
+}
+
+#[test]
+fn another_unit_is_named_where_no_cable_was_out() {
+    let mock = start(Transport::Terminal);
+    let instruments: [(MockInstrument, Box<dyn Instrument>); 5] = [
+        (MockInstrument::Multimeter, Box::new(multimeter(&mock))),
+        (MockInstrument::CounterS1, Box::new(counter(&mock, MockInstrument::CounterS1))),
+        (MockInstrument::CounterS2, Box::new(counter(&mock, MockInstrument::CounterS2))),
+        (MockInstrument::Thermometer, Box::new(thermometer(&mock))),
+        (MockInstrument::Stage, Box::new(stage(&mock))),
+    ];
+    for (place, mut instrument) in instruments {
+        let known = instrument.identify().unwrap();
+        mock.trouble(place, Trouble::Exchanged);
+        for _ in 0..2 {
+            let fault = instrument.identify().unwrap_err();
+            assert!(matches!(fault.kind, FaultKind::WrongInstrument { .. }), "{place:?}: {fault}");
+        }
+        mock.trouble(place, Trouble::None);
+        assert_eq!(instrument.identify().unwrap(), known, "{place:?}");
     }
 }
 

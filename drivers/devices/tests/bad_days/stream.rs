@@ -4,7 +4,7 @@ use super::{DEADLINE, settings};
 use jointbench_devices::driver::{LorenzSettings, Range};
 use jointbench_devices::sim::{MockInstrument, Transport, Trouble};
 use jointbench_devices::{LorenzSensor, MockBench, PortSettings};
-use jointbench_instrument::roles::{TorqueSample, TorqueSensor, TorqueStream};
+use jointbench_instrument::roles::{Instrument, TorqueSample, TorqueSensor, TorqueStream};
 use jointbench_instrument::units::Seconds;
 use jointbench_instrument::{Clock, Fault, FaultKind};
 use std::sync::Arc;
@@ -115,6 +115,19 @@ fn a_stream_that_ends_by_itself_is_silence() {
     let before = world.samples.len();
     world.collect(0.2).unwrap();
     assert!(world.samples.len() > before + 150, "usable again");
+}
+
+/// A stream that goes on is the word of the sensor that was told to send it: another one has to be told first.
+#[test]
+fn another_sensor_in_the_place_of_one_that_streams_is_named() {
+    let mut world = World::streaming(Transport::Terminal);
+    world.collect(0.2).unwrap();
+    world.mock.trouble(MockInstrument::TorqueSensor, Trouble::Exchanged);
+    let fault = world.collect(10.0).unwrap_err();
+    assert!(matches!(fault.kind, FaultKind::Silent { .. }), "{fault}");
+    assert!(world.samples.len() <= 200, "{}", world.samples.len());
+    let fault = world.sensor.recover().unwrap_err();
+    assert!(matches!(fault.kind, FaultKind::WrongInstrument { .. }), "{fault}");
 }
 
 #[test]

@@ -85,7 +85,7 @@ impl Session<'_> {
         })
     }
 
-    fn ask_stage<T>(
+    pub(super) fn ask_stage<T>(
         &mut self,
         request: impl FnMut(&mut (dyn AlignmentStage + 'static)) -> Result<T, Fault>,
     ) -> Result<T, Ending> {

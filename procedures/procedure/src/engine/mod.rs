@@ -2,6 +2,7 @@
 
 mod arm;
 mod ask;
+mod confirm;
 mod drive;
 mod encoders;
 mod ending;

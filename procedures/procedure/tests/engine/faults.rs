@@ -227,3 +227,44 @@ fn a_panic_passes_the_safe_state() {
     assert_eq!(in_disarm.end.safe, Safe::UnsafeUnknown);
     assert!(!in_disarm.world.brake_on, "the brake is secured all the same");
 }
+
+#[test]
+fn who_is_there_is_asked_before_a_step_counts_one_in_a_tick_and_delays_none() {
+    // An identity takes two thirds of a tick: two of them in one would make the next one late.
+    let done = scripted(|call, world| {
+        if matches!(call, Call::Identify(_)) && world.armed {
+            world.now_s += 0.0027;
+        }
+        Ok(())
+    });
+    done.check_safe(RunState::Completed);
+    let late: Vec<u64> = done
+        .ledger
+        .events()
+        .filter_map(|event| match event.kind {
+            EventKind::StepFinished { late_ticks, .. } => Some(late_ticks),
+            _ => None,
+        })
+        .collect();
+    assert!(!late.is_empty() && late.iter().all(|ticks| *ticks == 0), "{late:?}");
+    for role in [Role::Joint, Role::Torque, Role::Brake] {
+        let asked = done.world.commands(|call| *call == Call::Identify(role)).len();
+        assert_eq!(asked, 1 + late.len(), "{role:?}: at arming, and once in each step");
+    }
+}
+
+#[test]
+fn another_instrument_fails_the_step_in_which_it_is_found() {
+    let another = || FaultKind::WrongInstrument { expected: "fake 1".into(), found: "fake 2".into() };
+    for role in [Role::Torque, Role::Brake] {
+        let done = scripted(move |call, world| match call {
+            Call::Identify(asked) if asked == role && world.now_s >= 102.0 => Err(another()),
+            _ => Ok(()),
+        });
+        done.check_safe(RunState::Failed);
+        assert!(done.end.reason.as_ref().unwrap().contains("expected fake 1, found fake 2"), "{:?}", done.end.reason);
+        let count = |wanted: fn(&EventKind) -> bool| done.ledger.events().filter(|event| wanted(&event.kind)).count();
+        let begun = count(|event| matches!(event, EventKind::StepStarted { .. }));
+        assert_eq!(begun, 1 + count(|event| matches!(event, EventKind::StepFinished { .. })), "{role:?}");
+    }
+}

@@ -3,6 +3,7 @@
 use super::Command;
 use super::desk::Desk;
 use super::recorder::OutboxRecorder;
+use crate::bench::exchanged;
 use crate::bench::health::expected;
 use crate::bench::instruments::{Opened, open, unreached};
 use crate::bench::wire::Report;
@@ -95,7 +96,10 @@ impl Owner {
                     (instrument.ready, instrument.identity) = (true, Some(identity.into()));
                     (instrument.fault, instrument.since) = (None, None);
                 }
-                Some(Err(fault)) => (instrument.ready, instrument.fault) = (false, Some(fault.to_string())),
+                Some(Err(fault)) => {
+                    let told = exchanged::told(&fault, &instrument.role, &self.description);
+                    (instrument.ready, instrument.fault) = (false, Some(told));
+                }
                 None => {}
             }
         }

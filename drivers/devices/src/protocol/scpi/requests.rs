@@ -39,7 +39,7 @@ impl Terminator {
 
 fn text(line: &[u8]) -> Result<&str, FaultKind> {
     let garbled = || FaultKind::Garbled { what: format!("{}: expected an ASCII line", shown(line)) };
-    if line.is_ascii() { std::str::from_utf8(line).map(str::trim_end).map_err(|_| garbled()) } else { Err(garbled()) }
+    if line.is_ascii() { std::str::from_utf8(line).map(str::trim).map_err(|_| garbled()) } else { Err(garbled()) }
 }
 
 fn number(text: &str) -> Result<f64, FaultKind> {
@@ -248,6 +248,10 @@ mod tests {
         assert_eq!((identity.model.as_str(), identity.serial.as_str()), ("DP821A", "DP8E204500123"));
         assert_eq!(QueryError(lf).decode(b"0,\"No error\"\n"), Ok(None));
         assert_eq!(QueryError(lf).decode(b"+0,\"No error\"\r\n"), Ok(None));
+        assert_eq!(QueryError(lf).decode(b"  0,\"No error\"\n"), Ok(None));
+        assert_eq!(QueryNumber(lf, ":SOUR1:CURR?").decode(b"   0\n"), Ok(0.0));
+        assert_eq!(QueryFlag(lf, ":OUTP? CH1").decode(b"\t 1 \r\n"), Ok(true));
+        assert_eq!(ReadVoltage(lf).decode(b"  +4.5E+00 \n"), Ok(Some(4.5)));
         assert_eq!(QueryNumber(lf, ":SOUR1:VOLT?").decode(b"45.000\n"), Ok(45.0));
         assert_eq!(QueryFlag(lf, ":OUTP? CH1").decode(b"ON\n"), Ok(true));
         let measured = Ok(Measured { voltage_v: 12.987, current_a: 0.2498 });

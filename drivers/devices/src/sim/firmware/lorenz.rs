@@ -312,6 +312,11 @@ impl Firmware for Lorenz {
 
     fn afflict(&mut self, trouble: Trouble) {
         self.trouble = trouble;
+        if trouble == Trouble::Exchanged {
+            // Another sensor was told of no stream.
+            self.stream = None;
+            self.pending.clear();
+        }
     }
 
     fn power_cycle(&mut self, _plant: &mut Plant) {
