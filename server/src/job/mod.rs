@@ -68,8 +68,10 @@ pub enum Job {
     TryEffect {
         trial: EffectTrial,
     },
+    /// `step`: where the run ended, such as `step 3 of 41`, which only those know who know the bench.
     Identify {
         run: i64,
+        step: Option<String>,
     },
     Beside {
         run: i64,

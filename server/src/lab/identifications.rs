@@ -72,7 +72,9 @@ impl Lab {
         if jointbench_procedure::procedure(&record.procedure).is_none() {
             return Err(no_result(id, &record.procedure));
         }
-        let found: Identification = self.work_out(Job::Identify { run: id }).await?;
+        let cut = record.state.is_final() && record.state != RunState::Completed;
+        let step = if cut { self.last_step(id).await? } else { None };
+        let found: Identification = self.work_out(Job::Identify { run: id, step }).await?;
         let verdict = found.result.verdict;
         if record.state.is_final() && record.verdict.as_ref() != Some(&word(verdict)) {
             match self.inner.store.keep_verdict(id, &word(verdict)).await {
@@ -86,15 +88,13 @@ impl Lab {
         Ok(found)
     }
 
-    pub(super) async fn identify_here(&self, id: i64) -> Answer<Identification> {
+    pub(super) async fn identify_here(&self, id: i64, step: Option<String>) -> Answer<Identification> {
         let record = self.inner.store.run(id).await?;
         let none = || no_result(id, &record.procedure);
         let procedure = jointbench_procedure::procedure(&record.procedure).ok_or_else(none)?;
         let values = Values::parse(procedure.schema(), &record.parameters)
             .map_err(|fault| LabError::Invalid(format!("run {id} was made by another version: {fault}")))?;
         let table = self.measurement(id).await?;
-        let cut = record.state.is_final() && record.state != RunState::Completed;
-        let step = if cut { self.last_step(id).await? } else { None };
         let runs = self.together(id).await?;
         let mut found = tokio::task::spawn_blocking(move || procedure.identify(&values, &table))
             .await

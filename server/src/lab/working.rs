@@ -36,7 +36,7 @@ impl Lab {
             Job::Evaluate { model, run } => json(&self.evaluate_here(model, run).await?),
             Job::EvaluateFile { file, run } => json(&self.evaluate_file_here(file, run).await?),
             Job::TryEffect { trial } => json(&self.try_effect_here(&trial).await?),
-            Job::Identify { run } => json(&self.identify_here(run).await?),
+            Job::Identify { run, step } => json(&self.identify_here(run, step).await?),
             Job::Beside { run } => json(&self.beside_here(run).await?),
             Job::Statistics { run, channels, from_s, to_s } => {
                 json(&self.statistics_here(run, channels.as_deref(), from_s, to_s).await?)
