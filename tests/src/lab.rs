@@ -21,6 +21,8 @@ const STARTS: Duration = Duration::from_secs(60);
 
 pub struct Lab {
     folder: TempDir,
+    /// In memory where that can be: the record of the traffic must not wait for the disk that is being troubled.
+    record: TempDir,
     pub data: PathBuf,
     pub address: SocketAddr,
     /// Bench seconds for each second on the wall; `None`: as fast as it goes.
@@ -35,10 +37,11 @@ impl Lab {
     /// Nothing runs yet. `data`: elsewhere than in a folder of its own.
     pub fn new(data: Option<PathBuf>) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
+        let record = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).expect("a folder");
         // Free now, and ours again whenever the daemon is started anew.
         let address = TcpListener::bind("127.0.0.1:0").and_then(|free| free.local_addr()).expect("a free port");
         let data = data.unwrap_or_else(|| folder.path().join("data"));
-        Self { folder, data, address, pace: Some(1.0), preload: None, server: None, last_worker: None }
+        Self { folder, record, data, address, pace: Some(1.0), preload: None, server: None, last_worker: None }
     }
 
     pub fn folder(&self) -> &Path {
@@ -63,7 +66,7 @@ impl Lab {
         let log = OpenOptions::new().append(true).create(true).open(self.log()).expect("a log");
         let mut command = jointbench();
         command.args(["serve", "--listen", &self.address.to_string(), "--config"]).arg(&config);
-        command.arg("--data").arg(&self.data).arg("--record").arg(self.folder().join("record"));
+        command.arg("--data").arg(&self.data).arg("--record").arg(self.record.path());
         command.env("JOINTBENCH_TOKEN", TOKEN).stdout(Stdio::piped()).stderr(log);
         if let Some(library) = &self.preload {
             command.env("LD_PRELOAD", library).envs(crate::trouble::slow_sync_settings(self.folder()));
@@ -139,7 +142,7 @@ impl Lab {
 
     /// Of the newest worker.
     pub fn wire(&self) -> Wire {
-        let folder = self.folder().join("record").join(BENCH);
+        let folder = self.record.path().join(BENCH);
         Wire::newest(&folder).expect("a worker has recorded its traffic")
     }
 

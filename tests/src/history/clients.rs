@@ -15,7 +15,7 @@ use std::time::Duration;
 const HANG_UP_PERCENT: u32 = 20;
 const BROKEN_OFF_PERCENT: u32 = 30;
 /// Between two operations.
-const PAUSE_MS: std::ops::Range<u64> = 0..60;
+const PAUSE_MS: std::ops::Range<u64> = 0..600;
 /// A client waits so long before it tries a server again that does not listen.
 const AWAY: Duration = Duration::from_millis(50);
 /// Of the table that each client annotates.

@@ -33,6 +33,9 @@ struct History {
     faults: usize,
 }
 
+/// SIGTERM of a daemon whose bench is at rest.
+const ENDS: Duration = Duration::from_secs(30);
+
 /// Rounds of [`OPERATIONS_OF_A_ROUND`] on one store, each checked at its end.
 pub fn histories(operations: usize, seed: u64, say: &dyn Fn(&str)) -> Outcome {
     let mut lab = Lab::new(None);
@@ -73,8 +76,8 @@ fn settle(lab: &mut Lab, outcome: &mut Outcome) {
         bench["run"].is_null() && bench["unstored"].is_null() && bench["blocked"]["stored"] == true
     };
     lab.wait(SETTLES, "everything to be stored", is_quiet);
-    if lab.terminate(SETTLES).is_none() {
-        outcome.broken.push(format!("SIGTERM of a bench at rest does not end within {SETTLES:?}"));
+    if lab.terminate(ENDS).is_none() {
+        outcome.broken.push(format!("SIGTERM of a bench at rest does not end within {ENDS:?}\n{}", lab.tail()));
     }
     lab.start();
 }

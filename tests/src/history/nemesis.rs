@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rustix::process::Signal;
 use std::time::Duration;
 
-const PEACE_MS: std::ops::Range<u64> = 500..3000;
+const PEACE_MS: std::ops::Range<u64> = 200..1500;
 const STALLED_MS: std::ops::Range<u64> = 500..3000;
 /// Around the patience of the database, 5 s.
 const HELD_MS: std::ops::Range<u64> = 500..7000;
