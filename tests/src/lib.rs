@@ -5,6 +5,7 @@ pub mod client;
 pub mod deaths;
 pub mod history;
 pub mod lab;
+pub mod machine;
 pub mod outcome;
 pub mod presses;
 pub mod program;

@@ -18,6 +18,8 @@ pub struct Outcome {
     pub slowest_stop: Option<Duration>,
     /// In control ticks.
     pub longest_silence: Option<f64>,
+    /// How long the machine let an idle thread stand: what it did to that, it did to ours.
+    pub machine_stall: Option<Duration>,
     /// What broke a promise, each in a sentence.
     pub broken: Vec<String>,
 }
@@ -50,6 +52,10 @@ impl Outcome {
         self.longest_silence = Some(self.longest_silence.unwrap_or_default().max(ticks));
     }
 
+    pub fn stalled_for(&mut self, stall: Duration) {
+        self.machine_stall = Some(self.machine_stall.unwrap_or_default().max(stall));
+    }
+
     /// Whether every promise was kept.
     pub fn holds(&self) -> bool {
         self.broken.is_empty()
@@ -60,16 +66,18 @@ impl Outcome {
 pub fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
         "| scenario | faults tried | acknowledged | lost | doubled | half done | slowest stop | longest control silence |\n\
-         | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+         | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
     );
     for one in outcomes {
-        let stop = one.slowest_stop.map_or_else(String::new, |stop| format!("{:.1} ms", 1e3 * stop.as_secs_f64()));
+        let ms =
+            |time: Option<Duration>| time.map_or_else(String::new, |it| format!("{:.1} ms", 1e3 * it.as_secs_f64()));
+        let (stop, stall) = (ms(one.slowest_stop), ms(one.machine_stall));
         let silence = one.longest_silence.map_or_else(String::new, |ticks| format!("{ticks:.1} ticks"));
         let Outcome { name, faults, acknowledged, lost, doubled, half_done, .. } = one;
         // Nothing is wrong with a text that takes what is written.
         let _ = writeln!(
             text,
-            "| {name} | {faults} | {acknowledged} | {lost} | {doubled} | {half_done} | {stop} | {silence} |"
+            "| {name} | {faults} | {acknowledged} | {lost} | {doubled} | {half_done} | {stop} | {silence} | {stall} |"
         );
     }
     for one in outcomes {

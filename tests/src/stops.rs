@@ -2,6 +2,7 @@
 
 use crate::client::Outcome as Answer;
 use crate::lab::{BENCH, Lab};
+use crate::machine::Watch;
 use crate::outcome::Outcome;
 use crate::trouble::Trouble;
 use crate::wire::{Control, Wire, now_s};
@@ -34,6 +35,7 @@ pub fn stops(trouble: Trouble, count: usize, random: &mut ChaCha8Rng, say: &dyn 
     let (lab, _disk) = trouble.lab()?;
     let mut outcome = Outcome::new(format!("stop, {}", trouble.name()));
     let mut wire = lab.wire();
+    let watch = Watch::start();
     for number in 1..=count {
         let troubled_s = match trouble {
             Trouble::FullDisk => random.random_range(FULL_S),
@@ -41,12 +43,18 @@ pub fn stops(trouble: Trouble, count: usize, random: &mut ChaCha8Rng, say: &dyn 
             _ => random.random_range(TROUBLED_S),
         };
         let stop = press(&lab, trouble, Duration::from_secs_f64(troubled_s), &mut wire, &mut outcome);
+        let stall = watch.longest();
+        outcome.stalled_for(stall);
         if let Some(Stop { latency, control }) = stop {
             let ticks = control.longest_silence.as_secs_f64() / TICK.as_secs_f64();
             outcome.stopped_after(latency);
             outcome.silent_for(ticks);
             let ms = 1e3 * latency.as_secs_f64();
-            say(&format!("{}: press {number} of {count}: {ms:.1} ms, silence {ticks:.1} ticks", outcome.name));
+            let stall_ms = 1e3 * stall.as_secs_f64();
+            say(&format!(
+                "{}: press {number} of {count}: {ms:.1} ms, silence {ticks:.1} ticks, an idle thread stood {stall_ms:.1} ms",
+                outcome.name
+            ));
         }
     }
     Some(outcome)

@@ -10,7 +10,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 const SEED: u64 = 33;
-const PRESSES: usize = 8;
+const PRESSES: usize = 5;
 const HANG_UPS: usize = 15;
 const OPERATIONS: usize = 200;
 /// On a machine that has other things to do.
