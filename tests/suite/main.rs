@@ -3,7 +3,9 @@
 mod browser;
 mod daemon;
 mod demo;
+mod faults;
 mod house;
 mod offline;
-mod program;
 mod shared;
+
+use jointbench_tests::program;

@@ -14,6 +14,8 @@ use std::sync::Arc;
 
 const FOLDER: &str = "unstored";
 const ENDING: &str = "msgpack";
+/// Of a file that holds what no run takes: kept for a person to look at, never read again.
+const NO_PLACE: &str = "no-place";
 
 #[derive(Serialize, Deserialize)]
 struct Leftovers {
@@ -62,7 +64,8 @@ fn read(path: &Path) -> io::Result<Leftovers> {
     receive(&mut &*body)?.ok_or_else(damaged)
 }
 
-/// Stores what workers have left in the data folder. A file that is damaged stays where it is, and is told.
+/// Stores what workers have left in the data folder. A file that is damaged stays where it is, and is told; so does one with
+/// commits that no run takes, under another ending.
 ///
 /// # Errors
 /// Where the store refuses; the file stays for the next start.
@@ -74,8 +77,11 @@ pub async fn store_all(data: &Path, store: &Store) -> Result<(), StoreError> {
     for path in files {
         match read(&path) {
             Ok(left) => {
-                store_one(left, store).await?;
-                if let Err(fault) = fs::remove_file(&path) {
+                let done = match store_one(left, store).await? {
+                    true => fs::remove_file(&path),
+                    false => fs::rename(&path, path.with_extension(NO_PLACE)),
+                };
+                if let Err(fault) = done {
                     tracing::warn!(file = %path.display(), %fault, "stored, but not removed");
                 }
             }
@@ -85,13 +91,17 @@ pub async fn store_all(data: &Path, store: &Store) -> Result<(), StoreError> {
     Ok(())
 }
 
-async fn store_one(left: Leftovers, store: &Store) -> Result<(), StoreError> {
+/// Whether every commit found its place.
+async fn store_one(left: Leftovers, store: &Store) -> Result<bool, StoreError> {
+    use StoreError as E;
     let Leftovers { bench, block, entries } = left;
+    let mut all_placed = true;
     for entry in &entries {
         match store.commit_all(&[&entry.commit]).await {
-            // Ended by a start that did not know of them.
-            Err(fault @ (StoreError::RunOver { .. } | StoreError::NoRun(_))) => {
+            // Ended by a start that did not know of them, or the commit before it never came. The daemon starts all the same.
+            Err(fault @ (E::RunOver { .. } | E::NoRun(_) | E::CommitMissing { .. } | E::OtherChannels { .. })) => {
                 tracing::error!(run.id = entry.commit.run, %fault, "what a worker has left has no place");
+                all_placed = false;
             }
             done => done?,
         }
@@ -99,8 +109,8 @@ async fn store_one(left: Leftovers, store: &Store) -> Result<(), StoreError> {
     if let Some(block) = block {
         store.keep_block(&bench, &block).await?;
     }
-    tracing::warn!(bench, entries = entries.len(), "what a worker had left is stored");
-    Ok(())
+    tracing::warn!(bench, entries = entries.len(), all_placed, "what a worker had left is stored");
+    Ok(all_placed)
 }
 
 #[cfg(test)]
@@ -131,5 +141,19 @@ mod tests {
         *bytes.last_mut().unwrap() ^= 1;
         fs::write(&path, bytes).unwrap();
         assert!(read(&path).is_err());
+    }
+
+    #[tokio::test]
+    async fn what_no_run_takes_is_set_aside_and_keeps_nobody_from_starting() {
+        let data = tempfile::tempdir().unwrap();
+        let store = Store::open(data.path()).await.unwrap();
+        leave(data.path(), "a", None, &[entry(1), entry(3)]);
+        store_all(data.path(), &store).await.unwrap();
+        let left: Vec<PathBuf> =
+            fs::read_dir(data.path().join(FOLDER)).unwrap().map(|entry| entry.unwrap().path()).collect();
+        assert_eq!(left.len(), 1, "{left:?}");
+        assert_eq!(left[0].extension().unwrap(), NO_PLACE);
+        assert_eq!(read(&left[0]).unwrap().entries.len(), 2, "nothing of it is lost");
+        store_all(data.path(), &store).await.unwrap();
     }
 }

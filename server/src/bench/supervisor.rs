@@ -25,6 +25,7 @@ const DRAINED: Duration = Duration::from_secs(5);
 const GONE: Duration = Duration::from_secs(20);
 const SOONEST: Duration = Duration::from_millis(200);
 const LATEST: Duration = Duration::from_secs(10);
+const LOOK_EVERY: Duration = Duration::from_millis(20);
 /// A worker that lived so long did not die of its start.
 const LIVED: Duration = Duration::from_secs(60);
 
@@ -60,12 +61,21 @@ impl Supervisor {
                 }
                 Err(fault) => self.tell_unreached(format!("the bench worker does not start: {fault}")),
             }
-            if self.shared.ending.load(Ordering::Acquire) {
+            pause = if started.elapsed() > LIVED { SOONEST } else { (2 * pause).min(LATEST) };
+            if !self.rest(pause) {
                 return;
             }
-            pause = if started.elapsed() > LIVED { SOONEST } else { (2 * pause).min(LATEST) };
-            std::thread::sleep(pause);
         }
+    }
+
+    /// Whether another worker is wanted afterwards: a daemon that ends meanwhile waits for none.
+    fn rest(&self, pause: Duration) -> bool {
+        let over = Instant::now() + pause;
+        let is_ending = || self.shared.ending.load(Ordering::Acquire);
+        while !is_ending() && Instant::now() < over {
+            std::thread::sleep(LOOK_EVERY.min(pause));
+        }
+        !is_ending()
     }
 
     fn start(&self) -> io::Result<(Child, ChildStdout)> {
@@ -85,6 +95,10 @@ impl Supervisor {
         let setup = Setup { description: shared.description.clone(), data: shared.data.clone(), block };
         let opened = shared.order(&Order::Open(Box::new(setup)));
         opened.map_err(|_| io::Error::other("it ends at once"))?;
+        // Whoever ends the daemon tells the worker that is there: one that comes just then has not heard it.
+        if shared.ending.load(Ordering::Acquire) {
+            shared.order(&Order::Quit).map_err(|_| io::Error::other("it ends at once"))?;
+        }
         tracing::info!(bench = shared.name(), process = child.id(), "bench worker started");
         Ok((child, reports))
     }

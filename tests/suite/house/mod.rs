@@ -4,14 +4,10 @@ mod arrows;
 mod licences;
 mod sizes;
 
+pub use jointbench_tests::root;
 use serde_json::Value;
-use std::path::PathBuf;
 use std::process::Command;
 use std::sync::LazyLock;
-
-pub fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the workspace root")
-}
 
 /// What cargo resolved for this workspace. Needs no network: everything was fetched to build the tests.
 static METADATA: LazyLock<Value> = LazyLock::new(|| {

@@ -2,17 +2,18 @@
 //!
 //! ```text
 //! # joint on /dev/ttyUSB0
+//! # opened at 1764149549.767296 s of Unix time
 //! 0.000012 > 66 20 30 2A 31 31 38 0A
 //! 0.000431 < 31 2E 30 30
 //! 3.100000 ! the port is lost
 //! ```
 //!
-//! Seconds since the link was opened; `>` to the instrument, `<` from it.
+//! Seconds since the link was opened; `>` to the instrument, `<` from it. The second line sets them beside other clocks.
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
@@ -70,8 +71,10 @@ impl Recorder {
     /// Starts a new file: a record that is there is replaced.
     pub fn create(path: &Path, instrument: &str, address: &str) -> io::Result<Self> {
         let mut file = File::create(path)?;
-        writeln!(file, "# {instrument} on {address}")?;
-        Ok(Self { file: Some(file), opened: Instant::now() })
+        let opened = Instant::now();
+        let unix_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64());
+        write!(file, "# {instrument} on {address}\n# opened at {unix_s:.6} s of Unix time\n")?;
+        Ok(Self { file: Some(file), opened })
     }
 
     pub fn sent(&mut self, bytes: &[u8]) {

@@ -50,12 +50,11 @@ pub fn serve() -> io::Result<()> {
     seat::end_when_told(desk.clone(), commands.clone())?;
     let listening = desk.clone();
     std::thread::Builder::new().name("orders".into()).spawn(move || listen(orders, &listening, &commands))?;
-    match seat::take(&data, &name) {
-        Ok(seat) => {
-            Owner::new(description, desk.clone()).serve(&to_do);
-            drop(seat);
-        }
-        Err(why) => owner::serve_nothing(&description, &desk, &to_do, &why),
+    // Held to the very end: whoever waits for it finds what is left here.
+    let seat = seat::take(&data, &name);
+    match &seat {
+        Ok(_) => Owner::new(description, desk.clone()).serve(&to_do),
+        Err(why) => owner::serve_nothing(&description, &desk, &to_do, why),
     }
     desk.outbox.say(wire::Report::Finished);
     desk.outbox.close();
@@ -65,6 +64,7 @@ pub fn serve() -> io::Result<()> {
     // The server closes its end when it has stored what it can.
     while !desk.is_alone() && to_do.recv().is_ok() {}
     leftovers::leave(&data, &name, desk.unstored_block(), &desk.outbox.unstored());
+    drop(seat);
     Ok(())
 }
 

@@ -1,16 +1,20 @@
 //! The program `jointbench` as a user starts it.
 
-use crate::house::root;
+use crate::root;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-/// Built once for each test run, with the profile of the tests.
+/// Built once for each test run, with the profile of the tests; or the one that `JOINTBENCH_PROGRAM` names.
 static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
+    if let Some(given) = std::env::var_os("JOINTBENCH_PROGRAM") {
+        return given.into();
+    }
     let here = std::env::current_exe().expect("the test binary has a path");
-    let profile = here.parent().and_then(Path::parent).expect("target/PROFILE/deps");
+    let folder = here.parent().expect("target/PROFILE/deps, or target/PROFILE");
+    let profile = if folder.ends_with("deps") { folder.parent().expect("target/PROFILE") } else { folder };
     let mut build = Command::new(env!("CARGO"));
     build.args(["build", "--quiet", "--workspace", "--bin", "jointbench"]).current_dir(root());
     build.env("CARGO_TARGET_DIR", profile.parent().expect("target"));

@@ -1,0 +1,89 @@
+//! What came of it, as a table.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+/// What was tried and what held, added up over scenarios.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outcome {
+    pub name: String,
+    pub faults: usize,
+    pub acknowledged: usize,
+    /// Acknowledged, and not there.
+    pub lost: usize,
+    /// There more than once.
+    pub doubled: usize,
+    /// Neither whole nor absent.
+    pub half_done: usize,
+    pub slowest_stop: Option<Duration>,
+    /// In control ticks.
+    pub longest_silence: Option<f64>,
+    /// How long the machine let an idle thread stand: what it did to that, it did to ours.
+    pub machine_stall: Option<Duration>,
+    /// What broke a promise, each in a sentence.
+    pub broken: Vec<String>,
+}
+
+impl Outcome {
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..Self::default() }
+    }
+
+    pub fn lost(&mut self, what: String) {
+        self.lost += 1;
+        self.broken.push(format!("lost: {what}"));
+    }
+
+    pub fn doubled(&mut self, what: String) {
+        self.doubled += 1;
+        self.broken.push(format!("doubled: {what}"));
+    }
+
+    pub fn half_done(&mut self, what: String) {
+        self.half_done += 1;
+        self.broken.push(format!("half done: {what}"));
+    }
+
+    pub fn stopped_after(&mut self, latency: Duration) {
+        self.slowest_stop = Some(self.slowest_stop.unwrap_or_default().max(latency));
+    }
+
+    pub fn silent_for(&mut self, ticks: f64) {
+        self.longest_silence = Some(self.longest_silence.unwrap_or_default().max(ticks));
+    }
+
+    pub fn stalled_for(&mut self, stall: Duration) {
+        self.machine_stall = Some(self.machine_stall.unwrap_or_default().max(stall));
+    }
+
+    /// Whether every promise was kept.
+    pub fn holds(&self) -> bool {
+        self.broken.is_empty()
+    }
+}
+
+/// As Markdown, and below it what broke a promise.
+pub fn table(outcomes: &[Outcome]) -> String {
+    let mut text = String::from(
+        "| scenario | faults tried | acknowledged | lost | doubled | half done | slowest stop | longest control silence |\n\
+         | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+    );
+    for one in outcomes {
+        let ms =
+            |time: Option<Duration>| time.map_or_else(String::new, |it| format!("{:.1} ms", 1e3 * it.as_secs_f64()));
+        let (stop, stall) = (ms(one.slowest_stop), ms(one.machine_stall));
+        let silence = one.longest_silence.map_or_else(String::new, |ticks| format!("{ticks:.1} ticks"));
+        let Outcome { name, faults, acknowledged, lost, doubled, half_done, .. } = one;
+        // Nothing is wrong with a text that takes what is written.
+        let _ = writeln!(
+            text,
+            "| {name} | {faults} | {acknowledged} | {lost} | {doubled} | {half_done} | {stop} | {silence} | {stall} |"
+        );
+    }
+    for one in outcomes {
+        for broken in &one.broken {
+            let _ = writeln!(text, "{}: {broken}", one.name);
+        }
+    }
+    text
+}

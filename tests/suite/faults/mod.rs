@@ -1,0 +1,94 @@
+//! The fault suite, in short: the same scenarios as `cargo run -p jointbench-tests --bin faults`, with fixed seeds. Times are held
+//! only to what a busy machine keeps.
+
+use jointbench_tests::outcome::{Outcome, table};
+use jointbench_tests::trouble::Trouble;
+use jointbench_tests::{deaths, history, presses, stops};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+const SEED: u64 = 33;
+const PRESSES: usize = 5;
+const HANG_UPS: usize = 15;
+const OPERATIONS: usize = 200;
+/// On a machine that has other things to do.
+const SLOWEST_STOP: Duration = Duration::from_secs(1);
+
+/// One scenario at a time: each wants the machine for itself.
+fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn say(text: &str) {
+    println!("{text}");
+}
+
+fn random() -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(SEED)
+}
+
+fn check(outcomes: &[Outcome]) {
+    let told = table(outcomes);
+    println!("{told}");
+    assert!(outcomes.iter().all(Outcome::holds), "{told}");
+}
+
+fn check_stops(trouble: Trouble) {
+    let _alone = alone();
+    let Some(outcome) = stops::stops(trouble, PRESSES, &mut random(), &say) else { return };
+    assert_eq!(outcome.faults, PRESSES);
+    let slowest = outcome.slowest_stop.expect("presses were measured");
+    assert!(slowest < SLOWEST_STOP, "{}: the slowest stop took {slowest:?}", outcome.name);
+    check(&[outcome]);
+}
+
+#[test]
+fn the_stop_works_when_all_is_well() {
+    check_stops(Trouble::Quiet);
+}
+
+#[test]
+fn the_stop_works_while_another_program_holds_the_database() {
+    check_stops(Trouble::DatabaseHeld);
+}
+
+#[test]
+fn the_stop_works_on_a_slow_disk() {
+    check_stops(Trouble::SlowSync);
+}
+
+#[test]
+fn the_stop_works_on_a_full_disk() {
+    check_stops(Trouble::FullDisk);
+}
+
+#[test]
+fn the_stop_works_while_models_are_fitted() {
+    check_stops(Trouble::Fits);
+}
+
+#[test]
+fn the_stop_works_beside_stalled_connections() {
+    check_stops(Trouble::StalledConnections);
+}
+
+#[test]
+fn a_press_is_never_lost() {
+    let _alone = alone();
+    check(&[presses::hang_ups(HANG_UPS, &mut random())]);
+}
+
+#[test]
+fn whoever_dies_the_bench_is_secured_and_nothing_acknowledged_is_lost() {
+    let _alone = alone();
+    check(&deaths::deaths(1, &say));
+}
+
+#[test]
+fn a_history_of_concurrent_clients_holds() {
+    let _alone = alone();
+    check(&[history::histories(OPERATIONS, SEED, &say)]);
+}
