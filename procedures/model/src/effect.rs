@@ -1,6 +1,7 @@
 //! What an effect is: one physical cause with its formula, its parameters and the signals that it needs.
 
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::nearest;
 use serde::Serialize;

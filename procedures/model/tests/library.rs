@@ -5,7 +5,8 @@ mod common;
 use common::tables::{Shape, table};
 use jointbench_instrument::Kind;
 use jointbench_model::effect::Search;
-use jointbench_model::view::{Signal, Signals, View};
+use jointbench_model::signal::{Signal, Signals};
+use jointbench_model::view::View;
 use jointbench_model::{ModelSpec, Options, effects, fit};
 
 /// Section 2 of the contract.

@@ -2,6 +2,7 @@
 
 mod arrows;
 mod licences;
+mod modules;
 mod sizes;
 
 use serde_json::Value;

@@ -4,7 +4,8 @@
 //! curve and hysteresis, whichever of them a model lacks.
 
 use crate::effect::{Form, Search, Shape};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 
 /// What a signal usually is where the brake holds: its mean over the squared torque.
 pub fn usual(view: &View, signal: Signal, of: impl Fn(f64) -> f64) -> f64 {

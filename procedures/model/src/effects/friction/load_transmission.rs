@@ -1,7 +1,8 @@
 //! Load through the gear.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct LoadTransmission;

@@ -1,8 +1,9 @@
 //! Presliding hysteresis.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::effects::memory;
-use crate::view::{Signal, View};
+use crate::hysteresis_operators;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Presliding;
@@ -53,16 +54,16 @@ impl Effect for Presliding {
         let direction = view.samples.find(Signal::Direction).unwrap_or_default();
         let late = |state: Vec<f64>| state.iter().zip(direction).map(|(z, d)| z - d).collect();
         vec![view.average(match form {
-            "dahl" => late(memory::dahl(position, shape[0], &view.starts)),
-            "maxwell_slip" => late(memory::maxwell_slip(position, shape[0], &view.starts)),
+            "dahl" => late(hysteresis_operators::dahl(position, shape[0], &view.starts)),
+            "maxwell_slip" => late(hysteresis_operators::maxwell_slip(position, shape[0], &view.starts)),
             "lugre" => {
                 let velocity = view.samples.find(Signal::Velocity).unwrap_or_default();
                 let strength: Vec<f64> =
                     velocity.iter().map(|w| 1.0 + shape[2] * (-(w / shape[1]).powi(2)).exp()).collect();
-                let state = memory::lugre(position, &strength, shape[0], &view.starts);
+                let state = hysteresis_operators::lugre(position, &strength, shape[0], &view.starts);
                 state.iter().zip(&strength).zip(direction).map(|((z, g), d)| z - g * d).collect()
             }
-            _ => late(memory::stop(position, shape[0], &view.starts)),
+            _ => late(hysteresis_operators::stop(position, shape[0], &view.starts)),
         })]
     }
 

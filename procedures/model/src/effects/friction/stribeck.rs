@@ -1,8 +1,9 @@
 //! Stribeck effect.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::quick;
-use crate::view::{Signal, View};
+use crate::fast_math;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 use multiversion::multiversion;
 
@@ -25,7 +26,7 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 /// exp(−(|ω|/ω_s)^δ)·sign ω of each point
-pub(super) fn fading(view: &View, shape: &[f64]) -> Vec<f64> {
+pub(crate) fn fading(view: &View, shape: &[f64]) -> Vec<f64> {
     let mut out = view.get(Signal::Direction).to_vec();
     fade(&mut out, view.get(Signal::Velocity), 1.0 / shape[0], shape[1]);
     out
@@ -35,13 +36,13 @@ pub(super) fn fading(view: &View, shape: &[f64]) -> Vec<f64> {
 fn fade(column: &mut [f64], velocity_rad_s: &[f64], per_speed: f64, delta: f64) {
     for (value, w) in column.iter_mut().zip(velocity_rad_s) {
         // A speed of zero has no logarithm.
-        let power = quick::exp(delta * quick::ln(w.abs() * per_speed + f64::MIN_POSITIVE));
-        *value *= quick::exp(-power);
+        let power = fast_math::exp(delta * fast_math::ln(w.abs() * per_speed + f64::MIN_POSITIVE));
+        *value *= fast_math::exp(-power);
     }
 }
 
 /// Speeds and exponents that this data can tell apart: between its slowest motion and a third of its fastest.
-pub(super) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)> {
+pub(crate) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)> {
     let (slow, fast) = crate::effects::speed_range(view)?;
     let (low, high) = (slow * 0.7, fast / 3.0);
     if high < 2.0 * low {

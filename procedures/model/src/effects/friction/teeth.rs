@@ -1,7 +1,8 @@
 //! What the teeth of the gear bear: the measured load, and the link's weight where the sensor sits beyond it.
 
 use crate::effect::{Form, ParameterInfo, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 
 /// Name of the form in which the teeth bear a weight that no sensor feels.
 pub const WITH_WEIGHT: &str = "with_weight";

@@ -1,8 +1,9 @@
 //! Creep.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::effects::memory;
-use crate::view::{Signal, View};
+use crate::hysteresis_operators;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Creep;
@@ -37,7 +38,7 @@ impl Effect for Creep {
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         let torque = view.samples.find(Signal::Load).unwrap_or_default();
-        let lag = memory::lag(torque, view.sample_s / shape[0], &view.starts);
+        let lag = hysteresis_operators::lag(torque, view.sample_s / shape[0], &view.starts);
         vec![view.average(lag.iter().zip(torque).map(|(s, t)| s - t).collect())]
     }
 }

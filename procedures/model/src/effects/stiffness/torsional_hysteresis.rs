@@ -1,8 +1,9 @@
 //! Torsional hysteresis.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::effects::memory;
-use crate::view::{Signal, View};
+use crate::hysteresis_operators;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct TorsionalHysteresis;
@@ -45,11 +46,11 @@ impl Effect for TorsionalHysteresis {
         let torque = view.samples.find(Signal::Load).unwrap_or_default();
         let column = |(part, reach): (usize, &f64)| {
             view.average(match form {
-                "dahl" | "dahl_and_stops" if part == 0 => memory::dahl(torque, *reach, &view.starts),
+                "dahl" | "dahl_and_stops" if part == 0 => hysteresis_operators::dahl(torque, *reach, &view.starts),
                 "maxwell_slip" | "maxwell_slip_and_stops" if part == 0 => {
-                    memory::maxwell_slip(torque, *reach, &view.starts)
+                    hysteresis_operators::maxwell_slip(torque, *reach, &view.starts)
                 }
-                _ => memory::stop(torque, *reach, &view.starts),
+                _ => hysteresis_operators::stop(torque, *reach, &view.starts),
             })
         };
         shape.iter().enumerate().map(column).collect()
