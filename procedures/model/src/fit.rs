@@ -7,8 +7,8 @@ use crate::linear::condition;
 use crate::prediction::{predict, prepare_alike};
 use crate::preprocess::{Prepared, prepare};
 use crate::regression::cross_validation::held_out;
-use crate::regression::linear_model::{Term, Terms};
-use crate::regression::two_stage_model::Assembly;
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{ANOTHER_INERTIA, Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport};
 use crate::words::figure;
 use crate::{ModelError, ModelSpec, Options, OwnEffect, ResidualKind, export};
@@ -25,11 +25,11 @@ pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, M
 
 /// As [`fit`], of a run that is prepared once for several models: on a long one that is most of the work.
 pub fn fit_prepared(prepared: &Prepared, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
-    report(&Assembly::new(prepared, spec, options)?)
+    report(&TwoStageModel::new(prepared, spec, options)?)
 }
 
 /// The contract's object of a model that is laid out.
-pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
+pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     let prepared = assembly.prepared;
     let main = &assembly.main;
     let linear = main.linear();
@@ -138,7 +138,7 @@ pub fn written(term: &Term) -> Option<String> {
 const LARGEST: f64 = 1e150;
 
 /// Condition of the scaled columns by QR; refuses columns that depend on each other.
-fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
+fn check_columns(terms: &LinearModel) -> Result<f64, ModelError> {
     let columns = terms.columns();
     let found = condition(&columns);
     let owner = |column: usize| {
@@ -157,7 +157,7 @@ fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
     }
 }
 
-fn unseen(assembly: &Assembly, id: &str, why: &str) -> Vec<Parameter> {
+fn unseen(assembly: &TwoStageModel, id: &str, why: &str) -> Vec<Parameter> {
     let Ok(effect) = assembly.spec.find(id) else { return Vec::new() };
     effect
         .info()

@@ -1,25 +1,25 @@
 //! What a selection found: the evidence for each effect, what was not found, and the verdict.
 
-use crate::diagnosis::excluded_effects::Others;
+use crate::diagnosis::excluded_effects::ExcludedEffects;
 use crate::preprocess::Prepared;
 use crate::regression::cross_validation::held_out_rms;
-use crate::regression::linear_model::Terms;
-use crate::regression::two_stage_model::Assembly;
+use crate::regression::linear_model::LinearModel;
+use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Imitated, Invisible, LeftOut, NoiseFloor, Silent, Verdict};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, noise_floor};
-use crate::selection::advance::Advance;
+use crate::selection::advance::SelectionStep;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{FLOOR_RATIO, NEGLIGIBLE_RMS, REPEATABLE_SHARE, STRUCTURE_SHARE};
 use crate::{ModelError, ModelSpec, Options};
 use jointbench_instrument::Kind;
 
-pub struct Exploration<'p> {
-    pub start: Assembly<'p>,
-    pub advances: Vec<Advance<'p>>,
+pub struct Findings<'p> {
+    pub start: TwoStageModel<'p>,
+    pub advances: Vec<SelectionStep<'p>>,
     pub withdrawn: Vec<Withdrawn<'p>>,
-    others: Others,
+    others: ExcludedEffects,
     /// Maps of what the last model leaves.
     pub maps: Maps,
     /// What shows in them is what whole stretches of motion scatter by.
@@ -34,17 +34,17 @@ pub struct Exploration<'p> {
     pub open: Option<Imitated>,
 }
 
-impl<'p> Exploration<'p> {
+impl<'p> Findings<'p> {
     /// `on_advance` sees every move when it is made.
     pub fn new(
         prepared: &'p Prepared,
         spec: &'p ModelSpec,
         options: &Options,
         most: usize,
-        on_advance: &mut dyn FnMut(&Advance),
+        on_advance: &mut dyn FnMut(&SelectionStep),
     ) -> Result<Self, ModelError> {
         let selected = ModelSelection::new(prepared, spec, options, most, on_advance)?;
-        let others = Others::of(&selected);
+        let others = ExcludedEffects::of(&selected);
         let floor = noise_floor::noise_floor(prepared, &selected.residual, selected.now.contains("hysteresis"));
         let scatters =
             lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
@@ -53,7 +53,7 @@ impl<'p> Exploration<'p> {
         Ok(Self { start, advances, withdrawn, others, maps, scatters, floor, end_held_out_rms, ties, upheld, open })
     }
 
-    pub fn end(&self) -> &Assembly<'p> {
+    pub fn end(&self) -> &TwoStageModel<'p> {
         self.advances.last().map_or(&self.start, |a| &a.after)
     }
 
@@ -117,10 +117,10 @@ impl<'p> Exploration<'p> {
 
     /// Added effects that are still there, the most important first: by what the last model loses without them, so
     /// that effects that mask each other come out in the right order.
-    pub fn ranking(&self) -> Vec<(&Advance<'p>, f64)> {
+    pub fn ranking(&self) -> Vec<(&SelectionStep<'p>, f64)> {
         let end = self.end();
         let mut seen: Vec<&str> = Vec::new();
-        let mut ranked: Vec<(&Advance, f64)> = Vec::new();
+        let mut ranked: Vec<(&SelectionStep, f64)> = Vec::new();
         // From the end, because an effect that was dropped and came again has its present evidence there.
         for advance in self.advances.iter().rev() {
             let Some(id) = advance.added.as_ref().map(|r| r.term.id()) else { continue };
@@ -134,7 +134,7 @@ impl<'p> Exploration<'p> {
     }
 }
 
-impl Exploration<'_> {
+impl Findings<'_> {
     /// Share of the held-out error that the last model has less than the same model without an effect.
     pub fn lost_without(&self, id: &str) -> f64 {
         let parts = parts_without(self.end(), id);
@@ -143,15 +143,15 @@ impl Exploration<'_> {
 }
 
 /// Share of the squared error without an effect that the effect takes away.
-fn importance(end: &Assembly, id: &str) -> f64 {
-    let loss = |(part, without): &(&Terms, Terms)| 1.0 - part.linear().sse / without.linear().sse;
+fn importance(end: &TwoStageModel, id: &str) -> f64 {
+    let loss = |(part, without): &(&LinearModel, LinearModel)| 1.0 - part.linear().sse / without.linear().sse;
     parts_without(end, id).iter().map(loss).fold(0.0, f64::max)
 }
 
 /// The parts of a model that hold an effect, beside what they are without it.
-fn parts_without<'a, 'p>(end: &'a Assembly<'p>, id: &str) -> Vec<(&'a Terms<'p>, Terms<'p>)> {
+fn parts_without<'a, 'p>(end: &'a TwoStageModel<'p>, id: &str) -> Vec<(&'a LinearModel<'p>, LinearModel<'p>)> {
     if let Ok(effect) = end.spec.find(id)
-        && effect.is_given()
+        && effect.is_offset()
     {
         return vec![(&end.main, end.main.without_given(effect))];
     }

@@ -6,19 +6,19 @@ pub(crate) mod findings;
 pub(crate) mod narrative;
 pub(crate) mod reversals;
 
-use crate::diagnosis::findings::Exploration;
+use crate::diagnosis::findings::Findings;
 use crate::fit::{report, written};
 use crate::inference::confounding;
 use crate::linear::basis::dot;
 use crate::preprocess::{Prepared, prepare};
 use crate::regression::cross_validation::held_out;
-use crate::regression::two_stage_model::Assembly;
+use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step, Suggestion, Verdict};
 use crate::report::fit::Parameter;
 use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::maps::regions::yardstick;
-use crate::selection::advance::Advance;
+use crate::selection::advance::SelectionStep;
 use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
@@ -29,7 +29,7 @@ const MOST_EFFECTS: usize = 6;
 /// Compares a model with a run: where it fails, which effects are missing, how sure that is.
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     let prepared = prepare(run, options)?;
-    let found = Exploration::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
+    let found = Findings::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
     let mut fit = report(&found.start)?;
     if found.advances.is_empty() {
         leave_open(&mut fit, &found);
@@ -87,9 +87,9 @@ pub fn discover(
     mut on_step: impl FnMut(&Step),
 ) -> Result<Discovery, ModelError> {
     let prepared = prepare(run, options)?;
-    let mut steps = vec![step(&Assembly::new(&prepared, spec, options)?, None)];
+    let mut steps = vec![step(&TwoStageModel::new(&prepared, spec, options)?, None)];
     on_step(&steps[0]);
-    let found = Exploration::new(&prepared, spec, options, max_effects, &mut |advance| {
+    let found = Findings::new(&prepared, spec, options, max_effects, &mut |advance| {
         let step = step(&advance.after, Some(advance));
         on_step(&step);
         steps.push(step);
@@ -128,7 +128,7 @@ pub fn discover(
     })
 }
 
-fn step(model: &Assembly, advance: Option<&Advance>) -> Step {
+fn step(model: &TwoStageModel, advance: Option<&SelectionStep>) -> Step {
     let residual = model.main.linear().residual;
     let n = residual.len() as f64;
     Step {
@@ -142,7 +142,7 @@ fn step(model: &Assembly, advance: Option<&Advance>) -> Step {
 }
 
 fn suggestions(
-    found: &Exploration,
+    found: &Findings,
     fit: &Fit,
     complete: &Fit,
     spec: &ModelSpec,
@@ -153,7 +153,7 @@ fn suggestions(
         let Some(rival) = &advance.added else { continue };
         let id = rival.term.id();
         let with = spec.with(id)?;
-        let alone = Assembly::new(found.start.prepared, &with, options)?;
+        let alone = TwoStageModel::new(found.start.prepared, &with, options)?;
         let with = report(&alone)?;
         let apart = alone.is_apart(rival.term.effect);
         let reduction = if apart {
@@ -169,7 +169,7 @@ fn suggestions(
             let mut alike = Vec::new();
             for rival in &confounded_with {
                 let other = spec.with(rival)?;
-                let other = Assembly::new(found.start.prepared, &other, options)?;
+                let other = TwoStageModel::new(found.start.prepared, &other, options)?;
                 alike.push(format!("{:.2}", evidence::correlation(&found.start.main, &alone.main, &other.main)));
             }
             format!(
@@ -215,7 +215,7 @@ fn suggestions(
 
 /// An interval of a parameter says nothing of an effect that is not in the model. Where that may be there as well, it reaches
 /// to what the parameter would be with it.
-fn leave_open(fit: &mut Fit, found: &Exploration) {
+fn leave_open(fit: &mut Fit, found: &Findings) {
     let Some(open) = &found.open else { return };
     let is_meant = |p: &&mut Parameter| format!("{}.{}", p.effect, p.name) == open.parameter;
     if let Some(parameter) = fit.parameters.iter_mut().find(is_meant) {
@@ -226,24 +226,24 @@ fn leave_open(fit: &mut Fit, found: &Exploration) {
 }
 
 /// Where a model fails. Nowhere that counts, where it is known to be adequate.
-fn regions(maps: &Maps, fit: &Fit, found: &Exploration, is_adequate: bool) -> Vec<Region> {
+fn regions(maps: &Maps, fit: &Fit, found: &Findings, is_adequate: bool) -> Vec<Region> {
     match is_adequate {
         true => Vec::new(),
         false => maps.regions(&fit.unit, yardstick(fit, Some(&found.floor)).as_ref()),
     }
 }
 
-fn structure(found: &Exploration, verdict: Verdict) -> Option<PairMap> {
+fn structure(found: &Findings, verdict: Verdict) -> Option<PairMap> {
     (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(&found.start.prepared.main))?
 }
 
 /// The columns that the summary names, where structure remains.
-fn shows_over(found: &Exploration, structure: Option<&PairMap>) -> Vec<String> {
+fn shows_over(found: &Findings, structure: Option<&PairMap>) -> Vec<String> {
     structure.and_then(|shown| narrative::shown_over(found, Some(shown))).unwrap_or_default().0
 }
 
 /// What to measure next.
-fn experiment(found: &Exploration, prepared: &Prepared) -> Option<Experiment> {
+fn experiment(found: &Findings, prepared: &Prepared) -> Option<Experiment> {
     if found.floor.rms.is_none() && prepared.clashes.is_empty() {
         let mut parameters = serde_json::Map::new();
         parameters.insert("repeats".into(), 3.into());

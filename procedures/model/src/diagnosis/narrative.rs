@@ -1,19 +1,19 @@
 //! A diagnosis in plain sentences.
 
-use crate::diagnosis::findings::Exploration;
-use crate::effect::{Effect, Stage};
+use crate::diagnosis::findings::Findings;
+use crate::effect::{Effect, Regime};
 use crate::inference::parameter_state::IMPOSSIBLE;
 use crate::report::diagnosis::{Evidence, Imitated, Suggestion, Verdict};
 use crate::report::fit::Parameter;
 use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::maps::Maps;
-use crate::selection::removal::{Withdrawal, Withdrawn};
+use crate::selection::removal::{RemovalReason, Withdrawn};
 use crate::thresholds::{NOTHING_IN_COMMON, SECOND_AXIS_GAIN, SHOWN_SHARE, TOLD_LOSS};
 use crate::words::{figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
 /// What is missing, and what is left when it is there. `fit` is the model at hand, `complete` the one with all suggestions.
-pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
+pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
     let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, complete));
     let first = &suggestions[0];
     let more: Vec<String> = suggestions[1..].iter().map(or_rival).collect();
@@ -28,8 +28,8 @@ pub fn missing(found: &Exploration, fit: &Fit, complete: &Fit, suggestions: &[Su
         true => "may be missing, and the evidence is weak",
         false => "is missing",
     };
-    let place = match found.start.spec.find(effect).map(Effect::stage) {
-        Ok(Stage::Ramp) => "on ramps",
+    let place = match found.start.spec.find(effect).map(Effect::regime) {
+        Ok(Regime::Transient) => "on ramps",
         _ => "around reversals",
     };
     let gain = if with == error {
@@ -65,7 +65,7 @@ fn or_rival(suggestion: &Suggestion) -> String {
 }
 
 /// What is left at the end of the search, where `fit` is its model. `is_cut`: it ended because no more effects were asked for.
-pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Options, is_cut: bool) -> String {
+pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Options, is_cut: bool) -> String {
     let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, fit));
     let verdict = found.end_verdict();
     let said = match (verdict, undecided(found, &[fit], verdict, options)) {
@@ -91,9 +91,9 @@ pub fn end(found: &Exploration, fit: &Fit, shown: Option<&PairMap>, options: &Op
 }
 
 /// Why what shows over an axis is called noise.
-fn scatter(found: &Exploration, verdict: Verdict, unit: &str) -> String {
+fn scatter(found: &Findings, verdict: Verdict, unit: &str) -> String {
     let main = &found.start.prepared.main;
-    let elsewhere = match 2 * main.other_angles.len() > main.twins.len() {
+    let elsewhere = match 2 * main.different_angle.len() > main.replicate_pairs.len() {
         true => ", or friction depends on an angle that the repeats pass at other moments",
         false => "",
     };
@@ -108,7 +108,7 @@ fn scatter(found: &Exploration, verdict: Verdict, unit: &str) -> String {
 }
 
 /// An effect that may be there as well, for all that the error tells.
-fn open(found: &Exploration) -> String {
+fn open(found: &Findings) -> String {
     let said = |open: &Imitated| {
         format!(" This run does not tell whether {} is there as well: with it {}.", open.effect, elsewhere(open, true))
     };
@@ -128,7 +128,7 @@ const MEND_ALL: &str =
 
 /// What a user has to mend before anything else counts: columns that contradict each other, a size that contradicts physics in all
 /// of the fits, and what the model takes as given and the run shows as a constant, which may not have been connected.
-fn attention(found: &Exploration, fits: &[&Fit]) -> String {
+fn attention(found: &Findings, fits: &[&Fit]) -> String {
     let told = |what: &String| format!("Attention: {what}. ");
     let clashes = &found.start.prepared.clashes;
     let mend = (!clashes.is_empty()).then(|| if clashes.void.is_empty() { MEND } else { MEND_ALL }.to_owned());
@@ -137,14 +137,14 @@ fn attention(found: &Exploration, fits: &[&Fit]) -> String {
     let impossible = impossible(fits).as_ref().map(told);
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
-    let is_dead = |id: &str| spec.find(id).is_ok_and(|e| e.is_given() && e.missing(view).is_none());
-    let dead = found.start.hidden.iter().find(|h| is_dead(&h.effect));
+    let is_dependent = |id: &str| spec.find(id).is_ok_and(|e| e.is_offset() && e.missing(view).is_none());
+    let dead = found.start.hidden.iter().find(|h| is_dependent(&h.effect));
     let dead = dead.map(|h| format!("Attention: {}; if something did act there, what follows is wrong. ", h.why));
     clashes.chain(impossible).chain(dead).collect()
 }
 
 /// How well the run repeats itself, and why an error may be smaller than that.
-fn floor(found: &Exploration, end: &Fit) -> String {
+fn floor(found: &Findings, end: &Fit) -> String {
     let Some(floor) = found.floor.rms else {
         let why =
             found.floor.source.strip_prefix("no noise floor").filter(|_| found.start.prepared.main.unlike.is_some());
@@ -162,7 +162,7 @@ fn floor(found: &Exploration, end: &Fit) -> String {
 }
 
 /// What an error is that is larger than the run repeats itself to, and that nothing takes away.
-fn above(found: &Exploration, end: &Fit) -> String {
+fn above(found: &Findings, end: &Fit) -> String {
     if found.floor.ci95.is_none_or(|[_, high]| end.validation_rms <= high) {
         return String::new();
     }
@@ -181,7 +181,7 @@ fn above(found: &Exploration, end: &Fit) -> String {
 }
 
 /// Where what is left shows most.
-fn structure(found: &Exploration, end: &Fit, shown: Option<&PairMap>) -> String {
+fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
     let error = figure(end.validation_rms, &end.unit);
     let repeats = match found.floor.repeatable_share {
         Some(share) if share < NOTHING_IN_COMMON => {
@@ -202,7 +202,7 @@ fn structure(found: &Exploration, end: &Fit, shown: Option<&PairMap>) -> String 
 }
 
 /// The columns over which what is left shows most, and what a function of them would take off it. `None` where none does.
-pub fn shown_over(found: &Exploration, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
+pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
     let pair = shown.map(|s| (vec![s.x.clone(), s.y.clone()], s.removable_share));
     let axis = found.maps.shows_over();
     // A second axis cuts the first one's bins: what shows over one alone can be more, and is said more shortly.
@@ -225,7 +225,7 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
 
 /// Why the verdict decides nothing: columns that contradict each other carry none, too short a run cannot find fault with a
 /// model, or a size contradicts physics in all of the fits.
-pub fn undecided(found: &Exploration, fits: &[&Fit], verdict: Verdict, options: &Options) -> Option<String> {
+pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Options) -> Option<String> {
     let blocks = found.start.main.problem.blocks;
     // The smallest p-value that flipping the signs of so many blocks can give.
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
@@ -255,7 +255,7 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
 }
 
 /// What is said of structure, where something that was left out might be it.
-fn unexplained(found: &Exploration) -> &'static str {
+fn unexplained(found: &Findings) -> &'static str {
     match left_out(found).next() {
         Some(_) => "no effect of the library is sure to explain",
         None => "no effect of the library explains",
@@ -263,20 +263,20 @@ fn unexplained(found: &Exploration) -> &'static str {
 }
 
 /// Effects that would bring something, and whose size the run does not decide.
-fn left_out<'f, 'p>(found: &'f Exploration<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
+fn left_out<'f, 'p>(found: &'f Findings<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
     let bound = TOLD_LOSS * found.end_held_out_rms;
-    found.withdrawn.iter().filter(move |w| w.why == Withdrawal::Undecided && w.held_out_rms < bound)
+    found.withdrawn.iter().filter(move |w| w.why == RemovalReason::Unidentified && w.held_out_rms < bound)
 }
 
 /// Effects that came in and were taken back, and what that cost.
-fn taken_back(found: &Exploration, unit: &str) -> String {
+fn taken_back(found: &Findings, unit: &str) -> String {
     // What could stand in the place of an effect of the model is named there.
     let open: Vec<&Withdrawn> = left_out(found).filter(|w| !found.is_rival(w.effect)).collect();
-    let back = |why: Withdrawal| -> Vec<&str> {
+    let back = |why: RemovalReason| -> Vec<&str> {
         let taken = found.withdrawn.iter().filter(|w| w.why == why && !found.is_rival(w.effect));
         taken.map(|w| w.effect).rev().collect()
     };
-    let (half, borrowing) = (back(Withdrawal::HalfExplains), back(Withdrawal::Borrows));
+    let (half, borrowing) = (back(RemovalReason::PartialExplanation), back(RemovalReason::Spurious));
     let named: Vec<&str> = open.iter().map(|w| w.effect).rev().collect();
     let with = open.iter().map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
     let open = (!open.is_empty()).then(|| {

@@ -1,16 +1,16 @@
 //! Where a model of settled motion fails: on the first way after a reversal.
 
-use crate::regression::two_stage_model::Assembly;
+use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::Fit;
 use crate::report::maps::Region;
-use crate::residual_analysis::maps::regions::Yardstick;
+use crate::residual_analysis::maps::regions::ReferenceMagnitude;
 use crate::signal::Signal;
 use crate::words::figure;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// The friction that a model predicts within `reach` of a reversal, against what was measured there. The interval is
 /// Student's t over the reversals. `None` with fewer than three.
-pub fn region(model: &Assembly, reach: f64, fit: &Fit, yardstick: Option<&Yardstick>) -> Option<Region> {
+pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, yardstick: Option<&ReferenceMagnitude>) -> Option<Region> {
     let problem = model.prepared.memory.as_ref()?;
     let samples = &problem.view.samples;
     let (position, direction) = (samples.find(Signal::Position)?, samples.find(Signal::Direction)?);

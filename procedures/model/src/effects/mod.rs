@@ -8,7 +8,7 @@ pub(crate) mod stiffness;
 pub use crate::effects::friction::teeth::WITH_WEIGHT;
 
 use crate::ModelError;
-use crate::effect::{Effect, Form, Search, Shape};
+use crate::effect::{Effect, Form, Shape, ShapeSearch};
 use crate::signal::Signal;
 use crate::view::View;
 use jointbench_instrument::Kind;
@@ -103,7 +103,7 @@ fn whole_orders(
     if grid.is_empty() {
         return Vec::new();
     }
-    let shape = vec![Shape { name, min: first, max: last, search: Search::Whole }];
+    let shape = vec![Shape { name, min: first, max: last, search: ShapeSearch::Whole }];
     vec![Form { name: "harmonic", linear: linear.to_vec(), shape, grid }]
 }
 
@@ -125,7 +125,7 @@ pub(crate) fn one_more_harmonic(form: &Form) -> Option<(&'static str, Form<'stat
     const SHAPE: [&str; 8] =
         ["harmonic", "harmonic_2", "harmonic_3", "harmonic_4", "harmonic_5", "harmonic_6", "harmonic_7", "harmonic_8"];
     let count = form.shape.len() + 1;
-    let shape = |name: &&'static str| Shape { name, min: 1.0, max: f64::INFINITY, search: Search::Whole };
+    let shape = |name: &&'static str| Shape { name, min: 1.0, max: f64::INFINITY, search: ShapeSearch::Whole };
     let shape = SHAPE.get(..count)?.iter().map(shape).collect();
     let form = Form { name: SEVERAL_HARMONICS, linear: LINEAR[..2 * count].to_vec(), shape, grid: Vec::new() };
     Some((SEVERAL_HARMONICS, form))

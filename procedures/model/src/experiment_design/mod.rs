@@ -11,7 +11,7 @@ use crate::experiment_design::separation::{Noise, Side};
 use crate::experiment_design::simulate::imagine;
 use crate::inference::confounding;
 use crate::preprocess::{Prepared, prepare};
-use crate::regression::two_stage_model::Assembly;
+use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Experiment, Verdict};
 use crate::signal::Signal;
 use crate::thresholds::{NEARLY_COVERED, SEPARATED_Z, USELESS_Z};
@@ -137,7 +137,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     }
     let spec = |effects: &[String]| ModelSpec::with_own(run.kind(), effects, open.own.clone());
     let with_all = spec(&open.model)?;
-    let model = Assembly::new(&prepared, &with_all, options)?;
+    let model = TwoStageModel::new(&prepared, &with_all, options)?;
     let noise = Noise::of(&model.main);
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let side = Side::new(&model.main, &noise);
@@ -145,8 +145,8 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let mut imagined: Vec<_> = known.map(|choice| (choice, imagine(choice, &prepared, &model, gear))).collect();
 
     let decided = |others: &[ModelSpec]| -> Result<Option<Bid>, ModelError> {
-        let others = others.iter().map(|s| Assembly::new(&prepared, s, options));
-        let others: Vec<Assembly> = others.collect::<Result<_, _>>()?;
+        let others = others.iter().map(|s| TwoStageModel::new(&prepared, s, options));
+        let others: Vec<TwoStageModel> = others.collect::<Result<_, _>>()?;
         let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
         // Nobody switches an encoder off and on for another question.
         let asks_for_power_ups = side.changes_by_run() || others.iter().any(Side::changes_by_run);

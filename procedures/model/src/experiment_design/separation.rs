@@ -4,9 +4,9 @@
 //! everything known, still cannot follow the other model.
 
 use crate::linear::basis::dot;
-use crate::linear::cholesky::Spd;
+use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
-use crate::regression::linear_model::{Term, Terms};
+use crate::regression::linear_model::{LinearModel, Term};
 
 /// Scatter of a measurement: what all points of a block have in common, and what each has for itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,13 +20,13 @@ const FEWEST_TWINS: usize = 8;
 
 impl Noise {
     /// From repeats where there are any, else from what the model leaves.
-    pub fn of(model: &Terms) -> Self {
+    pub fn of(model: &LinearModel) -> Self {
         let problem = model.problem;
         let residual = model.linear().residual;
         let mut groups: Vec<((usize, usize), Vec<f64>)> = Vec::new();
-        if problem.twins.len() >= FEWEST_TWINS {
+        if problem.replicate_pairs.len() >= FEWEST_TWINS {
             let mut pairs: Vec<_> = problem
-                .twins
+                .replicate_pairs
                 .iter()
                 .map(|(a, b)| ((problem.block[*a], problem.block[*b]), (residual[*a] - residual[*b]) / 2f64.sqrt()))
                 .collect();
@@ -78,7 +78,7 @@ fn push(groups: &mut Vec<((usize, usize), Vec<f64>)>, key: (usize, usize), value
 
 /// A model laid out on the run at hand, with what that run says about its parameters.
 pub struct Side<'a> {
-    model: &'a Terms<'a>,
+    model: &'a LinearModel<'a>,
     factors: Vec<Vec<f64>>,
     /// White columns and slopes at the run at hand.
     columns: Vec<Vec<f64>>,
@@ -87,7 +87,7 @@ pub struct Side<'a> {
 }
 
 impl<'a> Side<'a> {
-    pub fn new(model: &'a Terms<'a>, noise: &Noise) -> Self {
+    pub fn new(model: &'a LinearModel<'a>, noise: &Noise) -> Self {
         let factors = model.linear().factors;
         let columns = tangent(model, &factors, noise);
         Self { model, gram: gram(&columns), columns, factors }
@@ -95,7 +95,7 @@ impl<'a> Side<'a> {
 
     /// A part of the model is another in each run.
     pub fn changes_by_run(&self) -> bool {
-        self.model.terms.iter().any(|term| term.effect.is_of_each_run())
+        self.model.terms.iter().any(|term| term.effect.is_nuisance())
     }
 
     /// Expected distance of the two models in standard deviations after the run, the mean of both ways of being wrong.
@@ -116,7 +116,7 @@ impl<'a> Side<'a> {
     /// lets it.
     fn left_over(&self, white: &[f64], there: &There) -> f64 {
         let side: Vec<f64> = there.columns().map(|c| dot(c, white)).collect();
-        let followed = Spd::new(&self.known_then(there), side.len(), 0.0).whiten(&side);
+        let followed = Cholesky::new(&self.known_then(there), side.len(), 0.0).whiten(&side);
         dot(white, white) - dot(&followed, &followed)
     }
 
@@ -127,7 +127,7 @@ impl<'a> Side<'a> {
         let begun = alone.iter().copied().chain(std::iter::repeat(0.0));
         let both: Vec<f64> = begun.zip(there.columns()).map(|(a, c)| a + dot(c, then)).collect();
         let known = |gram: &[f64], side: &[f64]| {
-            let white = Spd::new(gram, side.len(), 0.0).whiten(side);
+            let white = Cholesky::new(gram, side.len(), 0.0).whiten(side);
             dot(&white, &white)
         };
         let before = dot(now, now) - known(&self.gram, &alone);
@@ -154,7 +154,7 @@ impl<'a> Side<'a> {
         let there = elsewhere(self.model, run);
         let (mut known, mut new) = (Vec::new(), Vec::new());
         for (term, factors) in there.terms.iter().zip(&self.factors) {
-            if !term.effect.is_of_each_run() {
+            if !term.effect.is_nuisance() {
                 known.extend(term.columns.iter().map(|c| noise.whiten(c, run)));
                 continue;
             }
@@ -183,7 +183,7 @@ impl There {
 }
 
 /// White columns of a model and its slopes in the shape parameters.
-fn tangent(model: &Terms, factors: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
+fn tangent(model: &LinearModel, factors: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
     let own = model.columns().into_iter().map(|c| noise.whiten(c, model.problem));
     let slopes = model.slopes(factors).into_iter().map(|(_, _, slope)| noise.whiten(&slope, model.problem));
     own.chain(slopes).collect()
@@ -194,18 +194,18 @@ fn gram<C: AsRef<[f64]>>(columns: &[C]) -> Vec<f64> {
 }
 
 /// The same terms at the points of another problem.
-fn elsewhere<'a>(model: &Terms<'a>, problem: &'a Problem) -> Terms<'a> {
-    let mut there = Terms::new(problem);
+fn elsewhere<'a>(model: &LinearModel<'a>, problem: &'a Problem) -> LinearModel<'a> {
+    let mut there = LinearModel::new(problem);
     there.terms = model.terms.iter().map(|t| Term::new(t.effect, t.form.clone(), t.shape.clone(), problem)).collect();
     there
 }
 
 /// What a model that was fitted elsewhere predicts, without what enters with a factor of one and what is another in each run.
-pub fn predict(model: &Terms, problem: &Problem) -> Vec<f64> {
+pub fn predict(model: &LinearModel, problem: &Problem) -> Vec<f64> {
     let there = elsewhere(model, problem);
     let mut sum = vec![0.0; problem.rows()];
     let terms = there.terms.iter().zip(model.linear().factors);
-    for (term, factors) in terms.filter(|(term, _)| !term.effect.is_of_each_run()) {
+    for (term, factors) in terms.filter(|(term, _)| !term.effect.is_nuisance()) {
         for (column, factor) in term.columns.iter().zip(factors) {
             sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
         }

@@ -4,7 +4,7 @@ use crate::experiment_design::separation::predict;
 use crate::experiment_design::{Choice, Stretch};
 use crate::preprocess::sweeps::brake_torque_of_current;
 use crate::preprocess::{Prepared, Problem, Reduce};
-use crate::regression::two_stage_model::Assembly;
+use crate::regression::two_stage_model::TwoStageModel;
 use crate::signal::{Signal, Signals};
 use crate::view::View;
 use jointbench_instrument::Kind;
@@ -33,7 +33,7 @@ struct Laid {
 /// Points are spaced as those of the run at hand, and so are the samples behind them: a periodic effect fades at speed as
 /// it would in the data. The joint is as warm as it was at the end of that run, or warmer by what the choice says; it
 /// starts where that one started. `gear`: turns of the motor for each of the link.
-pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly, gear: f64) -> Problem {
+pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear: f64) -> Problem {
     let laid = lay_out(choice, prepared);
     let samples = signals(&laid, &choice.stretches, prepared, gear);
     let mut points = Signals::new(laid.chunks.len());
@@ -53,9 +53,9 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &Assembly, gear: f64
         block: laid.block,
         fold: vec![0; rows],
         folds: 1,
-        twins: Vec::new(),
-        other_pasts: HashSet::new(),
-        other_angles: HashSet::new(),
+        replicate_pairs: Vec::new(),
+        different_history: HashSet::new(),
+        different_angle: HashSet::new(),
         unlike: None,
         segment: vec![0; rows],
         repeat: vec![0; rows],

@@ -1,12 +1,12 @@
 //! Effects that the run at hand could not have shown, and another run would.
 
-use crate::effect::{Search, Stage};
+use crate::effect::{Regime, ShapeSearch};
 use crate::experiment_design::separation::{Noise, Side};
 use crate::experiment_design::{Bid, Choice, SEPARATED_Z};
 use crate::linear::basis::dot;
 use crate::preprocess::Problem;
 use crate::regression::linear_model::columns;
-use crate::regression::two_stage_model::Assembly;
+use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::Experiment;
 use crate::thresholds::WORTH_SEEING;
 use crate::words::list;
@@ -16,7 +16,7 @@ use jointbench_instrument::Kind;
 const FOUND_Z: f64 = 2.8;
 
 /// The run that shows most effects that could not be seen so far, of those the shortest.
-pub fn unseen(model: &Assembly, noise: &Noise, imagined: &[(&Choice, Problem)]) -> Option<Experiment> {
+pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Problem)]) -> Option<Experiment> {
     let is_friction = model.spec.kind == Kind::Friction;
     let side = Side::new(&model.main, noise);
     let mut best: Option<(Bid, Vec<&str>)> = None;
@@ -25,14 +25,14 @@ pub fn unseen(model: &Assembly, noise: &Noise, imagined: &[(&Choice, Problem)]) 
         let own = side.at(run, noise);
         for effect in model.spec.known() {
             let id = effect.info().id;
-            let open = effect.stage() == Stage::Settled && !effect.is_given() && !model.main.contains(id);
+            let open = effect.regime() == Regime::SteadyState && !effect.is_offset() && !model.main.contains(id);
             if !open || effect.hidden(&run.view).is_some() {
                 continue;
             }
             let forms = effect.forms(&run.view);
             let Some(form) = forms.first() else { continue };
             // What happens at one moment is shown by the run in which it happens.
-            if form.shape.iter().any(|shape| shape.search == Search::Jump) {
+            if form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump) {
                 continue;
             }
             let shape = &form.grid[form.grid.len() / 2];

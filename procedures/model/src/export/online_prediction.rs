@@ -1,6 +1,6 @@
 //! A friction model beside a run that is on: what it says of each row as it comes.
 
-use crate::effect::Stage;
+use crate::effect::Regime;
 use crate::export::predict;
 use crate::report::fit::Fit;
 use crate::signal::Signal;
@@ -26,8 +26,8 @@ pub struct Alongside {
 impl Alongside {
     /// `None` for a model that needs more of the past than the row before.
     pub fn new(fit: Fit, torque_constant_nm_per_a: f64, gear_ratio: f64) -> Option<Self> {
-        let stage = |id: &String| find_with_own(fit.kind, &fit.own, id).map(|effect| effect.stage());
-        let knows = fit.effects.iter().all(|id| stage(id).is_ok_and(|stage| stage != Stage::Memory));
+        let stage = |id: &String| find_with_own(fit.kind, &fit.own, id).map(|effect| effect.regime());
+        let knows = fit.effects.iter().all(|id| stage(id).is_ok_and(|stage| stage != Regime::Hysteresis));
         let velocity = fit.scope.as_ref()?.signals.iter().find(|signal| signal.name == "velocity")?;
         let still_rad_s = STILL * velocity.min.abs().max(velocity.max.abs());
         (fit.kind == Kind::Friction && knows).then_some(Self {

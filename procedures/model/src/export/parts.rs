@@ -53,7 +53,7 @@ impl<'f> Parts<'f> {
         for id in &fit.effects {
             let effect = find_with_own(fit.kind, &fit.own, id)?;
             let title = effect.info().title;
-            if effect.is_given() {
+            if effect.is_offset() {
                 let columns = vec![PartColumn::Formula(formula(fit, "load", &[])?)];
                 parts.parts.push(Part { effect: id, title, columns, factors: Vec::new(), shape: Vec::new() });
                 continue;

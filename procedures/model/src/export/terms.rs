@@ -1,6 +1,6 @@
 //! Whether a term of a file is one that its effect can have.
 
-use crate::effect::{Effect, Form, Search};
+use crate::effect::{Effect, Form, ShapeSearch};
 use crate::report::fit::{Fit, ParameterState, Term};
 use crate::signal::{Signal, Signals};
 use crate::view::View;
@@ -15,9 +15,11 @@ pub fn check(fit: &Fit, effects: &[&dyn Effect]) -> Result<(), ModelError> {
         let fault = |what: String| Err(ModelError::BadFile(format!("{id} {what}")));
         let terms: Vec<&Term> = fit.terms.iter().filter(|t| t.effect == id).collect();
         match terms[..] {
-            [] if effect.is_given() || is_hidden(fit, id) => {}
+            [] if effect.is_offset() || is_hidden(fit, id) => {}
             [] => return fault("has no term, but the run that was fitted shows it: a term for it is expected".into()),
-            [_] if effect.is_given() => return fault("has a term, but it enters as it is: no term is expected".into()),
+            [_] if effect.is_offset() => {
+                return fault("has a term, but it enters as it is: no term is expected".into());
+            }
             [term] => {
                 if let Err(why) = check_term(term, *effect, fit.own.iter().find(|own| own.id() == id)) {
                     return fault(why);
@@ -69,7 +71,7 @@ fn check_term(term: &Term, effect: &dyn Effect, own: Option<&OwnEffect>) -> Resu
         // What is held at an end of its range is rounded there. A logarithm has no zero.
         let rounding = 1e-9 * value.abs();
         let is_within = value + rounding >= min && value - rounding <= max;
-        let is_possible = is_within && (own.is_some() || shape.search == Search::Signed || *value > 0.0);
+        let is_possible = is_within && (own.is_some() || shape.search == ShapeSearch::Signed || *value > 0.0);
         if !is_possible {
             return Err(format!("has {} = {value}: expected is {} to {max}", shape.name, min.max(0.0)));
         }
@@ -127,7 +129,7 @@ mod tests {
 
     #[test]
     fn every_effect_of_the_library_shows() {
-        for effect in Kind::ALL.into_iter().flat_map(effects).filter(|e| !e.is_given()) {
+        for effect in Kind::ALL.into_iter().flat_map(effects).filter(|e| !e.is_offset()) {
             let info = effect.info();
             let forms = forms(*effect, 3);
             assert!(!forms.is_empty(), "{}", info.id);

@@ -46,7 +46,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
     let mut ids: Vec<String> = Vec::new();
     for effect in user_effects::with_own(kind, &own) {
         let forms = effect.forms(&view);
-        if effect.is_given() {
+        if effect.is_offset() {
             ids.push(effect.info().id.into());
         } else if !forms.is_empty() {
             let form = &forms[n % forms.len()];

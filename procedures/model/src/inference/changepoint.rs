@@ -1,7 +1,7 @@
 //! The moment of a jump: nothing is linear in it, so its interval is the stretch of moments that fit nearly as well.
 
 use crate::linear::basis::dot;
-use crate::regression::linear_model::{Term, Terms};
+use crate::regression::linear_model::{LinearModel, Term};
 use crate::signal::Signal;
 
 /// 95 % point of the likelihood ratio of a change point (Hansen 2000, table 1).
@@ -11,7 +11,7 @@ const RATIO_95: f64 = 7.35;
 const FARTHEST: usize = 400;
 
 /// Moments whose squared error is not above the best by more than the noise allows. At least the rows beside the jump.
-pub fn interval(terms: &Terms, residual: &[f64], term: usize, shape: usize) -> [f64; 2] {
+pub fn interval(terms: &LinearModel, residual: &[f64], term: usize, shape: usize) -> [f64; 2] {
     let times = terms.problem.reduce.apply(terms.problem.view.get(Signal::Time).to_vec());
     let best = terms.terms[term].shape[shape];
     let sse = |moment: f64| {

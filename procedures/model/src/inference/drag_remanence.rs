@@ -1,6 +1,6 @@
 //! What a brake holds at rest after a fall of its current is drag and remanence together, and a model gives it to the drag.
 
-use crate::regression::linear_model::Terms;
+use crate::regression::linear_model::LinearModel;
 use crate::report::fit::Parameter;
 use crate::signal::{Signal, Signals};
 use crate::view::View;
@@ -11,7 +11,7 @@ const NONE: f64 = 0.02;
 
 /// Opens the drag beside a hysteresis down to what the brake holds while it remembers nothing: as it was measured before the
 /// first current, or as the hysteresis tells it.
-pub fn open(terms: &Terms, parameters: &mut [Parameter]) {
+pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
     let Some(hysteresis) = terms.terms.iter().position(|t| t.id() == "hysteresis") else { return };
     let Some(drag) = parameters.iter_mut().find(|p| p.effect == "drag") else { return };
     let fresh = fresh(terms);
@@ -39,7 +39,7 @@ pub fn open(terms: &Terms, parameters: &mut [Parameter]) {
 }
 
 /// Torque before the first current of a recording that begins without any memory.
-fn fresh(terms: &Terms) -> Option<f64> {
+fn fresh(terms: &LinearModel) -> Option<f64> {
     let view = &terms.problem.view;
     let current = view.get(Signal::Current);
     let none = NONE * view.peak(Signal::Current);

@@ -1,21 +1,21 @@
 //! The number of waves in a turn, where the run saw a part of a turn only: numbers beside the one that was found may explain
 //! it as well.
 
-use crate::effect::Search;
+use crate::effect::ShapeSearch;
 use crate::preprocess::independent_blocks::pieces;
-use crate::regression::linear_model::{Term, Terms};
+use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
 
 /// So many standard deviations of what they lose from piece to piece part two numbers.
 const APART: f64 = 2.0;
 
 /// Opens the numbers of waves that a run over a part of a turn does not decide, and with them the factors.
-pub fn open(terms: &Terms, residual: &[f64], parameters: &mut [Parameter]) {
+pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter]) {
     for (i, term) in terms.terms.iter().enumerate() {
         let Some(turns) = term.effect.wave().map(|angle| terms.problem.view.turns(angle)).filter(|t| *t < 1.0) else {
             continue;
         };
-        for k in (0..term.shape.len()).filter(|k| term.form.shape[*k].search == Search::Whole) {
+        for k in (0..term.shape.len()).filter(|k| term.form.shape[*k].search == ShapeSearch::Whole) {
             let alike = alike(terms, residual, i, k);
             let [Some((first, _)), Some((last, _))] = [alike.first(), alike.last()] else { continue };
             let own = |p: &&mut Parameter| p.effect == term.id();
@@ -39,7 +39,7 @@ pub fn open(terms: &Terms, residual: &[f64], parameters: &mut [Parameter]) {
 }
 
 /// Other numbers next to the one that was found with which the model is as good, in order, each with its factors.
-fn alike(terms: &Terms, residual: &[f64], term: usize, shape: usize) -> Vec<(f64, Vec<f64>)> {
+fn alike(terms: &LinearModel, residual: &[f64], term: usize, shape: usize) -> Vec<(f64, Vec<f64>)> {
     let Term { effect, form, shape: found, .. } = &terms.terms[term];
     let bounds = form.shape[shape];
     let (piece, count) = pieces(terms.problem, terms.columns().len());

@@ -4,11 +4,11 @@ use crate::inference::parameter_state::Slot;
 use crate::inference::{changepoint, drag_remanence, harmonic_order, parameter_state};
 use crate::thresholds::TRADE_OFF_CORRELATION;
 
-use crate::effect::Search;
-use crate::linear::cholesky::Spd;
+use crate::effect::ShapeSearch;
+use crate::linear::cholesky::Cholesky;
 use crate::linear::gram::BlockGrams;
 use crate::preprocess::independent_blocks::pieces;
-use crate::regression::linear_model::Terms;
+use crate::regression::linear_model::LinearModel;
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use jointbench_instrument::Motion;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -23,7 +23,7 @@ pub struct Intervals {
 /// Delete-one-piece jackknife of the linearised model about the full estimate (CV3 of MacKinnon, Nielsen, Webb 2023),
 /// with Student's t at the number of pieces that a parameter really rests on: a Stribeck speed is decided by the few
 /// slowest segments, however many fast ones there are (Carter, Schnepel, Steigerwald 2017).
-pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
+pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
     let linear = terms.linear();
     let slopes = terms.slopes(&linear.factors);
     let mut columns = terms.columns();
@@ -32,7 +32,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
     let p = columns.len();
     let (piece, count) = pieces(terms.problem, p);
     let grams = BlockGrams::new(&columns, &linear.residual, &piece, count);
-    let spd = Spd::new(&grams.total().0, p, 0.0);
+    let spd = Cholesky::new(&grams.total().0, p, 0.0);
     let replicates = grams.jackknife();
     let groups = replicates.len().max(2) as f64;
     // The replicates are steps from the full estimate, which the residual holds at zero.
@@ -43,7 +43,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
     for (k, slot) in slots.iter().enumerate() {
         let freedom = (resting_pieces(&grams, &active, &spd, k) - 1.0).max(1.0);
         let t = StudentsT::new(0.0, 1.0, freedom).map_or(2.0, |t| t.inverse_cdf(0.975));
-        let reach = if spd.is_dead(k) { f64::INFINITY } else { t * variance[k].sqrt() };
+        let reach = if spd.is_dependent(k) { f64::INFINITY } else { t * variance[k].sqrt() };
         let ci95 = match slot.shape {
             Some(shape) => [
                 shape.moved(slot.value, (-reach).max(-50.0)).max(shape.min.min(slot.value)),
@@ -51,7 +51,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
             ],
             None => [slot.value - reach, slot.value + reach],
         };
-        let (state, note) = parameter_state::judge(slot, ci95, spd.is_dead(k));
+        let (state, note) = parameter_state::judge(slot, ci95, spd.is_dependent(k));
         parameters.push(Parameter {
             effect: slot.effect.into(),
             name: slot.name.into(),
@@ -81,7 +81,7 @@ pub fn intervals(terms: &Terms, motion: Motion) -> Intervals {
 }
 
 fn slots<'a>(
-    terms: &'a Terms,
+    terms: &'a LinearModel,
     factors: &[Vec<f64>],
     slopes: &[(usize, usize, Vec<f64>)],
     motion: Motion,
@@ -112,7 +112,7 @@ fn active(grams: &BlockGrams) -> Vec<Vec<usize>> {
 
 /// How many equal pieces would decide a parameter as well as these unequal ones: (Σ w)²/Σ w² with the share w of each
 /// piece in the parameter's variance.
-fn resting_pieces(grams: &BlockGrams, active: &[Vec<usize>], spd: &Spd, k: usize) -> f64 {
+fn resting_pieces(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: usize) -> f64 {
     let p = grams.columns;
     let mut unit = vec![0.0; p];
     unit[k] = 1.0;
@@ -128,12 +128,12 @@ fn resting_pieces(grams: &BlockGrams, active: &[Vec<usize>], spd: &Spd, k: usize
 }
 
 /// Whole numbers as they were found, and moments of jumps with their intervals.
-fn found(terms: &Terms, residual: &[f64], motion: Motion) -> Vec<Parameter> {
+fn found(terms: &LinearModel, residual: &[f64], motion: Motion) -> Vec<Parameter> {
     let mut out = Vec::new();
     for (i, term) in terms.terms.iter().enumerate() {
         for (k, shape) in term.form.shape.iter().enumerate().filter(|(_, s)| !s.is_smooth()) {
             let value = term.shape[k];
-            let jump = shape.search == Search::Jump;
+            let jump = shape.search == ShapeSearch::Jump;
             out.push(Parameter {
                 effect: term.id().into(),
                 name: shape.name.into(),

@@ -1,6 +1,6 @@
 //! What an interval means, said plainly.
 
-use crate::effect::{Search, Shape};
+use crate::effect::{Shape, ShapeSearch};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::thresholds::WIDE_INTERVAL;
 use crate::words::figure;
@@ -70,7 +70,7 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
     if dead {
         return nothing();
     }
-    let wide = shape.search == Search::Smooth && ci95[1] > WIDE_INTERVAL * ci95[0].abs();
+    let wide = shape.search == ShapeSearch::Smooth && ci95[1] > WIDE_INTERVAL * ci95[0].abs();
     if wide || (shape.is_at(ci95[0], min) && shape.is_at(ci95[1], max)) {
         let words = format!("not identified by this run: anything from {} to {} fits", say(ci95[0]), say(ci95[1]));
         return (ParameterState::Unidentified, Some(words));

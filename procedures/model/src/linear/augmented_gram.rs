@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Sums of products over each group of rows. Those of the others among each other nobody asks for: they are not there.
-pub struct Beside {
+pub struct AugmentedGrams {
     /// For each group the lower triangle of Σ xxᵀ, row-major, of all columns and the response.
     sums: Vec<Vec<f64>>,
     /// Columns of the model, after which the response comes.
@@ -17,7 +17,7 @@ pub struct Beside {
     rows: Vec<usize>,
 }
 
-impl Beside {
+impl AugmentedGrams {
     /// One pass over the rows.
     pub fn new<'c>(
         model: &[&'c [f64]],
@@ -78,7 +78,7 @@ impl Beside {
 impl BlockGrams {
     /// One pass over the rows.
     pub fn new(columns: &[&[f64]], y: &[f64], group: &[usize], groups: usize) -> Self {
-        Beside::new(columns, [[].as_slice()], y, group, groups).grams(0)
+        AugmentedGrams::new(columns, [[].as_slice()], y, group, groups).grams(0)
     }
 }
 
@@ -108,7 +108,7 @@ mod tests {
         let group: Vec<usize> = (0..700).map(|i| [0, 2, 1, 0][i / 175]).collect();
         let (model, y) = ([all[0].as_slice(), &all[1]], all[5].as_slice());
         let sets: [&[Vec<f64>]; 3] = [&[], &all[2..4], &all[4..5]];
-        let found = Beside::new(&model, sets, y, &group, 3);
+        let found = AugmentedGrams::new(&model, sets, y, &group, 3);
         for (k, set) in sets.into_iter().enumerate() {
             let grams = found.grams(k);
             let columns: Vec<&[f64]> = model.into_iter().chain(set.iter().map(Vec::as_slice)).collect();

@@ -2,7 +2,7 @@
 
 /// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
 #[derive(Debug, Clone)]
-pub struct Spd {
+pub struct Cholesky {
     n: usize,
     /// Lower triangle, row by row.
     l: Vec<f64>,
@@ -10,7 +10,7 @@ pub struct Spd {
     dead: Vec<bool>,
 }
 
-impl Spd {
+impl Cholesky {
     /// Cholesky of a row-major matrix after scaling its diagonal to one. `ridge` is added to the scaled diagonal.
     pub fn new(matrix: &[f64], n: usize, ridge: f64) -> Self {
         Self::shown(matrix, n, ridge, &vec![0.0; n])
@@ -48,7 +48,7 @@ impl Spd {
         Self { n, l, scale, dead }
     }
 
-    pub fn is_dead(&self, i: usize) -> bool {
+    pub fn is_dependent(&self, i: usize) -> bool {
         self.dead[i]
     }
 

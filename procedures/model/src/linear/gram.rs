@@ -1,6 +1,6 @@
 //! Gram matrices of blocks: cross-validation, jackknife and sign flips are functions of these alone.
 
-use crate::linear::cholesky::Spd;
+use crate::linear::cholesky::Cholesky;
 use crate::thresholds::FOLD_COVERAGE;
 
 /// Σ xxᵀ and Σ xy of each group of rows, and Σ yy.
@@ -48,12 +48,12 @@ impl BlockGrams {
     pub fn held_out(&self) -> Vec<f64> {
         let p = self.columns;
         let (xx, xy) = self.total();
-        let least: Vec<f64> = Spd::new(&xx, p, 1e-12).own().map(|own| FOLD_COVERAGE * own).collect();
+        let least: Vec<f64> = Cholesky::new(&xx, p, 1e-12).own().map(|own| FOLD_COVERAGE * own).collect();
         (0..self.groups)
             .map(|g| {
                 let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();
                 let side: Vec<f64> = xy.iter().zip(self.xy(g)).map(|(a, b)| a - b).collect();
-                let factors = Spd::shown(&rest, p, 1e-12, &least).solve(&side);
+                let factors = Cholesky::shown(&rest, p, 1e-12, &least).solve(&side);
                 let mut loss = self.yy[g];
                 for a in 0..p {
                     let inner: f64 = (0..p).map(|b| self.xx(g)[a * p + b] * factors[b]).sum();
@@ -72,7 +72,7 @@ impl BlockGrams {
             .map(|g| {
                 let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();
                 let side: Vec<f64> = xy.iter().zip(self.xy(g)).map(|(a, b)| a - b).collect();
-                Spd::new(&rest, self.columns, 0.0).solve(&side)
+                Cholesky::new(&rest, self.columns, 0.0).solve(&side)
             })
             .collect()
     }
@@ -85,8 +85,8 @@ mod tests {
     #[test]
     fn a_dependent_column_is_left_at_zero() {
         let a = [4.0, 2.0, 4.0, 2.0, 3.0, 2.0, 4.0, 2.0, 4.0];
-        let spd = Spd::new(&a, 3, 0.0);
-        assert!(spd.is_dead(2) && !spd.is_dead(1));
+        let spd = Cholesky::new(&a, 3, 0.0);
+        assert!(spd.is_dependent(2) && !spd.is_dependent(1));
         let x = spd.solve(&[8.0, 5.0, 8.0]);
         assert!((4.0 * x[0] + 2.0 * x[1] - 8.0).abs() < 1e-9 && x[2] == 0.0, "{x:?}");
     }

@@ -7,8 +7,8 @@ pub(crate) mod cholesky;
 pub(crate) mod condition;
 pub(crate) mod gram;
 
-pub use crate::linear::augmented_gram::Beside;
+pub use crate::linear::augmented_gram::AugmentedGrams;
 pub use crate::linear::basis::{Basis, dot};
-pub use crate::linear::cholesky::Spd;
+pub use crate::linear::cholesky::Cholesky;
 pub use crate::linear::condition::condition;
 pub use crate::linear::gram::BlockGrams;

@@ -168,11 +168,11 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         true => repeat.clone(),
         false => group.iter().map(|g| *g as i64).collect(),
     };
-    let twins = phase.map_or_else(Vec::new, |phase| blocks::twins(&condition, &phase, &of, 1));
+    let replicate_pairs = phase.map_or_else(Vec::new, |phase| blocks::replicate_pairs(&condition, &phase, &of, 1));
     let link = points.find(Signal::Link).filter(|_| settled && !samples.constants.slides);
-    let (twins, other_angles) = match link.filter(|link| replicates::are_apart(&twins, link)) {
-        Some(link) => replicates::by_angle(twins, &condition, &of, link),
-        None => (twins, HashSet::new()),
+    let (replicate_pairs, different_angle) = match link.filter(|link| replicates::are_apart(&replicate_pairs, link)) {
+        Some(link) => replicates::by_angle(replicate_pairs, &condition, &of, link),
+        None => (replicate_pairs, HashSet::new()),
     };
     let mut view = View::new(points, samples.signals.clone(), chunks, samples.starts.clone(), samples.step_s);
     view.constants = samples.constants;
@@ -185,9 +185,9 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         blocks,
         fold,
         folds,
-        twins,
-        other_pasts: HashSet::new(),
-        other_angles,
+        replicate_pairs,
+        different_history: HashSet::new(),
+        different_angle,
         unlike: None,
         segment,
         repeat,

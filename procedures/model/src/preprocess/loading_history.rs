@@ -9,7 +9,7 @@ const CONTACTS: usize = 8;
 /// Share of the largest current by which what they remember may differ.
 const SAME: f64 = 0.03;
 
-/// Parts the twins that do not remember the same: a current in loops of different size has torques of its own in each.
+/// Parts the replicate pairs that do not remember the same: a current in loops of different size has torques of its own in each.
 pub fn part(problem: &mut Problem) {
     let view = &problem.view;
     let current = view.get(Signal::Current);
@@ -22,6 +22,6 @@ pub fn part(problem: &mut Problem) {
         // Its other end follows the current and never goes farther than that.
         let end: Vec<f64> = current.iter().zip(&bent).map(|(current, bent)| current - reach * bent).collect();
         let differ = |a: usize, b: usize| (end[a] - end[b]).abs() > allowed + (current[a] - current[b]).abs();
-        problem.other_pasts.extend(problem.twins.iter().filter(|(a, b)| differ(*a, *b)));
+        problem.different_history.extend(problem.replicate_pairs.iter().filter(|(a, b)| differ(*a, *b)));
     }
 }

@@ -16,8 +16,8 @@ pub(crate) mod stiffness;
 pub(crate) mod sweeps;
 pub(crate) mod unknown_columns;
 
-use crate::effect::Stage;
-use crate::preprocess::checks::unit_mismatch::Clashes;
+use crate::effect::Regime;
+use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::checks::{metadata, unit_mismatch};
 pub use crate::preprocess::design::replicates::Unlike;
 pub use crate::preprocess::design::segments::stretches;
@@ -48,11 +48,11 @@ pub struct Problem {
     pub fold: Vec<usize>,
     pub folds: usize,
     /// Rows that should be equal but for noise: the same condition and phase in another repeat.
-    pub twins: Vec<(usize, usize)>,
+    pub replicate_pairs: Vec<(usize, usize)>,
     /// Those of them that came there on different ways: equal only where a model knows the ways.
-    pub other_pasts: HashSet<(usize, usize)>,
+    pub different_history: HashSet<(usize, usize)>,
     /// Those that pass other angles of the link, where repeats begin at others: what depends on the angle is not equal in them.
-    pub other_angles: HashSet<(usize, usize)>,
+    pub different_angle: HashSet<(usize, usize)>,
     /// Why there are none, where repeats are different motions.
     pub unlike: Option<Unlike>,
     pub segment: Vec<i64>,
@@ -127,7 +127,7 @@ pub struct Prepared {
     /// Facts of the set-up that made signals or the response of the columns.
     pub constants: Vec<GivenConstant>,
     /// Columns that contradict each other, in sentences.
-    pub clashes: Clashes,
+    pub clashes: DataErrors,
     /// What the facts lack or have wrong, in sentences.
     pub doubts: Vec<String>,
     pub about: Preparation,
@@ -135,10 +135,10 @@ pub struct Prepared {
 
 impl Prepared {
     /// Effects that the main problem can judge: of settled motion those alone that show there.
-    pub fn stages(&self) -> &'static [Stage] {
+    pub fn regimes(&self) -> &'static [Regime] {
         match self.about.residual {
-            ResidualKind::PlateauMean => &[Stage::Settled],
-            ResidualKind::Raw => &[Stage::Settled, Stage::Ramp, Stage::Memory],
+            ResidualKind::PlateauMean => &[Regime::SteadyState],
+            ResidualKind::Raw => &[Regime::SteadyState, Regime::Transient, Regime::Hysteresis],
         }
     }
 

@@ -1,6 +1,6 @@
 //! Stiffness runs: torsion between motor and link over the link torque.
 
-use crate::linear::cholesky::Spd;
+use crate::linear::cholesky::Cholesky;
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::segments;
@@ -132,7 +132,7 @@ fn smooth_leg(values: &[f64]) -> Vec<f64> {
                 (0..p).for_each(|b| gram[a * p + b] += t[a] * t[b]);
             }
         }
-        let factors = Spd::new(&gram, p, 0.0).solve(&side);
+        let factors = Cholesky::new(&gram, p, 0.0).solve(&side);
         let fit: Vec<f64> = all.iter().map(|t| t.iter().zip(&factors).map(|(t, f)| t * f).sum()).collect();
         let sse: f64 = fit.iter().zip(values).map(|(f, v)| (f - v).powi(2)).sum();
         (n as f64 * sse.max(1e-300).ln() + p as f64 * (n as f64).ln(), fit)

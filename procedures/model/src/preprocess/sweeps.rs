@@ -62,7 +62,7 @@ pub fn prepare(
     }
     let repeats_from = match main.repeat.iter().any(|r| *r != main.repeat[0]) {
         true => "column",
-        false if main.twins.is_empty() => "none",
+        false if main.replicate_pairs.is_empty() => "none",
         false => "found",
     };
     let about = Preparation {

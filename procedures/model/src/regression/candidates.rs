@@ -1,7 +1,7 @@
 //! Every effect that the model does not have, in every form, at every starting point of its shape.
 
 use crate::ModelSpec;
-use crate::effect::{Columns, Effect, Form, Stage};
+use crate::effect::{Columns, Effect, Form, Regime};
 use crate::preprocess::Problem;
 use crate::preprocess::filter::ABREAST;
 use crate::regression::linear_model::Term;
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// An effect in one form at one shape.
-pub struct Candidate<'e> {
+pub struct Regressor<'e> {
     pub effect: &'e dyn Effect,
     pub form: Arc<Form<'e>>,
     pub shape: Vec<f64>,
@@ -19,7 +19,7 @@ pub struct Candidate<'e> {
     pub columns: Vec<Vec<f32>>,
 }
 
-impl<'e> Candidate<'e> {
+impl<'e> Regressor<'e> {
     pub fn id(&self) -> &'e str {
         self.effect.info().id
     }
@@ -29,34 +29,34 @@ impl<'e> Candidate<'e> {
     }
 }
 
-pub struct Library<'e> {
+pub struct CandidateSet<'e> {
     pub kind: Kind,
     /// Every effect of the kind, in the order of the contract.
     pub effects: Vec<&'e dyn Effect>,
-    pub candidates: Vec<Candidate<'e>>,
+    pub candidates: Vec<Regressor<'e>>,
     pub invisible: Vec<Invisible>,
 }
 
-impl<'e> Library<'e> {
+impl<'e> CandidateSet<'e> {
     /// All candidates of the stages that this problem can judge.
-    pub fn new(spec: &'e ModelSpec, problem: &Problem, stages: &[Stage]) -> Self {
-        Self::of(spec, problem, stages, |_| true)
+    pub fn new(spec: &'e ModelSpec, problem: &Problem, regimes: &[Regime]) -> Self {
+        Self::of(spec, problem, regimes, |_| true)
     }
 
     /// Only what it takes to lay these effects out: their own forms, and those of all where one of these may get another
     /// part, which is held against all.
-    pub fn for_layout(spec: &'e ModelSpec, problem: &Problem, stages: &[Stage], effects: &[&str]) -> Self {
+    pub fn for_layout(spec: &'e ModelSpec, problem: &Problem, regimes: &[Regime], effects: &[&str]) -> Self {
         let is_in = |effect: &dyn Effect| effects.contains(&effect.info().id);
         let grows = |effect: &dyn Effect| effect.forms(&problem.view).iter().any(|f| effect.extended(f).is_some());
         let one_grows = spec.known().any(|effect| is_in(effect) && grows(effect));
-        Self::of(spec, problem, stages, |effect| one_grows || is_in(effect))
+        Self::of(spec, problem, regimes, |effect| one_grows || is_in(effect))
     }
 
-    fn of(spec: &'e ModelSpec, problem: &Problem, stages: &[Stage], wanted: impl Fn(&dyn Effect) -> bool) -> Self {
+    fn of(spec: &'e ModelSpec, problem: &Problem, regimes: &[Regime], wanted: impl Fn(&dyn Effect) -> bool) -> Self {
         let mut library =
             Self { kind: spec.kind, effects: spec.known().collect(), candidates: Vec::new(), invisible: Vec::new() };
         for effect in spec.known() {
-            if effect.is_given() || !stages.contains(&effect.stage()) || !wanted(effect) {
+            if effect.is_offset() || !regimes.contains(&effect.regime()) || !wanted(effect) {
                 continue;
             }
             if let Some(why) = effect.hidden(&problem.view) {
@@ -69,7 +69,7 @@ impl<'e> Library<'e> {
                     let at_points: Vec<Columns> = at_points.collect();
                     let each = at_points.first().map_or(1, Vec::len).max(1);
                     let rows = problem.reduce.apply_all(at_points.into_iter().flatten().collect());
-                    let candidate = |(shape, columns): (&Vec<f64>, &[Vec<f64>])| Candidate {
+                    let candidate = |(shape, columns): (&Vec<f64>, &[Vec<f64>])| Regressor {
                         effect,
                         form: form.clone(),
                         shape: shape.clone(),

@@ -3,10 +3,10 @@
 use crate::Options;
 use crate::effect::Effect;
 use crate::preprocess::Problem;
-use crate::regression::candidates::{Candidate, Library};
-use crate::regression::form_selection::{extend, reform};
-use crate::regression::linear_model::{Term, Terms, polish};
-use crate::regression::partial_regression::Ground;
+use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::form_selection::{extend, reselect_forms};
+use crate::regression::linear_model::{LinearModel, Term, varpro};
+use crate::regression::partial_regression::PartialRegression;
 use crate::thresholds::BETTER_FORM;
 use rayon::prelude::*;
 
@@ -14,15 +14,20 @@ use rayon::prelude::*;
 const PASSES: usize = 3;
 
 /// Lays effects out on the problem of `bare`: those of one form first, then always the one that explains most.
-pub fn lay<'p>(bare: &Terms<'p>, effects: &[&str], library: &Library<'p>, options: &Options) -> Terms<'p> {
-    let mut laid = Terms { terms: Vec::new(), ..bare.clone() };
+pub fn lay<'p>(
+    bare: &LinearModel<'p>,
+    effects: &[&str],
+    library: &CandidateSet<'p>,
+    options: &Options,
+) -> LinearModel<'p> {
+    let mut laid = LinearModel { terms: Vec::new(), ..bare.clone() };
     let wanted = library.effects.iter().copied().filter(|e| effects.contains(&e.info().id));
     let (fixed, mut open): (Vec<_>, Vec<_>) = wanted.partition(|e| is_fixed(*e, laid.problem));
     fixed.into_iter().for_each(|effect| enter(&mut laid, effect));
     while !open.is_empty() {
-        let ground = Ground::of(&laid);
-        let best: Vec<Vec<(f64, &Candidate)>> = open.iter().map(|e| best_of_forms(*e, library, &ground)).collect();
-        let share = |forms: &Vec<(f64, &Candidate)>| forms.iter().map(|f| f.0).fold(0.0, f64::max);
+        let ground = PartialRegression::of(&laid);
+        let best: Vec<Vec<(f64, &Regressor)>> = open.iter().map(|e| best_of_forms(*e, library, &ground)).collect();
+        let share = |forms: &Vec<(f64, &Regressor)>| forms.iter().map(|f| f.0).fold(0.0, f64::max);
         let most = best.iter().map(share).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |most| most.0);
         open.remove(most);
         let terms = best[most].iter().map(|(_, candidate)| candidate.term(laid.problem)).collect();
@@ -30,7 +35,7 @@ pub fn lay<'p>(bare: &Terms<'p>, effects: &[&str], library: &Library<'p>, option
         laid.refine();
     }
     for _ in 0..PASSES {
-        if !reform(&mut laid, library) {
+        if !reselect_forms(&mut laid, library) {
             break;
         }
     }
@@ -46,10 +51,10 @@ fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
 /// The shape of each form of an effect that explains most of what is left, with its share.
 fn best_of_forms<'l, 'p>(
     effect: &dyn Effect,
-    library: &'l Library<'p>,
-    ground: &Ground,
-) -> Vec<(f64, &'l Candidate<'p>)> {
-    let mut best: Vec<(f64, &Candidate)> = Vec::new();
+    library: &'l CandidateSet<'p>,
+    ground: &PartialRegression,
+) -> Vec<(f64, &'l Regressor<'p>)> {
+    let mut best: Vec<(f64, &Regressor)> = Vec::new();
     for candidate in library.candidates.iter().filter(|c| c.id() == effect.info().id) {
         let share = ground.own(&candidate.columns).share;
         match best.iter_mut().find(|b| b.1.form.name == candidate.form.name) {
@@ -62,7 +67,7 @@ fn best_of_forms<'l, 'p>(
 }
 
 /// Enters an effect in the form that explains most of what is left, each form at its own best shape.
-pub fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
+pub fn enter<'p>(terms: &mut LinearModel<'p>, effect: &'p dyn Effect) {
     let problem: &Problem = terms.problem;
     let forms = effect.forms(&problem.view);
     if let [form] = &forms[..]
@@ -71,7 +76,7 @@ pub fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
         terms.terms.push(Term::new(effect, form.clone(), form.grid[0].clone(), problem));
         return;
     }
-    let ground = Ground::of(terms);
+    let ground = PartialRegression::of(terms);
     let mut best: Vec<Term<'p>> = Vec::new();
     for form in forms {
         let shapes = form.grid.iter().map(|shape| Term::new(effect, form.clone(), shape.clone(), problem));
@@ -83,11 +88,11 @@ pub fn enter<'p>(terms: &mut Terms<'p>, effect: &'p dyn Effect) {
 
 /// The form that explains most, a longer one only where it is worth it. What is physically impossible is chosen only where
 /// nothing else is possible.
-fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &Ground, problem: &Problem) -> Option<Term<'p>> {
+fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
     forms.sort_by_key(Term::size);
     let polished = |term: Term<'p>| {
         let mut term = [term];
-        let sse = polish(&mut term, &ground.basis, &ground.residual, problem);
+        let sse = varpro(&mut term, &ground.basis, &ground.residual, problem);
         let [term] = term;
         (term.allows(&ground.own(&term.columns).factors()), sse, term)
     };

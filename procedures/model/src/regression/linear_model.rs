@@ -1,8 +1,8 @@
 //! A model at work: effects with their forms, shapes and columns at the rows of a problem.
 
-use crate::effect::{Columns, Effect, Form, Search};
+use crate::effect::{Columns, Effect, Form, ShapeSearch};
 use crate::linear::basis::{Basis, dot};
-use crate::linear::cholesky::Spd;
+use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -35,7 +35,7 @@ impl<'e> Term<'e> {
 
     /// A shape parameter that is refined, but for an exponent, lies at the edge of what the data can speak about.
     pub fn is_at_edge(&self) -> bool {
-        let sudden = self.effect.suddenness();
+        let sudden = self.effect.exponent_parameter();
         let mut slots = self.form.shape.iter().zip(&self.shape);
         slots.any(|(shape, value)| shape.is_smooth() && sudden != Some(shape.name) && shape.is_edge(*value))
     }
@@ -66,7 +66,7 @@ pub fn columns(effect: &dyn Effect, form: &str, shape: &[f64], problem: &Problem
 
 /// A model on one problem.
 #[derive(Clone)]
-pub struct Terms<'p> {
+pub struct LinearModel<'p> {
     pub problem: &'p Problem,
     /// Sum of what enters with a factor of one.
     pub given: Vec<f64>,
@@ -80,7 +80,7 @@ pub struct Linear {
     pub sse: f64,
 }
 
-impl<'p> Terms<'p> {
+impl<'p> LinearModel<'p> {
     pub fn new(problem: &'p Problem) -> Self {
         Self { problem, given: vec![0.0; problem.rows()], terms: Vec::new() }
     }
@@ -142,7 +142,7 @@ impl<'p> Terms<'p> {
         }
         let explained: Vec<f64> = response.iter().zip(&residual).map(|(y, e)| y - e).collect();
         let side: Vec<f64> = columns.iter().map(|c| dot(c, &explained)).collect();
-        let flat = Spd::new(&gram, p, 0.0).solve(&side);
+        let flat = Cholesky::new(&gram, p, 0.0).solve(&side);
         let mut next = flat.into_iter();
         let factors = self.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
         let sse = dot(&residual, &residual);
@@ -176,7 +176,7 @@ impl<'p> Terms<'p> {
 
     /// Refines all shape parameters together. A coarse grid leaves a remainder that a second, false effect explains.
     pub fn refine(&mut self) {
-        let moves = |t: &Term| t.form.shape.iter().any(|s| s.search != Search::Whole);
+        let moves = |t: &Term| t.form.shape.iter().any(|s| s.search != ShapeSearch::Whole);
         let free: Vec<usize> = (0..self.terms.len()).filter(|i| moves(&self.terms[*i])).collect();
         if free.is_empty() {
             return;
@@ -185,7 +185,7 @@ impl<'p> Terms<'p> {
         let basis = Basis::of(fixed);
         let rest = basis.rest(&self.response());
         let mut moving: Vec<Term<'p>> = free.iter().map(|i| self.terms[*i].clone()).collect();
-        polish(&mut moving, &basis, &rest, self.problem);
+        varpro(&mut moving, &basis, &rest, self.problem);
         for (i, term) in free.into_iter().zip(moving) {
             self.terms[i] = term;
         }
@@ -221,7 +221,7 @@ struct Reduced {
     factors: Vec<f64>,
     residual: Vec<f64>,
     sse: f64,
-    spd: Spd,
+    spd: Cholesky,
 }
 
 fn reduce(terms: &[Term], basis: &Basis, rest: &[f64]) -> Reduced {
@@ -234,7 +234,7 @@ fn reduce(terms: &[Term], basis: &Basis, rest: &[f64]) -> Reduced {
             gram[b * p + a] = gram[a * p + b];
         }
     }
-    let spd = Spd::new(&gram, p, 1e-12);
+    let spd = Cholesky::new(&gram, p, 1e-12);
     let side: Vec<f64> = columns.iter().map(|c| dot(c, rest)).collect();
     let factors = spd.solve(&side);
     let mut residual = rest.to_vec();
@@ -251,7 +251,7 @@ fn narrow(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) ->
     for i in 0..terms.len() {
         for k in 0..terms[i].shape.len() {
             let bounds = terms[i].form.shape[k];
-            if bounds.search != Search::Jump {
+            if bounds.search != ShapeSearch::Jump {
                 continue;
             }
             let mut reach = (bounds.max - bounds.min) / terms[i].form.grid.len().max(2) as f64;
@@ -276,7 +276,7 @@ fn narrow(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) ->
 
 /// Variable projection with Kaufman's Jacobian (Golub, Pereyra 2003; Kaufman 1975) in a Levenberg–Marquardt loop over
 /// the steps of the shape parameters (in their logarithms, where they cannot be negative), held within their bounds.
-pub fn polish(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> f64 {
+pub fn varpro(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> f64 {
     let mut best = narrow(terms, basis, rest, problem);
     let index: Vec<(usize, usize)> =
         terms.iter().enumerate().flat_map(|(i, t)| t.free().map(move |k| (i, k))).collect();
@@ -308,7 +308,7 @@ pub fn polish(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem
         let side: Vec<f64> = jacobian.iter().map(|j| dot(j, &best.residual)).collect();
         let mut improved = false;
         for _ in 0..6 {
-            let step = Spd::new(&normal, m, damping).solve(&side);
+            let step = Cholesky::new(&normal, m, damping).solve(&side);
             let mut trial = terms.to_vec();
             for ((i, k), s) in index.iter().zip(&step) {
                 let bounds = trial[*i].form.shape[*k];

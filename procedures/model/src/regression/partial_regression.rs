@@ -2,9 +2,9 @@
 //! Nothing else is asked of a candidate's columns, so they are read and never copied.
 
 use crate::linear::basis::{Basis, dot};
-use crate::linear::cholesky::Spd;
+use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
-use crate::regression::linear_model::Terms;
+use crate::regression::linear_model::LinearModel;
 use crate::stats::permutation_test::Score;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::ops::Range;
@@ -13,10 +13,10 @@ use std::ops::Range;
 const MOST_GROUPS: usize = 400;
 
 /// Where less than this share of a column is its own, the data cannot tell it from the model.
-const OWN_SHARE: f64 = 1e-5;
+const LEAST_TOLERANCE: f64 = 1e-5;
 
 /// A residual beside the basis that left it.
-pub struct Ground {
+pub struct PartialRegression {
     pub basis: Basis,
     pub residual: Vec<f64>,
     /// Squared residual.
@@ -28,7 +28,7 @@ pub struct Ground {
 }
 
 /// What the columns of a candidate are beside a basis (the added-variable step).
-pub struct Own {
+pub struct Orthogonalized {
     /// Share of the squared residual that they explain.
     pub share: f64,
     /// Share of the squared columns that is their own: the rest looks like the model.
@@ -41,8 +41,8 @@ pub struct Own {
     side: Vec<f64>,
 }
 
-impl Ground {
-    pub fn of(terms: &Terms) -> Self {
+impl PartialRegression {
+    pub fn of(terms: &LinearModel) -> Self {
         let basis = terms.tangent();
         let residual = basis.rest(&terms.response());
         Self::new(basis, residual, terms.problem)
@@ -64,7 +64,7 @@ impl Ground {
         Self { energy: dot(&residual, &residual), basis, residual, groups, shared }
     }
 
-    pub fn own<C: Into<f64> + Copy>(&self, columns: &[Vec<C>]) -> Own {
+    pub fn own<C: Into<f64> + Copy>(&self, columns: &[Vec<C>]) -> Orthogonalized {
         let p = columns.len();
         let along: Vec<Vec<f64>> =
             columns.iter().map(|c| self.basis.vectors().iter().map(|q| dot(q, c)).collect()).collect();
@@ -82,18 +82,18 @@ impl Ground {
             }
         }
         let side: Vec<f64> = columns.iter().map(|c| dot(c, &self.residual)).collect();
-        let kept: Vec<usize> = (0..p).filter(|a| gram[a * p + a] > OWN_SHARE * largest).collect();
+        let kept: Vec<usize> = (0..p).filter(|a| gram[a * p + a] > LEAST_TOLERANCE * largest).collect();
         let entry = |at: usize| gram[kept[at / kept.len()] * p + kept[at % kept.len()]];
         let of_kept: Vec<f64> = (0..kept.len().pow(2)).map(entry).collect();
         let side_of_kept: Vec<f64> = kept.iter().map(|a| side[*a]).collect();
-        let explained: f64 = Spd::new(&of_kept, kept.len(), 0.0).whiten(&side_of_kept).iter().map(|v| v * v).sum();
+        let explained: f64 = Cholesky::new(&of_kept, kept.len(), 0.0).whiten(&side_of_kept).iter().map(|v| v * v).sum();
         let share = if self.energy > 0.0 { explained / self.energy } else { 0.0 };
         let visible = (0..p).map(|a| gram[a * p + a]).sum::<f64>() / sum;
-        Own { share, visible, kept, along, gram, side }
+        Orthogonalized { share, visible, kept, along, gram, side }
     }
 
     /// Products of what each kept column has of its own with the residual, group by group.
-    pub fn sums<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Own) -> Vec<Vec<f64>> {
+    pub fn sums<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Orthogonalized) -> Vec<Vec<f64>> {
         let of = |a: &usize| {
             let mut sums = products(&columns[*a], &self.residual, &self.groups);
             for (shared, along) in self.shared.iter().zip(&own.along[*a]) {
@@ -128,15 +128,15 @@ impl Ground {
         columns.iter().map(squares).map(of).reduce(f64::min).filter(|groups| *groups > 1.0)
     }
 
-    pub fn score<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Own) -> Score {
+    pub fn score<C: Into<f64> + Copy>(&self, columns: &[Vec<C>], own: &Orthogonalized) -> Score {
         Score::new(&self.sums(columns, own))
     }
 }
 
-impl Own {
+impl Orthogonalized {
     /// Factors of the columns beside the basis.
     pub fn factors(&self) -> Vec<f64> {
-        Spd::new(&self.gram, self.side.len(), 0.0).solve(&self.side)
+        Cholesky::new(&self.gram, self.side.len(), 0.0).solve(&self.side)
     }
 
     /// Squares of what each kept column has of its own.

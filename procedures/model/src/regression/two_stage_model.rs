@@ -1,30 +1,30 @@
 //! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
 
-use crate::effect::Stage;
+use crate::effect::Regime;
 use crate::preprocess::{Prepared, Problem};
-use crate::regression::candidates::Library;
+use crate::regression::candidates::CandidateSet;
 use crate::regression::canonical_fit::{enter, lay};
 use crate::regression::hysteresis_form::form_of;
-use crate::regression::linear_model::{Term, Terms, columns};
+use crate::regression::linear_model::{LinearModel, Term, columns};
 use crate::report::diagnosis::Invisible;
 use crate::{Effect, ModelError, ModelSpec, Options};
 
 #[derive(Clone)]
-pub struct Assembly<'p> {
+pub struct TwoStageModel<'p> {
     pub prepared: &'p Prepared,
     /// What the model was at first, and the effects that it may hold.
     pub spec: &'p ModelSpec,
     /// Ids in the order of the model.
     pub effects: Vec<String>,
-    pub main: Terms<'p>,
-    pub moving: Option<Terms<'p>>,
+    pub main: LinearModel<'p>,
+    pub moving: Option<LinearModel<'p>>,
     /// What the main part takes as given of effects that ramps have decided: a slow step over teeth accelerates as well.
     wavering: Vec<f64>,
     /// Effects of the model that this data cannot show.
     pub hidden: Vec<Invisible>,
 }
 
-impl<'p> Assembly<'p> {
+impl<'p> TwoStageModel<'p> {
     /// Finds forms and shapes of every effect: the same set of effects is laid out in one way only, whether it was asked
     /// for or found.
     pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec, options: &Options) -> Result<Self, ModelError> {
@@ -44,8 +44,8 @@ impl<'p> Assembly<'p> {
             prepared,
             spec,
             effects,
-            main: Terms::new(&prepared.main),
-            moving: prepared.moving.as_ref().map(Terms::new),
+            main: LinearModel::new(&prepared.main),
+            moving: prepared.moving.as_ref().map(LinearModel::new),
             wavering: vec![0.0; prepared.main.rows()],
             hidden: Vec::new(),
         };
@@ -57,14 +57,14 @@ impl<'p> Assembly<'p> {
             }
             if let Some(why) = effect.hidden(&prepared.main.view) {
                 assembly.hidden.push(Invisible { effect: id.clone(), why });
-            } else if effect.is_given() {
+            } else if effect.is_offset() {
                 let given = columns(effect, "linear", &[], assembly.main.problem);
                 add(&mut assembly.main.given, &given, &[1.0]);
             } else if !assembly.is_apart(effect) {
                 settled.push(effect.info().id);
             }
         }
-        let library = Library::for_layout(spec, &prepared.main, prepared.stages(), &settled);
+        let library = CandidateSet::for_layout(spec, &prepared.main, prepared.regimes(), &settled);
         // What the ramps decide needs the settled part, and that a little of what they decide.
         for _ in 0..2 {
             assembly.main.terms.clear();
@@ -79,7 +79,7 @@ impl<'p> Assembly<'p> {
 
     /// Plateaus say nothing about the effect: it is judged where the motion changes.
     pub fn is_apart(&self, effect: &dyn Effect) -> bool {
-        !self.prepared.stages().contains(&effect.stage())
+        !self.prepared.regimes().contains(&effect.regime())
     }
 
     /// What the model predicts at the rows of another problem of the same run.
@@ -87,7 +87,7 @@ impl<'p> Assembly<'p> {
         let mut sum = vec![0.0; problem.rows()];
         for id in &self.effects {
             let Ok(effect) = self.spec.find(id) else { continue };
-            if effect.is_given() && !self.hidden.iter().any(|h| h.effect == *id) {
+            if effect.is_offset() && !self.hidden.iter().any(|h| h.effect == *id) {
                 add(&mut sum, &columns(effect, "linear", &[], problem), &[1.0]);
             }
         }
@@ -106,7 +106,7 @@ impl<'p> Assembly<'p> {
         moving.terms.clear();
         for id in &self.effects {
             let Ok(effect) = self.spec.find(id) else { continue };
-            if effect.is_given() && !self.hidden.iter().any(|h| h.effect == *id) {
+            if effect.is_offset() && !self.hidden.iter().any(|h| h.effect == *id) {
                 add(&mut moving.given, &columns(effect, "linear", &[], moving.problem), &[1.0]);
             }
         }
@@ -120,7 +120,7 @@ impl<'p> Assembly<'p> {
     fn enter_moving(&mut self) {
         let is_in = |id: &str| self.effects.iter().any(|e| e == id) && !self.hidden.iter().any(|h| h.effect == id);
         let apart = self.spec.known().filter(|e| self.is_apart(*e) && is_in(e.info().id));
-        let (remembering, ramps): (Vec<&'p dyn Effect>, Vec<_>) = apart.partition(|e| e.stage() == Stage::Memory);
+        let (remembering, ramps): (Vec<&'p dyn Effect>, Vec<_>) = apart.partition(|e| e.regime() == Regime::Hysteresis);
         if self.moving.is_none() {
             let why = "the run has no ramps or reversals that could show it".to_owned();
             let apart = ramps.iter().chain(&remembering);
@@ -151,7 +151,7 @@ impl<'p> Assembly<'p> {
         let mut wavering = vec![0.0; self.wavering.len()];
         if let Some(moving) = &self.moving {
             let told = moving.terms.iter().zip(moving.linear().factors);
-            for (term, factors) in told.filter(|(term, _)| term.effect.stage() == Stage::Ramp) {
+            for (term, factors) in told.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
                 let columns = columns(term.effect, term.form.name, &term.shape, self.main.problem);
                 add(&mut wavering, &columns, &factors);
             }
@@ -171,7 +171,7 @@ impl<'p> Assembly<'p> {
     }
 
     /// The model of other effects, whose settled part is laid out already.
-    pub fn of(&self, main: Terms<'p>, effects: Vec<String>) -> Self {
+    pub fn of(&self, main: LinearModel<'p>, effects: Vec<String>) -> Self {
         let mut next = Self { main, effects, ..self.clone() };
         next.enter_moving();
         next.take_wavering();

@@ -4,10 +4,10 @@ use crate::Options;
 use crate::preprocess::Prepared;
 use crate::preprocess::design::segments::stretches;
 use crate::preprocess::independent_blocks::{legs, pieces};
-use crate::regression::linear_model::Terms;
+use crate::regression::linear_model::LinearModel;
 use crate::report::diagnosis::NoiseFloor;
 use crate::residual_analysis::maps::Maps;
-use crate::residual_analysis::random_walk_offset::Wander;
+use crate::residual_analysis::random_walk_offset::Ar1Offset;
 use crate::stats::grouped::within;
 use crate::thresholds::STRUCTURE_SHARE;
 
@@ -19,7 +19,7 @@ pub fn structured(maps: &Maps) -> Option<&str> {
 /// What shows over an axis is what whole stretches of motion differ by, a zero that wanders or lies elsewhere after every
 /// reversal: little of it comes again for sure in another repeat, and no part of any axis stands out of that scatter.
 pub fn is_scatter(
-    now: &Terms,
+    now: &LinearModel,
     maps: &Maps,
     residual: &[f64],
     floor: &NoiseFloor,
@@ -32,16 +32,16 @@ pub fn is_scatter(
         return false;
     }
     let is_known = floor.ci95.is_some();
-    match Wander::of(now, options) {
+    match Ar1Offset::of(now, options) {
         Some(wander) => only_wanders(&wander, residual, prepared, options) || is_known && !maps.stand_out(),
         None => is_known && !(maps.stand_out_beside_time() && stands_out_within_legs(residual, prepared, options)),
     }
 }
 
 /// Nothing shows over any axis but a zero that wanders over time: a little everywhere, and no figure of the model leaps.
-fn only_wanders(wander: &Wander, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
+fn only_wanders(wander: &Ar1Offset, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
     let beside = Maps::new(prepared, wander.taken_off(residual), options);
-    structured(&beside).is_none() && !beside.stand_out() && !wander.is_of_events() && !wander.leaps(options)
+    structured(&beside).is_none() && !beside.stand_out() && !wander.is_heavy_tailed() && !wander.leaps(options)
 }
 
 /// Where legs are too few to tell what they scatter by, some part of an axis stands out within them, each with a zero of its own.

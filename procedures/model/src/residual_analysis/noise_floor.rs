@@ -18,15 +18,15 @@ const FEWEST: usize = 8;
 /// `remembers`.
 pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> NoiseFloor {
     let problem = &prepared.main;
-    let is_equal = |twins: &(usize, usize)| remembers || !problem.other_pasts.contains(twins);
-    let twins: Vec<(usize, usize)> = problem.twins.iter().copied().filter(is_equal).collect();
-    if twins.len() < FEWEST {
+    let is_equal = |replicate_pairs: &(usize, usize)| remembers || !problem.different_history.contains(replicate_pairs);
+    let replicate_pairs: Vec<(usize, usize)> = problem.replicate_pairs.iter().copied().filter(is_equal).collect();
+    if replicate_pairs.len() < FEWEST {
         return NoiseFloor { source: unknown(prepared), ..NoiseFloor::default() };
     }
-    let (all, of_piece) = Pairs::sums(problem, residual, &twins);
+    let (all, of_piece) = Pairs::sums(problem, residual, &replicate_pairs);
     // What depends on an angle comes again where that does.
-    let met: Vec<_> = twins.iter().copied().filter(|pair| !problem.other_angles.contains(pair)).collect();
-    let elsewhere = twins.len() - met.len();
+    let met: Vec<_> = replicate_pairs.iter().copied().filter(|pair| !problem.different_angle.contains(pair)).collect();
+    let elsewhere = replicate_pairs.len() - met.len();
     let of_met = (elsewhere > 0 && met.len() >= FEWEST).then(|| Pairs::sums(problem, residual, &met));
     let (again, again_of) = of_met.as_ref().map_or((&all, &of_piece), |(again, of)| (again, of));
     NoiseFloor {
@@ -35,7 +35,7 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> No
         source: format!(
             "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
              different repeats ({}{})",
-            twins.len(),
+            replicate_pairs.len(),
             match (prepared.about.repeats_from.as_str(), prepared.main.settled || prepared.kind == Kind::Friction) {
                 ("column", _) => "as numbered",
                 (_, true) => "found by the period of the motion",
@@ -60,10 +60,10 @@ struct Pairs {
 
 impl Pairs {
     /// Of all pairs, and of those that touch each piece of the run.
-    fn sums(problem: &Problem, residual: &[f64], twins: &[(usize, usize)]) -> (Self, Vec<Self>) {
+    fn sums(problem: &Problem, residual: &[f64], replicate_pairs: &[(usize, usize)]) -> (Self, Vec<Self>) {
         let (piece, count) = pieces(problem, 1);
         let (mut all, mut of_piece) = (Pairs::default(), vec![Pairs::default(); count]);
-        for (a, b) in twins {
+        for (a, b) in replicate_pairs {
             let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
             let pair = Pairs { noise: half, common: residual[*a] * residual[*b], count: 1.0 };
             all.add(&pair, 1.0);
@@ -120,7 +120,7 @@ fn unknown(prepared: &Prepared) -> String {
             say(unlike.spread)
         );
     }
-    if !problem.other_pasts.is_empty() {
+    if !problem.different_history.is_empty() {
         return "no noise floor: the brake came to no moment twice on the same way; repeat its loops in the same order"
             .into();
     }

@@ -5,10 +5,10 @@
 //! independent ones. Each of them is news only by what those before it do not tell.
 
 use crate::Options;
-use crate::effect::Stage;
+use crate::effect::Regime;
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
-use crate::regression::linear_model::{Term, Terms};
+use crate::regression::linear_model::{LinearModel, Term};
 use crate::signal::Signal;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -23,25 +23,25 @@ const NORMAL_KURTOSIS: f64 = 3.0;
 const EVENTS: f64 = 4.0;
 
 /// What the blocks of a run differ by, means over each, in the order of time.
-pub struct Wander<'t, 'p> {
-    now: &'t Terms<'p>,
+pub struct Ar1Offset<'t, 'p> {
+    now: &'t LinearModel<'p>,
     /// From the middle of one block to that of the next [s], the first of them none.
     gaps: Vec<f64>,
-    memory: Memory,
+    memory: Ar1Parameters,
     /// Minus twice the logarithm of how likely the blocks are with this memory.
-    unlikely: f64,
+    neg2_log_likelihood: f64,
     /// Degrees of freedom that the model leaves.
     free: f64,
 }
 
 /// How much wanders, and for how long that is remembered [s].
 #[derive(Clone, Copy)]
-struct Memory {
+struct Ar1Parameters {
     ratio: f64,
     time_s: f64,
 }
 
-const NOTHING: Memory = Memory { ratio: 0.0, time_s: 1.0 };
+const NOTHING: Ar1Parameters = Ar1Parameters { ratio: 0.0, time_s: 1.0 };
 
 /// One step of a filter that expects of a block what those before it tell.
 struct Step {
@@ -59,7 +59,7 @@ struct Filter {
 }
 
 impl Filter {
-    fn new(memory: Memory, gaps: &[f64]) -> Self {
+    fn new(memory: Ar1Parameters, gaps: &[f64]) -> Self {
         let mut known = memory.ratio;
         let step = |gap: &f64| {
             let decay = (-gap / memory.time_s).exp();
@@ -72,7 +72,7 @@ impl Filter {
         Self { size: steps.iter().map(|step| step.variance.ln()).sum(), steps }
     }
 
-    fn news(&self, values: &[f64]) -> Vec<f64> {
+    fn innovations(&self, values: &[f64]) -> Vec<f64> {
         let mut known = 0.0;
         let new = |(value, step): (&f64, &Step)| {
             let new = value - step.decay * known;
@@ -100,9 +100,9 @@ impl Filter {
     }
 }
 
-impl<'t, 'p> Wander<'t, 'p> {
+impl<'t, 'p> Ar1Offset<'t, 'p> {
     /// `None` where neighbouring blocks do not resemble each other beyond chance.
-    pub fn of(now: &'t Terms<'p>, options: &Options) -> Option<Self> {
+    pub fn of(now: &'t LinearModel<'p>, options: &Options) -> Option<Self> {
         let problem = now.problem;
         let time = means(&problem.reduce.apply(problem.view.get(Signal::Time).to_vec()), problem);
         let gaps: Vec<f64> = std::iter::once(0.0).chain(time.windows(2).map(|w| (w[1] - w[0]).abs())).collect();
@@ -114,23 +114,23 @@ impl<'t, 'p> Wander<'t, 'p> {
         let columns = of_blocks(&basis, problem);
         let response = means(&now.response(), problem);
         let (memory, least) = most_likely(&columns, &response, &gaps, free);
-        let plain = unlikely(&columns, &response, &Filter::new(NOTHING, &gaps), free);
+        let plain = neg2_log_likelihood(&columns, &response, &Filter::new(NOTHING, &gaps), free);
         if !is_more(plain - least, 2, 1.0, options) {
             return None;
         }
-        Some(Self { now, gaps, memory, unlikely: least, free })
+        Some(Self { now, gaps, memory, neg2_log_likelihood: least, free })
     }
 
     /// What an effect of the model gains in likelihood from block to block, where the wandering explains that as well: the
     /// best of so many `effects` would gain as much.
     pub fn gain(&self, term: &Term, effects: usize, options: &Options) -> Option<f64> {
-        if term.effect.stage() == Stage::Memory {
+        if term.effect.regime() == Regime::Hysteresis {
             return None;
         }
         let without = self.now.without(term.id());
         let columns = of_blocks(&without.tangent(), without.problem);
         let response = means(&without.response(), without.problem);
-        let less = most_likely(&columns, &response, &self.gaps, self.free).1 - self.unlikely;
+        let less = most_likely(&columns, &response, &self.gaps, self.free).1 - self.neg2_log_likelihood;
         (!is_more(less, term.size(), effects as f64, options)).then_some(less)
     }
 
@@ -149,8 +149,8 @@ impl<'t, 'p> Wander<'t, 'p> {
     /// What the model leaves of the news, and the columns that it has taken off.
     fn left(&self, filter: &Filter) -> (Basis, Vec<f64>) {
         let columns = of_blocks(&self.now.tangent(), self.now.problem);
-        let basis = Basis::of(&columns.iter().map(|column| filter.news(column)).collect::<Vec<_>>());
-        let left = basis.rest(&filter.news(&means(&self.now.response(), self.now.problem)));
+        let basis = Basis::of(&columns.iter().map(|column| filter.innovations(column)).collect::<Vec<_>>());
+        let left = basis.rest(&filter.innovations(&means(&self.now.response(), self.now.problem)));
         (basis, left)
     }
 
@@ -166,18 +166,18 @@ impl<'t, 'p> Wander<'t, 'p> {
             let (basis, left) = self.left(&filter);
             let taken = |figure: &[f64], place: usize| {
                 let leap: Vec<f64> = (0..figure.len()).map(|i| if i < place { 0.0 } else { figure[i] }).collect();
-                let own = basis.rest(&filter.news(&leap));
+                let own = basis.rest(&filter.innovations(&leap));
                 dot(&own, &left).powi(2) / dot(&own, &own).max(f64::MIN_POSITIVE)
             };
             let all = figures.iter().flat_map(|figure| places.iter().map(|place| taken(figure, *place)));
             let rest = dot(&left, &left) - all.fold(0.0, f64::max);
-            is_more(self.unlikely - self.free * rest.ln() - filter.size, 1, chances, options)
+            is_more(self.neg2_log_likelihood - self.free * rest.ln() - filter.size, 1, chances, options)
         })
     }
 
     /// What is new comes in a few events, a leap or a bump, and not everywhere a little: its kurtosis is not that of a normal
     /// law.
-    pub fn is_of_events(&self) -> bool {
+    pub fn is_heavy_tailed(&self) -> bool {
         let (_, news) = self.left(&Filter::new(self.memory, &self.gaps));
         let n = news.len() as f64;
         let moment = |power: i32| news.iter().map(|new| new.powi(power)).sum::<f64>() / n;
@@ -204,12 +204,13 @@ fn means(values: &[f64], problem: &Problem) -> Vec<f64> {
 }
 
 /// The memory with which the blocks are most likely beside columns.
-fn most_likely(columns: &[Vec<f64>], response: &[f64], gaps: &[f64], free: f64) -> (Memory, f64) {
+fn most_likely(columns: &[Vec<f64>], response: &[f64], gaps: &[f64], free: f64) -> (Ar1Parameters, f64) {
     let whole: f64 = gaps.iter().sum();
     let times = std::iter::successors(Some(2.0 * whole / gaps.len() as f64), |time| Some(2.0 * time));
-    let memories =
-        times.take_while(|time| *time < 4.0 * whole).flat_map(|time_s| RATIOS.map(|ratio| Memory { ratio, time_s }));
-    let likely = |memory| (memory, unlikely(columns, response, &Filter::new(memory, gaps), free));
+    let memories = times
+        .take_while(|time| *time < 4.0 * whole)
+        .flat_map(|time_s| RATIOS.map(|ratio| Ar1Parameters { ratio, time_s }));
+    let likely = |memory| (memory, neg2_log_likelihood(columns, response, &Filter::new(memory, gaps), free));
     std::iter::once(NOTHING)
         .chain(memories)
         .map(likely)
@@ -218,8 +219,8 @@ fn most_likely(columns: &[Vec<f64>], response: &[f64], gaps: &[f64], free: f64) 
 }
 
 /// Minus twice the logarithm of how likely the blocks are beside columns.
-fn unlikely(columns: &[Vec<f64>], response: &[f64], filter: &Filter, free: f64) -> f64 {
-    let columns: Vec<Vec<f64>> = columns.iter().map(|column| filter.news(column)).collect();
-    let left = Basis::of(&columns).rest(&filter.news(response));
+fn neg2_log_likelihood(columns: &[Vec<f64>], response: &[f64], filter: &Filter, free: f64) -> f64 {
+    let columns: Vec<Vec<f64>> = columns.iter().map(|column| filter.innovations(column)).collect();
+    let left = Basis::of(&columns).rest(&filter.innovations(response));
     free * dot(&left, &left).ln() + filter.size
 }

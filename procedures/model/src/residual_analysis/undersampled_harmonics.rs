@@ -2,7 +2,7 @@
 
 use crate::linear::basis::Basis;
 use crate::preprocess::design::segments::stretches;
-use crate::regression::linear_model::Terms;
+use crate::regression::linear_model::LinearModel;
 use crate::thresholds::SAMPLES_FOLLOW_RAD;
 
 /// Fewer rows of a stretch do not tell a wave from noise.
@@ -10,7 +10,7 @@ const FEWEST: usize = 10;
 
 /// What a model of settled motion leaves, without the waves of its own effects where these pass that fast. What of a wave
 /// reaches the motor's current there is up to inertia and the drive's control, and says nothing of the joint.
-pub fn without_swift_waves(now: &Terms, mut residual: Vec<f64>) -> Vec<f64> {
+pub fn without_swift_waves(now: &LinearModel, mut residual: Vec<f64>) -> Vec<f64> {
     let view = &now.problem.view;
     for term in &now.terms {
         let Some(angle) = term.effect.wave() else { continue };

@@ -1,8 +1,8 @@
 //! When two effects explain the data equally well.
 
 use crate::Options;
-use crate::regression::linear_model::{Term, Terms};
-use crate::regression::partial_regression::Ground;
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
 
 /// Two models tie where the difference of their held-out errors is not larger than its own scatter over the folds.
@@ -16,12 +16,12 @@ pub fn is_tie(a: &[f64], b: &[f64]) -> bool {
 
 /// Whether the model with `one` leaves nothing that matters for `other`, and the other way round it does (the encompassing
 /// test of Davidson and MacKinnon 1981, by sign flips of blocks). Two effects may be apart in few of the folds, and clearly.
-pub fn encompasses(now: &Terms, one: &Term, other: &Term, options: &Options) -> bool {
+pub fn encompasses(now: &LinearModel, one: &Term, other: &Term, options: &Options) -> bool {
     let left_for = |beside: &Term, there: &Term| {
         let mut with = now.clone();
         with.terms.push(there.clone());
         with.refine();
-        let ground = Ground::of(&with);
+        let ground = PartialRegression::of(&with);
         (ground.own(&beside.columns).share, alone(beside, &ground, options))
     };
     let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));

@@ -1,11 +1,11 @@
 //! The candidates of one step: which is best, whether it is more than luck, and what the run cannot tell it from.
 
-use crate::linear::augmented_gram::Beside;
-use crate::regression::candidates::Library;
-use crate::regression::linear_model::{Term, Terms, polish};
-use crate::regression::partial_regression::{Ground, Own};
+use crate::linear::augmented_gram::AugmentedGrams;
+use crate::regression::candidates::CandidateSet;
+use crate::regression::linear_model::{LinearModel, Term, varpro};
+use crate::regression::partial_regression::{Orthogonalized, PartialRegression};
 use crate::regression::significance::family_wise;
-use crate::selection::acceptance::formula_error::Bar;
+use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use crate::selection::acceptance::{aliasing, between_leg_variance};
 use crate::selection::equivalence::{encompasses, is_tie};
 use crate::thresholds::SIMPLER_GAIN;
@@ -16,7 +16,7 @@ const SHORT_LIST: usize = 8;
 
 /// A candidate of one step with its evidence.
 #[derive(Clone)]
-pub struct Rival<'p> {
+pub struct ScoredCandidate<'p> {
     pub term: Term<'p>,
     /// Share of the remaining squared error.
     pub share: f64,
@@ -27,7 +27,7 @@ pub struct Rival<'p> {
     pub(crate) losses: Vec<f64>,
 }
 
-impl<'p> Rival<'p> {
+impl<'p> ScoredCandidate<'p> {
     /// A candidate that was judged apart from the others, without folds.
     pub fn alone(term: Term<'p>, share: f64, p_value: f64) -> Self {
         Self { term, share, held_out: f64::NAN, p_value, losses: Vec::new() }
@@ -36,19 +36,19 @@ impl<'p> Rival<'p> {
 
 /// The effect that makes the model best, with those that it ties with.
 pub fn step<'p>(
-    now: &Terms<'p>,
-    library: &Library<'p>,
+    now: &LinearModel<'p>,
+    library: &CandidateSet<'p>,
     withdrawn: &[&'p str],
-    bar: Bar,
-) -> Option<(Rival<'p>, Vec<&'p str>)> {
+    bar: AcceptanceThreshold,
+) -> Option<(ScoredCandidate<'p>, Vec<&'p str>)> {
     let options = bar.options;
     let problem = now.problem;
-    let ground = Ground::of(now);
-    let Ground { basis, residual, energy, .. } = &ground;
+    let ground = PartialRegression::of(now);
+    let PartialRegression { basis, residual, energy, .. } = &ground;
     let energy = *energy;
     let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
     let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
-    let gains: Vec<Own> = open.par_iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
+    let gains: Vec<Orthogonalized> = open.par_iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
 
     // The best shape of each form of each effect, the most telling first.
     let mut best: Vec<usize> = Vec::new();
@@ -72,11 +72,12 @@ pub fn step<'p>(
         .par_iter()
         .map(|b| {
             let mut term = [library.candidates[open[*b]].term(problem)];
-            let sse = polish(&mut term, basis, residual, problem);
+            let sse = varpro(&mut term, basis, residual, problem);
             let [term] = term;
-            let possible = term.allows(&ground.own(&term.columns).factors()) && bar.leaves_possible(now, &term);
+            let possible =
+                term.allows(&ground.own(&term.columns).factors()) && bar.keeps_parameters_feasible(now, &term);
             let possible = possible
-                && !between_leg_variance::could_be(&term, now, &ground, bar.kind, options)
+                && !between_leg_variance::is_random_leg_effect(&term, now, &ground, bar.kind, options)
                 && !aliasing::is_none(&term, now, &ground);
             let sse = if possible { sse } else { energy };
             (term, 1.0 - sse / energy)
@@ -84,14 +85,14 @@ pub fn step<'p>(
         .filter(|(term, share)| *share >= least_share.max(aliasing::least_share(term)))
         .collect();
     let sets = std::iter::once([].as_slice()).chain(worth_it.iter().map(|(term, _)| term.columns.as_slice()));
-    let beside = Beside::new(&now.columns(), sets, residual, &problem.fold, problem.folds);
+    let beside = AugmentedGrams::new(&now.columns(), sets, residual, &problem.fold, problem.folds);
     let present: f64 = beside.grams(0).held_out().iter().sum();
-    let mut rivals: Vec<Rival> = worth_it
+    let mut rivals: Vec<ScoredCandidate> = worth_it
         .par_iter()
         .enumerate()
         .map(|(k, (term, share))| {
             let losses = beside.grams(1 + k).held_out();
-            Rival { term: term.clone(), share: *share, held_out: losses.iter().sum(), p_value: 1.0, losses }
+            ScoredCandidate { term: term.clone(), share: *share, held_out: losses.iter().sum(), p_value: 1.0, losses }
         })
         .filter(|r| r.held_out < present)
         .collect();

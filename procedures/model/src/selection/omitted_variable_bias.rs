@@ -1,38 +1,38 @@
 //! An effect that the shape of another one imitates: the error would hardly miss it, and the parameters are wrong without it.
 
 use crate::linear::basis::dot;
-use crate::regression::candidates::Candidate;
+use crate::regression::candidates::Regressor;
 use crate::regression::cross_validation::held_out;
-use crate::regression::linear_model::{Term, Terms};
-use crate::regression::partial_regression::Ground;
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
 use crate::selection::acceptance::formula_error::left_by_memory;
 use crate::selection::equivalence::is_tie;
-use crate::selection::floating_search::Search;
-use crate::selection::forward_step::Rival;
+use crate::selection::floating_search::FloatingSearch;
+use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{BIAS_TOLERANCE, BIASED_COEFFICIENT};
 use rayon::prelude::*;
 
 /// An effect that hardly shows, in the model that has it.
 pub struct Imitated<'p> {
-    pub rival: Rival<'p>,
-    pub with: Terms<'p>,
+    pub rival: ScoredCandidate<'p>,
+    pub with: LinearModel<'p>,
     /// What was held out decides that it is there.
     pub is_clear: bool,
 }
 
-impl<'p> Search<'_, 'p> {
+impl<'p> FloatingSearch<'_, 'p> {
     /// The effect that one of a free shape imitates best, at the cost of a factor of the given model: a Stribeck
     /// effect that fades slowly is a curve over speed and a part of Coulomb friction as well.
     ///
     /// `decides` says whether a model decides an effect.
-    pub fn imitated(&self, decides: impl Fn(&Terms<'p>, &Term<'p>) -> bool + Sync) -> Option<Imitated<'p>> {
+    pub fn imitated(&self, decides: impl Fn(&LinearModel<'p>, &Term<'p>) -> bool + Sync) -> Option<Imitated<'p>> {
         let bends = |term: &Term| term.form.shape.iter().any(|shape| shape.is_smooth());
         if self.left == 0 || !self.now.terms.iter().any(bends) {
             return None;
         }
-        let ground = Ground::of(&self.now);
-        let mut alike: Vec<(f64, &Candidate<'p>)> = Vec::new();
+        let ground = PartialRegression::of(&self.now);
+        let mut alike: Vec<(f64, &Regressor<'p>)> = Vec::new();
         let is_open = |id| !self.now.contains(id) && !self.withdrawn.contains(&id);
         for candidate in self.library.candidates.iter().filter(|c| is_open(c.id())) {
             let own = ground.own(&candidate.columns);
@@ -53,7 +53,7 @@ impl<'p> Search<'_, 'p> {
             if !self.is_wrong_beside(&near) {
                 return None;
             }
-            let with = self.laid_with(candidate.id());
+            let with = self.model_with(candidate.id());
             let term = with.terms.iter().find(|term| term.id() == candidate.id())?.clone();
             let linear = with.linear();
             let is_possible = with.terms.iter().zip(&linear.factors).all(|(term, factors)| term.allows(factors));
@@ -68,11 +68,11 @@ impl<'p> Search<'_, 'p> {
             // Its score counts beside the shapes that the others have with it: without it they imitate it.
             let mut beside = with.clone();
             beside.terms.retain(|other| other.id() != candidate.id());
-            let p_value = significance(&term, self.library, &Ground::of(&beside), self.options);
+            let p_value = significance(&term, self.library, &PartialRegression::of(&beside), self.options);
             let losses = held_out(&with);
             let held_out = losses.iter().sum();
             let is_clear = held_out < present.iter().sum() && !is_tie(&losses, &present);
-            let rival = Rival { term, share, held_out, p_value, losses };
+            let rival = ScoredCandidate { term, share, held_out, p_value, losses };
             (p_value <= self.options.alpha).then_some(Imitated { rival, with, is_clear })
         });
         let better = |a: &Imitated, b: &Imitated| a.rival.held_out.total_cmp(&b.rival.held_out);
@@ -80,8 +80,8 @@ impl<'p> Search<'_, 'p> {
     }
 
     /// A factor of the given model is elsewhere in another one.
-    pub(crate) fn is_wrong_beside(&self, other: &Terms<'p>) -> bool {
-        moved(&self.now, other, &self.kept).is_some()
+    pub(crate) fn is_wrong_beside(&self, other: &LinearModel<'p>) -> bool {
+        moved(&self.now, other, &self.initial_terms).is_some()
     }
 }
 
@@ -94,7 +94,7 @@ pub struct Moved<'p> {
 }
 
 /// The first factor of these effects that is wrong in one model if it is right in another, by more than the error.
-pub fn moved<'p>(was: &Terms<'p>, is: &Terms<'p>, effects: &[impl AsRef<str>]) -> Option<Moved<'p>> {
+pub fn moved<'p>(was: &LinearModel<'p>, is: &LinearModel<'p>, effects: &[impl AsRef<str>]) -> Option<Moved<'p>> {
     let (then, now) = (was.linear(), is.linear());
     let both = was.terms.iter().enumerate().filter(|(_, term)| effects.iter().any(|id| id.as_ref() == term.id()));
     // In another form its factors mean something else.

@@ -1,52 +1,52 @@
 //! Effects that came in and were taken back.
 
 use crate::regression::cross_validation::held_out_rms;
-use crate::selection::floating_search::Search;
+use crate::selection::floating_search::FloatingSearch;
 
 /// An effect that came in and was taken back, with the held-out RMS that the last model would have with it.
 pub struct Withdrawn<'p> {
     pub effect: &'p str,
-    pub why: Withdrawal,
+    pub why: RemovalReason,
     pub held_out_rms: f64,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Withdrawal {
+pub enum RemovalReason {
     /// The run does not decide its size or shape.
-    Undecided,
+    Unidentified,
     /// It explains only a part of what shows over its own axis.
-    HalfExplains,
+    PartialExplanation,
     /// Beside any function of the axis over which structure remains it explains nothing.
-    Borrows,
+    Spurious,
     /// It shows no more than a zero that wanders over time.
-    Wanders,
+    RandomWalk,
     /// It would have to be of an impossible size.
-    Impossible,
+    Infeasible,
     /// Whatever came in since explains the rest of it.
-    Idle,
+    Insignificant,
 }
 
-impl Withdrawal {
+impl RemovalReason {
     pub fn words(self) -> &'static str {
         match self {
-            Withdrawal::Undecided => "this run does not decide how large it is",
-            Withdrawal::HalfExplains => "it explains only a part of what shows over its own axis",
-            Withdrawal::Borrows => "beside the structure that remains it explains nothing",
-            Withdrawal::Wanders => "the zero wanders over time, which explains as much",
-            Withdrawal::Impossible => "it would have to be of a size that is physically impossible",
-            Withdrawal::Idle => "beside the other effects it brings nothing that is worth a name",
+            RemovalReason::Unidentified => "this run does not decide how large it is",
+            RemovalReason::PartialExplanation => "it explains only a part of what shows over its own axis",
+            RemovalReason::Spurious => "beside the structure that remains it explains nothing",
+            RemovalReason::RandomWalk => "the zero wanders over time, which explains as much",
+            RemovalReason::Infeasible => "it would have to be of a size that is physically impossible",
+            RemovalReason::Insignificant => "beside the other effects it brings nothing that is worth a name",
         }
     }
 }
 
 /// What was withdrawn and stayed out, for the reasons that are known or those of the search itself.
-pub fn all<'p>(search: &Search<'_, 'p>, reasons: &[(&'p str, Withdrawal)]) -> Vec<Withdrawn<'p>> {
+pub fn all<'p>(search: &FloatingSearch<'_, 'p>, reasons: &[(&'p str, RemovalReason)]) -> Vec<Withdrawn<'p>> {
     let of = |effect: &'p str| {
-        let with = search.laid_with(effect);
+        let with = search.model_with(effect);
         let mut sized = with.terms.iter().zip(with.linear().factors);
         let of_search = match sized.all(|(term, factors)| term.id() != effect || term.allows(&factors)) {
-            true => Withdrawal::Idle,
-            false => Withdrawal::Impossible,
+            true => RemovalReason::Insignificant,
+            false => RemovalReason::Infeasible,
         };
         let why = reasons.iter().find(|(id, _)| *id == effect).map_or(of_search, |(_, why)| *why);
         Withdrawn { effect, why, held_out_rms: held_out_rms(&with) }

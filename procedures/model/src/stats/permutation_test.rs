@@ -5,7 +5,7 @@
 //! Wilson and Hilferty's cube root.
 
 use crate::linear::basis::dot;
-use crate::linear::cholesky::Spd;
+use crate::linear::cholesky::Cholesky;
 use crate::thresholds::OWN_SCATTER_SHARE;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -29,7 +29,7 @@ impl Score {
                 spread[a * k + b] = dot(&sums[a], &sums[b]);
             }
         }
-        let spd = Spd::new(&spread, k, 1e-9);
+        let spd = Cholesky::new(&spread, k, 1e-9);
         let groups = sums.first().map_or(0, Vec::len);
         let mut parts = vec![vec![0.0; groups]; k];
         for g in 0..groups {
@@ -81,11 +81,11 @@ fn chi2_scale(z: f64, k: usize) -> f64 {
 }
 
 /// The largest score of all for each flip, in rising order.
-pub struct Null {
+pub struct MaxTNull {
     largest: Vec<f64>,
 }
 
-impl Null {
+impl MaxTNull {
     pub fn new(scores: &[impl Borrow<Score> + Sync], flips: usize, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let groups = scores.iter().flat_map(|s| &s.borrow().parts).map(Vec::len).max().unwrap_or(0);
@@ -140,8 +140,8 @@ mod tests {
 
     #[test]
     fn what_has_nothing_of_its_own_is_chance() {
-        assert_eq!(Null::new(&[Score::new(&[])], 499, 0).p_value(5.0), 1.0);
+        assert_eq!(MaxTNull::new(&[Score::new(&[])], 499, 0).p_value(5.0), 1.0);
         let noise = Score::new(&[sums(50, 1.0)]);
-        assert_eq!(Null::new(&[noise], 499, 0).p_value(50.0), 0.002);
+        assert_eq!(MaxTNull::new(&[noise], 499, 0).p_value(50.0), 0.002);
     }
 }

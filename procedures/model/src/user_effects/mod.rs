@@ -7,7 +7,7 @@ pub(crate) mod ranges;
 pub use crate::user_effects::definition::{Definition, OwnParameter};
 
 use crate::ModelError;
-use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Shape, Stage};
+use crate::effect::{Columns, Effect, EffectInfo, Form, ParameterInfo, Regime, Shape};
 use crate::effects;
 use crate::formula::fault::{FormulaFault, Mistake};
 use crate::formula::signals::NamedSignal;
@@ -172,9 +172,9 @@ impl Effect for OwnEffect {
         self.evaluate(shape, view)
     }
 
-    fn stage(&self) -> Stage {
+    fn regime(&self) -> Regime {
         let of_ramps = |s: Signal| matches!(s, Signal::Acceleration | Signal::Jerk);
-        if self.formula.signals.iter().any(|s| of_ramps(s.signal)) { Stage::Ramp } else { Stage::Settled }
+        if self.formula.signals.iter().any(|s| of_ramps(s.signal)) { Regime::Transient } else { Regime::SteadyState }
     }
 }
 

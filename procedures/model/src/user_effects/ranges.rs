@@ -1,6 +1,6 @@
 //! Where the search for a shape parameter goes when the user leaves that to the data.
 
-use crate::effect::{Search, Shape};
+use crate::effect::{Shape, ShapeSearch};
 use crate::formula::signals::NamedSignal;
 use crate::user_effects::definition::OwnParameter;
 use crate::view::View;
@@ -15,9 +15,9 @@ pub fn shape<'e>(parameter: &'e OwnParameter, signals: &[NamedSignal], view: &Vi
     let size = Some(same.fold(0.0, f64::max)).filter(|peak| *peak > 0.0).unwrap_or(1.0);
     let signed = parameter.min.is_some_and(|min| min < 0.0) || parameter.max.is_some_and(|max| max <= 0.0);
     let search = match (parameter.whole, signed) {
-        (true, _) => Search::Whole,
-        (false, true) => Search::Signed,
-        (false, false) => Search::Smooth,
+        (true, _) => ShapeSearch::Whole,
+        (false, true) => ShapeSearch::Signed,
+        (false, false) => ShapeSearch::Smooth,
     };
     let (min, max) = match (parameter.min, parameter.max) {
         (Some(min), Some(max)) => (min, max),
@@ -27,7 +27,7 @@ pub fn shape<'e>(parameter: &'e OwnParameter, signals: &[NamedSignal], view: &Vi
         (None, None) => (1e-3 * size, 10.0 * size),
     };
     // A logarithm has no zero.
-    let min = if search == Search::Smooth { min.max(1e-4 * max) } else { min };
+    let min = if search == ShapeSearch::Smooth { min.max(1e-4 * max) } else { min };
     Shape { name: &parameter.name, min, max, search }
 }
 
@@ -43,9 +43,9 @@ pub fn grid(shapes: &[Shape], starts: impl Iterator<Item = Option<[f64; 2]>>) ->
 fn points(shape: &Shape, start: Option<[f64; 2]>, count: usize) -> Vec<f64> {
     let [low, high] = start.unwrap_or([shape.min, shape.max]).map(|v| v.clamp(shape.min, shape.max));
     match shape.search {
-        Search::Whole => (low.ceil() as i64..=high as i64).map(|i| i as f64).collect(),
+        ShapeSearch::Whole => (low.ceil() as i64..=high as i64).map(|i| i as f64).collect(),
         _ if low == high => vec![low],
-        Search::Smooth => crate::effects::log_grid(low, high, count),
+        ShapeSearch::Smooth => crate::effects::log_grid(low, high, count),
         _ => (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect(),
     }
 }

@@ -1,6 +1,6 @@
 //! Hysteresis.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
 use crate::view::View;
@@ -46,7 +46,7 @@ impl Effect for Hysteresis {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Current);
-        let shape = vec![Shape { name: "r", min: 0.02 * peak, max: peak, search: Search::Smooth }];
+        let shape = vec![Shape { name: "r", min: 0.02 * peak, max: peak, search: ShapeSearch::Smooth }];
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(0.05 * peak, peak, 4).into_iter().map(|t| vec![t]).collect();
         let turns = view.samples.find(Signal::Current).is_some_and(|i| hysteresis_operators::turns(i, 0.1 * peak));
         if !turns {
@@ -59,7 +59,7 @@ impl Effect for Hysteresis {
         let current = view.samples.find(Signal::Current).unwrap_or_default();
         let ends = current.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), i| (l.min(*i), h.max(*i)));
         let most = (ends.1 - ends.0) / 2.0;
-        let reach = Shape { name: "i_max", min: most, max: most, search: Search::Whole };
+        let reach = Shape { name: "i_max", min: most, max: most, search: ShapeSearch::Whole };
         let several = |(name, bands): (&'static str, usize)| Form {
             name,
             linear: BANDS[..bands].to_vec(),

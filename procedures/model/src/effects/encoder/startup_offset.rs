@@ -38,7 +38,7 @@ impl Effect for StartupOffset {
         }
     }
 
-    fn is_of_each_run(&self) -> bool {
+    fn is_nuisance(&self) -> bool {
         true
     }
 

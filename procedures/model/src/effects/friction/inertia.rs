@@ -32,7 +32,7 @@ impl Effect for Inertia {
         vec![view.get(Signal::Acceleration).to_vec()]
     }
 
-    fn stage(&self) -> crate::effect::Stage {
-        crate::effect::Stage::Ramp
+    fn regime(&self) -> crate::effect::Regime {
+        crate::effect::Regime::Transient
     }
 }

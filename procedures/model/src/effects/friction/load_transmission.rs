@@ -32,7 +32,7 @@ impl Effect for LoadTransmission {
         vec![view.get(Signal::Load).to_vec()]
     }
 
-    fn is_given(&self) -> bool {
+    fn is_offset(&self) -> bool {
         true
     }
 }

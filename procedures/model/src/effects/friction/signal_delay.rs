@@ -32,7 +32,7 @@ impl Effect for SignalDelay {
         vec![view.get(Signal::Jerk).to_vec()]
     }
 
-    fn stage(&self) -> crate::effect::Stage {
-        crate::effect::Stage::Ramp
+    fn regime(&self) -> crate::effect::Regime {
+        crate::effect::Regime::Transient
     }
 }

@@ -1,6 +1,6 @@
 //! Stribeck effect.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::fast_math;
 use crate::signal::Signal;
 use crate::view::View;
@@ -49,8 +49,8 @@ pub(crate) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)
         return None;
     }
     let shape = vec![
-        Shape { name: "omega_s", min: low, max: high, search: Search::Smooth },
-        Shape { name: "delta", min: 0.5, max: 3.0, search: Search::Smooth },
+        Shape { name: "omega_s", min: low, max: high, search: ShapeSearch::Smooth },
+        Shape { name: "delta", min: 0.5, max: 3.0, search: ShapeSearch::Smooth },
     ];
     let speeds = crate::effects::log_grid(low, high, 6);
     let grid = speeds.iter().flat_map(|s| [vec![*s, 0.9], vec![*s, 1.8]]).collect();
@@ -71,7 +71,7 @@ impl Effect for Stribeck {
         vec![fading(view, shape)]
     }
 
-    fn suddenness(&self) -> Option<&'static str> {
+    fn exponent_parameter(&self) -> Option<&'static str> {
         Some("delta")
     }
 }

@@ -40,7 +40,7 @@ impl Effect for StribeckLoad {
         vec![fading.iter().zip(view.get(Signal::Load)).map(|(f, l)| f * l.abs()).collect()]
     }
 
-    fn suddenness(&self) -> Option<&'static str> {
+    fn exponent_parameter(&self) -> Option<&'static str> {
         Some("delta")
     }
 }

@@ -1,6 +1,6 @@
 //! Creep.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
 use crate::view::View;
@@ -31,7 +31,7 @@ impl Effect for Creep {
         if high <= 2.0 * low {
             return Vec::new();
         }
-        let shape = vec![Shape { name: "t_c", min: low, max: high, search: Search::Smooth }];
+        let shape = vec![Shape { name: "t_c", min: low, max: high, search: ShapeSearch::Smooth }];
         let grid = crate::effects::log_grid(low, high, 8).into_iter().map(|t| vec![t]).collect();
         vec![Form { name: "lag", linear: vec!["kappa_c"], shape, grid }]
     }

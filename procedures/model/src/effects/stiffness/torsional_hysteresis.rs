@@ -1,6 +1,6 @@
 //! Torsional hysteresis.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
 use crate::hysteresis_operators;
 use crate::signal::Signal;
 use crate::view::View;
@@ -36,7 +36,7 @@ impl Effect for TorsionalHysteresis {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
-        let shape = vec![Shape { name: "tau_eta", min: 0.02 * peak, max: peak, search: Search::Smooth }];
+        let shape = vec![Shape { name: "tau_eta", min: 0.02 * peak, max: peak, search: ShapeSearch::Smooth }];
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(0.02 * peak, peak, 8).into_iter().map(|t| vec![t]).collect();
         let one = |name| Form { name, linear: vec!["eta"], shape: shape.clone(), grid: grid.clone() };
         vec![one("dahl"), one("stop"), one("maxwell_slip")]

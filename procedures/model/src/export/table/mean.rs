@@ -4,7 +4,7 @@ use crate::ModelError;
 use crate::export::load_noise::remembered;
 use crate::export::parts::Parts;
 use crate::export::table::axes::{cell, even};
-use crate::linear::cholesky::Spd;
+use crate::linear::cholesky::Cholesky;
 use crate::prediction::predict_on;
 use crate::preprocess::Problem;
 use crate::report::fit::{Fit, MeanCurve};
@@ -64,7 +64,7 @@ fn nearest(at: &[f64], x: &[f64], y: &[f64]) -> Vec<f64> {
     }
     let bend = RIDGE * x.len() as f64;
     (1..n - 1).for_each(|k| add(&[(k - 1, 1.0), (k, -2.0), (k + 1, 1.0)], bend, 0.0));
-    Spd::new(&gram, n, 1e-12).solve(&side)
+    Cholesky::new(&gram, n, 1e-12).solve(&side)
 }
 
 impl MeanCurve {

@@ -23,13 +23,13 @@ const DRIVEN: f64 = 0.5;
 
 /// What contradicts, each in a sentence.
 #[derive(Debug, Clone, Default)]
-pub struct Clashes {
+pub struct DataErrors {
     /// Whatever is fitted to these columns means nothing: no effect is named.
     pub void: Vec<String>,
     pub others: Vec<String>,
 }
 
-impl Clashes {
+impl DataErrors {
     pub fn all(&self) -> impl Iterator<Item = &String> {
         self.void.iter().chain(&self.others)
     }
@@ -51,7 +51,7 @@ impl Clash {
     }
 }
 
-pub fn clashes(run: &RunTable) -> Clashes {
+pub fn clashes(run: &RunTable) -> DataErrors {
     let gear_ratio = run.meta().gear_ratio.filter(|_| run.meta().motion != Motion::Linear);
     let gear = gear_ratio.unwrap_or(f64::NAN);
     let pairs: &[(&str, &str, f64)] = match run.kind() {
@@ -72,7 +72,7 @@ pub fn clashes(run: &RunTable) -> Clashes {
         (run.kind() == Kind::Friction).then(|| crate::preprocess::checks::torque_sign::clash(run, &pieces)).flatten();
     let (void, gears): (Vec<Clash>, Vec<Clash>) = motions.partition(|clash| clash.is_void);
     let said = |clashes: Vec<Clash>| clashes.into_iter().map(|clash| clash.said);
-    Clashes {
+    DataErrors {
         void: said(void)
             .chain(torques)
             .chain(driven(run, &pieces))
@@ -204,8 +204,8 @@ fn too_fast(run: &RunTable) -> Option<String> {
 /// A load that is the same in every sample, and not zero: no sensor tells that.
 fn dead_load(run: &RunTable) -> Option<String> {
     let load = run.column("link_torque_nm").filter(|_| run.kind() == Kind::Friction)?;
-    let is_dead = load[0] != 0.0 && load.iter().all(|v| *v == load[0]);
-    is_dead.then(|| {
+    let is_dependent = load[0] != 0.0 && load.iter().all(|v| *v == load[0]);
+    is_dependent.then(|| {
         format!("link_torque_nm is {} Nm in every sample, which no sensor tells: it was not connected", load[0])
     })
 }

@@ -1,4 +1,4 @@
-//! Rows into blocks, folds and twins.
+//! Rows into blocks, folds and replicate pairs.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -97,7 +97,7 @@ const MOST_TWINS: usize = 8;
 ///
 /// Neighbours instead of the very same phase where rows are chunks: what changes from chunk to chunk, such as the
 /// chatter of a control loop that happens to start alike, is nothing that a model of the joint could explain.
-pub fn twins(condition: &[usize], phase: &[usize], repeat: &[i64], apart: usize) -> Vec<(usize, usize)> {
+pub fn replicate_pairs(condition: &[usize], phase: &[usize], repeat: &[i64], apart: usize) -> Vec<(usize, usize)> {
     let mut seen: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
     for row in 0..condition.len() {
         seen.entry((condition[row], phase[row])).or_default().push(row);
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn twins_are_of_different_repeats() {
-        assert_eq!(twins(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 0), vec![(0, 2), (1, 3)]);
-        assert_eq!(twins(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 1), vec![(0, 3), (2, 1)]);
+        assert_eq!(replicate_pairs(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 0), vec![(0, 2), (1, 3)]);
+        assert_eq!(replicate_pairs(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 1), vec![(0, 3), (2, 1)]);
     }
 }

@@ -96,7 +96,12 @@ type Twins = Vec<(usize, usize)>;
 /// Where the repeats of a condition begin at other angles: pairs of moments at which they pass the same one, where these are
 /// not too few, and which of all are at other angles. No condition counts with more pairs for each row than another, but for one
 /// that has hardly any.
-pub fn by_angle(twins: Twins, condition: &[usize], repeat: &[i64], link: &[f64]) -> (Twins, HashSet<(usize, usize)>) {
+pub fn by_angle(
+    replicate_pairs: Twins,
+    condition: &[usize],
+    repeat: &[i64],
+    link: &[f64],
+) -> (Twins, HashSet<(usize, usize)>) {
     // Where it dwells at an angle, as far into that.
     let mut dwelt: HashMap<(usize, i64, usize), usize> = HashMap::new();
     let place = |row: usize| {
@@ -106,17 +111,17 @@ pub fn by_angle(twins: Twins, condition: &[usize], repeat: &[i64], link: &[f64])
         angle + ANGLES * *nth
     };
     let places: Vec<usize> = (0..link.len()).map(place).collect();
-    let of_condition = |twins: Twins| {
+    let of_condition = |replicate_pairs: Twins| {
         let mut pairs: BTreeMap<usize, Twins> = BTreeMap::new();
-        twins.into_iter().for_each(|pair| pairs.entry(condition[pair.0]).or_default().push(pair));
+        replicate_pairs.into_iter().for_each(|pair| pairs.entry(condition[pair.0]).or_default().push(pair));
         pairs
     };
     let mut rows: HashMap<usize, f64> = HashMap::new();
     condition.iter().for_each(|c| *rows.entry(*c).or_default() += 1.0);
     let for_each_row = |(c, pairs): (&usize, &Twins)| pairs.len() as f64 / rows[c];
-    let mut met = of_condition(blocks::twins(condition, &places, repeat, 0));
+    let mut met = of_condition(blocks::replicate_pairs(condition, &places, repeat, 0));
     met.retain(|c, pairs| for_each_row((c, pairs)) >= FEWEST);
-    let mut all = of_condition(twins);
+    let mut all = of_condition(replicate_pairs);
     let elsewhere = all.iter().filter(|(c, _)| !met.contains_key(c)).flat_map(|(_, pairs)| pairs.clone()).collect();
     all.extend(met);
     let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min).max(FEWEST);
@@ -129,18 +134,18 @@ pub fn by_angle(twins: Twins, condition: &[usize], repeat: &[i64], link: &[f64])
 }
 
 /// The angles of pairs have little to do with each other.
-pub fn are_apart(twins: &[(usize, usize)], link: &[f64]) -> bool {
+pub fn are_apart(replicate_pairs: &[(usize, usize)], link: &[f64]) -> bool {
     /// Of the RMS difference of two angles that have nothing to do with each other.
     const SHARE: f64 = 0.2;
     let apart = |(a, b): &(usize, usize)| {
         let d = link[*a] - link[*b];
         (d - (d / TAU).round() * TAU).powi(2)
     };
-    let square = twins.iter().map(apart).sum::<f64>() / twins.len().max(1) as f64;
+    let square = replicate_pairs.iter().map(apart).sum::<f64>() / replicate_pairs.len().max(1) as f64;
     square > SHARE * SHARE * TAU * TAU / 12.0
 }
 
-/// Keeps the twins of those stretches (`of` numbers them for each row) whose inputs agree, and tells how far apart the
+/// Keeps the replicate pairs of those stretches (`of` numbers them for each row) whose inputs agree, and tells how far apart the
 /// others were where none is left.
 pub fn believe(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
     if inputs.is_empty() {
@@ -148,16 +153,18 @@ pub fn believe(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
     }
     let inputs: Vec<Input> = inputs.iter().filter_map(|same| Input::of(problem, *same)).collect();
     let mut pairs: BTreeMap<(i64, i64), Vec<(usize, usize)>> = BTreeMap::new();
-    for (a, b) in std::mem::take(&mut problem.twins) {
+    for (a, b) in std::mem::take(&mut problem.replicate_pairs) {
         pairs.entry((of[a].min(of[b]), of[a].max(of[b]))).or_default().push((a, b));
     }
     let mut worst: Option<(f64, Unlike)> = None;
-    for twins in pairs.into_values() {
-        let apart = |input: &Input| twins.iter().map(|t| input.half_square(*t)).sum::<f64>() / twins.len() as f64;
+    for replicate_pairs in pairs.into_values() {
+        let apart = |input: &Input| {
+            replicate_pairs.iter().map(|t| input.half_square(*t)).sum::<f64>() / replicate_pairs.len() as f64
+        };
         let most =
             inputs.iter().map(|i| (apart(i) / i.allowed.max(f64::MIN_POSITIVE), i)).max_by(|a, b| a.0.total_cmp(&b.0));
         match most.filter(|(times, _)| *times > 1.0) {
-            None => problem.twins.extend(twins),
+            None => problem.replicate_pairs.extend(replicate_pairs),
             Some((times, input)) if worst.is_none_or(|(most, _)| times > most) => {
                 let apart = (2.0 * apart(input)).sqrt();
                 worst = Some((times, Unlike { signal: input.signal, apart, spread: input.variance.sqrt() }));
@@ -165,8 +172,8 @@ pub fn believe(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
             Some(_) => {}
         }
     }
-    problem.twins.sort_unstable();
-    problem.unlike = worst.map(|w| w.1).filter(|_| problem.twins.is_empty());
+    problem.replicate_pairs.sort_unstable();
+    problem.unlike = worst.map(|w| w.1).filter(|_| problem.replicate_pairs.is_empty());
 }
 
 /// Mean square and variance.

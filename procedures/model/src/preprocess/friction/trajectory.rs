@@ -128,7 +128,7 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
     let fold: Vec<usize> = block.iter().map(|b| b % folds).collect();
 
     // Trajectories of different runs are not repeats of each other.
-    let twins = blocks::twins(&run_of, &phase, &repeat, 0);
+    let replicate_pairs = blocks::replicate_pairs(&run_of, &phase, &repeat, 0);
     let segment = whole(&samples.segment, &left_out).unwrap_or_else(|| group.iter().map(|g| *g as i64).collect());
     let about = Preparation {
         residual: ResidualKind::Raw,
@@ -152,9 +152,9 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         blocks,
         fold,
         folds,
-        twins,
-        other_pasts: HashSet::new(),
-        other_angles: HashSet::new(),
+        replicate_pairs,
+        different_history: HashSet::new(),
+        different_angle: HashSet::new(),
         unlike: None,
         segment,
         repeat,

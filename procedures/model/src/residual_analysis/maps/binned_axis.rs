@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 /// One quantity at the rows, in the column's own unit, with the bin of every row.
 #[derive(Debug, Clone)]
-pub struct Scale {
+pub struct BinnedAxis {
     /// Column name of the run table, or what the quantity is where it is none.
     pub name: String,
     pub unit: String,
@@ -33,9 +33,9 @@ const ANGLE_BINS: usize = 60;
 const SAME_LEVEL: f64 = 0.03;
 
 /// Every axis that the run has and that changes. Two that say the same are shown once.
-pub fn scales(prepared: &Prepared) -> Vec<Scale> {
+pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
     let problem = &prepared.main;
-    let mut scales: Vec<Scale> = Vec::new();
+    let mut scales: Vec<BinnedAxis> = Vec::new();
     for signal in [
         Signal::Velocity,
         Signal::Link,
@@ -58,25 +58,25 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
         let scale = match signal {
             Signal::Velocity | Signal::Load if problem.settled => {
                 let held = piece_means(&values, problem);
-                Scale::new(name, unit, levels(&held), held).held()
+                BinnedAxis::new(name, unit, levels(&held), held).held()
             }
             // The response's own noise would sort its residual: only its mean over a piece says how hard the drive worked.
             Signal::Drive if problem.settled => {
                 let held = piece_means(&values, problem);
-                Scale::new(name, unit, quantiles(&held, BINS), held).held()
+                BinnedAxis::new(name, unit, quantiles(&held, BINS), held).held()
             }
             Signal::Link | Signal::Position => {
                 let values = if problem.view.constants.slides { values } else { turned(values) };
-                Scale::new(name, unit, even(&values, ANGLE_BINS), values)
+                BinnedAxis::new(name, unit, even(&values, ANGLE_BINS), values)
             }
-            Signal::Repeat => Scale::new(name, unit, levels(&values), values),
+            Signal::Repeat => BinnedAxis::new(name, unit, levels(&values), values),
             Signal::Direction => {
                 let values: Vec<f64> = values.iter().map(|d| if *d > 0.0 { 1.0 } else { -1.0 }).collect();
                 let both = values.contains(&1.0) && values.contains(&-1.0);
                 let bin = values.iter().map(|d| usize::from(both && *d > 0.0)).collect();
-                Scale::new(name, unit, bin, values).held()
+                BinnedAxis::new(name, unit, bin, values).held()
             }
-            _ => Scale::new(name, unit, quantiles(&values, BINS), values),
+            _ => BinnedAxis::new(name, unit, quantiles(&values, BINS), values),
         };
         if scale.bins.len() > 1 && !scales.iter().any(|s| s.says_the_same(&scale)) {
             scales.push(scale);
@@ -85,21 +85,21 @@ pub fn scales(prepared: &Prepared) -> Vec<Scale> {
     for signal in problem.view.points.unknown() {
         let values = problem.reduce.apply(problem.view.get(signal).to_vec());
         let (column, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
-        let as_read = Scale::new(column, unit.clone(), quantiles(&values, BINS), values);
+        let as_read = BinnedAxis::new(column, unit.clone(), quantiles(&values, BINS), values);
         // A sensor that nobody knows may hold the noise of the response: only its mean over a piece says where that was.
         let held = piece_means(&as_read.values, problem);
-        let scale = Scale::new(column, unit, quantiles(&held, BINS), held);
+        let scale = BinnedAxis::new(column, unit, quantiles(&held, BINS), held);
         if scale.bins.len() > 1 && !scales.iter().any(|s| s.says_the_same(&as_read)) {
             scales.push(scale);
         }
     }
     let since = since_reversal(problem);
-    let since = Scale::new("time_since_reversal_s", "s".into(), quantiles(&since, BINS), since);
+    let since = BinnedAxis::new("time_since_reversal_s", "s".into(), quantiles(&since, BINS), since);
     scales.extend((since.bins.len() > 1 && scales.iter().any(|s| s.name == "direction")).then_some(since));
     scales
 }
 
-impl Scale {
+impl BinnedAxis {
     fn new(name: &str, unit: String, bin: Vec<usize>, values: Vec<f64>) -> Self {
         let count = bin.iter().max().map_or(0, |b| b + 1);
         let mut bins = vec![(f64::INFINITY, f64::NEG_INFINITY, 0.0, 0.0f64); count];

@@ -2,14 +2,14 @@
 
 use crate::linear::basis::dot;
 use crate::preprocess::Problem;
-use crate::residual_analysis::maps::binned_axis::Scale;
+use crate::residual_analysis::maps::binned_axis::BinnedAxis;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Rows sorted into the cells of one scale, or of two.
 #[derive(Debug, Clone)]
 pub struct Map {
-    pub x: Scale,
-    pub y: Option<Scale>,
+    pub x: BinnedAxis,
+    pub y: Option<BinnedAxis>,
     /// Cells with rows, in the order of x and then y.
     pub cells: Vec<Cell>,
     /// Share of the squared residual that the means of the cells take off rows that they were not made from.
@@ -29,7 +29,7 @@ pub struct Cell {
 }
 
 impl Map {
-    pub fn new(x: Scale, y: Option<Scale>, problem: &Problem, piece: &[usize], residual: &[f64]) -> Self {
+    pub fn new(x: BinnedAxis, y: Option<BinnedAxis>, problem: &Problem, piece: &[usize], residual: &[f64]) -> Self {
         let width = y.as_ref().map_or(1, |y| y.bins.len());
         let cell: Vec<usize> =
             (0..residual.len()).map(|i| x.bin[i] * width + y.as_ref().map_or(0, |y| y.bin[i])).collect();

@@ -5,20 +5,20 @@ pub(crate) mod map;
 pub(crate) mod public;
 pub(crate) mod regions;
 
-use crate::residual_analysis::maps::regions::Yardstick;
+use crate::residual_analysis::maps::regions::ReferenceMagnitude;
 use crate::thresholds::{AXIS_FUNCTION, SCATTER_BAND};
 
 use crate::Options;
 use crate::preprocess::independent_blocks::pieces;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::maps::{PairMap, Region};
-use crate::residual_analysis::maps::binned_axis::{Scale, scales};
+use crate::residual_analysis::maps::binned_axis::{BinnedAxis, scales};
 use crate::residual_analysis::maps::map::{Cell, Map};
 use jointbench_instrument::Kind;
 
 /// All maps of one residual.
 pub struct Maps {
-    scales: Vec<Scale>,
+    scales: Vec<BinnedAxis>,
     axes: Vec<Map>,
     /// Position, load, temperature and what no effect knows by direction: friction changes its sign with the motion, and what a
     /// direction hides from the other is seen here.
@@ -41,7 +41,7 @@ impl Maps {
         let problem = &prepared.main;
         let (piece, _) = pieces(problem, 1);
         let scales = scales(prepared);
-        let map = |x: &Scale, y: Option<&Scale>| Map::new(x.clone(), y.cloned(), problem, &piece, &residual);
+        let map = |x: &BinnedAxis, y: Option<&BinnedAxis>| Map::new(x.clone(), y.cloned(), problem, &piece, &residual);
         let axes: Vec<Map> = scales.iter().map(|s| map(s, None)).collect();
         let known = ["link_torque_nm", "brake_current_a", "temperature_c"];
         let unknown: Vec<&str> = problem.view.points.unknown().map(|s| prepared.column_name(s)).collect();
@@ -123,7 +123,7 @@ impl Maps {
     }
 
     /// Regions in which the residual is not noise, the worst first.
-    pub fn regions(&self, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
+    pub fn regions(&self, unit: &str, yardstick: Option<&ReferenceMagnitude>) -> Vec<Region> {
         regions::regions(self, unit, yardstick)
     }
 
@@ -159,7 +159,7 @@ impl Maps {
         best.map(|m| self.public_pair(&m, cells))
     }
 
-    fn pair(&self, x: &Scale, y: &Scale, problem: &Problem) -> Map {
+    fn pair(&self, x: &BinnedAxis, y: &BinnedAxis, problem: &Problem) -> Map {
         // An angle keeps its fine bins beside two directions: what it hides is narrow.
         let x = if y.bins.len() > 2 { x.coarse(PAIR_BINS) } else { x.clone() };
         Map::new(x, Some(y.coarse(PAIR_BINS)), problem, &self.piece, &self.residual)

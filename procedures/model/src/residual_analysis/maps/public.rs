@@ -59,7 +59,7 @@ impl Maps {
 
     /// With bands that hold for `many` cells together.
     pub(crate) fn public_pair(&self, map: &Map, many: usize) -> PairMap {
-        let ranges = |scale: &crate::residual_analysis::maps::binned_axis::Scale| {
+        let ranges = |scale: &crate::residual_analysis::maps::binned_axis::BinnedAxis| {
             scale.bins.iter().map(|b| [b.from, b.to]).collect::<Vec<_>>()
         };
         let y = map.y.as_ref();

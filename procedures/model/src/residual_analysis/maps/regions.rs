@@ -4,7 +4,7 @@ use crate::report::diagnosis::NoiseFloor;
 use crate::report::fit::Fit;
 use crate::report::maps::Region;
 use crate::residual_analysis::maps::Maps;
-use crate::residual_analysis::maps::binned_axis::Scale;
+use crate::residual_analysis::maps::binned_axis::BinnedAxis;
 use crate::residual_analysis::maps::map::{Cell, Map};
 use crate::thresholds::{AXIS_DOMINATES, AXIS_SHADOW, REGION_OVERLAP, REGION_WORSE};
 use crate::words::{figure, percent, spoken_axis, way};
@@ -14,13 +14,13 @@ use jointbench_instrument::Kind;
 const MOST: usize = 8;
 
 /// What an error is measured against in words.
-pub struct Yardstick {
+pub struct ReferenceMagnitude {
     value: f64,
     /// `the Coulomb friction`, `the noise`.
     what: &'static str,
 }
 
-impl Yardstick {
+impl ReferenceMagnitude {
     /// `18 % of the Coulomb friction`, `35 times the noise`.
     pub fn says(&self, size: f64) -> String {
         match size / self.value {
@@ -32,12 +32,12 @@ impl Yardstick {
 }
 
 /// Coulomb friction where the model has it, how well the run repeats itself else.
-pub fn yardstick(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<Yardstick> {
+pub fn yardstick(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<ReferenceMagnitude> {
     let coulomb = fit.parameters.iter().find(|p| p.effect == "coulomb" && p.value > 0.0);
-    let coulomb = coulomb.map(|p| Yardstick { value: p.value, what: "the Coulomb friction" });
+    let coulomb = coulomb.map(|p| ReferenceMagnitude { value: p.value, what: "the Coulomb friction" });
     coulomb.or_else(|| {
         let value = floor?.rms.filter(|rms| *rms > 0.0)?;
-        Some(Yardstick { value, what: "the noise" })
+        Some(ReferenceMagnitude { value, what: "the noise" })
     })
 }
 
@@ -52,7 +52,7 @@ struct Stretch<'m> {
     count: usize,
 }
 
-pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&Yardstick>) -> Vec<Region> {
+pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&ReferenceMagnitude>) -> Vec<Region> {
     let mut stretches: Vec<Stretch> = maps.axes.iter().chain(&maps.by_direction).flat_map(|m| join(maps, m)).collect();
     if let Some(best) = unbanded(maps) {
         stretches.retain(|stretch| stretch.map.removable > AXIS_SHADOW * best.removable);
@@ -159,7 +159,7 @@ impl Stretch<'_> {
         (0..self.map.x.bin.len()).filter(inside).collect()
     }
 
-    fn region(&self, kind: Kind, unit: &str, yardstick: Option<&Yardstick>) -> Region {
+    fn region(&self, kind: Kind, unit: &str, yardstick: Option<&ReferenceMagnitude>) -> Region {
         let x = &self.map.x;
         let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
         let direction = self.map.y.as_ref().map(|y| if y.bins[self.y].centre > 0.0 { "positive" } else { "negative" });
@@ -183,7 +183,7 @@ impl Stretch<'_> {
     }
 
     /// `below 9.0 rad/s`, `near 2.4 Nm`, `between a link position of 1.1 rad and 1.3 rad`.
-    fn place(&self, kind: Kind, x: &Scale) -> String {
+    fn place(&self, kind: Kind, x: &BinnedAxis) -> String {
         if x.name == "direction" {
             return way(kind, x.bins[self.first].centre > 0.0).into();
         }

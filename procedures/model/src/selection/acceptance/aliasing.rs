@@ -7,8 +7,8 @@
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
 use crate::preprocess::design::segments::stretches;
-use crate::regression::linear_model::{Term, Terms};
-use crate::regression::partial_regression::{Ground, products};
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::partial_regression::{PartialRegression, products};
 use crate::signal::{Signal, Signals};
 use crate::thresholds::{
     ALIAS_ERRORS, ALIAS_SHARE, COMPARABLE_SPEED, MANY_ORDERS, MEANS_FOLLOW_RAD, PERIODIC_SHARE, SAME_SPEED,
@@ -26,7 +26,7 @@ pub fn least_share(term: &Term) -> f64 {
 }
 
 /// The wave is not in the data where it has to be.
-pub fn is_none(term: &Term, now: &Terms, ground: &Ground) -> bool {
+pub fn is_none(term: &Term, now: &LinearModel, ground: &PartialRegression) -> bool {
     if term.effect.wave().is_none() || !now.problem.settled || term.columns.is_empty() {
         return false;
     }
@@ -44,7 +44,7 @@ struct Part {
 }
 
 impl Part {
-    fn of(term: &Term, problem: &Problem, ground: &Ground) -> Self {
+    fn of(term: &Term, problem: &Problem, ground: &PartialRegression) -> Self {
         let stretches = stretches(&problem.segment);
         let factors = ground.own(&term.columns).factors();
         let mut wave = vec![0.0; problem.rows()];

@@ -4,13 +4,13 @@
 //! its coupling, where a gear rests) is in all of them, and few legs in a row lie apart like a step in time.
 
 use crate::Options;
-use crate::effect::Search;
+use crate::effect::ShapeSearch;
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
 use crate::preprocess::design::segments::stretches;
 use crate::preprocess::independent_blocks::legs;
-use crate::regression::linear_model::{Term, Terms};
-use crate::regression::partial_regression::{Ground, jackknife, products};
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::partial_regression::{PartialRegression, jackknife, products};
 use crate::regression::significance::chance;
 use crate::stats::grouped::{means, within};
 use crate::thresholds::{BETWEEN_LEGS, STEP_OVER_READINGS};
@@ -20,13 +20,19 @@ use std::ops::Range;
 
 /// What the columns of an effect have of their own beside the model, against the scatter of whole legs. What differs from leg
 /// to leg has to pass an F-test of their means: a step may lie between any two legs, and one within a leg moves its mean too.
-pub fn could_be(term: &Term, now: &Terms, ground: &Ground, kind: Kind, options: &Options) -> bool {
+pub fn is_random_leg_effect(
+    term: &Term,
+    now: &LinearModel,
+    ground: &PartialRegression,
+    kind: Kind,
+    options: &Options,
+) -> bool {
     // A friction run has a leg for every speed both ways: its blocks are its legs.
     if kind == Kind::Friction {
         return false;
     }
     let legs = stretches(&legs(now.problem));
-    let steps = term.form.shape.iter().any(|shape| shape.search == Search::Jump);
+    let steps = term.form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump);
     let own: Vec<Vec<f64>> = term.columns.iter().map(|column| ground.basis.rest(column)).collect();
     if !steps && !own.iter().all(|column| is_between(column, &legs)) {
         return !shows_within(&own, &legs, ground, now.problem, options)
@@ -48,9 +54,9 @@ pub fn could_be(term: &Term, now: &Terms, ground: &Ground, kind: Kind, options: 
 }
 
 /// An effect of a model shows within blocks, with a zero of its own for each.
-pub fn shows_within_blocks(term: &Term, now: &Terms, options: &Options) -> bool {
+pub fn shows_within_blocks(term: &Term, now: &LinearModel, options: &Options) -> bool {
     let without = now.without(term.id());
-    let ground = Ground::of(&without);
+    let ground = PartialRegression::of(&without);
     let own: Vec<Vec<f64>> = term.columns.iter().map(|column| ground.basis.rest(column)).collect();
     shows_within(&own, &stretches(&without.problem.block), &ground, without.problem, options)
 }
@@ -59,7 +65,7 @@ pub fn shows_within_blocks(term: &Term, now: &Terms, options: &Options) -> bool 
 fn shows_within(
     own: &[Vec<f64>],
     legs: &[Range<usize>],
-    ground: &Ground,
+    ground: &PartialRegression,
     problem: &Problem,
     options: &Options,
 ) -> bool {
@@ -67,11 +73,17 @@ fn shows_within(
     let basis = Basis::of(&ground.basis.vectors().iter().map(within).collect::<Vec<_>>());
     let residual = basis.rest(&within(&ground.residual));
     let columns: Vec<Vec<f64>> = own.iter().map(within).collect();
-    chance(&columns, &Ground::new(basis, residual, problem), options) <= options.alpha
+    chance(&columns, &PartialRegression::new(basis, residual, problem), options) <= options.alpha
 }
 
 /// Its size stands out of what it would be without one leg after the other.
-fn shows_between(own: &[Vec<f64>], term: &Term, legs: &[Range<usize>], ground: &Ground, options: &Options) -> bool {
+fn shows_between(
+    own: &[Vec<f64>],
+    term: &Term,
+    legs: &[Range<usize>],
+    ground: &PartialRegression,
+    options: &Options,
+) -> bool {
     let mut taken = vec![0.0; ground.residual.len()];
     for (column, factor) in own.iter().zip(ground.own(&term.columns).factors()) {
         taken.iter_mut().zip(column).for_each(|(t, v)| *t += factor * v);

@@ -1,12 +1,12 @@
 //! An effect is named only where every coefficient stays physically possible with it.
 
-use crate::regression::linear_model::{Term, Terms};
-use crate::selection::acceptance::formula_error::Bar;
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::selection::acceptance::formula_error::AcceptanceThreshold;
 use jointbench_instrument::Kind;
 
-impl Bar<'_> {
+impl AcceptanceThreshold<'_> {
     /// No friction becomes negative beside another: a wave over short strokes can look like a constant.
-    pub fn leaves_possible(&self, now: &Terms, term: &Term) -> bool {
+    pub fn keeps_parameters_feasible(&self, now: &LinearModel, term: &Term) -> bool {
         if self.kind != Kind::Friction {
             return true;
         }
@@ -19,7 +19,7 @@ impl Bar<'_> {
 }
 
 /// Its delay leaves the torque between the moments of its row's position and velocity: it is as late as the row is long.
-fn is_of_its_row(with: &Terms, factors: &[Vec<f64>]) -> bool {
+fn is_of_its_row(with: &LinearModel, factors: &[Vec<f64>]) -> bool {
     let factor = |id| with.terms.iter().position(|t| t.id() == id).and_then(|at| factors[at].first());
     match (with.problem.view.constants.of_row_s, factor("signal_delay"), factor("inertia")) {
         (Some([a, b]), Some(k_j), Some(j)) => (a.min(b)..=a.max(b)).contains(&(-k_j / j)),

@@ -1,32 +1,37 @@
 //! An added effect that explains only a part of what shows over its own axis.
 
 use crate::Options;
-use crate::effect::Stage;
+use crate::effect::Regime;
 use crate::linear::basis::dot;
 use crate::preprocess::{Prepared, Problem};
 use crate::regression::linear_model::Term;
 use crate::residual_analysis::lack_of_fit::structured;
 use crate::residual_analysis::maps::Maps;
-use crate::selection::floating_search::Search;
+use crate::selection::floating_search::FloatingSearch;
 use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
 
 /// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any
 /// function of that axis would take away much more than it does. A wave over the angle is not the answer to a bump at
 /// one angle.
 pub fn half_explained<'p>(
-    search: &Search<'_, 'p>,
+    search: &FloatingSearch<'_, 'p>,
     axis: &str,
     prepared: &Prepared,
     options: &Options,
 ) -> Option<&'p str> {
     // What depends on the past is a function of no axis, even where a repeated motion makes it look like one.
-    let of_axes = search.added().filter(|term| term.effect.stage() != Stage::Memory);
+    let of_axes = search.added().filter(|term| term.effect.regime() != Regime::Hysteresis);
     least_whole(search, of_axes, axis, prepared, options)
 }
 
 /// A wave over a part of a turn of which less than two periods were seen, where any function of its angle would take more, or
 /// structure remains over the angle beside it: a bump at this place. A weak one leaves nothing that could be called structure.
-pub fn bump<'p>(search: &Search<'_, 'p>, maps: &Maps, prepared: &Prepared, options: &Options) -> Option<&'p str> {
+pub fn bump<'p>(
+    search: &FloatingSearch<'_, 'p>,
+    maps: &Maps,
+    prepared: &Prepared,
+    options: &Options,
+) -> Option<&'p str> {
     let view = &search.now.problem.view;
     let is_open = |term: &&Term<'p>| {
         let turns = term.effect.wave().map(|angle| view.turns(angle));
@@ -40,7 +45,7 @@ pub fn bump<'p>(search: &Search<'_, 'p>, maps: &Maps, prepared: &Prepared, optio
 
 /// The effect that takes least of what any function of the axis would take, where that is too little.
 fn least_whole<'s, 'p: 's>(
-    search: &'s Search<'_, 'p>,
+    search: &'s FloatingSearch<'_, 'p>,
     terms: impl Iterator<Item = &'s Term<'p>>,
     axis: &str,
     prepared: &Prepared,

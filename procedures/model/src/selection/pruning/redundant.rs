@@ -1,12 +1,12 @@
 //! An added effect without which the model is as good.
 
 use crate::regression::linear_model::Term;
-use crate::selection::floating_search::Search;
+use crate::selection::floating_search::FloatingSearch;
 use rayon::prelude::*;
 
-impl<'p> Search<'_, 'p> {
+impl<'p> FloatingSearch<'_, 'p> {
     /// The added effect without which the model is as good. What came last has just shown its reason.
-    pub(crate) fn needless(&self) -> Option<&'p str> {
+    pub(crate) fn redundant(&self) -> Option<&'p str> {
         let full = self.now.linear().sse;
         let ids = self.on_trial().map(Term::id).filter(|id| self.last != Some(id));
         let ids: Vec<&'p str> = ids.collect();

@@ -3,17 +3,17 @@
 use crate::regression::cross_validation::held_out;
 use crate::regression::linear_model::Term;
 use crate::selection::equivalence::is_tie;
-use crate::selection::floating_search::{Found, Search};
+use crate::selection::floating_search::{FloatingSearch, Found};
 use rayon::prelude::*;
 
-impl<'p> Search<'_, 'p> {
+impl<'p> FloatingSearch<'_, 'p> {
     /// An added effect in whose place another one makes the model clearly better, with that one: an effect that came first
     /// because it looks a little like two that are missing. No effect gives way to one that this run cannot tell it from.
-    pub(crate) fn misplaced(&self) -> Option<(&'p str, Found<'p>)> {
+    pub(crate) fn swapped(&self) -> Option<(&'p str, Found<'p>)> {
         let losses = held_out(&self.now);
         let present: f64 = losses.iter().sum();
         let ids: Vec<&'p str> = self.added().map(Term::id).collect();
-        let alone = self.now.terms.len() <= self.kept.len() + 1;
+        let alone = self.now.terms.len() <= self.initial_terms.len() + 1;
         let better = |id: &'p str| {
             let rest = self.now.without(id);
             let plain = if alone { None } else { self.step(&rest) };

@@ -3,9 +3,9 @@
 use crate::inference::intervals::intervals;
 use crate::preprocess::Prepared;
 use crate::regression::cross_validation::held_out;
-use crate::regression::linear_model::{Term, Terms};
+use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
-use crate::selection::floating_search::Search;
+use crate::selection::floating_search::FloatingSearch;
 use crate::thresholds::{NEEDED_WHERE_OPEN, NEEDED_WITHOUT_SIZE, NEEDED_WITHOUT_SIZE_AND_SHAPE};
 
 /// What the run leaves open about an effect.
@@ -20,9 +20,9 @@ pub struct Doubt {
 }
 
 impl Doubt {
-    pub fn of(term: &Term, terms: &Terms, parameters: &[Parameter], prepared: &Prepared) -> Self {
+    pub fn of(term: &Term, terms: &LinearModel, parameters: &[Parameter], prepared: &Prepared) -> Self {
         let own = |p: &&Parameter| p.effect == term.id();
-        let sudden = term.effect.suddenness();
+        let sudden = term.effect.exponent_parameter();
         let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
         // Of a wave's two factors one may well be zero.
         let is_there = |parameters: &[Parameter]| {
@@ -43,7 +43,7 @@ impl Doubt {
 }
 
 /// A model says how large an effect is, and of which shape.
-pub fn is_decided<'p>(with: &Terms<'p>, term: &Term<'p>, prepared: &Prepared) -> bool {
+pub fn is_decided<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Prepared) -> bool {
     let doubt = Doubt::of(term, with, &intervals(with, prepared.motion).parameters, prepared);
     !doubt.of_factors && !doubt.of_shape
 }
@@ -51,7 +51,7 @@ pub fn is_decided<'p>(with: &Terms<'p>, term: &Term<'p>, prepared: &Prepared) ->
 /// An added effect whose size or shape the run does not decide, and without which held-out error is hardly larger. Where it
 /// decides neither, something else may show in its place: there it has to take half of the error away, and a third where it
 /// could be nothing whatever its shape. Beside structure from outside the library no size is decided: a part of that may be in it.
-pub fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
+pub fn undecided<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
     let present: f64 = held_out(&search.now).iter().sum();
     let open = search.added().filter_map(|term| {
@@ -60,7 +60,7 @@ pub fn undecided<'p>(search: &Search<'_, 'p>, prepared: &Prepared) -> Option<&'p
         let goes = match doubt.of_factors && doubt.of_shape {
             true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE,
             false if doubt.of_size => more < NEEDED_WITHOUT_SIZE,
-            false => (search.closed || doubt.is_there()) && more < NEEDED_WHERE_OPEN,
+            false => (search.unmodelled_structure || doubt.is_there()) && more < NEEDED_WHERE_OPEN,
         };
         goes.then_some((term.id(), more))
     });
