@@ -1,9 +1,9 @@
 //! Two revisions of a model side by side.
 
-use crate::ModelError;
 use crate::fit::evaluate;
-use crate::report::{Comparison, Fit, Parameter, ParameterPair, Wider};
-use crate::words;
+use crate::report::comparison::{Comparison, ParameterPair, Wider};
+use crate::report::fit::{Fit, Parameter};
+use crate::{ModelError, words};
 use jointbench_instrument::RunTable;
 
 /// What the second model has that the first has not, and the other way round, parameter by parameter, and the error of

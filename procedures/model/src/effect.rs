@@ -1,6 +1,7 @@
 //! What an effect is: one physical cause with its formula, its parameters and the signals that it needs.
 
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::nearest;
 use serde::Serialize;
@@ -79,12 +80,12 @@ pub struct Shape<'e> {
     pub name: &'e str,
     pub min: f64,
     pub max: f64,
-    pub search: Search,
+    pub search: ShapeSearch,
 }
 
 /// How the best value of a shape parameter is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Search {
+pub enum ShapeSearch {
     /// Refined continuously, in its logarithm.
     Smooth,
     /// Refined continuously, in itself: it may be zero or negative.
@@ -99,8 +100,8 @@ impl Shape<'_> {
     /// The value after a step: in its logarithm, or in shares of its range.
     pub fn moved(&self, value: f64, step: f64) -> f64 {
         match self.search {
-            Search::Signed => value + step * (self.max - self.min),
-            Search::Smooth | Search::Whole | Search::Jump => value * step.exp(),
+            ShapeSearch::Signed => value + step * (self.max - self.min),
+            ShapeSearch::Smooth | ShapeSearch::Whole | ShapeSearch::Jump => value * step.exp(),
         }
     }
 
@@ -116,7 +117,7 @@ impl Shape<'_> {
 
     /// It is refined continuously, and not held where it is.
     pub fn is_smooth(&self) -> bool {
-        self.min < self.max && matches!(self.search, Search::Smooth | Search::Signed)
+        self.min < self.max && matches!(self.search, ShapeSearch::Smooth | ShapeSearch::Signed)
     }
 }
 
@@ -129,13 +130,13 @@ impl<'e> Form<'e> {
 
 /// On which part of the data an effect is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum Regime {
     /// Where the motion has settled.
-    Settled,
+    SteadyState,
     /// Where speed changes: plateaus say nothing about it.
-    Ramp,
+    Transient,
     /// Around reversals, where the past matters.
-    Memory,
+    Hysteresis,
 }
 
 pub trait Effect: Sync {
@@ -158,8 +159,8 @@ pub trait Effect: Sync {
         None
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Settled
+    fn regime(&self) -> Regime {
+        Regime::SteadyState
     }
 
     /// The angle over which it is a wave, as often in a turn as its shape says.
@@ -169,7 +170,7 @@ pub trait Effect: Sync {
 
     /// A shape parameter that says only how suddenly the effect comes and goes. At the edge of its range the effect is there
     /// all the same.
-    fn suddenness(&self) -> Option<&'static str> {
+    fn exponent_parameter(&self) -> Option<&'static str> {
         None
     }
 
@@ -179,12 +180,12 @@ pub trait Effect: Sync {
     }
 
     /// Its factors are those of this run's repeats: another run has others, of the same size.
-    fn is_of_each_run(&self) -> bool {
+    fn is_nuisance(&self) -> bool {
         false
     }
 
     /// The effect enters with a factor of one and nothing to fit.
-    fn is_given(&self) -> bool {
+    fn is_offset(&self) -> bool {
         false
     }
 
@@ -225,7 +226,7 @@ pub trait Effect: Sync {
                  other direction as well"
             ));
         }
-        if self.stage() == Stage::Memory && view.constants.turns_left_out {
+        if self.regime() == Regime::Hysteresis && view.constants.turns_left_out {
             return Some("no contact shows that bends before it slips: rests and reversals are left out".into());
         }
         if self.forms(view).is_empty() { Some(format!("it would not show: {}", self.unseen())) } else { None }

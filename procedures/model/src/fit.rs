@@ -1,16 +1,17 @@
 //! Fitting a model to a run, and holding a fit against another run.
 
-use crate::OwnEffect;
-use crate::assembly::Assembly;
-use crate::intervals::intervals;
-use crate::linear::{condition, dot};
-use crate::prepare::{Prepared, Problem, prepare};
-use crate::report::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport};
-use crate::select::held_out;
-use crate::terms::{Term, Terms};
-use crate::view::View;
+use crate::inference::confounding;
+use crate::inference::intervals::intervals;
+use crate::linear::basis::dot;
+use crate::linear::condition;
+use crate::prediction::{predict, prepare_alike};
+use crate::preprocess::{Prepared, prepare};
+use crate::regression::cross_validation::held_out;
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::fit::{ANOTHER_INERTIA, Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport};
 use crate::words::figure;
-use crate::{ModelError, ModelSpec, Options, ResidualKind, effects, together, transfer};
+use crate::{ModelError, ModelSpec, Options, OwnEffect, ResidualKind, export};
 use jointbench_instrument::RunTable;
 
 /// Fits the effects of a model to a run.
@@ -24,11 +25,11 @@ pub fn fit(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Fit, M
 
 /// As [`fit`], of a run that is prepared once for several models: on a long one that is most of the work.
 pub fn fit_prepared(prepared: &Prepared, spec: &ModelSpec, options: &Options) -> Result<Fit, ModelError> {
-    report(&Assembly::new(prepared, spec, options)?)
+    report(&TwoStageModel::new(prepared, spec, options)?)
 }
 
 /// The contract's object of a model that is laid out.
-pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
+pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     let prepared = assembly.prepared;
     let main = &assembly.main;
     let linear = main.linear();
@@ -85,7 +86,7 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
     }
     notes.extend(parameters.iter().find(|p| p.effect == "inertia").and_then(|p| another_inertia(p, prepared)));
     notes.extend(main.terms.iter().filter_map(written));
-    let mut instead = main.terms.iter().map(|term| together::instead(term.effect, prepared));
+    let mut instead = main.terms.iter().map(|term| confounding::instead(term.effect, prepared));
     notes.extend(instead.find(|said| !said.is_empty()).unwrap_or_default());
     let own: Vec<OwnEffect> =
         assembly.spec.own.iter().filter(|o| assembly.effects.iter().any(|e| e == o.id())).cloned().collect();
@@ -107,12 +108,9 @@ pub(crate) fn report(assembly: &Assembly) -> Result<Fit, ModelError> {
         terms,
         scope: Some(scope),
     };
-    transfer::measure(&mut fit, &prepared.main)?;
+    export::measure(&mut fit, &prepared.main)?;
     Ok(fit)
 }
-
-/// How the note begins that an inertia is not the set-up's.
-pub(crate) const ANOTHER_INERTIA: &str = "the inertia is ";
 
 /// A fitted inertia within this share of the stated one agrees with it.
 const AS_STATED: f64 = 0.1;
@@ -140,7 +138,7 @@ pub fn written(term: &Term) -> Option<String> {
 const LARGEST: f64 = 1e150;
 
 /// Condition of the scaled columns by QR; refuses columns that depend on each other.
-fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
+fn check_columns(terms: &LinearModel) -> Result<f64, ModelError> {
     let columns = terms.columns();
     let found = condition(&columns);
     let owner = |column: usize| {
@@ -159,7 +157,7 @@ fn check_columns(terms: &Terms) -> Result<f64, ModelError> {
     }
 }
 
-fn unseen(assembly: &Assembly, id: &str, why: &str) -> Vec<Parameter> {
+fn unseen(assembly: &TwoStageModel, id: &str, why: &str) -> Vec<Parameter> {
     let Ok(effect) = assembly.spec.find(id) else { return Vec::new() };
     effect
         .info()
@@ -194,58 +192,4 @@ pub fn evaluate(fit: &Fit, run: &RunTable) -> Result<Evaluation, ModelError> {
         settled_share: (prepared.about.residual == ResidualKind::PlateauMean).then(|| settled / run.len() as f64),
         notes: fit.scope.iter().flat_map(|scope| scope.notes(fit, &prepared)).collect(),
     })
-}
-
-pub(crate) fn prepare_alike(fit: &Fit, run: &RunTable) -> Result<Prepared, ModelError> {
-    if run.kind() != fit.kind {
-        return Err(ModelError::WrongKind { run: run.kind(), model: fit.kind });
-    }
-    let about = &fit.preparation;
-    let options = Options {
-        residual: Some(about.residual),
-        cutoff_hz: about.cutoff_hz,
-        decimation: Some(about.decimation),
-        chunk_s: about.chunk_s,
-        ..Options::default()
-    };
-    prepare(run, &options)
-}
-
-/// What a fit predicts at the rows of a problem.
-pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
-    predict_on(fit, &problem.view, problem.rows(), |column| problem.reduce.apply(column))
-}
-
-/// The same at the points of a view, each column reduced to rows.
-pub(crate) fn predict_on(
-    fit: &Fit,
-    view: &View,
-    rows: usize,
-    reduce: impl Fn(Vec<f64>) -> Vec<f64>,
-) -> Result<Vec<f64>, ModelError> {
-    let mut predicted = vec![0.0; rows];
-    let mut add = |columns: Vec<Vec<f64>>, factors: &[f64]| {
-        for (column, factor) in columns.into_iter().zip(factors) {
-            predicted.iter_mut().zip(reduce(column)).for_each(|(p, c)| *p += factor * c);
-        }
-    };
-    for id in &fit.effects {
-        let effect = effects::find_with_own(fit.kind, &fit.own, id)?;
-        if effect.is_given() && effect.missing(view).is_none() {
-            add(effect.columns("linear", &[], view), &[1.0]);
-        }
-    }
-    for term in &fit.terms {
-        let effect = effects::find_with_own(fit.kind, &fit.own, &term.effect)?;
-        if let Some(column) = effect.missing(view) {
-            let why = format!("there is no column {column}");
-            return Err(ModelError::NotVisible { effect: term.effect.clone(), why });
-        }
-        let found = effect.columns(&term.form, &term.shape, view);
-        if found.len() != term.linear.len() {
-            return Err(ModelError::UnknownForm { effect: term.effect.clone(), form: term.form.clone() });
-        }
-        add(found, &term.linear);
-    }
-    Ok(predicted)
 }

@@ -1,10 +1,11 @@
 //! The residual of a fit at every point with everything that it may depend on.
 
-use crate::fit::{predict, prepare_alike};
-use crate::pieces::pieces;
-use crate::prepare::{Prepared, Problem};
-use crate::report::{Axis, Fit, ResidualSet};
-use crate::view::Signal;
+use crate::prediction::{predict, prepare_alike};
+use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::{Prepared, Problem};
+use crate::report::fit::Fit;
+use crate::report::residuals::{Axis, ResidualSet};
+use crate::signal::Signal;
 use crate::{ModelError, Options};
 use jointbench_instrument::RunTable;
 

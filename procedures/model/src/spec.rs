@@ -1,7 +1,9 @@
 //! What is asked: a model as a kind plus a set of effects, and how to go about it.
 
 use crate::effect::Effect;
-use crate::{ModelError, OwnEffect, effects};
+use crate::thresholds::{ALPHA, FLIPS, PRACTICAL_SHARE};
+use crate::user_effects;
+use crate::{ModelError, OwnEffect};
 use jointbench_instrument::{Kind, RunTable};
 use serde::{Deserialize, Serialize};
 
@@ -58,12 +60,12 @@ impl ModelSpec {
 
     /// Every effect that a model of this kind may hold.
     pub fn known(&self) -> impl Iterator<Item = &dyn Effect> {
-        effects::with_own(self.kind, &self.own)
+        user_effects::with_own(self.kind, &self.own)
     }
 
     /// The effect with an id. [`ModelError::UnknownEffect`] names those that are known.
     pub fn find(&self, id: &str) -> Result<&dyn Effect, ModelError> {
-        effects::find_with_own(self.kind, &self.own, id)
+        user_effects::find_with_own(self.kind, &self.own, id)
     }
 
     pub fn contains(&self, id: &str) -> bool {
@@ -125,9 +127,9 @@ impl Default for Options {
             cutoff_hz: None,
             decimation: None,
             chunk_s: None,
-            alpha: 0.05,
-            practical_share: 0.02,
-            flips: 499,
+            alpha: ALPHA,
+            practical_share: PRACTICAL_SHARE,
+            flips: FLIPS as usize,
             seed: 1,
         }
     }

@@ -6,7 +6,7 @@ use common::bench::{GEAR, Moment, Staircase};
 use common::controller::on_controller;
 use common::tables::{meta, scatter, stiffness};
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
-use jointbench_model::transfer::{Format, export, predict};
+use jointbench_model::export::{Format, export, predict};
 use jointbench_model::{Fit, ModelSpec, Options, fit, residuals};
 
 const STEP_S: f64 = 0.01;

@@ -4,8 +4,9 @@ mod common;
 
 use common::tables::{Shape, table};
 use jointbench_instrument::Kind;
-use jointbench_model::effect::Search;
-use jointbench_model::view::{Signal, Signals, View};
+use jointbench_model::effect::ShapeSearch;
+use jointbench_model::signal::{Signal, Signals};
+use jointbench_model::view::View;
 use jointbench_model::{ModelSpec, Options, effects, fit};
 
 /// Section 2 of the contract.
@@ -121,7 +122,7 @@ fn every_form_has_its_columns_names_and_bounds() {
                     |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_').len();
                 let known =
                     |name: &str| info.parameters.iter().any(|p| p.name == name || p.name == name[..family(name)]);
-                if !effect.is_given() {
+                if !effect.is_offset() {
                     assert!(form.linear.iter().all(|n| known(n)), "{} {:?}", info.id, form.linear);
                 }
                 assert!(form.shape.iter().all(|s| known(s.name)), "{} {:?}", info.id, form.shape);
@@ -129,7 +130,7 @@ fn every_form_has_its_columns_names_and_bounds() {
                 for shape in &form.grid {
                     for (value, bounds) in shape.iter().zip(&form.shape) {
                         assert!(
-                            bounds.search == Search::Whole
+                            bounds.search == ShapeSearch::Whole
                                 || *value == bounds.min && bounds.min == bounds.max
                                 || (bounds.min * 0.999999..=bounds.max * 1.000001).contains(value),
                             "{} {}: {value}",

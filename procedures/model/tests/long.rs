@@ -5,7 +5,7 @@ mod common;
 use common::tables::{Shape, table};
 use jointbench_instrument::Kind;
 use jointbench_model::Options;
-use jointbench_model::prepare::prepare;
+use jointbench_model::preprocess::prepare;
 
 #[test]
 fn a_long_run_is_judged_on_some_of_its_rows() {

@@ -5,7 +5,7 @@ mod common;
 use common::recordings::{BAM, EMPS, KR300, ODRIVE, PLACID, WAVES, most, of_pulses, recording, waves};
 use common::{read, shared};
 use jointbench_instrument::{Kind, RunTable, Trace};
-use jointbench_model::prepare::attention;
+use jointbench_model::preprocess::attention;
 use jointbench_model::{ModelSpec, Options, Verdict, diagnose, discover, fit};
 
 /// Janot, Gautier, Brunot 2019: symmetric model of the electro-mechanical positioning system.

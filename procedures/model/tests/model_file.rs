@@ -4,7 +4,7 @@ mod common;
 
 use common::tables::{Shape, table};
 use jointbench_instrument::{Kind, RunTable};
-use jointbench_model::transfer::{Format, ModelFile, export};
+use jointbench_model::export::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options, OwnEffect, evaluate, fit};
 use proptest::prelude::*;
 use serde_json::{Value, json};

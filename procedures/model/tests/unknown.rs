@@ -4,7 +4,7 @@ mod common;
 
 use common::bench::Staircase;
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
-use jointbench_model::transfer::{Alongside, Format, export};
+use jointbench_model::export::{Alongside, Format, export};
 use jointbench_model::{
     Diagnosis, Fit, ModelSpec, Options, OwnEffect, Verdict, diagnose, evaluate, fit, maps, residuals,
 };

@@ -10,7 +10,7 @@ use axum::Extension;
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
-use jointbench_model::transfer::Format;
+use jointbench_model::export::Format;
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 

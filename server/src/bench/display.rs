@@ -7,7 +7,7 @@ use crate::live::Rows;
 use crate::view::{LiveMessage, Progress};
 use jiff::Timestamp;
 use jointbench_instrument::{Channel, Trace};
-use jointbench_model::transfer::Alongside;
+use jointbench_model::export::Alongside;
 use jointbench_procedure::{self as procedure, RunId};
 use std::time::{Duration, Instant};
 

@@ -10,7 +10,7 @@ use crate::config::BenchDescription;
 use crate::lab::LabError;
 use crate::live::Hub;
 use crate::store::{SafetyRecord, Store};
-use jointbench_model::transfer::Alongside;
+use jointbench_model::export::Alongside;
 use jointbench_procedure::{BenchFacts, Demand, Plan, RunId, Safe};
 use std::path::Path;
 use std::sync::atomic::Ordering;

@@ -9,7 +9,7 @@ use super::serve::runtime;
 use super::transfer::{self, Way};
 use crate::lab::{LOCAL, reread};
 use crate::view;
-use jointbench_model::transfer::{Format, ModelFile, export};
+use jointbench_model::export::{Format, ModelFile, export};
 use jointbench_model::{Fit, words};
 use std::path::Path;
 

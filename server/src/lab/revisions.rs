@@ -6,7 +6,7 @@ use super::{Answer, Lab, LabError, convert, reread};
 use crate::job::Job;
 use crate::store::{NewModel, Subject};
 use crate::view::{Comparison, Evaluation, ImportedModel, LiveMessage, ModelImport, Worth, finite};
-use jointbench_model::transfer::{Format, ModelFile, export};
+use jointbench_model::export::{Format, ModelFile, export};
 use jointbench_model::{Fit, ModelSpec, Options, OwnEffect};
 
 /// What is kept of a version under which name.

@@ -120,7 +120,7 @@ impl Lab {
         let table = tokio::task::spawn_blocking(move || read(&request, bounds))
             .await
             .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))??;
-        let mut attention = jointbench_model::prepare::attention(&table);
+        let mut attention = jointbench_model::preprocess::attention(&table);
         if let Some(rows) = table.meta().other.get(LEFT_OUT_ROWS) {
             attention.push(format!("rows left out for an empty cell: {rows}"));
         }

@@ -2,6 +2,7 @@
 
 mod arrows;
 mod licences;
+mod modules;
 mod sizes;
 
 pub use jointbench_tests::root;

@@ -1,7 +1,7 @@
 //! Linear fits from one pass over the rows: the Gram matrices of stretches, on which selection and intervals are built.
 
 use crate::{least_s, line, peer, show};
-use jointbench_model::linear::{Beside, BlockGrams, Spd};
+use jointbench_model::linear::{AugmentedGrams, BlockGrams, Cholesky};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -35,7 +35,7 @@ pub fn measure(rows: usize) {
     let (read_s, _) = least_s(15, || with_response.iter().map(|c| sum(c)).sum::<f64>());
     let (here_s, factors) = least_s(15, || {
         let (xx, xy) = BlockGrams::new(&model, &y, &block, BLOCKS).total();
-        Spd::new(&xx, MODEL, 0.0).solve(&xy)
+        Cholesky::new(&xx, MODEL, 0.0).solve(&xy)
     });
     let what = format!("linear fit of {rows} rows × {MODEL} regressors, {BLOCKS} Gram matrices");
     println!("| {what} | {} | one read of memory: {} | {:.1} | ≤ 6 |", show(here_s), show(read_s), here_s / read_s);
@@ -47,7 +47,7 @@ pub fn measure(rows: usize) {
 
     let all: Vec<&[f64]> = columns.iter().chain([&y]).map(Vec::as_slice).collect();
     let each = || {
-        let beside = Beside::new(&model, columns[MODEL..].chunks(1), &y, &block, BLOCKS);
+        let beside = AugmentedGrams::new(&model, columns[MODEL..].chunks(1), &y, &block, BLOCKS);
         (0..CANDIDATES).map(|k| beside.grams(k)).collect::<Vec<_>>()
     };
     let (here_s, best) = least_s(9, || ranking(&each()));
@@ -88,7 +88,7 @@ fn bootstrap(each: &[BlockGrams], random: &mut ChaCha8Rng) -> usize {
     let drawn: Vec<usize> = (0..BLOCKS).map(|_| random.random_range(0..BLOCKS)).collect();
     let left = |grams: &BlockGrams| {
         let (xx, xy) = grams.sum(drawn.iter().copied());
-        let explained = Spd::new(&xx, MODEL + 1, 0.0).whiten(&xy);
+        let explained = Cholesky::new(&xx, MODEL + 1, 0.0).whiten(&xy);
         -explained.iter().map(|v| v * v).sum::<f64>()
     };
     best_of(&each.iter().map(left).collect::<Vec<_>>())

@@ -3,7 +3,8 @@
 use crate::{least_s, line, peer};
 use jointbench_instrument::Kind;
 use jointbench_model::effects::find;
-use jointbench_model::view::{Signal, Signals, View};
+use jointbench_model::signal::{Signal, Signals};
+use jointbench_model::view::View;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

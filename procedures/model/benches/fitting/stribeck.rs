@@ -2,7 +2,7 @@
 
 use crate::{least_s, line, peer};
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
-use jointbench_model::prepare::prepare;
+use jointbench_model::preprocess::prepare;
 use jointbench_model::{Fit, ModelSpec, Options, fit, fit_prepared};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

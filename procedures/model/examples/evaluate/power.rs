@@ -33,7 +33,8 @@ pub fn measure(asked: &Asked) -> Result<(), Box<dyn Error>> {
         let mut power = Power::default();
         for (e, effect) in EFFECTS.iter().enumerate() {
             for i in (asked.first..).take(asked.count as usize / 10) {
-                let run = run(effect, Rms::Beside(size * NOISE_NM), &mut Dice::new(700_000 + 1000 * e as u64 + i));
+                let run =
+                    run(effect, Rms::AugmentedGrams(size * NOISE_NM), &mut Dice::new(700_000 + 1000 * e as u64 + i));
                 let found = one(effect, &run, &mut power)?;
                 if !asked.quiet && found != [*effect] {
                     println!("{effect} {i} at {size}: {}", found.join("+"));
@@ -78,7 +79,7 @@ const GEAR: f64 = 60.0;
 #[derive(Clone, Copy)]
 pub enum Rms {
     /// Beside what dry and viscous friction can take of it.
-    Beside(f64),
+    AugmentedGrams(f64),
     Whole(f64),
 }
 
@@ -124,7 +125,7 @@ pub fn run(effect: &str, size: Rms, dice: &mut Dice) -> RunTable {
         }
     }
     let (size, counts) = match size {
-        Rms::Beside(size) => (size, &left_over(shape.clone(), &columns[2])),
+        Rms::AugmentedGrams(size) => (size, &left_over(shape.clone(), &columns[2])),
         Rms::Whole(size) => (size, &shape),
     };
     let factor = size / (counts.iter().map(|b| b * b).sum::<f64>() / counts.len() as f64).sqrt();

@@ -1,16 +1,16 @@
 //! The library: one small file for each effect.
 
-mod brake;
-mod encoder;
-mod friction;
-pub(crate) mod memory;
-mod stiffness;
+pub(crate) mod brake;
+pub(crate) mod encoder;
+pub(crate) mod friction;
+pub(crate) mod stiffness;
 
-pub use friction::WITH_WEIGHT;
+pub use crate::effects::friction::teeth::WITH_WEIGHT;
 
-use crate::effect::{Effect, Form, Search, Shape};
-use crate::view::{Signal, View};
-use crate::{ModelError, OwnEffect};
+use crate::ModelError;
+use crate::effect::{Effect, Form, Shape, ShapeSearch};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 use std::ops::RangeInclusive;
 
@@ -26,19 +26,10 @@ pub fn effects(kind: Kind) -> &'static [&'static dyn Effect] {
 
 /// The effect with an id. [`ModelError::UnknownEffect`] names those that are known.
 pub fn find(kind: Kind, id: &str) -> Result<&'static dyn Effect, ModelError> {
-    find_with_own(kind, &[], id)
-}
-
-/// The library with the effects that a user wrote, which come last.
-pub(crate) fn with_own(kind: Kind, own: &[OwnEffect]) -> impl Iterator<Item = &dyn Effect> {
-    effects(kind).iter().copied().chain(own.iter().map(|effect| effect as &dyn Effect))
-}
-
-pub(crate) fn find_with_own<'e>(kind: Kind, own: &'e [OwnEffect], id: &str) -> Result<&'e dyn Effect, ModelError> {
-    with_own(kind, own).find(|e| e.info().id == id).ok_or_else(|| ModelError::UnknownEffect {
+    effects(kind).iter().copied().find(|e| e.info().id == id).ok_or_else(|| ModelError::UnknownEffect {
         id: id.to_owned(),
         kind,
-        known: with_own(kind, own).map(|e| e.info().id.to_owned()).collect(),
+        known: effects(kind).iter().map(|e| e.info().id.to_owned()).collect(),
     })
 }
 
@@ -112,7 +103,7 @@ fn whole_orders(
     if grid.is_empty() {
         return Vec::new();
     }
-    let shape = vec![Shape { name, min: first, max: last, search: Search::Whole }];
+    let shape = vec![Shape { name, min: first, max: last, search: ShapeSearch::Whole }];
     vec![Form { name: "harmonic", linear: linear.to_vec(), shape, grid }]
 }
 
@@ -134,7 +125,7 @@ pub(crate) fn one_more_harmonic(form: &Form) -> Option<(&'static str, Form<'stat
     const SHAPE: [&str; 8] =
         ["harmonic", "harmonic_2", "harmonic_3", "harmonic_4", "harmonic_5", "harmonic_6", "harmonic_7", "harmonic_8"];
     let count = form.shape.len() + 1;
-    let shape = |name: &&'static str| Shape { name, min: 1.0, max: f64::INFINITY, search: Search::Whole };
+    let shape = |name: &&'static str| Shape { name, min: 1.0, max: f64::INFINITY, search: ShapeSearch::Whole };
     let shape = SHAPE.get(..count)?.iter().map(shape).collect();
     let form = Form { name: SEVERAL_HARMONICS, linear: LINEAR[..2 * count].to_vec(), shape, grid: Vec::new() };
     Some((SEVERAL_HARMONICS, form))
@@ -143,7 +134,7 @@ pub(crate) fn one_more_harmonic(form: &Form) -> Option<(&'static str, Form<'stat
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::Signals;
+    use crate::signal::Signals;
 
     #[test]
     fn a_wave_over_a_part_of_a_turn_was_there_twice() {

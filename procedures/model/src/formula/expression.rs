@@ -1,11 +1,8 @@
 //! A formula whose names are all known: evaluated over whole columns at once.
 
-use super::fault::Mistake;
-use super::function::Function;
-use super::names::{COLUMN, Names};
-use super::syntax::{Node, Operator, Syntax};
-use crate::view::{Signal, Signals};
-use jointbench_instrument::Kind;
+use crate::formula::function::Function;
+use crate::formula::syntax::Operator;
+use crate::signal::{Signal, Signals};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -28,33 +25,6 @@ pub enum What {
 }
 
 impl Expression {
-    /// Gives every name its meaning. Those that have none are mistakes, each name once.
-    pub(crate) fn resolve(node: Node, kind: Kind, parameters: &[&str]) -> Result<Self, Mistake> {
-        let mut names = Names::new(kind, parameters);
-        let whole = Self::named(node, &mut names);
-        Mistake::first_of(names.mistakes).map_or(Ok(whole), Err)
-    }
-
-    /// With zero in the place of what means nothing.
-    fn named(node: Node, names: &mut Names) -> Self {
-        let at = node.at;
-        let mut inner = |node: Box<Node>| Box::new(Self::named(*node, names));
-        let what = match node.what {
-            Syntax::Number(value) => What::Number(value),
-            Syntax::Name(name) => names.meaning(&name, &at),
-            Syntax::Negate(a) => What::Negate(inner(a)),
-            Syntax::Binary(operator, a, b) => What::Binary(operator, inner(a), inner(b)),
-            Syntax::Call(name, arguments) if name == COLUMN => names.column(&arguments, &at),
-            Syntax::Call(name, arguments) => {
-                let given = arguments.len();
-                let function = names.function(&name, given, &at);
-                let arguments = arguments.into_iter().map(|a| Self::named(a, names)).collect();
-                function.map_or(What::Number(0.0), |function| What::Call(function, arguments))
-            }
-        };
-        Self { at, what }
-    }
-
     /// The value of every row.
     pub fn column(&self, parameters: &[f64], signals: &Signals) -> Vec<f64> {
         match self.value(parameters, signals) {

@@ -3,8 +3,8 @@
 //! Separable least squares (Golub, Pereyra 2003) need the model as Σ factor·column(shape): the columns are taken from
 //! the formula itself, so that nothing has to be told twice.
 
-use super::expression::{Expression, What};
-use super::syntax::Operator;
+use crate::formula::expression::{Expression, What};
+use crate::formula::syntax::Operator;
 
 /// A sum of parameters times expressions without them.
 #[derive(Debug, Clone, PartialEq, Default)]

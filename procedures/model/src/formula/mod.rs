@@ -3,23 +3,23 @@
 //! Text becomes a tree (winnow), names become signals and parameters, and the tree becomes a sum of factors times
 //! columns. Every mistake stands at a character.
 
-mod expression;
-mod factors;
-mod fault;
-mod function;
-mod names;
-mod signals;
+pub(crate) mod expression;
+pub(crate) mod factors;
+pub(crate) mod fault;
+pub(crate) mod function;
+pub(crate) mod names;
+pub(crate) mod signals;
 pub(crate) mod syntax;
-mod units;
+pub(crate) mod units;
 
-pub use expression::{Expression, What};
-pub(crate) use fault::Mistake;
-pub use fault::{Also, FormulaFault};
-pub use function::Function;
-pub use signals::{NamedSignal, in_formula, left_hand_side, signals};
-pub use syntax::Operator;
+pub use crate::formula::expression::{Expression, What};
+pub(crate) use crate::formula::fault::Mistake;
+pub use crate::formula::fault::{Also, FormulaFault};
+pub use crate::formula::function::Function;
+pub use crate::formula::signals::{NamedSignal, in_formula, left_hand_side, signals};
+pub use crate::formula::syntax::Operator;
 
-use crate::view::Signal;
+use crate::signal::Signal;
 use jointbench_instrument::{Kind, Motion};
 use std::collections::BTreeSet;
 

@@ -1,18 +1,15 @@
 //! What the names of a formula mean, and what to write instead of those that mean nothing.
 
-use super::expression::What;
-use super::fault::Mistake;
-use super::function::Function;
-use super::signals::{NamedSignal, signals};
-use super::syntax::{Node, Syntax};
-use crate::view::Signal;
+use crate::formula::expression::{Expression, What};
+use crate::formula::fault::Mistake;
+use crate::formula::function::Function;
+use crate::formula::signals::{COLUMN, NamedSignal, signals};
+use crate::formula::syntax::{Node, Syntax};
+use crate::signal::Signal;
 use jointbench_instrument::Kind;
 use jointbench_instrument::spelling::{instead, nearest};
 use jointbench_instrument::units::unit_of;
 use std::ops::Range;
-
-/// What names a column of the run that is no signal.
-pub const COLUMN: &str = "column";
 
 pub struct Names<'n> {
     kind: Kind,
@@ -109,6 +106,35 @@ impl<'n> Names<'n> {
             self.mistakes.push(Mistake::new(at.clone(), message));
         }
         Some(function)
+    }
+}
+
+impl Expression {
+    /// Gives every name its meaning. Those that have none are mistakes, each name once.
+    pub(crate) fn resolve(node: Node, kind: Kind, parameters: &[&str]) -> Result<Self, Mistake> {
+        let mut names = Names::new(kind, parameters);
+        let whole = Self::named(node, &mut names);
+        Mistake::first_of(names.mistakes).map_or(Ok(whole), Err)
+    }
+
+    /// With zero in the place of what means nothing.
+    fn named(node: Node, names: &mut Names) -> Self {
+        let at = node.at;
+        let mut inner = |node: Box<Node>| Box::new(Self::named(*node, names));
+        let what = match node.what {
+            Syntax::Number(value) => What::Number(value),
+            Syntax::Name(name) => names.meaning(&name, &at),
+            Syntax::Negate(a) => What::Negate(inner(a)),
+            Syntax::Binary(operator, a, b) => What::Binary(operator, inner(a), inner(b)),
+            Syntax::Call(name, arguments) if name == COLUMN => names.column(&arguments, &at),
+            Syntax::Call(name, arguments) => {
+                let given = arguments.len();
+                let function = names.function(&name, given, &at);
+                let arguments = arguments.into_iter().map(|a| Self::named(a, names)).collect();
+                function.map_or(What::Number(0.0), |function| What::Call(function, arguments))
+            }
+        };
+        Self { at, what }
     }
 }
 

@@ -1,10 +1,11 @@
 //! The signals of each kind of run under the names that a formula uses.
 
-use super::names::COLUMN;
-use crate::prepare::may_cause;
-use crate::view::Signal;
+use crate::signal::{Signal, may_cause};
 use jointbench_instrument::Kind;
 use jointbench_instrument::units::{quantity_of, unit_of};
+
+/// What names a column of the run that is no signal.
+pub const COLUMN: &str = "column";
 
 /// A signal as a formula sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,7 +30,7 @@ const fn named(
 
 impl NamedSignal {
     /// A column that is none of the kind's signals, by its own name and in its own unit.
-    pub(super) fn of_column(column: &'static str) -> Self {
+    pub(crate) fn of_column(column: &'static str) -> Self {
         named(column, Signal::Column(column), unit_of(column).unwrap_or("1"), column, "a column of the run")
     }
 }

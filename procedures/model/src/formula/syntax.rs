@@ -1,6 +1,6 @@
 //! Text into a tree of names and operators in which every node knows where it stands. By winnow's Pratt parser.
 
-use super::fault::Mistake;
+use crate::formula::fault::Mistake;
 use std::ops::Range;
 use winnow::ascii::{digit1, multispace0};
 use winnow::combinator::{

@@ -1,5 +1,5 @@
-use super::*;
-use crate::view::{Signal, Signals};
+use crate::formula::*;
+use crate::signal::{Signal, Signals};
 
 fn parse(text: &str, parameters: &[&str]) -> Result<Formula, Mistake> {
     Formula::parse(Kind::Friction, text, parameters, &vec!["1"; parameters.len()])

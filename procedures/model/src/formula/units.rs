@@ -3,13 +3,13 @@
 //! A unit is the exponents of five base units; angles have none. A number without a unit may stand for a quantity that
 //! nobody named, so what contains one is not judged.
 
-use super::expression::{Expression, What};
-use super::fault::Mistake;
-use super::function::Function;
-use super::left_hand_side;
-use super::signals::signals;
-use super::syntax::{self, Node, Operator, Syntax};
-use crate::view::Signal;
+use crate::formula::expression::{Expression, What};
+use crate::formula::fault::Mistake;
+use crate::formula::function::Function;
+use crate::formula::signals::{left_hand_side, signals};
+use crate::formula::syntax;
+use crate::formula::syntax::{Node, Operator, Syntax};
+use crate::signal::Signal;
 use jointbench_instrument::Kind;
 use jointbench_instrument::units::unit_of;
 

@@ -1,6 +1,6 @@
 //! Whether the columns of the fit that is shown are determined: QR on scaled columns, and the singular values of R.
 
-use super::dot;
+use crate::linear::basis::dot;
 use nalgebra::DMatrix;
 
 /// How well the factors of columns are determined.

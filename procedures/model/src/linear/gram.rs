@@ -1,117 +1,21 @@
 //! Gram matrices of blocks: cross-validation, jackknife and sign flips are functions of these alone.
 
-use super::beside::Beside;
-
-/// Where the others have less than this share of what is a column's own, squared, one group of rows decides its factor alone:
-/// a stop of hysteresis that does not slip in any other stretch is a straight line there, but for noise.
-const HARDLY_SHOWN: f64 = 0.05;
-
-/// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
-#[derive(Debug, Clone)]
-pub struct Spd {
-    n: usize,
-    /// Lower triangle, row by row.
-    l: Vec<f64>,
-    scale: Vec<f64>,
-    dead: Vec<bool>,
-}
-
-impl Spd {
-    /// Cholesky of a row-major matrix after scaling its diagonal to one. `ridge` is added to the scaled diagonal.
-    pub fn new(matrix: &[f64], n: usize, ridge: f64) -> Self {
-        Self::shown(matrix, n, ridge, &vec![0.0; n])
-    }
-
-    /// The same, where a column is left at zero as well that has less than so much of its own beside those before it, squared.
-    pub fn shown(matrix: &[f64], n: usize, ridge: f64, least: &[f64]) -> Self {
-        let scale: Vec<f64> =
-            (0..n).map(|i| if matrix[i * n + i] > 0.0 { matrix[i * n + i].sqrt().recip() } else { 0.0 }).collect();
-        let mut l = vec![0.0; n * n];
-        let mut dead = vec![false; n];
-        for i in 0..n {
-            for j in 0..=i {
-                let mut sum = matrix[i * n + j] * scale[i] * scale[j];
-                if i == j {
-                    sum += ridge;
-                }
-                for k in 0..j {
-                    sum -= l[i * n + k] * l[j * n + k];
-                }
-                if i == j {
-                    if sum > (least[i] * scale[i].powi(2)).max(1e-10) {
-                        l[i * n + i] = sum.sqrt();
-                    } else {
-                        dead[i] = true;
-                    }
-                } else if !dead[j] {
-                    l[i * n + j] = sum / l[j * n + j];
-                }
-            }
-            if dead[i] {
-                (0..=i).for_each(|j| l[i * n + j] = 0.0);
-            }
-        }
-        Self { n, l, scale, dead }
-    }
-
-    pub fn is_dead(&self, i: usize) -> bool {
-        self.dead[i]
-    }
-
-    /// What each column has of its own beside those before it, squared.
-    pub fn own(&self) -> impl Iterator<Item = f64> {
-        let square = |i: usize| if self.dead[i] { 0.0 } else { (self.l[i * self.n + i] / self.scale[i]).powi(2) };
-        (0..self.n).map(square)
-    }
-
-    /// L⁻¹·D·b: what makes the squared length of the result bᵀA⁻¹b.
-    pub fn whiten(&self, b: &[f64]) -> Vec<f64> {
-        let n = self.n;
-        let mut x = vec![0.0; n];
-        for i in 0..n {
-            if self.dead[i] {
-                continue;
-            }
-            let below: f64 = (0..i).map(|k| self.l[i * n + k] * x[k]).sum();
-            x[i] = (b[i] * self.scale[i] - below) / self.l[i * n + i];
-        }
-        x
-    }
-
-    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
-        let n = self.n;
-        let mut x = self.whiten(b);
-        for i in (0..n).rev() {
-            if self.dead[i] {
-                x[i] = 0.0;
-                continue;
-            }
-            let above: f64 = (i + 1..n).map(|k| self.l[k * n + i] * x[k]).sum();
-            x[i] = (x[i] - above) / self.l[i * n + i];
-        }
-        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-        x
-    }
-}
+use crate::linear::cholesky::Cholesky;
+use crate::thresholds::FOLD_COVERAGE;
 
 /// Σ xxᵀ and Σ xy of each group of rows, and Σ yy.
 #[derive(Debug, Clone)]
 pub struct BlockGrams {
     pub columns: usize,
     pub groups: usize,
-    pub(super) xx: Vec<f64>,
-    pub(super) xy: Vec<f64>,
-    pub(super) yy: Vec<f64>,
+    pub(crate) xx: Vec<f64>,
+    pub(crate) xy: Vec<f64>,
+    pub(crate) yy: Vec<f64>,
     pub rows: Vec<usize>,
 }
 
 impl BlockGrams {
-    /// One pass over the rows.
-    pub fn new(columns: &[&[f64]], y: &[f64], group: &[usize], groups: usize) -> Self {
-        Beside::new(columns, [[].as_slice()], y, group, groups).grams(0)
-    }
-
-    pub(super) fn empty(columns: usize, rows: Vec<usize>) -> Self {
+    pub(crate) fn empty(columns: usize, rows: Vec<usize>) -> Self {
         Self { columns, groups: rows.len(), xx: Vec::new(), xy: Vec::new(), yy: Vec::new(), rows }
     }
 
@@ -144,12 +48,12 @@ impl BlockGrams {
     pub fn held_out(&self) -> Vec<f64> {
         let p = self.columns;
         let (xx, xy) = self.total();
-        let least: Vec<f64> = Spd::new(&xx, p, 1e-12).own().map(|own| HARDLY_SHOWN * own).collect();
+        let least: Vec<f64> = Cholesky::new(&xx, p, 1e-12).own().map(|own| FOLD_COVERAGE * own).collect();
         (0..self.groups)
             .map(|g| {
                 let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();
                 let side: Vec<f64> = xy.iter().zip(self.xy(g)).map(|(a, b)| a - b).collect();
-                let factors = Spd::shown(&rest, p, 1e-12, &least).solve(&side);
+                let factors = Cholesky::shown(&rest, p, 1e-12, &least).solve(&side);
                 let mut loss = self.yy[g];
                 for a in 0..p {
                     let inner: f64 = (0..p).map(|b| self.xx(g)[a * p + b] * factors[b]).sum();
@@ -168,7 +72,7 @@ impl BlockGrams {
             .map(|g| {
                 let rest: Vec<f64> = xx.iter().zip(self.xx(g)).map(|(a, b)| a - b).collect();
                 let side: Vec<f64> = xy.iter().zip(self.xy(g)).map(|(a, b)| a - b).collect();
-                Spd::new(&rest, self.columns, 0.0).solve(&side)
+                Cholesky::new(&rest, self.columns, 0.0).solve(&side)
             })
             .collect()
     }
@@ -181,8 +85,8 @@ mod tests {
     #[test]
     fn a_dependent_column_is_left_at_zero() {
         let a = [4.0, 2.0, 4.0, 2.0, 3.0, 2.0, 4.0, 2.0, 4.0];
-        let spd = Spd::new(&a, 3, 0.0);
-        assert!(spd.is_dead(2) && !spd.is_dead(1));
+        let spd = Cholesky::new(&a, 3, 0.0);
+        assert!(spd.is_dependent(2) && !spd.is_dependent(1));
         let x = spd.solve(&[8.0, 5.0, 8.0]);
         assert!((4.0 * x[0] + 2.0 * x[1] - 8.0).abs() < 1e-9 && x[2] == 0.0, "{x:?}");
     }

@@ -1,12 +1,14 @@
 //! Linear least squares: an orthonormal basis for selection, Gram matrices of blocks for everything that is repeated
 //! many times, and the condition of the columns by QR for the fit that is shown.
 
-mod basis;
-mod beside;
-mod condition;
-mod gram;
+pub(crate) mod augmented_gram;
+pub(crate) mod basis;
+pub(crate) mod cholesky;
+pub(crate) mod condition;
+pub(crate) mod gram;
 
-pub use basis::{Basis, dot};
-pub use beside::Beside;
-pub use condition::condition;
-pub use gram::{BlockGrams, Spd};
+pub use crate::linear::augmented_gram::AugmentedGrams;
+pub use crate::linear::basis::{Basis, dot};
+pub use crate::linear::cholesky::Cholesky;
+pub use crate::linear::condition::condition;
+pub use crate::linear::gram::BlockGrams;

@@ -1,6 +1,6 @@
 //! Two models side by side.
 
-use super::fit::{Evaluation, Parameter};
+use crate::report::fit::{Evaluation, Parameter};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,9 @@
 //! Where a model fails and what is missing.
 
-use super::fit::{Fit, Parameter, ResidualKind};
-use super::maps::PairMap;
 use crate::OwnEffect;
+use crate::report::fit::{Fit, Parameter, ResidualKind};
+use crate::report::maps::{PairMap, Region};
+use crate::thresholds::{MASKED_RATIO, SMALL_REDUCTION, STRONG_P_VALUE};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
@@ -78,48 +79,27 @@ pub struct NoiseFloor {
     pub repeatable_ci95: Option<[f64; 2]>,
 }
 
-/// A stretch of an axis (and a direction or a second axis) in which the residual is not noise.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Region {
-    pub axis: String,
-    pub from: f64,
-    pub to: f64,
-    pub mean_residual: f64,
-    /// Simultaneous over all regions of all maps.
-    pub ci95: [f64; 2],
-    pub samples: usize,
-    /// `positive` or `negative` motion, or both where empty.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub direction: Option<String>,
-    /// The same in one sentence with figures.
-    pub sentence: String,
-}
-
 /// How sure it is that an effect is missing, and whether it matters.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
     #[default]
     Strong,
-    /// Sure, and less than [`SMALL`] of the held-out error.
+    /// Sure, and less than [`SMALL_REDUCTION`] of the held-out error.
     Small,
-    /// It may be missing: chance would name one of the library in more than [`UNLIKELY`] of such runs, or what it takes of the
+    /// It may be missing: chance would name one of the library in more than [`STRONG_P_VALUE`] of such runs, or what it takes of the
     /// held-out error may be nothing.
     Weak,
 }
-
-const UNLIKELY: f64 = 0.01;
-const SMALL: f64 = 0.05;
-const MASKED: f64 = 2.0;
 
 impl Evidence {
     /// From the figures of a suggestion.
     pub fn of(p_value: f64, alone: f64, ci95: Option<[f64; 2]>, together: f64) -> Self {
         // Effects that mask each other show little alone.
-        let may_be_nothing = together <= MASKED * alone && ci95.is_some_and(|[low, _]| low <= 0.0);
+        let may_be_nothing = together <= MASKED_RATIO * alone && ci95.is_some_and(|[low, _]| low <= 0.0);
         match () {
-            () if p_value > UNLIKELY || may_be_nothing => Self::Weak,
-            () if alone.max(together) < SMALL => Self::Small,
+            () if p_value > STRONG_P_VALUE || may_be_nothing => Self::Weak,
+            () if alone.max(together) < SMALL_REDUCTION => Self::Small,
             () => Self::Strong,
         }
     }

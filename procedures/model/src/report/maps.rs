@@ -1,7 +1,6 @@
 //! The residual over one quantity or two, ready to be drawn.
 
-use super::diagnosis::Region;
-use super::fit::ResidualKind;
+use crate::report::fit::ResidualKind;
 use serde::{Deserialize, Serialize};
 
 /// Every map of a fit on a run.
@@ -68,4 +67,21 @@ pub struct MapCell {
     pub mean: f64,
     pub half_width: Option<f64>,
     pub rows: usize,
+}
+
+/// A stretch of an axis (and a direction or a second axis) in which the residual is not noise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Region {
+    pub axis: String,
+    pub from: f64,
+    pub to: f64,
+    pub mean_residual: f64,
+    /// Simultaneous over all regions of all maps.
+    pub ci95: [f64; 2],
+    pub samples: usize,
+    /// `positive` or `negative` motion, or both where empty.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<String>,
+    /// The same in one sentence with figures.
+    pub sentence: String,
 }

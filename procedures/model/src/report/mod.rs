@@ -1,19 +1,19 @@
 //! What comes out: the objects of the contract, ready to be written as JSON.
 
-mod comparison;
-mod diagnosis;
-mod fit;
-mod maps;
-mod residuals;
+pub(crate) mod comparison;
+pub(crate) mod diagnosis;
+pub(crate) mod fit;
+pub(crate) mod maps;
+pub(crate) mod residuals;
 
-pub use comparison::{Comparison, ParameterPair, Wider};
-pub use diagnosis::{
-    Diagnosis, Discovery, Evidence, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, Region, Silent, Step,
-    Suggestion, Verdict,
+pub use crate::report::comparison::{Comparison, ParameterPair, Wider};
+pub use crate::report::diagnosis::{
+    Diagnosis, Discovery, Evidence, Experiment, Imitated, Invisible, LeftOut, NoiseFloor, Silent, Step, Suggestion,
+    Verdict,
 };
-pub use fit::{
+pub use crate::report::fit::{
     Evaluation, Fit, GivenConstant, MeanCurve, Parameter, ParameterState, Preparation, ResidualKind, Scope,
     SignalRange, Term, TradeOff,
 };
-pub use maps::{AxisMap, MapBin, MapCell, PairMap, ResidualMaps};
-pub use residuals::{Axis, ResidualSet};
+pub use crate::report::maps::{AxisMap, MapBin, MapCell, PairMap, Region, ResidualMaps};
+pub use crate::report::residuals::{Axis, ResidualSet};

@@ -1,6 +1,6 @@
 //! The residual with everything that it may depend on, for the pictures of the workbench.
 
-use super::fit::ResidualKind;
+use crate::report::fit::ResidualKind;
 use serde::{Deserialize, Serialize};
 
 /// A quantity that the residual may depend on, one value for each point.

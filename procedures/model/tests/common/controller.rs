@@ -1,7 +1,7 @@
 //! An exported C header on a controller: compiled, and called sample by sample.
 
 use jointbench_model::Fit;
-use jointbench_model::transfer::{Format, export};
+use jointbench_model::export::{Format, export};
 use std::process::Command;
 
 /// What the header's function returns at every row of its inputs, in the order of its struct. `None` without a compiler.

@@ -1,8 +1,8 @@
 //! The settled stretch of every leg as one point: what a figure shows and a line is drawn through.
 
 use jointbench_instrument::RunTable;
-use jointbench_model::prepare::{Prepared, prepare};
-use jointbench_model::view::Signal;
+use jointbench_model::preprocess::{Prepared, prepare};
+use jointbench_model::signal::Signal;
 use jointbench_model::{ModelError, Options, ResidualKind};
 
 /// Means over the settled stretch of one segment, as the model prepares it.

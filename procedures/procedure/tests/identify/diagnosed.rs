@@ -2,7 +2,7 @@
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::RunTable;
-use jointbench_model::prepare::attention;
+use jointbench_model::preprocess::attention;
 use jointbench_model::{Diagnosis, ModelSpec, Open, Options, diagnose, discover, next_run};
 use jointbench_procedure::conduct::conduct;
 use jointbench_procedure::{BenchFacts, menu, procedure};

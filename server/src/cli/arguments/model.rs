@@ -96,7 +96,7 @@ pub enum ModelFormat {
     Urdf,
 }
 
-impl From<ModelFormat> for jointbench_model::transfer::Format {
+impl From<ModelFormat> for jointbench_model::export::Format {
     fn from(format: ModelFormat) -> Self {
         match format {
             ModelFormat::Json => Self::Json,

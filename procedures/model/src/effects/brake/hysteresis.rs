@@ -1,8 +1,9 @@
 //! Hysteresis.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::effects::memory;
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::hysteresis_operators;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Hysteresis;
@@ -45,9 +46,9 @@ impl Effect for Hysteresis {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Current);
-        let shape = vec![Shape { name: "r", min: 0.02 * peak, max: peak, search: Search::Smooth }];
+        let shape = vec![Shape { name: "r", min: 0.02 * peak, max: peak, search: ShapeSearch::Smooth }];
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(0.05 * peak, peak, 4).into_iter().map(|t| vec![t]).collect();
-        let turns = view.samples.find(Signal::Current).is_some_and(|i| memory::turns(i, 0.1 * peak));
+        let turns = view.samples.find(Signal::Current).is_some_and(|i| hysteresis_operators::turns(i, 0.1 * peak));
         if !turns {
             return Vec::new();
         }
@@ -58,7 +59,7 @@ impl Effect for Hysteresis {
         let current = view.samples.find(Signal::Current).unwrap_or_default();
         let ends = current.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), i| (l.min(*i), h.max(*i)));
         let most = (ends.1 - ends.0) / 2.0;
-        let reach = Shape { name: "i_max", min: most, max: most, search: Search::Whole };
+        let reach = Shape { name: "i_max", min: most, max: most, search: ShapeSearch::Whole };
         let several = |(name, bands): (&'static str, usize)| Form {
             name,
             linear: BANDS[..bands].to_vec(),
@@ -71,8 +72,8 @@ impl Effect for Hysteresis {
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let current = view.samples.find(Signal::Current).unwrap_or_default();
         match form {
-            "stop" => vec![view.average(beside_rest(memory::stop(current, shape[0], &view.starts)))],
-            "dahl" => vec![view.average(beside_rest(memory::dahl(current, shape[0], &view.starts)))],
+            "stop" => vec![view.average(beside_rest(hysteresis_operators::stop(current, shape[0], &view.starts)))],
+            "dahl" => vec![view.average(beside_rest(hysteresis_operators::dahl(current, shape[0], &view.starts)))],
             _ => {
                 let bands = FORMS.iter().find(|known| known.0 == form).map_or(BANDS.len(), |known| known.1);
                 density(current, shape[0], bands, view)
@@ -93,7 +94,7 @@ fn density(current: &[f64], reach: f64, bands: usize, view: &View) -> Columns {
     let stops = STOPS * bands;
     for k in 1..=stops {
         let place = k as f64 / STOPS as f64;
-        let stop = memory::stop(current, reach * k as f64 / stops as f64, &view.starts);
+        let stop = hysteresis_operators::stop(current, reach * k as f64 / stops as f64, &view.starts);
         let stop = view.average(beside_rest(stop));
         for (band, column) in columns.iter_mut().enumerate() {
             let weight = (1.0 - (place - (band + 1) as f64).abs()).max(0.0);

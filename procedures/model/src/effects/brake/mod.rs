@@ -1,13 +1,13 @@
 //! How a hysteresis brake holds: effects of the kind `brake`. Braking torque [Nm].
 
-mod cogging;
-mod drag;
-mod hysteresis;
-mod saturation;
-mod scaled;
-mod temperature_dependence;
-mod torque_per_current;
-mod velocity_dependence;
+pub(crate) mod cogging;
+pub(crate) mod drag;
+pub(crate) mod hysteresis;
+pub(crate) mod saturation;
+pub(crate) mod scaled;
+pub(crate) mod temperature_dependence;
+pub(crate) mod torque_per_current;
+pub(crate) mod velocity_dependence;
 
 use crate::effect::Effect;
 

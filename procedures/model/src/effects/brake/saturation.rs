@@ -1,7 +1,8 @@
 //! Saturation.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Saturation;
@@ -44,10 +45,10 @@ impl Effect for Saturation {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Current);
-        let bend = Shape { name: "i_s", min: 0.05 * peak, max: 2.0 * peak, search: Search::Smooth };
-        let onset = Shape { name: "i_0", min: 0.01 * peak, max: peak, search: Search::Smooth };
+        let bend = Shape { name: "i_s", min: 0.05 * peak, max: 2.0 * peak, search: ShapeSearch::Smooth };
+        let onset = Shape { name: "i_0", min: 0.01 * peak, max: peak, search: ShapeSearch::Smooth };
         // Where the curve ends belongs to the fit: another run has another largest current.
-        let range = Shape { name: "i_max", min: peak, max: peak, search: Search::Whole };
+        let range = Shape { name: "i_max", min: peak, max: peak, search: ShapeSearch::Whole };
         let widths = crate::effects::log_grid(0.1 * peak, 1.5 * peak, 4);
         let onsets = [0.1, 0.3, 0.6].map(|o| o * peak);
         let pairs = onsets.iter().flat_map(|o| widths.iter().map(|w| vec![*o, *w])).collect();

@@ -1,8 +1,9 @@
 //! Temperature dependence.
 
-use super::scaled;
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::effects::brake::scaled;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct TemperatureDependence;

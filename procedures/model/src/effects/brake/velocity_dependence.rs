@@ -1,8 +1,9 @@
 //! Velocity dependence.
 
-use super::scaled;
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::effects::brake::scaled;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct VelocityDependence;
@@ -55,7 +56,7 @@ impl Effect for VelocityDependence {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::Signals;
+    use crate::signal::Signals;
 
     #[test]
     fn two_speeds_that_are_a_third_apart_are_two() {

@@ -1,15 +1,15 @@
 //! What parts a test encoder from a reference: effects of the kind `encoder`. Test minus reference [rad].
 
-mod delay;
-mod direction_hysteresis;
-mod harmonic_1;
-mod harmonic_2;
-mod harmonic_n;
-mod offset;
-mod pole_period;
-mod slip;
-mod startup_offset;
-mod temperature_drift;
+pub(crate) mod delay;
+pub(crate) mod direction_hysteresis;
+pub(crate) mod harmonic_1;
+pub(crate) mod harmonic_2;
+pub(crate) mod harmonic_n;
+pub(crate) mod offset;
+pub(crate) mod pole_period;
+pub(crate) mod slip;
+pub(crate) mod startup_offset;
+pub(crate) mod temperature_drift;
 
 use crate::effect::Effect;
 

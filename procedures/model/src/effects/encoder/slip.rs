@@ -1,7 +1,8 @@
 //! Slip.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Slip;
@@ -28,7 +29,7 @@ impl Effect for Slip {
         let (Some(first), Some(last)) = (time.first(), time.last()) else { return Vec::new() };
         let (low, high) = (first + 0.02 * (last - first), last - 0.02 * (last - first));
         let grid = (0..=160).map(|i| vec![low + (high - low) * f64::from(i) / 160.0]).collect();
-        let shape = vec![Shape { name: "t_s", min: low, max: high, search: Search::Jump }];
+        let shape = vec![Shape { name: "t_s", min: low, max: high, search: ShapeSearch::Jump }];
         vec![Form { name: "step", linear: vec!["s"], shape, grid }]
     }
 

@@ -1,7 +1,8 @@
 //! Start-up offset.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 use std::sync::LazyLock;
 
@@ -37,7 +38,7 @@ impl Effect for StartupOffset {
         }
     }
 
-    fn is_of_each_run(&self) -> bool {
+    fn is_nuisance(&self) -> bool {
         true
     }
 

@@ -1,7 +1,8 @@
 //! Drift with time.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Drift;
@@ -38,7 +39,7 @@ impl Effect for Drift {
             return vec![line];
         }
         let low = SOONEST * high;
-        let shape = vec![Shape { name: "t_d", min: low, max: high, search: Search::Smooth }];
+        let shape = vec![Shape { name: "t_d", min: low, max: high, search: ShapeSearch::Smooth }];
         let grid = crate::effects::log_grid(low, high, 4).into_iter().map(|t| vec![t]).collect();
         vec![line, Form { name: "settling", linear: vec!["d_e"], shape, grid }]
     }

@@ -1,7 +1,8 @@
 //! Rotor inertia.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Inertia;
@@ -31,7 +32,7 @@ impl Effect for Inertia {
         vec![view.get(Signal::Acceleration).to_vec()]
     }
 
-    fn stage(&self) -> crate::effect::Stage {
-        crate::effect::Stage::Ramp
+    fn regime(&self) -> crate::effect::Regime {
+        crate::effect::Regime::Transient
     }
 }

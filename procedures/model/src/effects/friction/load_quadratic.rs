@@ -1,8 +1,9 @@
 //! Quadratic load friction.
 
-use super::teeth;
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::effects::friction::teeth;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct LoadQuadratic;

@@ -1,7 +1,8 @@
 //! Load through the gear.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct LoadTransmission;
@@ -31,7 +32,7 @@ impl Effect for LoadTransmission {
         vec![view.get(Signal::Load).to_vec()]
     }
 
-    fn is_given(&self) -> bool {
+    fn is_offset(&self) -> bool {
         true
     }
 }

@@ -1,32 +1,31 @@
 //! What a turning joint asks of its motor: effects of the kind `friction`. Motor side, positive torque drives positive
 //! velocity.
 
-mod cogging;
-mod coulomb;
-mod direction_offset;
-mod drift;
-mod friction_ripple;
-mod gravity;
-mod inertia;
-mod load_linear;
-mod load_quadratic;
-mod load_transmission;
-mod load_viscous;
-mod presliding;
-mod signal_delay;
-mod stribeck;
-mod stribeck_load;
-mod teeth;
-mod temperature_coulomb;
-mod temperature_viscous;
-mod torque_constant_saturation;
-mod viscous;
-mod viscous_asymmetry;
-mod viscous_quadratic;
-mod viscous_sublinear;
+pub(crate) mod cogging;
+pub(crate) mod coulomb;
+pub(crate) mod direction_offset;
+pub(crate) mod drift;
+pub(crate) mod friction_ripple;
+pub(crate) mod gravity;
+pub(crate) mod inertia;
+pub(crate) mod load_linear;
+pub(crate) mod load_quadratic;
+pub(crate) mod load_transmission;
+pub(crate) mod load_viscous;
+pub(crate) mod presliding;
+pub(crate) mod signal_delay;
+pub(crate) mod stribeck;
+pub(crate) mod stribeck_load;
+pub(crate) mod teeth;
+pub(crate) mod temperature_coulomb;
+pub(crate) mod temperature_viscous;
+pub(crate) mod torque_constant_saturation;
+pub(crate) mod viscous;
+pub(crate) mod viscous_asymmetry;
+pub(crate) mod viscous_quadratic;
+pub(crate) mod viscous_sublinear;
 
 use crate::effect::Effect;
-pub use teeth::WITH_WEIGHT;
 
 pub static ALL: &[&dyn Effect] = &[
     &inertia::Inertia,

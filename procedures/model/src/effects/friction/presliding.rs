@@ -1,8 +1,9 @@
 //! Presliding hysteresis.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::effects::memory;
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::hysteresis_operators;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Presliding;
@@ -31,7 +32,7 @@ impl Effect for Presliding {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let Some((low, high)) = crate::effects::reversal_range(view) else { return Vec::new() };
-        let reach = Shape { name: "theta_p", min: low, max: high, search: Search::Smooth };
+        let reach = Shape { name: "theta_p", min: low, max: high, search: ShapeSearch::Smooth };
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(low, high, 7).into_iter().map(|d| vec![d]).collect();
         let one = |name| Form { name, linear: vec!["tau_p"], shape: vec![reach], grid: grid.clone() };
         let mut forms = vec![one("dahl"), one("stop"), one("maxwell_slip")];
@@ -39,8 +40,8 @@ impl Effect for Presliding {
         let apart = !view.chunks.is_empty();
         let range = crate::effects::speed_range(view).filter(|(slow, fast)| apart && *fast > 3.0 * slow);
         if let Some((slow, fast)) = range {
-            let speed = Shape { name: "omega_s", min: slow, max: fast, search: Search::Smooth };
-            let rise = Shape { name: "rho", min: 0.05, max: 3.0, search: Search::Smooth };
+            let speed = Shape { name: "omega_s", min: slow, max: fast, search: ShapeSearch::Smooth };
+            let rise = Shape { name: "rho", min: 0.05, max: 3.0, search: ShapeSearch::Smooth };
             let middle = (slow * fast).sqrt();
             let grid = crate::effects::log_grid(low, high, 4).into_iter().map(|d| vec![d, middle, 0.4]).collect();
             forms.push(Form { name: "lugre", linear: vec!["tau_p"], shape: vec![reach, speed, rise], grid });
@@ -53,20 +54,20 @@ impl Effect for Presliding {
         let direction = view.samples.find(Signal::Direction).unwrap_or_default();
         let late = |state: Vec<f64>| state.iter().zip(direction).map(|(z, d)| z - d).collect();
         vec![view.average(match form {
-            "dahl" => late(memory::dahl(position, shape[0], &view.starts)),
-            "maxwell_slip" => late(memory::maxwell_slip(position, shape[0], &view.starts)),
+            "dahl" => late(hysteresis_operators::dahl(position, shape[0], &view.starts)),
+            "maxwell_slip" => late(hysteresis_operators::maxwell_slip(position, shape[0], &view.starts)),
             "lugre" => {
                 let velocity = view.samples.find(Signal::Velocity).unwrap_or_default();
                 let strength: Vec<f64> =
                     velocity.iter().map(|w| 1.0 + shape[2] * (-(w / shape[1]).powi(2)).exp()).collect();
-                let state = memory::lugre(position, &strength, shape[0], &view.starts);
+                let state = hysteresis_operators::lugre(position, &strength, shape[0], &view.starts);
                 state.iter().zip(&strength).zip(direction).map(|((z, g), d)| z - g * d).collect()
             }
-            _ => late(memory::stop(position, shape[0], &view.starts)),
+            _ => late(hysteresis_operators::stop(position, shape[0], &view.starts)),
         })]
     }
 
-    fn stage(&self) -> crate::effect::Stage {
-        crate::effect::Stage::Memory
+    fn regime(&self) -> crate::effect::Regime {
+        crate::effect::Regime::Hysteresis
     }
 }

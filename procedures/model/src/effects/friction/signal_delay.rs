@@ -1,7 +1,8 @@
 //! Delay between torque and velocity.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct SignalDelay;
@@ -31,7 +32,7 @@ impl Effect for SignalDelay {
         vec![view.get(Signal::Jerk).to_vec()]
     }
 
-    fn stage(&self) -> crate::effect::Stage {
-        crate::effect::Stage::Ramp
+    fn regime(&self) -> crate::effect::Regime {
+        crate::effect::Regime::Transient
     }
 }

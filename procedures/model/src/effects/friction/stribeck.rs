@@ -1,8 +1,9 @@
 //! Stribeck effect.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::quick;
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::fast_math;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 use multiversion::multiversion;
 
@@ -25,7 +26,7 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 /// exp(−(|ω|/ω_s)^δ)·sign ω of each point
-pub(super) fn fading(view: &View, shape: &[f64]) -> Vec<f64> {
+pub(crate) fn fading(view: &View, shape: &[f64]) -> Vec<f64> {
     let mut out = view.get(Signal::Direction).to_vec();
     fade(&mut out, view.get(Signal::Velocity), 1.0 / shape[0], shape[1]);
     out
@@ -35,21 +36,21 @@ pub(super) fn fading(view: &View, shape: &[f64]) -> Vec<f64> {
 fn fade(column: &mut [f64], velocity_rad_s: &[f64], per_speed: f64, delta: f64) {
     for (value, w) in column.iter_mut().zip(velocity_rad_s) {
         // A speed of zero has no logarithm.
-        let power = quick::exp(delta * quick::ln(w.abs() * per_speed + f64::MIN_POSITIVE));
-        *value *= quick::exp(-power);
+        let power = fast_math::exp(delta * fast_math::ln(w.abs() * per_speed + f64::MIN_POSITIVE));
+        *value *= fast_math::exp(-power);
     }
 }
 
 /// Speeds and exponents that this data can tell apart: between its slowest motion and a third of its fastest.
-pub(super) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)> {
+pub(crate) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)> {
     let (slow, fast) = crate::effects::speed_range(view)?;
     let (low, high) = (slow * 0.7, fast / 3.0);
     if high < 2.0 * low {
         return None;
     }
     let shape = vec![
-        Shape { name: "omega_s", min: low, max: high, search: Search::Smooth },
-        Shape { name: "delta", min: 0.5, max: 3.0, search: Search::Smooth },
+        Shape { name: "omega_s", min: low, max: high, search: ShapeSearch::Smooth },
+        Shape { name: "delta", min: 0.5, max: 3.0, search: ShapeSearch::Smooth },
     ];
     let speeds = crate::effects::log_grid(low, high, 6);
     let grid = speeds.iter().flat_map(|s| [vec![*s, 0.9], vec![*s, 1.8]]).collect();
@@ -70,7 +71,7 @@ impl Effect for Stribeck {
         vec![fading(view, shape)]
     }
 
-    fn suddenness(&self) -> Option<&'static str> {
+    fn exponent_parameter(&self) -> Option<&'static str> {
         Some("delta")
     }
 }

@@ -1,7 +1,8 @@
 //! Stribeck effect that grows with the load.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct StribeckLoad;
@@ -28,18 +29,18 @@ impl Effect for StribeckLoad {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let Some((shape, grid)) = super::stribeck::search(view).filter(|_| view.bears_load()) else {
+        let Some((shape, grid)) = crate::effects::friction::stribeck::search(view).filter(|_| view.bears_load()) else {
             return Vec::new();
         };
         vec![Form { name: "exponential", linear: vec!["mu_s"], shape, grid }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        let fading = super::stribeck::fading(view, shape);
+        let fading = crate::effects::friction::stribeck::fading(view, shape);
         vec![fading.iter().zip(view.get(Signal::Load)).map(|(f, l)| f * l.abs()).collect()]
     }
 
-    fn suddenness(&self) -> Option<&'static str> {
+    fn exponent_parameter(&self) -> Option<&'static str> {
         Some("delta")
     }
 }

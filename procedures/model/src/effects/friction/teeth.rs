@@ -1,7 +1,8 @@
 //! What the teeth of the gear bear: the measured load, and the link's weight where the sensor sits beyond it.
 
-use crate::effect::{Form, ParameterInfo, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::effect::{Form, ParameterInfo, Shape, ShapeSearch, parameter};
+use crate::signal::Signal;
+use crate::view::View;
 
 /// Name of the form in which the teeth bear a weight that no sensor feels.
 pub const WITH_WEIGHT: &str = "with_weight";
@@ -21,7 +22,7 @@ pub fn forms(view: &View, factor: &'static str) -> Vec<Form<'static>> {
     let plain = Form::linear(&[factor]);
     let Some(weight) = view.constants.weight.filter(|_| !view.constants.slides) else { return vec![plain] };
     let most = REACH * weight[0].hypot(weight[1]);
-    let shape = ["g_c", "g_s"].map(|name| Shape { name, min: -most, max: most, search: Search::Signed });
+    let shape = ["g_c", "g_s"].map(|name| Shape { name, min: -most, max: most, search: ShapeSearch::Signed });
     let form = Form { name: WITH_WEIGHT, linear: vec![factor], shape: shape.into(), grid: vec![weight.into()] };
     vec![plain, form]
 }

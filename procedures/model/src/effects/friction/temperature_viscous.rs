@@ -1,7 +1,8 @@
 //! Temperature-dependent viscous friction.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct TemperatureViscous;

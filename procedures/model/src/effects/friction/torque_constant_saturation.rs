@@ -1,7 +1,8 @@
 //! Saturation of the torque constant.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 use std::iter;
 
@@ -34,7 +35,7 @@ impl Effect for TorqueConstantSaturation {
 
     /// Without a load the torque goes with the speed: any power of it is one more curve over that.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let shape = vec![Shape { name: "n", min: LEAST_POWER, max: LARGEST_POWER, search: Search::Smooth }];
+        let shape = vec![Shape { name: "n", min: LEAST_POWER, max: LARGEST_POWER, search: ShapeSearch::Smooth }];
         let grid = vec![vec![3.0]];
         let power = Form { name: "power", linear: vec!["s_n"], shape, grid };
         iter::once(Form::linear(&["s"])).chain(view.bears_load().then_some(power)).collect()

@@ -1,7 +1,8 @@
 //! Quadratic drag.
 
 use crate::effect::{Columns, Effect, EffectInfo, Form, parameter};
-use crate::view::{Signal, View};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct ViscousQuadratic;

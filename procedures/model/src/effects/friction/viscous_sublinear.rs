@@ -1,7 +1,8 @@
 //! Shear-thinning viscous friction.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct ViscousSublinear;
@@ -32,14 +33,14 @@ impl Effect for ViscousSublinear {
         let Some((slow, fast)) = crate::effects::speed_range(view).filter(|(slow, fast)| *fast >= 3.0 * slow) else {
             return Vec::new();
         };
-        let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, search: Search::Smooth }];
+        let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, search: ShapeSearch::Smooth }];
         let grid = [0.25, 0.4, 0.55, 0.7].iter().map(|a| vec![*a]).collect();
         let power = Form { name: "power", linear: vec!["c_alpha"], shape, grid };
         let (low, high) = (slow, fast / 3.0);
         if high < 2.0 * low {
             return vec![power];
         }
-        let shape = vec![Shape { name: "omega_l", min: low, max: high, search: Search::Smooth }];
+        let shape = vec![Shape { name: "omega_l", min: low, max: high, search: ShapeSearch::Smooth }];
         let grid = crate::effects::log_grid(low, high, 4).into_iter().map(|w| vec![w]).collect();
         vec![power, Form { name: "limited", linear: vec!["tau_l"], shape, grid }]
     }

@@ -1,7 +1,8 @@
 //! Backlash.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Backlash;
@@ -25,7 +26,7 @@ impl Effect for Backlash {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
-        let shape = vec![Shape { name: "tau_b", min: 3e-3 * peak, max: 0.05 * peak, search: Search::Smooth }];
+        let shape = vec![Shape { name: "tau_b", min: 3e-3 * peak, max: 0.05 * peak, search: ShapeSearch::Smooth }];
         let grid = crate::effects::log_grid(3e-3 * peak, 0.05 * peak, 3).into_iter().map(|t| vec![t]).collect();
         vec![Form { name: "dead_zone", linear: vec!["beta"], shape, grid }]
     }

@@ -1,8 +1,9 @@
 //! Creep.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::effects::memory;
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::hysteresis_operators;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Creep;
@@ -30,14 +31,14 @@ impl Effect for Creep {
         if high <= 2.0 * low {
             return Vec::new();
         }
-        let shape = vec![Shape { name: "t_c", min: low, max: high, search: Search::Smooth }];
+        let shape = vec![Shape { name: "t_c", min: low, max: high, search: ShapeSearch::Smooth }];
         let grid = crate::effects::log_grid(low, high, 8).into_iter().map(|t| vec![t]).collect();
         vec![Form { name: "lag", linear: vec!["kappa_c"], shape, grid }]
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         let torque = view.samples.find(Signal::Load).unwrap_or_default();
-        let lag = memory::lag(torque, view.sample_s / shape[0], &view.starts);
+        let lag = hysteresis_operators::lag(torque, view.sample_s / shape[0], &view.starts);
         vec![view.average(lag.iter().zip(torque).map(|(s, t)| s - t).collect())]
     }
 }

@@ -1,7 +1,8 @@
 //! Hardening.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct Hardening;
@@ -30,9 +31,9 @@ impl Effect for Hardening {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
-        let bend = |low: f64| Shape { name: "tau_h", min: low * peak, max: 2.0 * peak, search: Search::Smooth };
+        let bend = |low: f64| Shape { name: "tau_h", min: low * peak, max: 2.0 * peak, search: ShapeSearch::Smooth };
         let loads = |low: f64| crate::effects::log_grid(low * peak, 2.0 * peak, 6);
-        let sharpness = Shape { name: "n", min: 1.0, max: 5.0, search: Search::Smooth };
+        let sharpness = Shape { name: "n", min: 1.0, max: 5.0, search: ShapeSearch::Smooth };
         let of_root = loads(0.01).into_iter().map(|t| vec![t]).collect();
         // What ends at lower loads is backlash.
         let of_start = loads(0.05).into_iter().flat_map(|t| [vec![t, 1.3], vec![t, 2.5]]).collect();

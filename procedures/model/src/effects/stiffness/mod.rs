@@ -1,15 +1,15 @@
 //! How a joint twists: effects of the kind `stiffness`. Motor position by gear ratio minus link position [rad].
 
-mod backlash;
-mod compliance;
-mod creep;
-mod delay;
-mod directional_offset;
-mod hardening;
-mod offset;
-mod temperature_compliance;
-mod torsional_hysteresis;
-mod transmission_error;
+pub(crate) mod backlash;
+pub(crate) mod compliance;
+pub(crate) mod creep;
+pub(crate) mod delay;
+pub(crate) mod directional_offset;
+pub(crate) mod hardening;
+pub(crate) mod offset;
+pub(crate) mod temperature_compliance;
+pub(crate) mod torsional_hysteresis;
+pub(crate) mod transmission_error;
 
 use crate::effect::Effect;
 

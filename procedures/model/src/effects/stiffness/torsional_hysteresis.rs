@@ -1,8 +1,9 @@
 //! Torsional hysteresis.
 
-use crate::effect::{Columns, Effect, EffectInfo, Form, Search, Shape, parameter};
-use crate::effects::memory;
-use crate::view::{Signal, View};
+use crate::effect::{Columns, Effect, EffectInfo, Form, Shape, ShapeSearch, parameter};
+use crate::hysteresis_operators;
+use crate::signal::Signal;
+use crate::view::View;
 use jointbench_instrument::Kind;
 
 pub struct TorsionalHysteresis;
@@ -35,7 +36,7 @@ impl Effect for TorsionalHysteresis {
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
         let peak = view.peak(Signal::Load);
-        let shape = vec![Shape { name: "tau_eta", min: 0.02 * peak, max: peak, search: Search::Smooth }];
+        let shape = vec![Shape { name: "tau_eta", min: 0.02 * peak, max: peak, search: ShapeSearch::Smooth }];
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(0.02 * peak, peak, 8).into_iter().map(|t| vec![t]).collect();
         let one = |name| Form { name, linear: vec!["eta"], shape: shape.clone(), grid: grid.clone() };
         vec![one("dahl"), one("stop"), one("maxwell_slip")]
@@ -45,11 +46,11 @@ impl Effect for TorsionalHysteresis {
         let torque = view.samples.find(Signal::Load).unwrap_or_default();
         let column = |(part, reach): (usize, &f64)| {
             view.average(match form {
-                "dahl" | "dahl_and_stops" if part == 0 => memory::dahl(torque, *reach, &view.starts),
+                "dahl" | "dahl_and_stops" if part == 0 => hysteresis_operators::dahl(torque, *reach, &view.starts),
                 "maxwell_slip" | "maxwell_slip_and_stops" if part == 0 => {
-                    memory::maxwell_slip(torque, *reach, &view.starts)
+                    hysteresis_operators::maxwell_slip(torque, *reach, &view.starts)
                 }
-                _ => memory::stop(torque, *reach, &view.starts),
+                _ => hysteresis_operators::stop(torque, *reach, &view.starts),
             })
         };
         shape.iter().enumerate().map(column).collect()

@@ -7,8 +7,8 @@ use crate::findings::{
 };
 use crate::identification::{Axis, Figure, Form, Identification, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
-use jointbench_model::prepare::Prepared;
-use jointbench_model::view::Signal;
+use jointbench_model::preprocess::Prepared;
+use jointbench_model::signal::Signal;
 use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit_prepared, words};
 use std::panic::resume_unwind;
 use std::thread;

@@ -1,0 +1,95 @@
+//! What became of the effects that are not in the last model: each is silent, invisible or left out, and none is forgotten.
+
+use crate::effect::{Effect, Form, Regime, ShapeSearch};
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::{Invisible, LeftOut, Silent};
+use crate::selection::detection_limit::DetectionLimit;
+use crate::selection::model_selection::ModelSelection;
+use crate::selection::{hysteresis_stage, ramp_stage};
+
+const TOO_LARGE: &str = "only one that is larger than all that was measured would have been seen";
+
+#[derive(Default)]
+pub struct ExcludedEffects {
+    /// Looked for and not found, with the smallest that would have been.
+    pub silent: Vec<Silent>,
+    pub invisible: Vec<Invisible>,
+    /// Tried, and left out for a reason.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl ExcludedEffects {
+    pub fn of(selected: &ModelSelection) -> Self {
+        let ModelSelection { withdrawn, ties, silences, .. } = selected;
+        let end = selected.end();
+        let on_ramps = ramp_stage::silence(end);
+        let around_reversals = hysteresis_stage::silences(end);
+        let silences: Vec<&DetectionLimit> = silences.iter().chain(&around_reversals).chain(&on_ramps).collect();
+        let largest = end.prepared.main.target.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let mut others = Self::default();
+        let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
+        for effect in end.spec.known().filter(is_out) {
+            let id = effect.info().id;
+            let tied = ties.iter().find(|(_, rival)| *rival == id);
+            let tied = tied
+                .map(|(named, _)| format!("{named} is in the model in its place, and this run cannot tell them apart"));
+            let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words());
+            let silence = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
+            if let Some(why) = tried.or_else(|| given(effect, end)) {
+                others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or_else(|| why.into()) });
+            } else if silence.is_some_and(|silence| silence.detectable_rms > largest) {
+                others.invisible.push(Invisible { effect: id.into(), why: TOO_LARGE.into() });
+            } else if let Some(silence) = silence {
+                let sought = sought(effect, end);
+                others.silent.push(Silent {
+                    effect: id.into(),
+                    minimum_detectable_rms: silence.detectable_rms,
+                    sought,
+                });
+            } else {
+                let why = tied.unwrap_or_else(|| invisible(effect, end));
+                others.invisible.push(Invisible { effect: id.into(), why });
+            }
+        }
+        others
+    }
+}
+
+/// What enters as it is has no size from which it would have been found.
+fn given(effect: &dyn Effect, end: &TwoStageModel) -> Option<&'static str> {
+    let is_tried = effect.is_offset() && effect.hidden(&end.prepared.main.view).is_none();
+    is_tried.then_some("it enters as it is measured, and the error is not clearly smaller with it")
+}
+
+/// The numbers of waves that were tried.
+fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
+    let forms = effect.forms(&end.prepared.main.view);
+    let a_turn = |name: &str| effect.info().parameters.iter().any(|p| p.name == name && p.unit == "1/turn");
+    let whole =
+        |form: &&Form| form.shape.first().is_some_and(|shape| shape.search == ShapeSearch::Whole && a_turn(shape.name));
+    let numbers = forms.iter().filter(whole).flat_map(|form| &form.grid).map(|shape| shape[0]);
+    let (least, most) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), n| (l.min(n), m.max(n)));
+    let waves = if most == 1.0 { "wave" } else { "waves" };
+    match least < most {
+        true => Some(format!("{least} to {most} {waves} a turn")),
+        false => least.is_finite().then(|| format!("{least} {waves} a turn")),
+    }
+}
+
+fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
+    const ALIKE: &str = "in this data it looks like what the model has already, which takes its place";
+    const RAMP: &str = "settled motion does not show it, and on ramps, where the signals of different instruments are not \
+                        aligned, only a torque that is late is looked for, beside an inertia; name it in the model, or record \
+                        a trajectory without steps";
+    let prepared = end.prepared;
+    let remembered = prepared.memory.as_ref().map(|problem| &problem.view);
+    let view = match (end.is_apart(effect), effect.regime()) {
+        (true, Regime::Hysteresis) => remembered,
+        (true, _) => return effect.hidden(&prepared.main.view).unwrap_or_else(|| RAMP.into()),
+        _ => Some(&prepared.main.view),
+    };
+    match view {
+        Some(view) => effect.hidden(view).unwrap_or_else(|| ALIKE.into()),
+        None => "the run has no slow reversals that could show it".into(),
+    }
+}

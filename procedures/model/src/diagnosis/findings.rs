@@ -1,0 +1,160 @@
+//! What a selection found: the evidence for each effect, what was not found, and the verdict.
+
+use crate::diagnosis::excluded_effects::ExcludedEffects;
+use crate::preprocess::Prepared;
+use crate::regression::cross_validation::held_out_rms;
+use crate::regression::linear_model::LinearModel;
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::{Imitated, Invisible, LeftOut, NoiseFloor, Silent, Verdict};
+use crate::residual_analysis::maps::Maps;
+use crate::residual_analysis::{lack_of_fit, noise_floor};
+use crate::selection::advance::SelectionStep;
+use crate::selection::model_selection::ModelSelection;
+use crate::selection::removal::Withdrawn;
+use crate::thresholds::{FLOOR_RATIO, NEGLIGIBLE_RMS, REPEATABLE_SHARE, STRUCTURE_SHARE};
+use crate::{ModelError, ModelSpec, Options};
+use jointbench_instrument::Kind;
+
+pub struct Findings<'p> {
+    pub start: TwoStageModel<'p>,
+    pub advances: Vec<SelectionStep<'p>>,
+    pub withdrawn: Vec<Withdrawn<'p>>,
+    others: ExcludedEffects,
+    /// Maps of what the last model leaves.
+    pub maps: Maps,
+    /// What shows in them is what whole stretches of motion scatter by.
+    scatters: bool,
+    pub floor: NoiseFloor,
+    pub end_held_out_rms: f64,
+    /// Effects of the last model, and what this run cannot tell them from.
+    ties: Vec<(&'p str, &'p str)>,
+    /// Effects of the last model that the error would hardly miss.
+    pub upheld: Vec<Imitated>,
+    /// One that may be there as well.
+    pub open: Option<Imitated>,
+}
+
+impl<'p> Findings<'p> {
+    /// `on_advance` sees every move when it is made.
+    pub fn new(
+        prepared: &'p Prepared,
+        spec: &'p ModelSpec,
+        options: &Options,
+        most: usize,
+        on_advance: &mut dyn FnMut(&SelectionStep),
+    ) -> Result<Self, ModelError> {
+        let selected = ModelSelection::new(prepared, spec, options, most, on_advance)?;
+        let others = ExcludedEffects::of(&selected);
+        let floor = noise_floor::noise_floor(prepared, &selected.residual, selected.now.contains("hysteresis"));
+        let scatters =
+            lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
+        let end_held_out_rms = held_out_rms(&selected.end().main);
+        let ModelSelection { start, advances, withdrawn, maps, ties, upheld, open, .. } = selected;
+        Ok(Self { start, advances, withdrawn, others, maps, scatters, floor, end_held_out_rms, ties, upheld, open })
+    }
+
+    pub fn end(&self) -> &TwoStageModel<'p> {
+        self.advances.last().map_or(&self.start, |a| &a.after)
+    }
+
+    /// Effects that this run cannot show, those of the model first.
+    pub fn not_visible(&self) -> Vec<Invisible> {
+        self.start.hidden.iter().chain(&self.others.invisible).cloned().collect()
+    }
+
+    /// Effects that were looked for and not found.
+    pub fn silent(&self) -> Vec<Silent> {
+        self.others.silent.clone()
+    }
+
+    /// Effects that were tried and left out.
+    pub fn left_out(&self) -> Vec<LeftOut> {
+        self.others.left_out.clone()
+    }
+
+    /// What this run cannot tell an effect of the last model from: the model is as good with it in its place.
+    pub fn ties_of(&self, effect: &str) -> Vec<String> {
+        self.ties.iter().filter(|(e, _)| *e == effect).map(|(_, rival)| (*rival).into()).collect()
+    }
+
+    /// This run cannot tell it from an effect of the last model.
+    pub fn is_rival(&self, effect: &str) -> bool {
+        self.ties.iter().any(|(_, rival)| *rival == effect)
+    }
+
+    /// Verdict on the last model.
+    pub fn end_verdict(&self) -> Verdict {
+        let shows = lack_of_fit::structured(&self.maps).is_some() && !self.scatters;
+        if (shows || self.repeats_itself()) && !self.is_negligible() {
+            Verdict::UnexplainedStructure
+        } else {
+            Verdict::Adequate
+        }
+    }
+
+    /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
+    /// noise, whether or not a map shows where it comes from. A floor without an interval is too little known to accuse.
+    fn repeats_itself(&self) -> bool {
+        let held_out = self.end_held_out_rms;
+        let surely = self.floor.repeatable_ci95.is_some_and(|[least, _]| least > STRUCTURE_SHARE);
+        self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE) && surely
+            || self.floor.rms.filter(|_| self.floor.ci95.is_some()).is_some_and(|floor| held_out > FLOOR_RATIO * floor)
+    }
+
+    /// RMS of what whole stretches of motion differ by, where that is what shows over an axis.
+    pub fn scatter_rms(&self) -> Option<f64> {
+        self.scatters.then(|| self.maps.between_rms())
+    }
+
+    /// What is left is small beside what was measured, however much of it repeats.
+    fn is_negligible(&self) -> bool {
+        let main = &self.end().main;
+        let response = main.response();
+        let mean = response.iter().sum::<f64>() / response.len() as f64;
+        let spread = (response.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / response.len() as f64).sqrt();
+        self.start.prepared.kind != Kind::Encoder && self.end_held_out_rms < NEGLIGIBLE_RMS * spread
+    }
+
+    /// Added effects that are still there, the most important first: by what the last model loses without them, so
+    /// that effects that mask each other come out in the right order.
+    pub fn ranking(&self) -> Vec<(&SelectionStep<'p>, f64)> {
+        let end = self.end();
+        let mut seen: Vec<&str> = Vec::new();
+        let mut ranked: Vec<(&SelectionStep, f64)> = Vec::new();
+        // From the end, because an effect that was dropped and came again has its present evidence there.
+        for advance in self.advances.iter().rev() {
+            let Some(id) = advance.added.as_ref().map(|r| r.term.id()) else { continue };
+            if !seen.contains(&id) && end.effects.iter().any(|e| e == id) {
+                seen.push(id);
+                ranked.push((advance, importance(end, id)));
+            }
+        }
+        ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+        ranked
+    }
+}
+
+impl Findings<'_> {
+    /// Share of the held-out error that the last model has less than the same model without an effect.
+    pub fn lost_without(&self, id: &str) -> f64 {
+        let parts = parts_without(self.end(), id);
+        parts.first().map_or(0.0, |(part, without)| 1.0 - held_out_rms(part) / held_out_rms(without))
+    }
+}
+
+/// Share of the squared error without an effect that the effect takes away.
+fn importance(end: &TwoStageModel, id: &str) -> f64 {
+    let loss = |(part, without): &(&LinearModel, LinearModel)| 1.0 - part.linear().sse / without.linear().sse;
+    parts_without(end, id).iter().map(loss).fold(0.0, f64::max)
+}
+
+/// The parts of a model that hold an effect, beside what they are without it.
+fn parts_without<'a, 'p>(end: &'a TwoStageModel<'p>, id: &str) -> Vec<(&'a LinearModel<'p>, LinearModel<'p>)> {
+    if let Ok(effect) = end.spec.find(id)
+        && effect.is_offset()
+    {
+        return vec![(&end.main, end.main.without_given(effect))];
+    }
+    let parts = std::iter::once(&end.main).chain(&end.moving).filter(|part| part.contains(id));
+    parts.map(|part| (part, part.without(id))).collect()
+}

@@ -1,0 +1,260 @@
+//! Which effect is missing, and what is left when all that can be named is in the model.
+
+pub(crate) mod evidence;
+pub(crate) mod excluded_effects;
+pub(crate) mod findings;
+pub(crate) mod narrative;
+pub(crate) mod reversals;
+
+use crate::diagnosis::findings::Findings;
+use crate::fit::{report, written};
+use crate::inference::confounding;
+use crate::linear::basis::dot;
+use crate::preprocess::{Prepared, prepare};
+use crate::regression::cross_validation::held_out;
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step, Suggestion, Verdict};
+use crate::report::fit::Parameter;
+use crate::report::maps::{PairMap, Region};
+use crate::residual_analysis::maps::Maps;
+use crate::residual_analysis::maps::regions::yardstick;
+use crate::selection::advance::SelectionStep;
+use crate::words::{figure, list, percent};
+use crate::{Fit, ModelError, ModelSpec, Options};
+use jointbench_instrument::RunTable;
+
+/// How far the search looks ahead for a diagnosis.
+const MOST_EFFECTS: usize = 6;
+
+/// Compares a model with a run: where it fails, which effects are missing, how sure that is.
+pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
+    let prepared = prepare(run, options)?;
+    let found = Findings::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
+    let mut fit = report(&found.start)?;
+    if found.advances.is_empty() {
+        leave_open(&mut fit, &found);
+    }
+    let complete = report(found.end())?;
+    let suggestions = suggestions(&found, &fit, &complete, spec, options)?;
+    let verdict = if suggestions.is_empty() { found.end_verdict() } else { Verdict::MissingEffect };
+    let undecided = narrative::undecided(&found, &[&fit, &complete], verdict, options);
+    let start = &found.start.main;
+    let of_start = (verdict == Verdict::MissingEffect).then(|| Maps::new(&prepared, start.linear().residual, options));
+    let maps = of_start.as_ref().unwrap_or(&found.maps);
+    let mut regions = regions(maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
+    let remembering = found.ranking().into_iter().filter_map(|(advance, _)| advance.added.as_ref());
+    let apart = remembering.filter(|rival| found.start.is_apart(rival.term.effect));
+    let reach = apart.filter_map(|rival| rival.term.shape.first().copied());
+    let measure = yardstick(&fit, Some(&found.floor));
+    let reversals = reach.filter_map(|reach| reversals::region(&found.start, reach, &fit, measure.as_ref()));
+    regions.splice(0..0, reversals.collect::<Vec<_>>());
+    let structure = structure(&found, verdict);
+    Ok(Diagnosis {
+        kind: prepared.kind,
+        model: found.start.effects.clone(),
+        own: spec.own.clone(),
+        residual: fit.residual,
+        noise_floor_rms: found.floor.rms,
+        noise_floor: found.floor.clone(),
+        verdict,
+        undecided,
+        summary: match verdict {
+            Verdict::MissingEffect => narrative::missing(&found, &fit, &complete, &suggestions),
+            _ => narrative::end(&found, &complete, structure.as_ref(), options, false),
+        } + &narrative::nowhere(verdict, maps, &regions, &fit),
+        shows_over: shows_over(&found, structure.as_ref()),
+        structure_remains: found.end_verdict() == Verdict::UnexplainedStructure,
+        regions,
+        structure,
+        imitated: found.open.clone(),
+        experiment: experiment(&found, &prepared),
+        silent: found.silent(),
+        not_visible: found.not_visible(),
+        left_out: found.left_out(),
+        suggestions,
+        fit,
+    })
+}
+
+/// Diagnoses, adds the best effect and fits again until nothing more can be named or `max_effects` were added.
+///
+/// `on_step` sees every step when it is made.
+pub fn discover(
+    run: &RunTable,
+    spec: &ModelSpec,
+    options: &Options,
+    max_effects: usize,
+    mut on_step: impl FnMut(&Step),
+) -> Result<Discovery, ModelError> {
+    let prepared = prepare(run, options)?;
+    let mut steps = vec![step(&TwoStageModel::new(&prepared, spec, options)?, None)];
+    on_step(&steps[0]);
+    let found = Findings::new(&prepared, spec, options, max_effects, &mut |advance| {
+        let step = step(&advance.after, Some(advance));
+        on_step(&step);
+        steps.push(step);
+    })?;
+    // Ties are those of the last model.
+    for step in &mut steps {
+        step.confounded_with = step.added.as_deref().map_or_else(Vec::new, |added| found.ties_of(added));
+    }
+    let is_cut = steps.iter().filter(|step| step.added.is_some()).count() >= max_effects;
+    let mut fit = report(found.end())?;
+    leave_open(&mut fit, &found);
+    let verdict = found.end_verdict();
+    let structure = structure(&found, verdict);
+    let undecided = narrative::undecided(&found, &[&fit], verdict, options);
+    let regions = regions(&found.maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
+    Ok(Discovery {
+        kind: prepared.kind,
+        steps,
+        residual: fit.residual,
+        noise_floor_rms: found.floor.rms,
+        noise_floor: found.floor.clone(),
+        verdict,
+        undecided,
+        summary: narrative::end(&found, &fit, structure.as_ref(), options, is_cut)
+            + &narrative::nowhere(verdict, &found.maps, &regions, &fit),
+        shows_over: shows_over(&found, structure.as_ref()),
+        model: found.end().effects.clone(),
+        regions,
+        structure,
+        imitated: found.open.clone(),
+        experiment: experiment(&found, &prepared),
+        silent: found.silent(),
+        not_visible: found.not_visible(),
+        left_out: found.left_out(),
+        fit,
+    })
+}
+
+fn step(model: &TwoStageModel, advance: Option<&SelectionStep>) -> Step {
+    let residual = model.main.linear().residual;
+    let n = residual.len() as f64;
+    Step {
+        added: advance.and_then(|a| a.added.as_ref()).map(|r| r.term.id().into()),
+        removed: advance.and_then(|a| a.removed).map(Into::into),
+        confounded_with: advance.map_or_else(Vec::new, |a| a.ties.iter().map(|t| (*t).into()).collect()),
+        model: model.effects.clone(),
+        rms: (dot(&residual, &residual) / n).sqrt(),
+        validation_rms: (held_out(&model.main).iter().sum::<f64>() / n).sqrt(),
+    }
+}
+
+fn suggestions(
+    found: &Findings,
+    fit: &Fit,
+    complete: &Fit,
+    spec: &ModelSpec,
+    options: &Options,
+) -> Result<Vec<Suggestion>, ModelError> {
+    let mut out = Vec::new();
+    for (advance, importance) in found.ranking() {
+        let Some(rival) = &advance.added else { continue };
+        let id = rival.term.id();
+        let with = spec.with(id)?;
+        let alone = TwoStageModel::new(found.start.prepared, &with, options)?;
+        let with = report(&alone)?;
+        let apart = alone.is_apart(rival.term.effect);
+        let reduction = if apart {
+            1.0 - (1.0 - rival.share).max(0.0).sqrt()
+        } else {
+            1.0 - with.validation_rms / fit.validation_rms
+        };
+        let info = rival.term.effect.info();
+        let confounded_with = found.ties_of(id);
+        let tie = if confounded_with.is_empty() {
+            String::new()
+        } else {
+            let mut alike = Vec::new();
+            for rival in &confounded_with {
+                let other = spec.with(rival)?;
+                let other = TwoStageModel::new(found.start.prepared, &other, options)?;
+                alike.push(format!("{:.2}", evidence::correlation(&found.start.main, &alone.main, &other.main)));
+            }
+            format!(
+                " This run cannot tell it from {}, in its place: what they take off the error is {} correlated.",
+                list(&confounded_with),
+                list(&alike)
+            )
+        };
+        let evidence = if apart {
+            format!("Around reversals it takes {} off the squared error.", percent(rival.share))
+        } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
+            format!("The error hardly misses it, but without it {}.", narrative::elsewhere(upheld, false))
+        } else {
+            let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
+            let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };
+            format!(
+                "Without this effect the complete model's squared error on the fitted data would be {times} times as large."
+            )
+        };
+        let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
+        let instead = confounding::instead(rival.term.effect, found.start.prepared);
+        let also: String = written.into_iter().chain(instead).map(|said| format!(" {said}.")).collect();
+        let why = format!("{} {evidence}{tie}{also}", info.sentence);
+        let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
+        let together = found.lost_without(id);
+        out.push(Suggestion {
+            effect: id.into(),
+            validation_rms: with.validation_rms,
+            error_reduction: reduction,
+            error_reduction_ci95: reduction_ci95,
+            bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
+            p_value: rival.p_value,
+            evidence: Evidence::of(rival.p_value, reduction, reduction_ci95, together),
+            p_at_most: rival.p_value * (options.flips + 1) as f64 <= 1.001,
+            error_reduction_together: together,
+            parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
+            confounded_with,
+            why,
+        });
+    }
+    Ok(out)
+}
+
+/// An interval of a parameter says nothing of an effect that is not in the model. Where that may be there as well, it reaches
+/// to what the parameter would be with it.
+fn leave_open(fit: &mut Fit, found: &Findings) {
+    let Some(open) = &found.open else { return };
+    let is_meant = |p: &&mut Parameter| format!("{}.{}", p.effect, p.name) == open.parameter;
+    if let Some(parameter) = fit.parameters.iter_mut().find(is_meant) {
+        parameter.ci95 = [parameter.ci95[0].min(open.with), parameter.ci95[1].max(open.with)];
+        let with = figure(open.with, &open.unit);
+        parameter.note = Some(format!("would be {with} with {}, which this run does not exclude", open.effect));
+    }
+}
+
+/// Where a model fails. Nowhere that counts, where it is known to be adequate.
+fn regions(maps: &Maps, fit: &Fit, found: &Findings, is_adequate: bool) -> Vec<Region> {
+    match is_adequate {
+        true => Vec::new(),
+        false => maps.regions(&fit.unit, yardstick(fit, Some(&found.floor)).as_ref()),
+    }
+}
+
+fn structure(found: &Findings, verdict: Verdict) -> Option<PairMap> {
+    (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(&found.start.prepared.main))?
+}
+
+/// The columns that the summary names, where structure remains.
+fn shows_over(found: &Findings, structure: Option<&PairMap>) -> Vec<String> {
+    structure.and_then(|shown| narrative::shown_over(found, Some(shown))).unwrap_or_default().0
+}
+
+/// What to measure next.
+fn experiment(found: &Findings, prepared: &Prepared) -> Option<Experiment> {
+    if found.floor.rms.is_none() && prepared.clashes.is_empty() {
+        let mut parameters = serde_json::Map::new();
+        parameters.insert("repeats".into(), 3.into());
+        return Some(Experiment {
+            procedure: prepared.kind.name().into(),
+            parameters,
+            why: "without repeats of the same profile nobody knows how small the error can become".into(),
+            expected_z: None,
+            expected_duration_s: None,
+            separates: Vec::new(),
+        });
+    }
+    None
+}

@@ -1,0 +1,312 @@
+//! What to measure next: of the runs that a bench offers, the one that decides what the data leaves open.
+//!
+//! This crate knows no bench and no procedure. Whoever does offers a menu: each [`Choice`] is a run that could be made,
+//! as the settled stretches that it would consist of. What comes back is the shortest one that is expected to decide.
+
+pub(crate) mod separation;
+pub(crate) mod simulate;
+pub(crate) mod unobserved;
+
+use crate::experiment_design::separation::{Noise, Side};
+use crate::experiment_design::simulate::imagine;
+use crate::inference::confounding;
+use crate::preprocess::{Prepared, prepare};
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::{Diagnosis, Discovery, Experiment, Verdict};
+use crate::signal::Signal;
+use crate::thresholds::{NEARLY_COVERED, SEPARATED_Z, USELESS_Z};
+use crate::words::list;
+use crate::{ModelError, ModelSpec, Options, OwnEffect};
+use jointbench_instrument::{Motion, RunTable};
+use serde_json::{Map, Value};
+use std::cmp::Ordering;
+
+/// A run that could be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    pub procedure: String,
+    pub parameters: Map<String, Value>,
+    /// Infinite where nobody knows.
+    pub duration_s: f64,
+    pub stretches: Vec<Stretch>,
+}
+
+impl Choice {
+    fn powers_anew(&self) -> bool {
+        self.stretches.iter().any(|stretch| stretch.power_ups > 0)
+    }
+
+    /// What its expectation rests on beside the model, in words.
+    fn provided(&self) -> String {
+        let warmer_k = self.stretches.iter().map(|s| s.warmer_k).fold(0.0, f64::max);
+        if warmer_k > 0.0 { format!(", if it warms the joint by {warmer_k:.0} K") } else { String::new() }
+    }
+}
+
+/// Constant speed under constant load.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stretch {
+    /// Since the run began.
+    pub start_s: f64,
+    pub duration_s: f64,
+    /// Motor side; on an encoder bench the shaft.
+    pub velocity_rad_s: f64,
+    /// Motor position at the beginning, from where the run starts.
+    pub from_rad: f64,
+    /// Link torque that the joint delivers.
+    pub load_nm: f64,
+    /// Coil current of the brake.
+    pub brake_current_a: f64,
+    /// How often the encoder under test was powered anew before it; 0 where it never was.
+    pub power_ups: u32,
+    /// How much warmer the joint is than at the end of the run at hand, where the choice warms it [K].
+    pub warmer_k: f64,
+}
+
+/// What a diagnosis leaves open.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Open {
+    /// The model with everything that was named.
+    pub model: Vec<String>,
+    /// A named effect, and those that explain the data as well.
+    pub ties: Vec<(String, Vec<String>)>,
+    /// An effect that may be there as well.
+    pub imitated: Option<String>,
+    pub has_noise_floor: bool,
+    /// What remains shows in this data: a run for effects that it cannot show says nothing about it.
+    pub has_structure: bool,
+    /// Effects that the user wrote, which the model or its rivals may be.
+    pub own: Vec<OwnEffect>,
+}
+
+impl From<&Diagnosis> for Open {
+    fn from(diagnosis: &Diagnosis) -> Self {
+        let named = diagnosis.suggestions.iter().map(|s| s.effect.clone());
+        let tied = diagnosis.suggestions.iter().filter(|s| !s.confounded_with.is_empty());
+        Self {
+            model: diagnosis.model.iter().cloned().chain(named).collect(),
+            ties: tied.map(|s| (s.effect.clone(), s.confounded_with.clone())).collect(),
+            imitated: diagnosis.imitated.as_ref().map(|open| open.effect.clone()),
+            has_noise_floor: diagnosis.noise_floor_rms.is_some(),
+            has_structure: diagnosis.structure_remains,
+            own: Vec::new(),
+        }
+    }
+}
+
+impl From<&Discovery> for Open {
+    fn from(discovery: &Discovery) -> Self {
+        let tied = discovery.steps.iter().filter(|s| !s.confounded_with.is_empty());
+        let tied = tied.filter_map(|s| Some((s.added.clone()?, s.confounded_with.clone())));
+        Self {
+            model: discovery.model.clone(),
+            ties: tied.filter(|(effect, _)| discovery.model.contains(effect)).collect(),
+            imitated: discovery.imitated.as_ref().map(|open| open.effect.clone()),
+            has_noise_floor: discovery.noise_floor_rms.is_some(),
+            has_structure: discovery.verdict == Verdict::UnexplainedStructure,
+            own: Vec::new(),
+        }
+    }
+}
+
+/// What is to be done about what a diagnosis leaves open.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Next {
+    /// The run to make, `None` where nothing is open that the menu could decide.
+    pub experiment: Option<Experiment>,
+    /// Where there is none: the ties that stay, in a sentence.
+    pub in_vain: Option<String>,
+}
+
+/// The run to make next. Of columns that contradict each other none follows: they are to be mended.
+///
+/// Rivals that tie come first, then an effect that may be there as well, then a change with temperature that may be one with time,
+/// then a run without repeats, then effects that this run could not have shown.
+pub fn next_run(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Next, ModelError> {
+    let mut next = choose(run, open, menu, options)?;
+    if let (Some(next), Motion::Linear) = (&mut next.experiment, run.meta().motion) {
+        next.why.push_str("; the axis slides: rad in the names of the parameters is m");
+    }
+    Ok(next)
+}
+
+fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Result<Next, ModelError> {
+    let prepared = prepare(run, options)?;
+    if !prepared.clashes.is_empty() {
+        return Ok(Next::default());
+    }
+    let spec = |effects: &[String]| ModelSpec::with_own(run.kind(), effects, open.own.clone());
+    let with_all = spec(&open.model)?;
+    let model = TwoStageModel::new(&prepared, &with_all, options)?;
+    let noise = Noise::of(&model.main);
+    let gear = run.meta().gear_ratio.unwrap_or(1.0);
+    let side = Side::new(&model.main, &noise);
+    let known = menu.iter().filter(|choice| !choice.stretches.is_empty());
+    let mut imagined: Vec<_> = known.map(|choice| (choice, imagine(choice, &prepared, &model, gear))).collect();
+
+    let decided = |others: &[ModelSpec]| -> Result<Option<Bid>, ModelError> {
+        let others = others.iter().map(|s| TwoStageModel::new(&prepared, s, options));
+        let others: Vec<TwoStageModel> = others.collect::<Result<_, _>>()?;
+        let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
+        // Nobody switches an encoder off and on for another question.
+        let asks_for_power_ups = side.changes_by_run() || others.iter().any(Side::changes_by_run);
+        let useful = imagined.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
+        Ok(decide(useful.map(|(choice, problem)| {
+            let apart = others.iter().map(|other| side.separation(other, problem, &noise));
+            Bid { choice, z: apart.fold(f64::INFINITY, f64::min) }
+        })))
+    };
+    let mut in_vain = Vec::new();
+    for (effect, rivals) in &open.ties {
+        let instead = |rival: &String| {
+            let effects: Vec<String> = open.model.iter().map(|e| if e == effect { rival } else { e }.clone()).collect();
+            spec(&effects)
+        };
+        // One that no run tells from it keeps no other from being told.
+        let (mut apart, mut specs, mut alike, mut first) = (Vec::new(), Vec::new(), Vec::new(), None);
+        for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
+            let other = [instead(rival)?];
+            match decided(&other)? {
+                Some(bid) => {
+                    first.get_or_insert(bid);
+                    apart.push(rival.clone());
+                    specs.extend(other);
+                }
+                None => alike.push(rival.clone()),
+            }
+        }
+        let vain = (!alike.is_empty()).then(|| format!("{effect} from {}", list(&alike)));
+        // One run for all of them, or one for the first.
+        let together = if apart.len() > 1 { decided(&specs)? } else { None };
+        if together.is_none() {
+            apart.truncate(1);
+        }
+        let bid = together.or(first);
+        if let Some(bid) = bid {
+            let tells = format!("{effect} from {}", list(&apart));
+            let mut next = told(bid, &tells, std::iter::once(effect).chain(&apart));
+            next.why
+                .extend(vain.map(|vain| format!("; no run within what this bench may do is expected to tell {vain}")));
+            return Ok(next.into());
+        }
+        in_vain.extend(vain);
+    }
+    let next = if let Some(effect) = &open.imitated
+        && let Some(bid) = decided(&[with_all.with(effect)?])?
+    {
+        Some(told(bid, &format!("whether {effect} is there as well"), [effect]))
+    } else if let Some((effect, spec)) = over_time(&with_all, &prepared)?
+        && let Some(bid) = decided(&[spec])?
+    {
+        Some(told(bid, &format!("{effect} from a drift over time"), [&effect]))
+    } else if !open.has_noise_floor
+        && let Some(choice) = nearest(menu, &prepared)
+    {
+        Some(again(choice))
+    } else if open.has_structure {
+        None
+    } else {
+        imagined.retain(|(choice, _)| !choice.powers_anew());
+        unobserved::unseen(&model, &noise, &imagined)
+    };
+    let in_vain = (!in_vain.is_empty()).then(|| {
+        let ties = list(&in_vain);
+        format!("run within what this bench may do is expected to tell {ties}: that takes another speed, load or temperature")
+    });
+    Ok(match (next, in_vain) {
+        (Some(next), Some(vain)) => Experiment { why: format!("no {vain}; but {}", next.why), ..next }.into(),
+        (Some(next), None) => next.into(),
+        (None, vain) => Next { experiment: None, in_vain: vain.map(|vain| format!("No {vain}.")) },
+    })
+}
+
+impl From<Experiment> for Next {
+    fn from(experiment: Experiment) -> Self {
+        Self { experiment: Some(experiment), in_vain: None }
+    }
+}
+
+/// An effect of the model that tells of a temperature which moved as time did, and the model with the same over time.
+fn over_time(model: &ModelSpec, prepared: &Prepared) -> Result<Option<(String, ModelSpec)>, ModelError> {
+    for id in &model.effects {
+        let Some(over_time) = confounding::over_time(model.find(id)?, prepared) else { continue };
+        if model.own.iter().any(|own| own.id() == over_time.id()) {
+            continue;
+        }
+        let effects = model.effects.iter().map(|e| if e == id { over_time.id() } else { e }.to_owned());
+        let effects: Vec<String> = effects.collect();
+        let own = model.own.iter().cloned().chain([over_time.clone()]).collect();
+        return Ok(Some((id.clone(), ModelSpec::with_own(model.kind, effects, own)?)));
+    }
+    Ok(None)
+}
+
+/// A choice with what is expected of it.
+#[derive(Clone, Copy)]
+struct Bid<'m> {
+    choice: &'m Choice,
+    z: f64,
+}
+
+/// The shortest run that decides; where none does, the one that says most.
+fn decide<'m>(bids: impl Iterator<Item = Bid<'m>>) -> Option<Bid<'m>> {
+    let bids: Vec<Bid> = bids.filter(|bid| bid.z.is_finite() && bid.z >= USELESS_Z).collect();
+    let enough = bids.iter().filter(|bid| bid.z >= SEPARATED_Z);
+    let shortest = enough.min_by(|a, b| a.choice.duration_s.total_cmp(&b.choice.duration_s));
+    shortest.or_else(|| bids.iter().max_by(|a, b| a.z.total_cmp(&b.z))).copied()
+}
+
+fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String>) -> Experiment {
+    let times = (SEPARATED_Z / bid.z).powi(2).ceil();
+    let enough = if bid.z >= SEPARATED_Z {
+        String::new()
+    } else {
+        format!("; about {times:.0} such runs are needed for {SEPARATED_Z:.0}")
+    };
+    Experiment {
+        procedure: bid.choice.procedure.clone(),
+        parameters: bid.choice.parameters.clone(),
+        why: format!(
+            "this run tells {what}: the predictions are expected to lie {} standard deviations apart{}{enough}",
+            in_words(bid.z),
+            bid.choice.provided(),
+        ),
+        expected_z: Some(bid.z),
+        expected_duration_s: Some(bid.choice.duration_s),
+        separates: separates.into_iter().cloned().collect(),
+    }
+}
+
+/// Beyond a hundred nobody doubts.
+fn in_words(z: f64) -> String {
+    if z < 100.0 { format!("{z:.1}") } else { "more than 100".to_owned() }
+}
+
+/// The choice that comes nearest to the fastest of the run at hand, then to its largest load; of equals the first, which is the
+/// ordinary one.
+fn nearest<'m>(menu: &'m [Choice], prepared: &Prepared) -> Option<&'m Choice> {
+    let points = &prepared.main.view.points;
+    let largest = |signal| points.find(signal).map_or(0.0, |of| of.iter().fold(0.0f64, |most, v| most.max(v.abs())));
+    let (fastest, heaviest) = (largest(Signal::Velocity), prepared.load_scale * largest(Signal::Load));
+    let share = |choice: &Choice, of: fn(&Stretch) -> f64, all: f64| {
+        let most = choice.stretches.iter().fold(0.0f64, |most, stretch| most.max(of(stretch).abs()));
+        if all > 0.0 { (most / (NEARLY_COVERED * all)).min(1.0) } else { 1.0 }
+    };
+    let covered =
+        |choice: &Choice| (share(choice, |s| s.velocity_rad_s, fastest), share(choice, |s| s.load_nm, heaviest));
+    menu.iter().rev().max_by(|a, b| covered(a).partial_cmp(&covered(b)).unwrap_or(Ordering::Equal))
+}
+
+/// A run that could be made anew, for its repeats.
+fn again(choice: &Choice) -> Experiment {
+    Experiment {
+        procedure: choice.procedure.clone(),
+        parameters: choice.parameters.clone(),
+        why: "without repeats of the same profile nobody knows how small the error can become; make the run at hand again and \
+              number its repeats, or this run, which comes nearest to it"
+            .into(),
+        expected_z: None,
+        expected_duration_s: choice.duration_s.is_finite().then_some(choice.duration_s),
+        separates: Vec::new(),
+    }
+}

@@ -1,0 +1,214 @@
+//! How far apart two models would be after one more run.
+//!
+//! T-optimality (Atkinson and Fedorov 1975): the run is best on which the rival, with its parameters chosen anew to fit
+//! everything known, still cannot follow the other model.
+
+use crate::linear::basis::dot;
+use crate::linear::cholesky::Cholesky;
+use crate::preprocess::Problem;
+use crate::regression::linear_model::{LinearModel, Term};
+
+/// Scatter of a measurement: what all points of a block have in common, and what each has for itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    pub block: f64,
+    pub row: f64,
+}
+
+/// Fewer pairs of repeats than this are no measure of noise.
+const FEWEST_TWINS: usize = 8;
+
+impl Noise {
+    /// From repeats where there are any, else from what the model leaves.
+    pub fn of(model: &LinearModel) -> Self {
+        let problem = model.problem;
+        let residual = model.linear().residual;
+        let mut groups: Vec<((usize, usize), Vec<f64>)> = Vec::new();
+        if problem.replicate_pairs.len() >= FEWEST_TWINS {
+            let mut pairs: Vec<_> = problem
+                .replicate_pairs
+                .iter()
+                .map(|(a, b)| ((problem.block[*a], problem.block[*b]), (residual[*a] - residual[*b]) / 2f64.sqrt()))
+                .collect();
+            pairs.sort_by_key(|pair| pair.0);
+            pairs.into_iter().for_each(|(key, value)| push(&mut groups, key, value));
+        } else {
+            for (e, b) in residual.iter().zip(&problem.block) {
+                push(&mut groups, (*b, *b), *e);
+            }
+        }
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+        let (mut squares, mut free, mut between, mut shares) = (0.0, 0.0, 0.0, 0.0);
+        for (_, values) in &groups {
+            let middle = mean(values);
+            squares += values.iter().map(|v| (v - middle).powi(2)).sum::<f64>();
+            free += values.len() as f64 - 1.0;
+            between += middle * middle;
+            shares += 1.0 / values.len() as f64;
+        }
+        let g = groups.len().max(1) as f64;
+        let row = squares / free.max(1.0);
+        let block = (between / g - row * shares / g).max(0.0);
+        let size = (dot(&problem.target, &problem.target) / problem.rows().max(1) as f64).sqrt();
+        Self { block: block.sqrt(), row: row.sqrt().max(1e-9 * size).max(f64::MIN_POSITIVE) }
+    }
+
+    /// The column in standard deviations: white, whatever the points of a block have in common.
+    pub fn whiten(&self, column: &[f64], problem: &Problem) -> Vec<f64> {
+        let mut sums = vec![(0.0, 0.0); problem.blocks];
+        for (x, b) in column.iter().zip(&problem.block) {
+            sums[*b].0 += x;
+            sums[*b].1 += 1.0;
+        }
+        let (row, block) = (self.row * self.row, self.block * self.block);
+        let lost: Vec<f64> = sums
+            .iter()
+            .map(|(sum, n): &(f64, f64)| (1.0 - (row / (row + n * block)).sqrt()) * sum / n.max(1.0))
+            .collect();
+        column.iter().zip(&problem.block).map(|(x, b)| (x - lost[*b]) / self.row).collect()
+    }
+}
+
+fn push(groups: &mut Vec<((usize, usize), Vec<f64>)>, key: (usize, usize), value: f64) {
+    match groups.last_mut() {
+        Some((last, values)) if *last == key => values.push(value),
+        _ => groups.push((key, vec![value])),
+    }
+}
+
+/// A model laid out on the run at hand, with what that run says about its parameters.
+pub struct Side<'a> {
+    model: &'a LinearModel<'a>,
+    factors: Vec<Vec<f64>>,
+    /// White columns and slopes at the run at hand.
+    columns: Vec<Vec<f64>>,
+    /// Information about all parameters, those of shape included.
+    gram: Vec<f64>,
+}
+
+impl<'a> Side<'a> {
+    pub fn new(model: &'a LinearModel<'a>, noise: &Noise) -> Self {
+        let factors = model.linear().factors;
+        let columns = tangent(model, &factors, noise);
+        Self { model, gram: gram(&columns), columns, factors }
+    }
+
+    /// A part of the model is another in each run.
+    pub fn changes_by_run(&self) -> bool {
+        self.model.terms.iter().any(|term| term.effect.is_nuisance())
+    }
+
+    /// Expected distance of the two models in standard deviations after the run, the mean of both ways of being wrong.
+    pub fn separation(&self, rival: &Side, run: &Problem, noise: &Noise) -> f64 {
+        let difference: Vec<f64> =
+            predict(self.model, run).iter().zip(predict(rival.model, run)).map(|(a, b)| a - b).collect();
+        let difference = noise.whiten(&difference, run);
+        let (own, other) = (self.at(run, noise), rival.at(run, noise));
+        let one_way = |side: &Side, at: &There, wrong: &There| {
+            // What the other model expects to be new there this one cannot follow, unless it expects the same.
+            let new = if at.new.is_empty() { wrong.new.as_slice() } else { &[] };
+            std::iter::once(&difference).chain(new).map(|white| side.left_over(white, at)).sum::<f64>()
+        };
+        (0.5 * (one_way(self, &own, &other) + one_way(rival, &other, &own))).max(0.0).sqrt()
+    }
+
+    /// Squared length of what is left of a white column at the run when the model follows it as far as the run at hand
+    /// lets it.
+    fn left_over(&self, white: &[f64], there: &There) -> f64 {
+        let side: Vec<f64> = there.columns().map(|c| dot(c, white)).collect();
+        let followed = Cholesky::new(&self.known_then(there), side.len(), 0.0).whiten(&side);
+        dot(white, white) - dot(&followed, &followed)
+    }
+
+    /// What the run at hand, and that with one more run, say about the factor of a further white column: squared standard
+    /// deviations of a factor of one.
+    pub fn information(&self, now: &[f64], then: &[f64], there: &There) -> (f64, f64) {
+        let alone: Vec<f64> = self.columns.iter().map(|c| dot(c, now)).collect();
+        let begun = alone.iter().copied().chain(std::iter::repeat(0.0));
+        let both: Vec<f64> = begun.zip(there.columns()).map(|(a, c)| a + dot(c, then)).collect();
+        let known = |gram: &[f64], side: &[f64]| {
+            let white = Cholesky::new(gram, side.len(), 0.0).whiten(side);
+            dot(&white, &white)
+        };
+        let before = dot(now, now) - known(&self.gram, &alone);
+        let after = dot(now, now) + dot(then, then) - known(&self.known_then(there), &both);
+        (before.max(0.0), after.max(0.0))
+    }
+
+    /// Information about all parameters after both runs.
+    fn known_then(&self, there: &There) -> Vec<f64> {
+        let (before, all) = (self.columns.len(), there.columns().count());
+        let mut both = gram(&there.columns().collect::<Vec<_>>());
+        for a in 0..all {
+            if a < before {
+                (0..before).for_each(|b| both[a * all + b] += self.gram[a * before + b]);
+            } else {
+                both[a * all + a] += 1.0;
+            }
+        }
+        both
+    }
+
+    /// The model at another run.
+    pub fn at(&self, run: &Problem, noise: &Noise) -> There {
+        let there = elsewhere(self.model, run);
+        let (mut known, mut new) = (Vec::new(), Vec::new());
+        for (term, factors) in there.terms.iter().zip(&self.factors) {
+            if !term.effect.is_nuisance() {
+                known.extend(term.columns.iter().map(|c| noise.whiten(c, run)));
+                continue;
+            }
+            known.extend(factors.iter().map(|_| vec![0.0; run.rows()]));
+            let size = (dot(factors, factors) / factors.len().max(1) as f64).sqrt();
+            let sized = |column: &Vec<f64>| column.iter().map(|x| size * x).collect::<Vec<f64>>();
+            new.extend(term.columns.iter().map(|c| noise.whiten(&sized(c), run)));
+        }
+        known.extend(there.slopes(&self.factors).into_iter().map(|(_, _, slope)| noise.whiten(&slope, run)));
+        There { known, new }
+    }
+}
+
+/// White columns of a model at another run.
+pub struct There {
+    /// Of the parameters that it has at the run at hand.
+    known: Vec<Vec<f64>>,
+    /// Of those that only the other run brings, times the size that they are expected to have.
+    new: Vec<Vec<f64>>,
+}
+
+impl There {
+    fn columns(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.known.iter().chain(&self.new)
+    }
+}
+
+/// White columns of a model and its slopes in the shape parameters.
+fn tangent(model: &LinearModel, factors: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
+    let own = model.columns().into_iter().map(|c| noise.whiten(c, model.problem));
+    let slopes = model.slopes(factors).into_iter().map(|(_, _, slope)| noise.whiten(&slope, model.problem));
+    own.chain(slopes).collect()
+}
+
+fn gram<C: AsRef<[f64]>>(columns: &[C]) -> Vec<f64> {
+    columns.iter().flat_map(|a| columns.iter().map(|b| dot(a.as_ref(), b.as_ref()))).collect()
+}
+
+/// The same terms at the points of another problem.
+fn elsewhere<'a>(model: &LinearModel<'a>, problem: &'a Problem) -> LinearModel<'a> {
+    let mut there = LinearModel::new(problem);
+    there.terms = model.terms.iter().map(|t| Term::new(t.effect, t.form.clone(), t.shape.clone(), problem)).collect();
+    there
+}
+
+/// What a model that was fitted elsewhere predicts, without what enters with a factor of one and what is another in each run.
+pub fn predict(model: &LinearModel, problem: &Problem) -> Vec<f64> {
+    let there = elsewhere(model, problem);
+    let mut sum = vec![0.0; problem.rows()];
+    let terms = there.terms.iter().zip(model.linear().factors);
+    for (term, factors) in terms.filter(|(term, _)| !term.effect.is_nuisance()) {
+        for (column, factor) in term.columns.iter().zip(factors) {
+            sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        }
+    }
+    sum
+}

@@ -1,0 +1,87 @@
+//! Effects that the run at hand could not have shown, and another run would.
+
+use crate::effect::{Regime, ShapeSearch};
+use crate::experiment_design::separation::{Noise, Side};
+use crate::experiment_design::{Bid, Choice, SEPARATED_Z};
+use crate::linear::basis::dot;
+use crate::preprocess::Problem;
+use crate::regression::linear_model::columns;
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::Experiment;
+use crate::thresholds::WORTH_SEEING;
+use crate::words::list;
+use jointbench_instrument::Kind;
+
+/// Below this an effect is not found with any certainty: z₀.₉₇₅ + z₀.₈.
+const FOUND_Z: f64 = 2.8;
+
+/// The run that shows most effects that could not be seen so far, of those the shortest.
+pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Problem)]) -> Option<Experiment> {
+    let is_friction = model.spec.kind == Kind::Friction;
+    let side = Side::new(&model.main, noise);
+    let mut best: Option<(Bid, Vec<&str>)> = None;
+    for (choice, run) in imagined {
+        let mut seen: Vec<(&str, f64)> = Vec::new();
+        let own = side.at(run, noise);
+        for effect in model.spec.known() {
+            let id = effect.info().id;
+            let open = effect.regime() == Regime::SteadyState && !effect.is_offset() && !model.main.contains(id);
+            if !open || effect.hidden(&run.view).is_some() {
+                continue;
+            }
+            let forms = effect.forms(&run.view);
+            let Some(form) = forms.first() else { continue };
+            // What happens at one moment is shown by the run in which it happens.
+            if form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump) {
+                continue;
+            }
+            let shape = &form.grid[form.grid.len() / 2];
+            let mut then = columns(effect, form.name, shape, run).swap_remove(0);
+            let mut now = match effect.hidden(&model.main.problem.view) {
+                Some(_) => vec![0.0; model.main.problem.rows()],
+                None => columns(effect, form.name, shape, model.main.problem).swap_remove(0),
+            };
+            let size = dot(&then, &then).sqrt();
+            if size == 0.0 {
+                continue;
+            }
+            let worth = match is_friction {
+                true => WORTH_SEEING * dot(&run.target, &run.target).sqrt(),
+                false => noise.row * (run.rows() as f64).sqrt(),
+            };
+            let factor = worth / size;
+            now.iter_mut().chain(&mut then).for_each(|x| *x *= factor);
+            let (now, then) = (noise.whiten(&now, model.main.problem), noise.whiten(&then, run));
+            let (before, after) = side.information(&now, &then, &own);
+            if before.sqrt() < FOUND_Z && after.sqrt() >= SEPARATED_Z {
+                seen.push((id, after.sqrt()));
+            }
+        }
+        let z = seen.iter().map(|s| s.1).fold(f64::INFINITY, f64::min);
+        let better = best.as_ref().is_none_or(|(bid, effects)| {
+            seen.len() > effects.len() || seen.len() == effects.len() && choice.duration_s < bid.choice.duration_s
+        });
+        if !seen.is_empty() && better {
+            best = Some((Bid { choice, z }, seen.into_iter().map(|s| s.0).collect()));
+        }
+    }
+    let (bid, effects) = best?;
+    let worth = match is_friction {
+        true => format!("{} % of the torque there", 100.0 * WORTH_SEEING),
+        false => "what is as large as the scatter of one reading".to_owned(),
+    };
+    Some(Experiment {
+        procedure: bid.choice.procedure.clone(),
+        parameters: bid.choice.parameters.clone(),
+        why: format!(
+            "this run would show {} of a size that the data so far could not show: {worth} would stand out by at least {:.1} \
+             standard deviations{}",
+            list(&effects),
+            bid.z.min(100.0),
+            bid.choice.provided(),
+        ),
+        expected_z: Some(bid.z),
+        expected_duration_s: Some(bid.choice.duration_s),
+        separates: effects.into_iter().map(Into::into).collect(),
+    })
+}

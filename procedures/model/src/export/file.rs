@@ -1,0 +1,51 @@
+//! A fit as a JSON file that travels.
+
+use crate::export::terms;
+use crate::report::fit::Fit;
+use crate::{ModelError, ModelSpec};
+use serde::{Deserialize, Serialize};
+
+const FORMAT: &str = "jointbench-model";
+const VERSION: u32 = 1;
+
+/// The complete fit, users' effects included.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelFile {
+    /// `jointbench-model`.
+    pub format: String,
+    pub version: u32,
+    pub fit: Fit,
+}
+
+impl ModelFile {
+    pub fn new(fit: Fit) -> Self {
+        Self { format: FORMAT.to_owned(), version: VERSION, fit }
+    }
+
+    pub fn to_json(&self) -> Result<String, ModelError> {
+        serde_json::to_string_pretty(self).map_err(|fault| ModelError::BadFile(fault.to_string()))
+    }
+
+    /// Reads what [`ModelFile::to_json`] wrote: every prediction comes out with the same bits.
+    pub fn read(text: &str) -> Result<Fit, ModelError> {
+        let file: Self = serde_json::from_str(text).map_err(|fault| ModelError::BadFile(fault.to_string()))?;
+        file.check()
+    }
+
+    /// The fit, if this version understands all of it.
+    pub fn check(self) -> Result<Fit, ModelError> {
+        if self.format != FORMAT || self.version != VERSION {
+            let found = format!("format {} version {}", self.format, self.version);
+            return Err(ModelError::BadFile(format!("{found}, but this program reads {FORMAT} version {VERSION}")));
+        }
+        let fit = self.fit;
+        let spec = ModelSpec::with_own(fit.kind, fit.effects.iter().map(String::as_str), fit.own.clone())?;
+        if let Some(term) = fit.terms.iter().find(|term| !spec.contains(&term.effect)) {
+            return Err(ModelError::BadFile(format!("a term of {}, which is not in the model", term.effect)));
+        }
+        let effects = fit.effects.iter().map(|id| spec.find(id)).collect::<Result<Vec<_>, _>>()?;
+        terms::check(&fit, &effects)?;
+        Ok(fit)
+    }
+}

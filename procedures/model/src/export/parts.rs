@@ -1,0 +1,139 @@
+//! A fit taken apart: every term as formulas, whoever wrote the effect.
+
+use crate::ModelError;
+use crate::export::symbolic::{Column, Rule, written};
+use crate::formula::expression::Expression;
+use crate::formula::signals::left_hand_side;
+use crate::formula::syntax;
+use crate::report::fit::{Fit, Term};
+use crate::signal::Signal;
+use crate::user_effects::find_with_own;
+
+/// One effect of the model as a controller computes it.
+#[derive(Debug)]
+pub struct Part<'f> {
+    pub effect: &'f str,
+    pub title: &'f str,
+    pub columns: Vec<PartColumn>,
+    /// Name and value of every factor; none where the effect enters as it is.
+    pub factors: Vec<(&'f str, f64)>,
+    /// Name and value of every shape parameter: what formulas number from 0.
+    pub shape: Vec<(&'f str, f64)>,
+}
+
+#[derive(Debug)]
+pub enum PartColumn {
+    Formula(Expression),
+    /// The parameter after the shape is the state.
+    Memory {
+        rule: Rule,
+        signal: Signal,
+        reach: usize,
+        end: Expression,
+        formula: Expression,
+    },
+    Band {
+        stops: usize,
+        bands: usize,
+        band: usize,
+    },
+}
+
+/// What an export holds and what it cannot hold.
+#[derive(Debug)]
+pub struct Parts<'f> {
+    pub parts: Vec<Part<'f>>,
+    /// Effect and why it is not there.
+    pub left_out: Vec<(&'f str, String)>,
+}
+
+impl<'f> Parts<'f> {
+    pub fn of(fit: &'f Fit) -> Result<Self, ModelError> {
+        let mut parts = Self { parts: Vec::new(), left_out: Vec::new() };
+        for id in &fit.effects {
+            let effect = find_with_own(fit.kind, &fit.own, id)?;
+            let title = effect.info().title;
+            if effect.is_offset() {
+                let columns = vec![PartColumn::Formula(formula(fit, "load", &[])?)];
+                parts.parts.push(Part { effect: id, title, columns, factors: Vec::new(), shape: Vec::new() });
+                continue;
+            }
+            let Some(term) = fit.terms.iter().find(|t| t.effect == *id) else {
+                parts.left_out.push((id, "the run that was fitted could not show it".into()));
+                continue;
+            };
+            match columns(fit, term)? {
+                Ok(columns) => parts.parts.push(part(id, title, term, columns)?),
+                Err(why) => parts.left_out.push((id, why.into())),
+            }
+        }
+        Ok(parts)
+    }
+
+    /// Whether any part depends on a signal.
+    pub fn uses(&self, signal: Signal) -> bool {
+        self.parts.iter().any(|part| part.uses(signal))
+    }
+}
+
+impl Part<'_> {
+    pub fn uses(&self, signal: Signal) -> bool {
+        self.columns.iter().any(|column| match column {
+            PartColumn::Formula(formula) => formula.uses_signal(signal),
+            PartColumn::Memory { signal: of, end, formula, .. } => {
+                *of == signal || end.uses_signal(signal) || formula.uses_signal(signal)
+            }
+            PartColumn::Band { .. } => signal == Signal::Current,
+        })
+    }
+}
+
+fn part<'f>(effect: &'f str, title: &'f str, term: &'f Term, columns: Vec<PartColumn>) -> Result<Part<'f>, ModelError> {
+    let count = term.linear.len() + term.shape.len();
+    if term.names.len() != count || columns.len() < term.linear.len() {
+        return Err(ModelError::UnknownForm { effect: effect.into(), form: term.form.clone() });
+    }
+    let mut names = term.names.iter().map(String::as_str);
+    let factors = names.by_ref().zip(term.linear.iter().copied()).take(term.linear.len()).collect();
+    let shape = term.names[term.linear.len()..].iter().map(String::as_str).zip(term.shape.iter().copied()).collect();
+    Ok(Part { effect, title, columns, factors, shape })
+}
+
+/// The columns, or why a controller cannot compute them.
+fn columns(fit: &Fit, term: &Term) -> Result<Result<Vec<PartColumn>, &'static str>, ModelError> {
+    if let Some(own) = fit.own.iter().find(|own| own.id() == term.effect) {
+        // Numbered among all parameters there, among the shape parameters here.
+        let formula = own.formula();
+        let number = |p: usize| formula.shape.iter().position(|s| *s == p).unwrap_or(usize::MAX);
+        return Ok(Ok(formula.columns.iter().map(|(_, e)| PartColumn::Formula(e.renumbered(&number))).collect()));
+    }
+    let columns = match written(fit.kind, term) {
+        Ok(columns) => columns,
+        Err(why) => return Ok(Err(why)),
+    };
+    let names: Vec<&str> = term.names.iter().skip(term.linear.len()).map(String::as_str).collect();
+    let with_state: Vec<&str> = names.iter().copied().chain(["z"]).collect();
+    let resolved = columns.into_iter().map(|column| {
+        Ok(match column {
+            Column::Formula(text) => PartColumn::Formula(formula(fit, &text, &names)?),
+            Column::Memory { rule, signal, reach, end, formula: text } => PartColumn::Memory {
+                rule,
+                reach,
+                end: formula(fit, end, &names)?,
+                signal: crate::formula::signals(fit.kind)
+                    .iter()
+                    .find(|s| s.name == signal)
+                    .map_or(Signal::Time, |s| s.signal),
+                formula: formula(fit, text, &with_state)?,
+            },
+            Column::Band { stops, bands, band } => PartColumn::Band { stops, bands, band },
+        })
+    });
+    resolved.collect::<Result<_, ModelError>>().map(Ok)
+}
+
+fn formula(fit: &Fit, text: &str, names: &[&str]) -> Result<Expression, ModelError> {
+    let whole = format!("{} = {text}", left_hand_side(fit.kind));
+    let resolved = syntax::equation(&whole).and_then(|(_, tree)| Expression::resolve(tree, fit.kind, names));
+    resolved.map_err(|mistake| Box::new(mistake.found("library", "formula", &whole)).into())
+}

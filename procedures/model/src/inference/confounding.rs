@@ -1,0 +1,84 @@
+//! What moves as the temperature does in a run: what is said of one of them may be the other's doing.
+
+use crate::linear::basis::dot;
+use crate::preprocess::Prepared;
+use crate::signal::Signal;
+use crate::thresholds::{COLUMN_CORRELATION, TIME_CORRELATION};
+use crate::{Effect, OwnEffect};
+
+/// The column of the effects that are asked about.
+const TEMPERATURE: &str = "temperature_c";
+
+/// What else the change with temperature that an effect tells of could be, in sentences.
+pub fn instead(effect: &dyn Effect, prepared: &Prepared) -> Vec<String> {
+    if !is_of_temperature(effect) {
+        return Vec::new();
+    }
+    let unknown = prepared.main.view.points.unknown();
+    let columns = unknown.filter_map(|column| Some((prepared.column_name(column), correlation(column, prepared)?)));
+    let columns = columns.filter(|(_, r)| r.abs() > COLUMN_CORRELATION).map(|(column, r)| {
+        format!("{column} moves with {TEMPERATURE} in this data (r = {r:.2}), and may be the cause as well")
+    });
+    let time = drift(prepared).map(|r| {
+        format!("{TEMPERATURE} moves with time in this data (r = {r:.2}): a drift over time cannot be told from it")
+    });
+    columns.chain(time).collect()
+}
+
+/// The same change over time instead of over temperature, as a formula, where this run does not tell them apart.
+pub fn over_time(effect: &dyn Effect, prepared: &Prepared) -> Option<OwnEffect> {
+    drift(prepared)?;
+    OwnEffect::inline(prepared.kind, formula_over_time(effect.info().id)?).ok()
+}
+
+fn formula_over_time(effect: &str) -> Option<&'static str> {
+    match effect {
+        "temperature_coulomb" => Some("over_time: tau = a * time * direction; a [Nm/s]"),
+        "temperature_viscous" => Some("over_time: tau = a * time * velocity; a [Nm/rad]"),
+        "temperature_drift" => Some("over_time: error = a * time; a [rad/s]"),
+        "temperature_compliance" => Some("over_time: torsion = a * time * load; a [rad/(Nm·s)]"),
+        _ => None,
+    }
+}
+
+fn is_of_temperature(effect: &dyn Effect) -> bool {
+    effect.info().needs.contains(&TEMPERATURE)
+}
+
+fn drift(prepared: &Prepared) -> Option<f64> {
+    correlation(Signal::Time, prepared).filter(|r| r.abs() > TIME_CORRELATION)
+}
+
+/// With the temperature, over the points that are judged. `None` where one of them never changes.
+fn correlation(signal: Signal, prepared: &Prepared) -> Option<f64> {
+    let problem = &prepared.main;
+    let about_mean = |signal| -> Option<Vec<f64>> {
+        let values = problem.reduce.apply(problem.view.find(signal)?.to_vec());
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        Some(values.into_iter().map(|v| v - mean).collect())
+    };
+    let (one, other) = (about_mean(Signal::Temperature)?, about_mean(signal)?);
+    let r = dot(&one, &other) / (dot(&one, &one) * dot(&other, &other)).sqrt();
+    r.is_finite().then_some(r)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects;
+    use jointbench_instrument::Kind;
+
+    #[test]
+    fn every_formula_over_time_is_one() {
+        let of_temperature = |kind: Kind| effects(kind).iter().filter(|effect| is_of_temperature(**effect));
+        let all = [Kind::Friction, Kind::Encoder, Kind::Stiffness].map(|kind| {
+            let effects: Vec<_> = of_temperature(kind).collect();
+            for effect in &effects {
+                let own = OwnEffect::inline(kind, formula_over_time(effect.info().id).unwrap()).unwrap();
+                assert_eq!(own.doubts(None), []);
+            }
+            effects.len()
+        });
+        assert_eq!(all, [2, 1, 1]);
+    }
+}

@@ -1,0 +1,60 @@
+//! What a brake holds at rest after a fall of its current is drag and remanence together, and a model gives it to the drag.
+
+use crate::regression::linear_model::LinearModel;
+use crate::report::fit::Parameter;
+use crate::signal::{Signal, Signals};
+use crate::view::View;
+use crate::words::figure;
+
+/// A current below this share of the largest is none.
+const NONE: f64 = 0.02;
+
+/// Opens the drag beside a hysteresis down to what the brake holds while it remembers nothing: as it was measured before the
+/// first current, or as the hysteresis tells it.
+pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
+    let Some(hysteresis) = terms.terms.iter().position(|t| t.id() == "hysteresis") else { return };
+    let Some(drag) = parameters.iter_mut().find(|p| p.effect == "drag") else { return };
+    let fresh = fresh(terms);
+    let empty = fresh.unwrap_or_else(|| {
+        let term = &terms.terms[hysteresis];
+        let whole = term.effect.columns(term.form.name, &term.shape, &demagnetised());
+        let factors = &terms.linear().factors[hysteresis];
+        drag.value + whole.iter().zip(factors).map(|(column, factor)| column[0] * factor).sum::<f64>()
+    });
+    let empty = empty.max(0.0);
+    if (drag.ci95[0]..=drag.ci95[1]).contains(&empty) {
+        return;
+    }
+    drag.ci95 = [drag.ci95[0].min(empty), drag.ci95[1].max(empty)];
+    let empty = figure(empty, &drag.unit);
+    drag.note = Some(match fresh {
+        Some(_) => {
+            format!("holds the remanence that the largest current leaves: before any current the brake held {empty}")
+        }
+        None => format!(
+            "trades off with hysteresis, because it holds the remanence that the largest current leaves: demagnetised, the \
+             brake would hold {empty}; begin a run without current after demagnetising it"
+        ),
+    });
+}
+
+/// Torque before the first current of a recording that begins without any memory.
+fn fresh(terms: &LinearModel) -> Option<f64> {
+    let view = &terms.problem.view;
+    let current = view.get(Signal::Current);
+    let none = NONE * view.peak(Signal::Current);
+    let starts = view.starts.iter().filter(|start| start.past.is_none());
+    let rows = starts.flat_map(|start| {
+        let first = view.chunks.partition_point(|chunk| chunk.start < start.at);
+        (first..current.len()).take_while(|row| current[*row].abs() < none)
+    });
+    let held: Vec<f64> = rows.map(|row| terms.problem.target[row]).collect();
+    (!held.is_empty()).then(|| held.iter().sum::<f64>() / held.len() as f64)
+}
+
+/// One moment without current and without anything remembered.
+fn demagnetised() -> View {
+    let mut none = Signals::new(1);
+    none.set(Signal::Current, vec![0.0]);
+    View::new(none.clone(), none, Vec::new(), vec![0], 1.0)
+}

@@ -1,0 +1,149 @@
+//! Parameters with intervals that survive autocorrelation and segment scatter: a jackknife over independent pieces.
+
+use crate::inference::parameter_state::Slot;
+use crate::inference::{changepoint, drag_remanence, harmonic_order, parameter_state};
+use crate::thresholds::TRADE_OFF_CORRELATION;
+
+use crate::effect::ShapeSearch;
+use crate::linear::cholesky::Cholesky;
+use crate::linear::gram::BlockGrams;
+use crate::preprocess::independent_blocks::pieces;
+use crate::regression::linear_model::LinearModel;
+use crate::report::fit::{Parameter, ParameterState, TradeOff};
+use jointbench_instrument::Motion;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+pub struct Intervals {
+    pub parameters: Vec<Parameter>,
+    pub trade_offs: Vec<TradeOff>,
+}
+
+/// Parameters of the terms with 95 % intervals.
+///
+/// Delete-one-piece jackknife of the linearised model about the full estimate (CV3 of MacKinnon, Nielsen, Webb 2023),
+/// with Student's t at the number of pieces that a parameter really rests on: a Stribeck speed is decided by the few
+/// slowest segments, however many fast ones there are (Carter, Schnepel, Steigerwald 2017).
+pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
+    let linear = terms.linear();
+    let slopes = terms.slopes(&linear.factors);
+    let mut columns = terms.columns();
+    columns.extend(slopes.iter().map(|s| s.2.as_slice()));
+    let slots = slots(terms, &linear.factors, &slopes, motion);
+    let p = columns.len();
+    let (piece, count) = pieces(terms.problem, p);
+    let grams = BlockGrams::new(&columns, &linear.residual, &piece, count);
+    let spd = Cholesky::new(&grams.total().0, p, 0.0);
+    let replicates = grams.jackknife();
+    let groups = replicates.len().max(2) as f64;
+    // The replicates are steps from the full estimate, which the residual holds at zero.
+    let covariance = |a: usize, b: usize| (groups - 1.0) / groups * replicates.iter().map(|r| r[a] * r[b]).sum::<f64>();
+    let variance: Vec<f64> = (0..p).map(|k| covariance(k, k)).collect();
+    let active = active(&grams);
+    let mut parameters = Vec::new();
+    for (k, slot) in slots.iter().enumerate() {
+        let freedom = (resting_pieces(&grams, &active, &spd, k) - 1.0).max(1.0);
+        let t = StudentsT::new(0.0, 1.0, freedom).map_or(2.0, |t| t.inverse_cdf(0.975));
+        let reach = if spd.is_dependent(k) { f64::INFINITY } else { t * variance[k].sqrt() };
+        let ci95 = match slot.shape {
+            Some(shape) => [
+                shape.moved(slot.value, (-reach).max(-50.0)).max(shape.min.min(slot.value)),
+                shape.moved(slot.value, reach.min(50.0)).min(shape.max.max(slot.value)),
+            ],
+            None => [slot.value - reach, slot.value + reach],
+        };
+        let (state, note) = parameter_state::judge(slot, ci95, spd.is_dependent(k));
+        parameters.push(Parameter {
+            effect: slot.effect.into(),
+            name: slot.name.into(),
+            value: slot.value,
+            unit: slot.unit.clone(),
+            ci95,
+            state,
+            note,
+        });
+    }
+    parameter_state::know_the_small(&mut parameters);
+    parameters.extend(found(terms, &linear.residual, motion));
+    harmonic_order::open(terms, &linear.residual, &mut parameters);
+    drag_remanence::open(terms, &mut parameters);
+    let mut trade_offs = Vec::new();
+    for a in 0..p {
+        for b in 0..a {
+            let scale = (variance[a] * variance[b]).sqrt();
+            let correlation = if scale > 0.0 { covariance(a, b) / scale } else { 0.0 };
+            if correlation.abs() > TRADE_OFF_CORRELATION {
+                let name = |k: usize| format!("{}.{}", slots[k].effect, slots[k].name);
+                trade_offs.push(TradeOff { first: name(b), second: name(a), correlation });
+            }
+        }
+    }
+    Intervals { parameters, trade_offs }
+}
+
+fn slots<'a>(
+    terms: &'a LinearModel,
+    factors: &[Vec<f64>],
+    slopes: &[(usize, usize, Vec<f64>)],
+    motion: Motion,
+) -> Vec<Slot<'a>> {
+    let slot = |term: usize, name: &'a str, value, shape| {
+        let info = terms.terms[term].effect.info();
+        let known = info.parameters.iter().find(|p| p.name == name);
+        let possible = known.map_or((f64::NEG_INFINITY, f64::INFINITY), |p| (p.min, p.max));
+        Slot { effect: info.id, name, unit: motion.label(info.unit(name)), value, possible, shape }
+    };
+    let mut slots = Vec::new();
+    for (i, factors) in factors.iter().enumerate() {
+        let names = &terms.terms[i].form.linear;
+        slots.extend(names.iter().zip(factors).map(|(name, value)| slot(i, name, *value, None)));
+    }
+    for (i, k, _) in slopes {
+        let shape = terms.terms[*i].form.shape[*k];
+        slots.push(slot(*i, shape.name, terms.terms[*i].shape[*k], Some(shape)));
+    }
+    slots
+}
+
+/// Columns that are not zero throughout a piece: of an offset for each power-up one.
+fn active(grams: &BlockGrams) -> Vec<Vec<usize>> {
+    let p = grams.columns;
+    (0..grams.groups).map(|g| (0..p).filter(|a| grams.xx(g)[a * p + a] > 0.0).collect()).collect()
+}
+
+/// How many equal pieces would decide a parameter as well as these unequal ones: (Σ w)²/Σ w² with the share w of each
+/// piece in the parameter's variance.
+fn resting_pieces(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: usize) -> f64 {
+    let p = grams.columns;
+    let mut unit = vec![0.0; p];
+    unit[k] = 1.0;
+    let row = spd.solve(&unit);
+    let weight = |g: usize| {
+        let (xx, active) = (grams.xx(g), &active[g]);
+        let along = |a: usize| active.iter().map(|b| xx[a * p + b] * row[*b]).sum::<f64>();
+        active.iter().map(|a| row[*a] * along(*a)).sum::<f64>()
+    };
+    let weights: Vec<f64> = (0..grams.groups).map(weight).collect();
+    let squares: f64 = weights.iter().map(|w| w * w).sum();
+    if squares > 0.0 { weights.iter().sum::<f64>().powi(2) / squares } else { 1.0 }
+}
+
+/// Whole numbers as they were found, and moments of jumps with their intervals.
+fn found(terms: &LinearModel, residual: &[f64], motion: Motion) -> Vec<Parameter> {
+    let mut out = Vec::new();
+    for (i, term) in terms.terms.iter().enumerate() {
+        for (k, shape) in term.form.shape.iter().enumerate().filter(|(_, s)| !s.is_smooth()) {
+            let value = term.shape[k];
+            let jump = shape.search == ShapeSearch::Jump;
+            out.push(Parameter {
+                effect: term.id().into(),
+                name: shape.name.into(),
+                value,
+                unit: motion.label(term.effect.info().unit(shape.name)),
+                ci95: if jump { changepoint::interval(terms, residual, i, k) } else { [value, value] },
+                state: ParameterState::Ok,
+                note: None,
+            });
+        }
+    }
+    out
+}

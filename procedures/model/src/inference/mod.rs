@@ -1,0 +1,9 @@
+//! How well a fitted model knows its parameters, and where it holds.
+
+pub(crate) mod changepoint;
+pub(crate) mod confounding;
+pub(crate) mod drag_remanence;
+pub(crate) mod harmonic_order;
+pub(crate) mod intervals;
+pub(crate) mod parameter_state;
+pub(crate) mod validity_range;

@@ -1,0 +1,108 @@
+//! What an interval means, said plainly.
+
+use crate::effect::{Shape, ShapeSearch};
+use crate::report::fit::{Parameter, ParameterState};
+use crate::thresholds::WIDE_INTERVAL;
+use crate::words::figure;
+
+/// One parameter of the linearised model.
+pub struct Slot<'a> {
+    pub effect: &'a str,
+    pub name: &'a str,
+    pub unit: String,
+    pub value: f64,
+    /// What is physically possible for a factor.
+    pub possible: (f64, f64),
+    /// `None` for a factor.
+    pub shape: Option<Shape<'a>>,
+}
+
+/// How what is said of a size begins that contradicts physics, or the range that a user gave it, and certainly so.
+pub const IMPOSSIBLE: &str = "lies beyond what is possible";
+
+const MAY_BE_ZERO: &str = "not identified by this run: it may be zero";
+
+/// A factor that is known to be small beside another one of its effect is known, zero or not: it is the phase of a wave, or a
+/// coefficient of a curve.
+pub fn know_the_small(parameters: &mut [Parameter]) {
+    let known: Vec<(String, String, f64)> = parameters
+        .iter()
+        .filter(|p| p.state == ParameterState::Ok)
+        .map(|p| (p.effect.clone(), p.unit.clone(), p.value.abs()))
+        .collect();
+    for p in parameters.iter_mut().filter(|p| p.note.as_deref() == Some(MAY_BE_ZERO)) {
+        let reach = p.ci95[0].abs().max(p.ci95[1].abs());
+        if known.iter().any(|(effect, unit, size)| *effect == p.effect && *unit == p.unit && reach < *size) {
+            (p.state, p.note) = (ParameterState::Ok, None);
+        }
+    }
+}
+
+/// State of a parameter, with words where it is not well determined.
+pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {
+    let nothing =
+        || (ParameterState::Unidentified, Some("not identified by this run: it says nothing about it".into()));
+    let say = |value: f64| figure(value, &slot.unit);
+    let Some(shape) = slot.shape else {
+        let (least, most) = slot.possible;
+        if dead {
+            return nothing();
+        }
+        if ci95[0] < 0.0 && ci95[1] > 0.0 {
+            return (ParameterState::Unidentified, Some(MAY_BE_ZERO.into()));
+        }
+        if ci95[1] < least || ci95[0] > most {
+            let possible = match (least.is_finite(), most.is_finite()) {
+                (true, true) => format!("{} to {}", say(least), say(most)),
+                (true, false) => format!("at least {}", say(least)),
+                _ => format!("at most {}", say(most)),
+            };
+            let cure = "another effect is missing, or a column has another sign or unit";
+            return (ParameterState::AtBound, Some(format!("{IMPOSSIBLE}, {possible}: {cure}")));
+        }
+        return (ParameterState::Ok, None);
+    };
+    let (min, max) = (shape.min, shape.max);
+    if shape.is_edge(slot.value) {
+        let words = format!("lies at the edge of what this data can speak about, {} to {}", say(min), say(max));
+        return (ParameterState::AtBound, Some(words));
+    }
+    if dead {
+        return nothing();
+    }
+    let wide = shape.search == ShapeSearch::Smooth && ci95[1] > WIDE_INTERVAL * ci95[0].abs();
+    if wide || (shape.is_at(ci95[0], min) && shape.is_at(ci95[1], max)) {
+        let words = format!("not identified by this run: anything from {} to {} fits", say(ci95[0]), say(ci95[1]));
+        return (ParameterState::Unidentified, Some(words));
+    }
+    (ParameterState::Ok, None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_factor_beside_a_large_one_of_its_effect_is_known() {
+        let factor = |effect: &str, value: f64, ci95: [f64; 2]| {
+            let is_zero = ci95[0] < 0.0 && ci95[1] > 0.0;
+            Parameter {
+                effect: effect.into(),
+                name: String::new(),
+                value,
+                unit: "Nm".into(),
+                ci95,
+                state: if is_zero { ParameterState::Unidentified } else { ParameterState::Ok },
+                note: is_zero.then(|| MAY_BE_ZERO.into()),
+            }
+        };
+        let mut all = vec![
+            factor("gravity", 1e-2, [0.9e-2, 1.1e-2]),
+            factor("gravity", 1e-5, [-1e-4, 1.2e-4]),
+            factor("gravity", 1e-3, [-2e-2, 2.2e-2]),
+            factor("drift", 1e-5, [-1e-4, 1.2e-4]),
+        ];
+        know_the_small(&mut all);
+        assert_eq!(all.iter().map(|p| p.note.is_none()).collect::<Vec<_>>(), [true, true, false, false]);
+    }
+}

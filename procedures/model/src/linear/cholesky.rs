@@ -1,0 +1,89 @@
+//! Cholesky factors of scaled, symmetric positive definite systems.
+
+/// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
+#[derive(Debug, Clone)]
+pub struct Cholesky {
+    n: usize,
+    /// Lower triangle, row by row.
+    l: Vec<f64>,
+    scale: Vec<f64>,
+    dead: Vec<bool>,
+}
+
+impl Cholesky {
+    /// Cholesky of a row-major matrix after scaling its diagonal to one. `ridge` is added to the scaled diagonal.
+    pub fn new(matrix: &[f64], n: usize, ridge: f64) -> Self {
+        Self::shown(matrix, n, ridge, &vec![0.0; n])
+    }
+
+    /// The same, where a column is left at zero as well that has less than so much of its own beside those before it, squared.
+    pub fn shown(matrix: &[f64], n: usize, ridge: f64, least: &[f64]) -> Self {
+        let scale: Vec<f64> =
+            (0..n).map(|i| if matrix[i * n + i] > 0.0 { matrix[i * n + i].sqrt().recip() } else { 0.0 }).collect();
+        let mut l = vec![0.0; n * n];
+        let mut dead = vec![false; n];
+        for i in 0..n {
+            for j in 0..=i {
+                let mut sum = matrix[i * n + j] * scale[i] * scale[j];
+                if i == j {
+                    sum += ridge;
+                }
+                for k in 0..j {
+                    sum -= l[i * n + k] * l[j * n + k];
+                }
+                if i == j {
+                    if sum > (least[i] * scale[i].powi(2)).max(1e-10) {
+                        l[i * n + i] = sum.sqrt();
+                    } else {
+                        dead[i] = true;
+                    }
+                } else if !dead[j] {
+                    l[i * n + j] = sum / l[j * n + j];
+                }
+            }
+            if dead[i] {
+                (0..=i).for_each(|j| l[i * n + j] = 0.0);
+            }
+        }
+        Self { n, l, scale, dead }
+    }
+
+    pub fn is_dependent(&self, i: usize) -> bool {
+        self.dead[i]
+    }
+
+    /// What each column has of its own beside those before it, squared.
+    pub fn own(&self) -> impl Iterator<Item = f64> {
+        let square = |i: usize| if self.dead[i] { 0.0 } else { (self.l[i * self.n + i] / self.scale[i]).powi(2) };
+        (0..self.n).map(square)
+    }
+
+    /// L⁻¹·D·b: what makes the squared length of the result bᵀA⁻¹b.
+    pub fn whiten(&self, b: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        let mut x = vec![0.0; n];
+        for i in 0..n {
+            if self.dead[i] {
+                continue;
+            }
+            let below: f64 = (0..i).map(|k| self.l[i * n + k] * x[k]).sum();
+            x[i] = (b[i] * self.scale[i] - below) / self.l[i * n + i];
+        }
+        x
+    }
+
+    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        let mut x = self.whiten(b);
+        for i in (0..n).rev() {
+            if self.dead[i] {
+                x[i] = 0.0;
+                continue;
+            }
+            let above: f64 = (i + 1..n).map(|k| self.l[k * n + i] * x[k]).sum();
+            x[i] = (x[i] - above) / self.l[i * n + i];
+        }
+        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        x
+    }
+}

@@ -1,0 +1,62 @@
+//! What a fit predicts on a run that is prepared as the fitted one was.
+
+use crate::preprocess::{Prepared, Problem, prepare};
+use crate::report::fit::Fit;
+use crate::user_effects::find_with_own;
+use crate::view::View;
+use crate::{ModelError, Options};
+use jointbench_instrument::RunTable;
+
+pub(crate) fn prepare_alike(fit: &Fit, run: &RunTable) -> Result<Prepared, ModelError> {
+    if run.kind() != fit.kind {
+        return Err(ModelError::WrongKind { run: run.kind(), model: fit.kind });
+    }
+    let about = &fit.preparation;
+    let options = Options {
+        residual: Some(about.residual),
+        cutoff_hz: about.cutoff_hz,
+        decimation: Some(about.decimation),
+        chunk_s: about.chunk_s,
+        ..Options::default()
+    };
+    prepare(run, &options)
+}
+
+/// What a fit predicts at the rows of a problem.
+pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
+    predict_on(fit, &problem.view, problem.rows(), |column| problem.reduce.apply(column))
+}
+
+/// The same at the points of a view, each column reduced to rows.
+pub(crate) fn predict_on(
+    fit: &Fit,
+    view: &View,
+    rows: usize,
+    reduce: impl Fn(Vec<f64>) -> Vec<f64>,
+) -> Result<Vec<f64>, ModelError> {
+    let mut predicted = vec![0.0; rows];
+    let mut add = |columns: Vec<Vec<f64>>, factors: &[f64]| {
+        for (column, factor) in columns.into_iter().zip(factors) {
+            predicted.iter_mut().zip(reduce(column)).for_each(|(p, c)| *p += factor * c);
+        }
+    };
+    for id in &fit.effects {
+        let effect = find_with_own(fit.kind, &fit.own, id)?;
+        if effect.is_offset() && effect.missing(view).is_none() {
+            add(effect.columns("linear", &[], view), &[1.0]);
+        }
+    }
+    for term in &fit.terms {
+        let effect = find_with_own(fit.kind, &fit.own, &term.effect)?;
+        if let Some(column) = effect.missing(view) {
+            let why = format!("there is no column {column}");
+            return Err(ModelError::NotVisible { effect: term.effect.clone(), why });
+        }
+        let found = effect.columns(&term.form, &term.shape, view);
+        if found.len() != term.linear.len() {
+            return Err(ModelError::UnknownForm { effect: term.effect.clone(), form: term.form.clone() });
+        }
+        add(found, &term.linear);
+    }
+    Ok(predicted)
+}

@@ -1,0 +1,130 @@
+//! What brakes reach: currents and torques that none of them has are in another unit.
+
+use crate::linear::basis::dot;
+use jointbench_instrument::{Kind, RunTable};
+
+/// A brake takes no more than a few times what it is rated for, and shows little below a hundredth of it.
+const TIMES: f64 = 20.0;
+const HARDLY: f64 = 0.01;
+
+/// Coil currents of hysteresis brakes are rated up to 1.2 A (data sheet of the HB series, HB-3500M), two coils in parallel
+/// twice that: this is ten times as much.
+const MOST_A: f64 = 24.0;
+
+/// What brakes hold for each ampere [Nm/A]: 4 to 22 in the data sheets, a tenth for the smallest, ten times as much behind a
+/// gear of 1:10.
+const HELD: [f64; 2] = [0.1, 220.0];
+/// Sensors and set-ups differ by this much.
+const MARGIN: f64 = 3.0;
+
+/// Share of the torque's variance that goes with the current, below which it says nothing of their units.
+const FOLLOWS: f64 = 0.2;
+/// A current that scatters by less of its largest is held: what the torque does beside it is warmth.
+const VARIES: f64 = 0.1;
+
+/// In a sentence.
+pub fn beyond(run: &RunTable) -> Option<String> {
+    let current = run.column("brake_current_a")?;
+    let largest = current.iter().fold(0.0f64, |most, i| most.max(i.abs()));
+    let rated_a = run.meta().rated_current_a;
+    let most_a = rated_a.map_or(MOST_A, |rated_a| TIMES * rated_a);
+    if largest > most_a {
+        return Some(match rated_a {
+            Some(rated_a) => format!(
+                "brake_current_a reaches {largest:.0} A, and the brake is rated for {rated_a} A: one of them has another \
+                 unit (mA?)"
+            ),
+            None => format!(
+                "brake_current_a reaches {largest:.0} A, and hysteresis brakes take about one: it has another unit (mA?)"
+            ),
+        });
+    }
+    if run.kind() != Kind::Brake {
+        return None;
+    }
+    let held = held(current, run.column("brake_torque_nm")?)?;
+    if let Some(rated_a) = rated_a.filter(|rated_a| largest < HARDLY * rated_a) {
+        return Some(format!(
+            "brake_current_a reaches {largest:.2e} A only, the torque follows it, and the brake is rated for {rated_a} A: one \
+             of them has another unit"
+        ));
+    }
+    let [least, most] = HELD;
+    (!(least / MARGIN..=most * MARGIN).contains(&held)).then(|| {
+        format!(
+            "brake_torque_nm rises by {held:.2e} Nm for each A of brake_current_a, and hysteresis brakes hold {least} to {most} \
+             Nm for each: one of the two has another unit (mA, mNm?)"
+        )
+    })
+}
+
+/// Torque for each ampere, whatever the signs of both. `None` where it does not rise with the current.
+fn held(current: &[f64], torque: &[f64]) -> Option<f64> {
+    let about_mean = |values: &[f64]| -> Vec<f64> {
+        let mean = values.iter().map(|v| v.abs()).sum::<f64>() / values.len() as f64;
+        values.iter().map(|v| v.abs() - mean).collect()
+    };
+    let largest = current.iter().fold(0.0f64, |most, i| most.max(i.abs()));
+    let (current, torque) = (about_mean(current), about_mean(torque));
+    let (ii, it, tt) = (dot(&current, &current), dot(&current, &torque), dot(&torque, &torque));
+    let varies = ii > (VARIES * largest).powi(2) * current.len() as f64;
+    (varies && it > 0.0 && it * it > FOLLOWS * ii * tt).then_some(it / ii)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointbench_instrument::{Channel, Meta, Trace};
+
+    /// A brake that holds `nm` at its rated current, with its columns in other units.
+    fn told(nm: f64, rated_a: f64, current: f64, torque: f64, is_rated: bool) -> Option<String> {
+        let names = ["time_s", "position_rad", "brake_current_a", "brake_torque_nm"];
+        let mut trace = Trace::new(names.map(Channel::new).to_vec());
+        for i in 0..800 {
+            let t = 0.01 * f64::from(i);
+            let level = t.sin().abs();
+            trace.push_row(&[t, t, current * rated_a * level, torque * nm * level.powi(2)]);
+        }
+        let meta = Meta { kind: Some(Kind::Brake), rated_current_a: is_rated.then_some(rated_a), ..Meta::default() };
+        beyond(&RunTable::new(meta, trace).unwrap())
+    }
+
+    #[test]
+    fn what_no_brake_reaches_is_told_and_what_brakes_reach_is_not() {
+        // HB-140M, HB-3500M, and the latter behind a gear of 1:10.
+        for (nm, rated_a) in [(1.0, 0.253), (26.0, 1.2), (260.0, 1.2)] {
+            for is_rated in [true, false] {
+                let told = |current, torque| told(nm, rated_a, current, torque, is_rated);
+                assert_eq!(told(1.0, 1.0), None);
+                for slip in [1e3, 1e-3] {
+                    assert!(told(slip, 1.0).is_some(), "{nm} Nm, a current {slip} times as large");
+                }
+                assert!(
+                    told(1.0, 1e3).is_some_and(|said| said.contains("hysteresis brakes hold 0.1 to 220 Nm")),
+                    "{nm} Nm"
+                );
+            }
+        }
+        assert!(told(13.0, 0.6, 1.0, 1e-3, false).is_some(), "a torque in kNm");
+        let said = told(13.0, 0.6, 1e3, 1.0, true).unwrap();
+        assert!(said.starts_with("brake_current_a reaches 600 A, and the brake is rated for 0.6 A"), "{said}");
+        let said = told(13.0, 0.6, 1e3, 1.0, false).unwrap();
+        assert!(said.starts_with("brake_current_a reaches 600 A, and hysteresis brakes take about one"), "{said}");
+    }
+
+    #[test]
+    fn a_drag_without_current_tells_nothing_of_units() {
+        let names = ["time_s", "brake_current_a", "brake_torque_nm"];
+        let mut trace = Trace::new(names.map(Channel::new).to_vec());
+        let mut warming = trace.clone();
+        for i in 0..800 {
+            let t = 0.01 * f64::from(i);
+            trace.push_row(&[t, 1e-4 * (37.0 * t).sin(), 0.09 + 0.002 * (3.1 * t).sin()]);
+            warming.push_row(&[t, 0.3 + 1e-5 * t, 4.0 + 0.05 * t]);
+        }
+        for trace in [trace, warming] {
+            let meta = Meta { kind: Some(Kind::Brake), rated_current_a: Some(0.6), ..Meta::default() };
+            assert_eq!(beyond(&RunTable::new(meta, trace).unwrap()), None);
+        }
+    }
+}

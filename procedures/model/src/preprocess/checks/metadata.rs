@@ -1,0 +1,64 @@
+//! Facts that are missing or contradict the columns without making what is computed wrong by themselves.
+
+use jointbench_instrument::{Kind, Motion, RunTable};
+
+/// A rate this many times off the time column is no rounding.
+const OTHER_RATE: f64 = 1.2;
+
+/// Each in a sentence.
+pub fn doubts(run: &RunTable) -> Vec<String> {
+    [rate(run), gear(run), segments(run), crate::preprocess::checks::sensor_faults::spikes(run)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+fn rate(run: &RunTable) -> Option<String> {
+    let stated_hz = run.meta().sample_rate_hz?;
+    let found_hz = 1.0 / crate::preprocess::sample_s(run.column("time_s")?);
+    let agree = (1.0 / OTHER_RATE..=OTHER_RATE).contains(&(found_hz / stated_hz));
+    (!agree).then(|| {
+        format!(
+            "sample_rate_hz is {stated_hz}, and column time_s has {found_hz:.3} samples in a second: one of them is wrong, and \
+             what is computed goes by time_s"
+        )
+    })
+}
+
+/// A joint without a gear has none to tell of, and one with a gear that nobody told of looks the same.
+fn gear(run: &RunTable) -> Option<String> {
+    let meta = run.meta();
+    let asked = run.kind() == Kind::Friction && meta.motion != Motion::Linear && meta.gear_ratio.is_none();
+    let column = ["link_torque_nm", "link_position_rad"].into_iter().find(|column| run.column(column).is_some());
+    column.filter(|_| asked).map(|column| {
+        format!("gear_ratio is not among the facts: {column} is taken as it is on the motor's side (a ratio of 1)")
+    })
+}
+
+fn segments(run: &RunTable) -> Option<String> {
+    (run.column("segment").is_some() && crate::preprocess::design::segments::numbered(run).is_none())
+        .then(|| "column segment numbers no segments of a run: they are looked for instead".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointbench_instrument::{Channel, Meta, Trace};
+
+    fn told(meta: Meta) -> String {
+        let names = ["time_s", "motor_position_rad", "motor_current_a", "link_torque_nm"];
+        let mut trace = Trace::new(names.map(Channel::new).to_vec());
+        (0..40).for_each(|i| trace.push_row(&[0.004 * f64::from(i), 0.0, 0.0, 0.0]));
+        doubts(&RunTable::new(Meta { kind: Some(Kind::Friction), ..meta }, trace).unwrap()).join("; ")
+    }
+
+    #[test]
+    fn a_rate_that_the_time_contradicts_and_a_gear_that_is_missing_are_told() {
+        let right = Meta { sample_rate_hz: Some(245.0), gear_ratio: Some(50.0), ..Meta::default() };
+        assert_eq!(told(right.clone()), "");
+        let wrong = told(Meta { sample_rate_hz: Some(1000.0), ..right.clone() });
+        assert!(wrong.starts_with("sample_rate_hz is 1000, and column time_s has 250.000 samples"), "{wrong}");
+        assert!(told(Meta { gear_ratio: None, ..right.clone() }).starts_with("gear_ratio is not among the facts"));
+        assert_eq!(told(Meta { gear_ratio: None, motion: Motion::Linear, ..right }), "");
+    }
+}

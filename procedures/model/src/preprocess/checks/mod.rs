@@ -1,0 +1,8 @@
+//! Columns and facts that contradict each other: found before anything is fitted.
+
+pub(crate) mod brake_range;
+pub(crate) mod metadata;
+pub(crate) mod pieces;
+pub(crate) mod sensor_faults;
+pub(crate) mod torque_sign;
+pub(crate) mod unit_mismatch;

@@ -1,0 +1,20 @@
+//! Pieces of a run over which columns are compared.
+
+use std::ops::Range;
+
+/// Ways are taken over pieces of this length: short enough for a reversal, long enough for coarse encoders.
+pub const PIECE_S: f64 = 0.2;
+
+/// A piece of the run that does not reach over the end of a recording, and the time that passes in it [s].
+pub type Piece = (Range<usize>, f64);
+
+/// All of them, in the order of time.
+pub fn pieces(time_s: &[f64]) -> Vec<Piece> {
+    let step_s = crate::preprocess::sample_s(time_s);
+    let n = ((PIECE_S / step_s) as usize).max(1);
+    let piece = |start| {
+        let passed_s = time_s[start + n] - time_s[start];
+        (passed_s > 0.0 && passed_s < 2.0 * n as f64 * step_s).then_some((start..start + n, passed_s))
+    };
+    (0..time_s.len().saturating_sub(n)).step_by(n).filter_map(piece).collect()
+}

@@ -1,0 +1,195 @@
+//! What a sensor tells that cannot be: a value that stays while all else goes on, a range that ends, samples that stand alone.
+
+use crate::words::figure;
+use jointbench_instrument::units::unit_of;
+use jointbench_instrument::{Kind, RunTable};
+use std::ops::Range;
+
+/// Where fewer neighbours than this differ, the column is too coarse for its values to tell.
+const FINE: f64 = 0.9;
+/// A value that is the same for so long is stuck, where the run goes on.
+const STUCK_S: f64 = 0.3;
+const STUCK_SAMPLES: usize = 40;
+/// Samples in a row at the end of the range, and their share of the run.
+const CLIPPED_SAMPLES: usize = 4;
+const CLIPPED_SHARE: f64 = 0.003;
+/// A sample that stands alone lies so many of the usual changes, and this share of the column's range, off both neighbours,
+/// which agree to a fifth of that.
+const ALONE: f64 = 25.0;
+const ALONE_RANGE: f64 = 0.15;
+const AGREE: f64 = 0.2;
+/// Where the speed before and after so many samples differs by this share of the largest, a drive pushes: its pulse is no fault.
+const BESIDE: usize = 5;
+const PUSHED: f64 = 0.02;
+
+/// The columns of measured torque and current, in which noise never rests, and the angle that says whether the run goes on.
+fn columns(kind: Kind) -> (&'static [&'static str], &'static str) {
+    match kind {
+        Kind::Friction => (&["motor_current_a", "link_torque_nm"], "motor_position_rad"),
+        Kind::Stiffness => (&["link_torque_nm"], "motor_position_rad"),
+        Kind::Brake => (&["brake_torque_nm"], "position_rad"),
+        Kind::Encoder => (&[], "reference_position_rad"),
+    }
+}
+
+/// Columns whose sensor stuck or reached the end of its range, each in a sentence.
+pub fn failed(run: &RunTable) -> Vec<String> {
+    let (names, angle) = columns(run.kind());
+    let found = names.iter().filter_map(|name| {
+        let values = run.column(name)?;
+        let same = stretches_of_one_value(values);
+        let resting: usize = same.iter().map(|range| range.len() - 1).sum();
+        let long: Vec<&Range<usize>> = same.iter().filter(|range| range.len() >= CLIPPED_SAMPLES).collect();
+        let long_resting: usize = long.iter().map(|range| range.len() - 1).sum();
+        let rest = (values.len() - 1 - long_resting).max(1) as f64;
+        let is_fine = (resting - long_resting) as f64 <= (1.0 - FINE) * rest && 2 * long_resting < values.len();
+        is_fine.then(|| clipped(run, name, values, &long).or_else(|| stuck(run, name, values, &long, angle)))?
+    });
+    found.collect()
+}
+
+/// Where neighbours are equal.
+fn stretches_of_one_value(values: &[f64]) -> Vec<Range<usize>> {
+    let mut start = 0;
+    let ends = values.chunk_by(|a, b| a == b).map(|part| {
+        start += part.len();
+        start - part.len()..start
+    });
+    ends.filter(|range| range.len() > 1).collect()
+}
+
+fn clipped(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>]) -> Option<String> {
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let at = |end: f64| same.iter().filter(|range| values[range.start] == end).map(|range| range.len()).sum::<usize>();
+    let (end, count) = [(high, at(high)), (low, at(low))].into_iter().max_by_key(|(_, count)| *count)?;
+    (count as f64 >= CLIPPED_SHARE * values.len() as f64).then(|| {
+        let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
+        format!(
+            "{name} never goes beyond {} and stays there for {count} samples: the range of its sensor or a limit of the drive ends there",
+            figure(end, &unit)
+        )
+    })
+}
+
+fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], angle: &str) -> Option<String> {
+    let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
+    let goes_on = |range: &Range<usize>| {
+        let angle = &angle[range.clone()];
+        2 * angle.windows(2).filter(|pair| pair[0] != pair[1]).count() > range.len()
+    };
+    let range = same.iter().filter(|range| goes_on(range)).max_by_key(|range| range.len())?;
+    let (from_s, to_s) = (time_s[range.start], time_s[range.end - 1]);
+    (range.len() >= STUCK_SAMPLES && to_s - from_s >= STUCK_S).then(|| {
+        let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
+        format!(
+            "{name} stays at {} from {from_s:.3} s to {to_s:.3} s, while the motion goes on: its sensor was not read",
+            figure(values[range.start], &unit)
+        )
+    })
+}
+
+/// Samples that stand alone, in a sentence.
+pub fn spikes(run: &RunTable) -> Option<String> {
+    let (torques, angle) = columns(run.kind());
+    let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
+    let way = |i: usize, j: usize| angle[j.min(angle.len() - 1)] - angle[i];
+    // Where a drive pushes.
+    let is_pushed = |i: usize, fastest: f64| {
+        let before = way((i - 1).saturating_sub(BESIDE), i - 1);
+        (way(i + 1, i + 1 + BESIDE) - before).abs() > PUSHED * fastest
+    };
+    torques.iter().chain(&["motor_velocity_rad_s", "velocity_rad_s", "temperature_c"]).find_map(|name| {
+        let values = run.column(name)?;
+        let every = values.len().div_ceil(crate::preprocess::TELLING);
+        let usual = crate::preprocess::median(values.windows(2).step_by(every).map(|pair| (pair[1] - pair[0]).abs()));
+        let (low, high) = middle_of(values.iter().step_by(every).copied().collect());
+        let least = (ALONE * usual).max(ALONE_RANGE * (high - low));
+        let is_alone = |w: &[f64]| {
+            let (before, after) = (w[1] - w[0], w[1] - w[2]);
+            let off = before.abs().min(after.abs());
+            off > least && before * after > 0.0 && (w[2] - w[0]).abs() < AGREE * off
+        };
+        let mut found: Vec<usize> = (1..).zip(values.windows(3)).filter(|(_, w)| is_alone(w)).map(|(i, _)| i).collect();
+        if !found.is_empty() {
+            let fastest = (BESIDE..angle.len()).map(|i| way(i - BESIDE, i).abs()).fold(0.0, f64::max);
+            found.retain(|i| !is_pushed(*i, fastest));
+        }
+        let first = *found.first()?;
+        let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
+        let samples = if found.len() == 1 { "one sample that stands".to_owned() } else { format!("{} samples that stand", found.len()) };
+        Some(format!(
+            "{name} has {samples} alone, the first at {:.3} s with {}: what is fitted bends towards them; check the cable, or leave \
+             them out",
+            time_s[first],
+            figure(values[first], &unit)
+        ))
+    })
+}
+
+/// Between which nearly all values lie.
+fn middle_of(mut values: Vec<f64>) -> (f64, f64) {
+    let (low, high) = (values.len() / 100, values.len() - 1 - values.len() / 100);
+    let low = *values.select_nth_unstable_by(low, f64::total_cmp).1;
+    let high = *values.select_nth_unstable_by(high, f64::total_cmp).1;
+    (low, high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointbench_instrument::{Channel, Meta, Trace};
+
+    /// A joint that swings, whose current passes through `reading`.
+    fn run(reading: impl Fn(usize, f64) -> f64) -> RunTable {
+        let names = ["time_s", "motor_position_rad", "motor_current_a"];
+        let mut trace = Trace::new(names.map(Channel::new).to_vec());
+        for i in 0..4000 {
+            let t = 0.004 * i as f64;
+            let noise = 0.02 * (12.9898 * i as f64).sin();
+            let current = 0.4 * (0.5 * t).cos().signum() + 1.2 * (0.5 * t).cos() + noise;
+            trace.push_row(&[t, 30.0 * (0.5 * t).sin(), reading(i, current)]);
+        }
+        RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap()
+    }
+
+    #[test]
+    fn a_sensor_that_sticks_clips_or_spikes_is_told() {
+        let whole = run(|_, current| current);
+        assert_eq!((failed(&whole), spikes(&whole)), (Vec::new(), None));
+        let clipped = failed(&run(|_, current| current.clamp(-1.4, 1.4)));
+        assert!(
+            matches!(&clipped[..], [one] if one.starts_with("motor_current_a never goes beyond 1.40 A")),
+            "{clipped:?}"
+        );
+        let stuck = failed(&run(|i, current| if (1000..1100).contains(&i) { 0.7 } else { current }));
+        assert!(matches!(&stuck[..], [one] if one.contains("from 4.000 s to 4.396 s")), "{stuck:?}");
+        let spiked = spikes(&run(|i, current| if i % 997 == 500 { 6.0 } else { current })).unwrap_or_default();
+        assert!(spiked.starts_with("motor_current_a has 4 samples that stand alone, the first at 2.000 s"), "{spiked}");
+    }
+
+    #[test]
+    fn a_pulse_that_begins_a_step_is_no_spike() {
+        let names = ["time_s", "motor_position_rad", "motor_current_a", "temperature_c"];
+        let told = |pulse: f64, warmest: f64| {
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            let mut position = 0.0;
+            for i in 0..4000u32 {
+                let (step, at) = (i / 400, i % 400);
+                let speed = f64::from(1 + step);
+                position += 0.004 * speed;
+                let noise = 0.01 * (12.9898 * f64::from(i)).sin();
+                let current = 0.2 + 0.02 * speed + noise + if at == 0 { pulse } else { 0.0 };
+                trace.push_row(&[0.004 * f64::from(i), position, current, if i == 1234 { warmest } else { 25.0 }]);
+            }
+            spikes(&RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap())
+        };
+        assert_eq!(told(3.0, 25.0), None);
+        assert!(told(3.0, 1e30).is_some_and(|told| told.starts_with("temperature_c has one sample")));
+    }
+
+    #[test]
+    fn a_coarse_current_sticks_nowhere() {
+        let coarse = run(|_, current| (current / 0.25).round() * 0.25);
+        assert_eq!((failed(&coarse), spikes(&coarse)), (Vec::new(), None));
+    }
+}

@@ -1,0 +1,334 @@
+//! Columns that tell the same motion or torque in different units or signs: what is fitted to them is wrong, however well it
+//! fits.
+
+use crate::preprocess::checks::pieces::{PIECE_S, Piece, pieces};
+use jointbench_instrument::{Kind, Motion, RunTable};
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// Columns that differ by less may be filtered, late, or have a joint that winds up between them.
+const CLASH: f64 = 1.2;
+/// At speed the angles of motor and link go the same ways but for this share of them, where the link turns by so much [rad].
+const GEAR_CLASH: f64 = 0.01;
+const GEAR_WAY: f64 = 1.0;
+/// Share of the variance in common, below which one of the angles is too coarse to tell.
+const SAME_ANGLE: f64 = 0.999;
+/// An angle moves by so much, rad, or it may have been held fast.
+const WAY: f64 = 0.1;
+/// Share of the variance in common, below which the columns do not tell the same at all.
+const SAME: f64 = 0.9;
+
+/// Share of the work that is done against the motion, from which on the motion is not the motor's.
+const DRIVEN: f64 = 0.5;
+
+/// What contradicts, each in a sentence.
+#[derive(Debug, Clone, Default)]
+pub struct DataErrors {
+    /// Whatever is fitted to these columns means nothing: no effect is named.
+    pub void: Vec<String>,
+    pub others: Vec<String>,
+}
+
+impl DataErrors {
+    pub fn all(&self) -> impl Iterator<Item = &String> {
+        self.void.iter().chain(&self.others)
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.all().next().is_none()
+    }
+}
+
+/// Two columns that contradict each other.
+struct Clash {
+    is_void: bool,
+    said: String,
+}
+
+impl Clash {
+    fn void(said: String) -> Self {
+        Self { is_void: true, said }
+    }
+}
+
+pub fn clashes(run: &RunTable) -> DataErrors {
+    let gear_ratio = run.meta().gear_ratio.filter(|_| run.meta().motion != Motion::Linear);
+    let gear = gear_ratio.unwrap_or(f64::NAN);
+    let pairs: &[(&str, &str, f64)] = match run.kind() {
+        Kind::Friction => {
+            &[("motor_velocity_rad_s", "motor_position_rad", 1.0), ("link_position_rad", "motor_position_rad", gear)]
+        }
+        Kind::Stiffness => {
+            &[("link_velocity_rad_s", "link_position_rad", 1.0), ("link_position_rad", "motor_position_rad", gear)]
+        }
+        Kind::Encoder => {
+            &[("velocity_rad_s", "reference_position_rad", 1.0), ("test_position_rad", "reference_position_rad", 1.0)]
+        }
+        Kind::Brake => &[("velocity_rad_s", "position_rad", 1.0)],
+    };
+    let pieces = pieces(run.column("time_s").unwrap_or_default());
+    let motions = pairs.iter().filter_map(|(one, other, factor)| clash(run, &pieces, one, other, *factor));
+    let torques =
+        (run.kind() == Kind::Friction).then(|| crate::preprocess::checks::torque_sign::clash(run, &pieces)).flatten();
+    let (void, gears): (Vec<Clash>, Vec<Clash>) = motions.partition(|clash| clash.is_void);
+    let said = |clashes: Vec<Clash>| clashes.into_iter().map(|clash| clash.said);
+    DataErrors {
+        void: said(void)
+            .chain(torques)
+            .chain(driven(run, &pieces))
+            .chain(noise(run, &pieces))
+            .chain(too_fast(run))
+            .collect(),
+        others: said(gears)
+            .chain(dead_load(run))
+            .chain(crate::preprocess::checks::brake_range::beyond(run))
+            .chain(crate::preprocess::checks::sensor_faults::failed(run))
+            .collect(),
+    }
+}
+
+/// Without a load that was measured nothing turns a motor both ways: what brakes it in both has another sign.
+fn driven(run: &RunTable, pieces: &[Piece]) -> Option<String> {
+    let is_alone = run.kind() == Kind::Friction && run.column("link_torque_nm").is_none();
+    let column = |name: &str| run.column(name).filter(|_| is_alone);
+    let (position, current) = (column("motor_position_rad")?, column("motor_current_a")?);
+    let (mut work, mut moved) = ([0.0; 2], [0.0; 2]);
+    for (piece, _) in pieces {
+        let way = position[piece.end] - position[piece.start];
+        let done = way * current[piece.clone()].iter().sum::<f64>() / piece.len() as f64;
+        work[usize::from(way < 0.0)] += done;
+        moved[usize::from(way < 0.0)] += done.abs();
+    }
+    let brakes = work.iter().zip(&moved).all(|(work, moved)| *work < -DRIVEN * moved);
+    brakes.then(|| {
+        "motor_current_a works against the motion both ways, as if the joint turned the motor: it or the motion has \
+         another sign"
+            .to_owned()
+    })
+}
+
+/// `factor · one` should move as `other` does.
+fn clash(run: &RunTable, pieces: &[Piece], one: &str, other: &str, factor: f64) -> Option<Clash> {
+    let (a, b) = (run.column(one)?, run.column(other)?);
+    let is_speed = one.ends_with("_rad_s");
+    if !is_speed && run.kind() != Kind::Friction {
+        let one_rests = rests(one, a, other, b, factor);
+        if let Some(told) = one_rests.or_else(|| rests(other, b, one, a, 1.0 / factor)) {
+            return Some(Clash::void(told));
+        }
+    }
+    let ways = ways(pieces, a, b, is_speed, factor);
+    let times = alike(&ways).or_else(|| mostly(&ways))?;
+    if (1.0 / CLASH..=CLASH).contains(&times) {
+        let is_geared = !is_speed && factor != 1.0;
+        return is_geared.then(|| other_gear(&ways, factor)).flatten().map(|said| Clash { is_void: false, said });
+    }
+    let what = if factor == 1.0 { String::new() } else { format!(" with the gear ratio of {factor}") };
+    let said = format!("{one} is {times:.3} times what {other} gives{what}: one of them has another unit or sign");
+    Some(Clash::void(said))
+}
+
+/// How far `factor · one` and `other` go in each piece of a run.
+fn ways(pieces: &[Piece], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> Vec<(f64, f64)> {
+    pieces
+        .iter()
+        .map(|&(Range { start, end }, passed_s)| {
+            let way = match is_speed {
+                // By the trapezoidal rule.
+                true => {
+                    a[start..=end].windows(2).map(|v| 0.5 * (v[0] + v[1])).sum::<f64>() * passed_s
+                        / (end - start) as f64
+                }
+                false => factor * (a[end] - a[start]),
+            };
+            (way, b[end] - b[start])
+        })
+        .collect()
+}
+
+/// A gear ratio that is a tooth or two beside the right one: what is left of the load with it looks like an effect.
+fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
+    let fast = 0.5 * ways.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
+    // A joint winds up where it turns back.
+    let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
+    let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
+    // The motor's angle is fine beside the link's: its noise makes nothing larger.
+    let found = ratio * bb / ab;
+    let turned = sum(|w| w.1.abs()) / ratio.abs();
+    let tells = ab * ab > SAME_ANGLE * aa * bb && turned > GEAR_WAY && (found / ratio - 1.0).abs() > GEAR_CLASH;
+    tells.then(|| {
+        format!(
+            "gear_ratio is {ratio}, and motor_position_rad goes {found:.2} times as far as link_position_rad: one of them is wrong"
+        )
+    })
+}
+
+/// An angle that never changes while the other one moves on.
+fn rests(one: &str, a: &[f64], other: &str, b: &[f64], factor: f64) -> Option<String> {
+    let (low, high) = b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let moved = (high - low) / factor;
+    (moved > WAY && a.iter().all(|v| *v == a[0])).then(|| {
+        format!("{one} never changes, while {other} says that it moved by {moved:.3} rad: it was not connected")
+    })
+}
+
+/// How many times the second the first is, where both move alike.
+fn alike(ways: &[(f64, f64)]) -> Option<f64> {
+    let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().map(f).sum::<f64>();
+    let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
+    (ab * ab > SAME * aa * bb).then_some(aa / ab)
+}
+
+/// The same of most pieces: an angle within a turn leaps in the others.
+fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
+    const MOST: f64 = 0.6;
+    const NEAR: f64 = 0.1;
+    let times: Vec<f64> = ways.iter().filter(|w| w.1 != 0.0).map(|w| w.0 / w.1).collect();
+    let middle = crate::preprocess::median(times.iter().copied());
+    let near = times.iter().filter(|t| (*t / middle - 1.0).abs() < NEAR).count();
+    (near as f64 > MOST * ways.len() as f64).then_some(middle)
+}
+
+/// An encoder that turns by more than a turn between two samples: nobody knows where it was.
+fn too_fast(run: &RunTable) -> Option<String> {
+    let angle = run.column("reference_position_rad").filter(|_| run.kind() == Kind::Encoder)?;
+    let step = crate::preprocess::median(angle.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
+    (step > TAU).then(|| {
+        format!(
+            "reference_position_rad goes on by {:.3} turns from one sample to the next: it has another unit, or was sampled too slowly",
+            step / TAU
+        )
+    })
+}
+
+/// A load that is the same in every sample, and not zero: no sensor tells that.
+fn dead_load(run: &RunTable) -> Option<String> {
+    let load = run.column("link_torque_nm").filter(|_| run.kind() == Kind::Friction)?;
+    let is_dependent = load[0] != 0.0 && load.iter().all(|v| *v == load[0]);
+    is_dependent.then(|| {
+        format!("link_torque_nm is {} Nm in every sample, which no sensor tells: it was not connected", load[0])
+    })
+}
+
+/// A current of which neither a sample nor a piece of the run tells anything of the next: an open input. Where it holds still
+/// and only its noise is left, it has a mean.
+fn noise(run: &RunTable, pieces: &[Piece]) -> Option<String> {
+    const LEAST_PIECES: usize = 40;
+    /// Noise comes this near to the noise before it, in standard deviations.
+    const LIKE_CHANCE: f64 = 3.0;
+    let column = match run.kind() {
+        Kind::Friction => "motor_current_a",
+        Kind::Brake => "brake_current_a",
+        Kind::Encoder | Kind::Stiffness => return None,
+    };
+    let current = run.column(column)?;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let variance = |values: &[f64]| {
+        let middle = mean(values);
+        values.iter().map(|i| (i - middle).powi(2)).sum::<f64>() / values.len() as f64
+    };
+    let is_white = |values: &[f64]| {
+        let middle = mean(values);
+        let next: f64 = values.windows(2).map(|i| (i[0] - middle) * (i[1] - middle)).sum();
+        next.abs() < LIKE_CHANCE * variance(values) * (values.len() as f64).sqrt()
+    };
+    let means: Vec<f64> = pieces.iter().map(|(piece, _)| mean(&current[piece.clone()])).collect();
+    let swings = variance(current) > mean(current).powi(2);
+    (means.len() >= LEAST_PIECES && swings && is_white(current) && is_white(&means)).then(|| {
+        format!(
+            "{column} is noise: neither a sample nor {PIECE_S} s of it tell anything of what follows; it was not connected, or \
+             is another signal"
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointbench_instrument::{Channel, Meta, Trace};
+
+    fn said(run: &RunTable) -> Vec<String> {
+        clashes(run).all().cloned().collect()
+    }
+
+    fn run(velocity_scale: f64, link_scale: f64) -> RunTable {
+        let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "link_position_rad", "motor_current_a"];
+        let mut trace = Trace::new(names.map(Channel::new).to_vec());
+        for i in 0..2000 {
+            let t = 0.01 * f64::from(i);
+            let (q, v) = (30.0 * (0.5 * t).sin(), 15.0 * (0.5 * t).cos());
+            trace.push_row(&[t, q, velocity_scale * v, link_scale * q / 50.0, 0.1 * v.signum()]);
+        }
+        let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(50.0), ..Meta::default() };
+        RunTable::new(meta, trace).unwrap()
+    }
+
+    #[test]
+    fn an_angle_that_is_not_connected_or_leaps_in_degrees_is_told() {
+        let told = |kind: Kind, names: [&str; 4], row: &dyn Fn(f64) -> [f64; 3]| {
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            for i in 0..4000 {
+                let t = 0.004 * f64::from(i);
+                let [a, b, c] = row(t);
+                trace.push_row(&[t, a, b, c]);
+            }
+            said(&RunTable::new(Meta { kind: Some(kind), gear_ratio: Some(50.0), ..Meta::default() }, trace).unwrap())
+        };
+        let encoder = ["time_s", "reference_position_rad", "test_position_rad", "temperature_c"];
+        let turn = |a: f64| (a + 3.0).rem_euclid(std::f64::consts::TAU) - 3.0;
+        let of = |scale: f64| told(Kind::Encoder, encoder, &|t| [turn(2.0 * t), scale * turn(2.0 * t), 20.0]);
+        assert_eq!(of(1.0), Vec::<String>::new());
+        assert!(matches!(&of(57.296)[..], [one] if one.contains("57.296 times")), "{:?}", of(57.296));
+        let dead = told(Kind::Encoder, encoder, &|t| [turn(2.0 * t), 0.7, 20.0]);
+        assert!(dead.len() == 1 && dead[0].starts_with("test_position_rad never changes"), "{dead:?}");
+        let stiffness = ["time_s", "motor_position_rad", "link_position_rad", "link_torque_nm"];
+        let held = |way: f64| told(Kind::Stiffness, stiffness, &|t| [way * t.sin(), 0.7, (3.0 * t).sin()]);
+        assert_eq!(held(0.2), Vec::<String>::new(), "the link was held fast, and the joint gives way");
+        assert!(held(30.0)[0].starts_with("link_position_rad never changes"), "{:?}", held(30.0));
+    }
+
+    #[test]
+    fn a_current_that_is_noise_is_told() {
+        // Uniform scatter in ±0.5 (SplitMix64).
+        let scatter = |i: u64| {
+            let z = (i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let told = |friction_a: f64, gravity_a: f64, held_a: f64| {
+            let names = ["time_s", "motor_position_rad", "motor_current_a"];
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            for i in 0..20_000u64 {
+                let t = 0.004 * i as f64;
+                let (q, v) = (30.0 * (0.5 * t).sin(), (0.5 * t).cos());
+                trace.push_row(&[t, q, friction_a * v.signum() + gravity_a * q.cos() + held_a + scatter(i)]);
+            }
+            let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(1.0), ..Meta::default() };
+            said(&RunTable::new(meta, trace).unwrap())
+        };
+        let found = told(0.0, 0.0, 0.0);
+        assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is noise")), "{found:?}");
+        assert_eq!(told(0.03, 0.0, 0.0), Vec::<String>::new(), "friction of a tenth of the noise");
+        let turned = told(-1.0, 0.5, 0.2);
+        assert!(matches!(&turned[..], [one] if one.starts_with("motor_current_a works against")), "{turned:?}");
+        assert_eq!(told(0.2, 1.0, 0.5), Vec::<String>::new(), "a weight that drives now and then");
+        assert_eq!(told(0.0, 0.2, 0.0), Vec::<String>::new(), "a wave that comes and goes");
+        assert_eq!(told(0.0, 0.0, 0.4), Vec::<String>::new(), "a current that is held");
+    }
+
+    #[test]
+    fn columns_of_one_motion_agree_or_are_told() {
+        assert_eq!(said(&run(1.0, 1.0)), Vec::<String>::new());
+        assert_eq!(said(&run(1.1, 0.995)), Vec::<String>::new(), "late or filtered");
+        let gear = said(&run(1.0, 50.0 / 51.0));
+        assert!(gear.len() == 1 && gear[0].contains("goes 51.00 times as far"), "{gear:?}");
+        let rpm = said(&run(9.549, 1.0));
+        assert!(rpm.len() == 1 && rpm[0].starts_with("motor_velocity_rad_s is 9.5"), "{rpm:?}");
+        let degrees = said(&run(-1.0, 57.296));
+        assert!(
+            degrees.len() == 2 && degrees[0].contains("is -1.00") && degrees[1].contains("57.296 times"),
+            "{degrees:?}"
+        );
+    }
+}

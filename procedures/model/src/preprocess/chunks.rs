@@ -1,0 +1,260 @@
+//! Samples in model quantities, and their means over chunks.
+
+use crate::preprocess::design::replicates::Same;
+use crate::preprocess::design::{blocks, replicates, segments};
+use crate::preprocess::{Problem, Reduce, residual_acceleration};
+use crate::signal::{Signal, Signals};
+use crate::view::{Constants, View};
+use std::collections::HashSet;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The samples of a run in model quantities.
+pub struct Source {
+    pub signals: Signals,
+    /// What the model predicts.
+    pub target: Arc<Vec<f64>>,
+    pub time_s: Vec<f64>,
+    pub step_s: f64,
+    /// First samples of recordings.
+    pub starts: Vec<usize>,
+    /// First samples of the runs that were joined.
+    pub runs: Vec<usize>,
+    pub cutoff_hz: f64,
+    pub segment: Option<Vec<i64>>,
+    pub repeat: Option<Vec<i64>>,
+    /// The velocity came from the position.
+    pub derived_velocity: bool,
+    pub constants: Constants,
+}
+
+/// Speeds this near to a kept one, as a share of it, are the same.
+const EVEN: f64 = 0.05;
+
+/// The middle one of the speeds that most of all lie near together.
+fn usual(mut speeds: Vec<f64>) -> f64 {
+    speeds.sort_unstable_by(f64::total_cmp);
+    let near = |low: usize| speeds.partition_point(|v| *v <= speeds[low] * (1.0 + EVEN) / (1.0 - EVEN)) - low;
+    let low = (0..speeds.len()).max_by_key(|low| near(*low));
+    low.map_or(0.0, |low| speeds[low + near(low) / 2])
+}
+
+/// Which samples become rows, and what they have in common.
+pub struct Layout<'a> {
+    pub chunks: Vec<Range<usize>>,
+    /// Stretch of consecutive rows.
+    pub group: Vec<usize>,
+    pub condition: Vec<usize>,
+    /// Rows since the stretch began, where repeats can be compared.
+    pub phase: Option<Vec<usize>>,
+    /// Constant speed: what is measured as acceleration is noise, unless the motion wavers.
+    pub settled: bool,
+    /// Signals in which stretches of one condition must agree to be repeats; none where the condition says all.
+    pub inputs: &'a [Same],
+}
+
+impl Source {
+    pub fn chunk(&self, chunk_s: f64) -> usize {
+        ((chunk_s / self.step_s).round() as usize).max(1)
+    }
+
+    /// Segments, as numbered or as found: stretches of one direction.
+    pub fn legs(&self) -> Vec<Range<usize>> {
+        let legs = match &self.segment {
+            Some(segment) => segments::stretches(segment),
+            None => segments::stretches(self.signals.find(Signal::Direction).unwrap_or_default()),
+        };
+        legs.into_iter().flat_map(|leg| self.within_runs(leg)).collect()
+    }
+
+    /// A leg at one speed without the ramps at its ends, and after the first as long again, in which its motion dies down:
+    /// the flanks are still being changed there, whatever the sign of the motion says. A leg that never keeps a speed
+    /// stays whole.
+    pub fn even_part(&self, leg: &Range<usize>, chunk: usize) -> Range<usize> {
+        /// Of a sine's half wave 0.28 lie so near together.
+        const KEEPS: f64 = 0.4;
+        let Some(velocity) = self.signals.find(Signal::Velocity) else { return leg.clone() };
+        // A model's file may ask for means over more than there is.
+        let chunk = chunk.min(leg.len()).max(1);
+        let means: Vec<f64> =
+            velocity[leg.clone()].chunks(chunk).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
+        let kept = usual(means.iter().map(|mean| mean.abs()).collect());
+        let is_even = |mean: &f64| (mean.abs() - kept).abs() <= EVEN * kept;
+        let (first, last) = (means.iter().position(is_even), means.iter().rposition(is_even));
+        let even = means.iter().filter(|m| is_even(m)).count() as f64;
+        match (first, last) {
+            (Some(first), Some(last)) if even >= KEEPS * means.len() as f64 => {
+                leg.start + (2 * first).min(last) * chunk..(leg.start + (last + 1) * chunk).min(leg.end)
+            }
+            _ => leg.clone(),
+        }
+    }
+
+    /// The samples of some chunks, with all turning points in between: a way between two of these is one straight step to
+    /// every memory that does not ask how long it took.
+    pub fn around(&self, chunks: Vec<Range<usize>>) -> (Source, Vec<Range<usize>>) {
+        let direction = self.signals.find(Signal::Direction).unwrap_or_default();
+        let mut kept = vec![false; self.time_s.len()];
+        chunks.iter().for_each(|c| kept[c.clone()].fill(true));
+        self.starts.iter().for_each(|s| kept[*s] = true);
+        let turns = (1..direction.len()).filter(|i| direction[*i] != direction[i - 1]);
+        turns.for_each(|i| kept[i - 1..=i].fill(true));
+        let rows: Vec<usize> = (0..kept.len()).filter(|i| kept[*i]).collect();
+        let at = |sample: &usize| rows.partition_point(|r| r < sample);
+        let gather = |values: &[f64]| -> Vec<f64> { rows.iter().map(|i| values[*i]).collect() };
+        let whole = |values: &Option<Vec<i64>>| values.as_ref().map(|v| rows.iter().map(|i| v[*i]).collect());
+        let mut signals = Signals::new(rows.len());
+        self.signals.iter().for_each(|(signal, values)| signals.set(signal, gather(values)));
+        let moved = chunks.iter().map(|c| at(&c.start)..at(&c.start) + c.len()).collect();
+        let source = Source {
+            signals,
+            target: gather(&self.target).into(),
+            time_s: gather(&self.time_s),
+            starts: self.starts.iter().map(at).collect(),
+            runs: self.runs.iter().map(at).collect(),
+            segment: whole(&self.segment),
+            repeat: whole(&self.repeat),
+            ..*self
+        };
+        (source, moved)
+    }
+
+    /// No leg goes on in the next run.
+    fn within_runs(&self, leg: Range<usize>) -> Vec<Range<usize>> {
+        let inside = self.runs.iter().copied().filter(|s| leg.start < *s && *s < leg.end);
+        let edges: Vec<usize> = std::iter::once(leg.start).chain(inside).chain([leg.end]).collect();
+        edges.windows(2).map(|w| w[0]..w[1]).collect()
+    }
+}
+
+/// The means of target and signals over chunks, as a problem.
+pub fn problem(samples: &Source, layout: Layout) -> Problem {
+    let Layout { chunks, group, condition, phase, settled, inputs } = layout;
+    let mean = |values: &[f64]| -> Vec<f64> {
+        chunks.iter().map(|c| values[c.clone()].iter().sum::<f64>() / c.len() as f64).collect()
+    };
+    let mut points = Signals::new(chunks.len());
+    for (signal, values) in samples.signals.iter() {
+        let still = settled && matches!(signal, Signal::Acceleration | Signal::Jerk);
+        points.set(signal, if still { vec![0.0; chunks.len()] } else { mean(values) });
+    }
+    if settled && let Some(position) = samples.signals.find(Signal::Position) {
+        let wavering = residual_acceleration::accelerations(&samples.time_s, position, samples.step_s, &chunks, &group);
+        points.set(Signal::Acceleration, wavering);
+    }
+    if settled && let Some(velocity) = points.find(Signal::Velocity) {
+        // The sign of the filtered velocity rings after a hard reversal, far into a slow plateau.
+        let direction = velocity.iter().map(|v| v.signum()).collect();
+        points.set(Signal::Direction, direction);
+    }
+    let target = mean(&samples.target);
+    let (block, blocks) = blocks::blocks(&group, 48);
+    let held_out = if settled { blocks::held_out(&condition, &group) } else { &condition };
+    let (mut fold, folds) = blocks::folds(held_out, &block, 10);
+    // What a brake remembers of its largest current no smaller loop tells.
+    if let Some(current) = points.find(Signal::Current) {
+        blocks::share_edges(&mut fold, folds, &group, current);
+    }
+    let first = |values: &Option<Vec<i64>>| -> Vec<i64> {
+        values.as_ref().map_or_else(|| vec![0; chunks.len()], |v| chunks.iter().map(|c| v[c.start]).collect())
+    };
+    let repeat = first(&samples.repeat);
+    let segment = match &samples.segment {
+        Some(_) => first(&samples.segment),
+        None => group.iter().map(|g| *g as i64).collect(),
+    };
+    // Numbered legs of one condition are repeats of each other, whatever the repeats are called.
+    let of: Vec<i64> = match inputs.is_empty() || samples.segment.is_none() {
+        true => repeat.clone(),
+        false => group.iter().map(|g| *g as i64).collect(),
+    };
+    let replicate_pairs = phase.map_or_else(Vec::new, |phase| blocks::replicate_pairs(&condition, &phase, &of, 1));
+    let link = points.find(Signal::Link).filter(|_| settled && !samples.constants.slides);
+    let (replicate_pairs, different_angle) = match link.filter(|link| replicates::are_apart(&replicate_pairs, link)) {
+        Some(link) => replicates::by_angle(replicate_pairs, &condition, &of, link),
+        None => (replicate_pairs, HashSet::new()),
+    };
+    let mut view = View::new(points, samples.signals.clone(), chunks, samples.starts.clone(), samples.step_s);
+    view.constants = samples.constants;
+    let mut problem = Problem {
+        view,
+        target,
+        sampled: samples.target.clone(),
+        reduce: Reduce::Same,
+        block,
+        blocks,
+        fold,
+        folds,
+        replicate_pairs,
+        different_history: HashSet::new(),
+        different_angle,
+        unlike: None,
+        segment,
+        repeat,
+        settled,
+    };
+    replicates::believe(&mut problem, &of, inputs);
+    problem
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hysteresis_operators;
+
+    fn source(signals: Signals) -> Source {
+        let n = signals.len();
+        Source {
+            signals,
+            target: vec![0.0; n].into(),
+            time_s: (0..n).map(|i| i as f64).collect(),
+            step_s: 1.0,
+            starts: vec![0],
+            runs: vec![0],
+            cutoff_hz: 0.1,
+            segment: None,
+            repeat: Some(vec![0; n]),
+            derived_velocity: true,
+            constants: Constants::default(),
+        }
+    }
+
+    #[test]
+    fn a_leg_loses_its_ramps_even_where_they_are_longer_than_its_dwell() {
+        let of = |speed: &dyn Fn(f64) -> f64| {
+            let n = 310;
+            let mut signals = Signals::new(n);
+            signals.set(Signal::Velocity, (0..n).map(|i| -speed(i as f64)).collect());
+            source(signals).even_part(&(0..n), 4)
+        };
+        let ramps = |i: f64| 1.8 * (i / 80.0).min((310.0 - i) / 80.0).min(1.0);
+        let even = of(&ramps);
+        assert!((140..=160).contains(&even.start) && (228..=242).contains(&even.end), "{even:?}");
+        assert_eq!(of(&|i| (i / 310.0 * std::f64::consts::PI).sin()), 0..310, "a wave keeps no speed");
+    }
+
+    #[test]
+    fn a_memory_is_the_same_on_the_samples_around_chunks() {
+        // Back and forth, three times, in steps of different length.
+        let way = |i: usize| if (i / 40).is_multiple_of(2) { i % 40 } else { 40 - i % 40 } as f64;
+        let n = 240;
+        let position: Vec<f64> = (0..n).map(|i| way(i) + 0.3 * (way(i) * 0.2).sin()).collect();
+        let direction = (0..n).map(|i| if (i / 40_usize).is_multiple_of(2) { 1.0 } else { -1.0 }).collect();
+        let mut signals = Signals::new(n);
+        signals.set(Signal::Position, position.clone());
+        signals.set(Signal::Direction, direction);
+        let source = source(signals);
+        let chunks = vec![84..88, 165..169, 210..214];
+        let (thin, moved) = source.around(chunks.clone());
+        assert!(thin.time_s.len() < 30 && thin.starts == [0], "{:?}", thin.time_s);
+        let few = thin.signals.find(Signal::Position).unwrap_or_default();
+        for state in [hysteresis_operators::dahl, hysteresis_operators::stop, hysteresis_operators::maxwell_slip] {
+            let (whole, part) = (state(&position, 5.0, &[0.into()]), state(few, 5.0, &[0.into()]));
+            for (c, m) in chunks.iter().zip(&moved) {
+                for (a, b) in whole[c.clone()].iter().zip(&part[m.clone()]) {
+                    assert!((a - b).abs() < 1e-12, "{a} {b}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Repeats are believed where their inputs are the same: two motions that share nothing but a number say nothing about noise.
+
+use crate::preprocess::Problem;
+use crate::preprocess::design::blocks;
+use crate::signal::Signal;
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::f64::consts::TAU;
+
+/// Two repeats are one motion where their inputs differ by less than this share of their variance, as much as two
+/// periods of a motion may.
+const SAME_MOTION: f64 = 0.02;
+
+/// Set points within this share of their size are one, and so are loads within this share of the torque.
+const SAME_LEVEL: f64 = 0.03;
+
+/// What repeats must have in common.
+#[derive(Debug, Clone, Copy)]
+pub enum Same {
+    Value(Signal),
+    /// Whichever sign it has.
+    Size(Signal),
+}
+
+impl Same {
+    pub fn signal(self) -> Signal {
+        match self {
+            Same::Value(signal) | Same::Size(signal) => signal,
+        }
+    }
+
+    pub fn of(self, values: &[f64]) -> Vec<f64> {
+        match self {
+            Same::Value(_) => values.to_vec(),
+            Same::Size(_) => values.iter().map(|v| v.abs()).collect(),
+        }
+    }
+}
+
+/// How far apart an input was where repeats should be alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unlike {
+    pub signal: Signal,
+    /// RMS of the difference of two repeats at the same moment.
+    pub apart: f64,
+    /// Standard deviation over the run.
+    pub spread: f64,
+}
+
+/// One input at the rows, with what it may differ by.
+struct Input {
+    signal: Signal,
+    values: Vec<f64>,
+    /// An angle that goes round and round.
+    turns: bool,
+    variance: f64,
+    allowed: f64,
+}
+
+impl Input {
+    fn of(problem: &Problem, same: Same) -> Option<Self> {
+        let signal = same.signal();
+        let values = problem.reduce.apply(same.of(problem.view.find(signal)?));
+        let (mean_square, variance) = moments(&values);
+        let is_angle = signal == Signal::Link && !problem.view.constants.slides;
+        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        let turns = is_angle && high - low > TAU;
+        let variance = if turns { variance.min(TAU * TAU / 12.0) } else { variance };
+        // From one row to the next of the same stretch: noise, and what the motion does meanwhile.
+        let next = (1..values.len()).filter(|i| problem.block[*i] == problem.block[i - 1]);
+        let steps: Vec<f64> = next.map(|i| values[i] - values[i - 1]).collect();
+        let chatter = moments(&steps).0 / 2.0;
+        let level = match signal {
+            Signal::Link => 0.0,
+            Signal::Load => moments(&problem.target).1.max(mean_square),
+            _ => mean_square,
+        };
+        let allowed = SAME_MOTION * variance + chatter + SAME_LEVEL * SAME_LEVEL * level;
+        Some(Self { signal, values, turns, variance, allowed })
+    }
+
+    fn half_square(&self, (a, b): (usize, usize)) -> f64 {
+        let d = self.values[a] - self.values[b];
+        let d = if self.turns { d - (d / TAU).round() * TAU } else { d };
+        d * d / 2.0
+    }
+}
+
+/// Angles of a turn that are told apart.
+const ANGLES: usize = 90;
+/// A condition that has fewer such pairs for each row is compared by phase.
+const FEWEST: f64 = 0.25;
+
+/// Pairs of rows.
+type Twins = Vec<(usize, usize)>;
+
+/// Where the repeats of a condition begin at other angles: pairs of moments at which they pass the same one, where these are
+/// not too few, and which of all are at other angles. No condition counts with more pairs for each row than another, but for one
+/// that has hardly any.
+pub fn by_angle(
+    replicate_pairs: Twins,
+    condition: &[usize],
+    repeat: &[i64],
+    link: &[f64],
+) -> (Twins, HashSet<(usize, usize)>) {
+    // Where it dwells at an angle, as far into that.
+    let mut dwelt: HashMap<(usize, i64, usize), usize> = HashMap::new();
+    let place = |row: usize| {
+        let angle = (link[row].rem_euclid(TAU) / TAU * ANGLES as f64) as usize;
+        let nth = dwelt.entry((condition[row], repeat[row], angle)).or_default();
+        *nth += 1;
+        angle + ANGLES * *nth
+    };
+    let places: Vec<usize> = (0..link.len()).map(place).collect();
+    let of_condition = |replicate_pairs: Twins| {
+        let mut pairs: BTreeMap<usize, Twins> = BTreeMap::new();
+        replicate_pairs.into_iter().for_each(|pair| pairs.entry(condition[pair.0]).or_default().push(pair));
+        pairs
+    };
+    let mut rows: HashMap<usize, f64> = HashMap::new();
+    condition.iter().for_each(|c| *rows.entry(*c).or_default() += 1.0);
+    let for_each_row = |(c, pairs): (&usize, &Twins)| pairs.len() as f64 / rows[c];
+    let mut met = of_condition(blocks::replicate_pairs(condition, &places, repeat, 0));
+    met.retain(|c, pairs| for_each_row((c, pairs)) >= FEWEST);
+    let mut all = of_condition(replicate_pairs);
+    let elsewhere = all.iter().filter(|(c, _)| !met.contains_key(c)).flat_map(|(_, pairs)| pairs.clone()).collect();
+    all.extend(met);
+    let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min).max(FEWEST);
+    let thinned = |of: (&usize, &Twins)| {
+        let share = fewest / for_each_row(of);
+        let is_kept = |i: &usize| ((i + 1) as f64 * share).floor() > (*i as f64 * share).floor();
+        (0..of.1.len()).filter(is_kept).map(|i| of.1[i]).collect::<Twins>()
+    };
+    (all.iter().flat_map(thinned).collect(), elsewhere)
+}
+
+/// The angles of pairs have little to do with each other.
+pub fn are_apart(replicate_pairs: &[(usize, usize)], link: &[f64]) -> bool {
+    /// Of the RMS difference of two angles that have nothing to do with each other.
+    const SHARE: f64 = 0.2;
+    let apart = |(a, b): &(usize, usize)| {
+        let d = link[*a] - link[*b];
+        (d - (d / TAU).round() * TAU).powi(2)
+    };
+    let square = replicate_pairs.iter().map(apart).sum::<f64>() / replicate_pairs.len().max(1) as f64;
+    square > SHARE * SHARE * TAU * TAU / 12.0
+}
+
+/// Keeps the replicate pairs of those stretches (`of` numbers them for each row) whose inputs agree, and tells how far apart the
+/// others were where none is left.
+pub fn believe(problem: &mut Problem, of: &[i64], inputs: &[Same]) {
+    if inputs.is_empty() {
+        return;
+    }
+    let inputs: Vec<Input> = inputs.iter().filter_map(|same| Input::of(problem, *same)).collect();
+    let mut pairs: BTreeMap<(i64, i64), Vec<(usize, usize)>> = BTreeMap::new();
+    for (a, b) in std::mem::take(&mut problem.replicate_pairs) {
+        pairs.entry((of[a].min(of[b]), of[a].max(of[b]))).or_default().push((a, b));
+    }
+    let mut worst: Option<(f64, Unlike)> = None;
+    for replicate_pairs in pairs.into_values() {
+        let apart = |input: &Input| {
+            replicate_pairs.iter().map(|t| input.half_square(*t)).sum::<f64>() / replicate_pairs.len() as f64
+        };
+        let most =
+            inputs.iter().map(|i| (apart(i) / i.allowed.max(f64::MIN_POSITIVE), i)).max_by(|a, b| a.0.total_cmp(&b.0));
+        match most.filter(|(times, _)| *times > 1.0) {
+            None => problem.replicate_pairs.extend(replicate_pairs),
+            Some((times, input)) if worst.is_none_or(|(most, _)| times > most) => {
+                let apart = (2.0 * apart(input)).sqrt();
+                worst = Some((times, Unlike { signal: input.signal, apart, spread: input.variance.sqrt() }));
+            }
+            Some(_) => {}
+        }
+    }
+    problem.replicate_pairs.sort_unstable();
+    problem.unlike = worst.map(|w| w.1).filter(|_| problem.replicate_pairs.is_empty());
+}
+
+/// Mean square and variance.
+fn moments(values: &[f64]) -> (f64, f64) {
+    let n = values.len().max(1) as f64;
+    let (sum, square) = values.iter().fold((0.0, 0.0), |(s, q), v| (s + v, q + v * v));
+    (square / n, (square / n - (sum / n).powi(2)).max(0.0))
+}

@@ -1,0 +1,155 @@
+//! Segments, recordings and repeats: from their columns, or found where those are missing.
+
+use jointbench_instrument::RunTable;
+use std::ops::Range;
+
+/// Stretches of equal value.
+pub fn stretches<T: PartialEq>(column: &[T]) -> Vec<Range<usize>> {
+    let mut out = Vec::new();
+    let mut start = 0;
+    for i in 1..=column.len() {
+        if i == column.len() || column[i] != column[start] {
+            out.push(start..i);
+            start = i;
+        }
+    }
+    out
+}
+
+/// First samples of the runs that a table was joined of.
+pub fn runs(run: &RunTable) -> Vec<usize> {
+    let column = run.column("run").unwrap_or_default();
+    std::iter::once(0).chain((1..column.len()).filter(|i| column[*i] != column[i - 1])).collect()
+}
+
+/// First samples of recordings: a gap in time of more than ten samples, or a segment that starts where nothing led to.
+pub fn recordings(time_s: &[f64], position: &[f64], step_s: f64) -> Vec<usize> {
+    let reach = 50.0 * crate::preprocess::median(position.windows(2).map(|w| (w[1] - w[0]).abs())).max(1e-4);
+    let gap = |i: usize| time_s[i] - time_s[i - 1] > 10.0 * step_s;
+    let jump = |i: usize| (position[i] - position[i - 1]).abs() > reach.max(0.5);
+    std::iter::once(0).chain((1..time_s.len()).filter(|i| gap(*i) || jump(*i))).collect()
+}
+
+/// Legs of one direction: the sign of the velocity with a hysteresis, so that noise around zero makes no legs.
+pub fn direction(velocity: &[f64], band: f64) -> Vec<f64> {
+    let first = velocity.iter().find(|v| v.abs() > band).map_or(0.0, |v| v.signum());
+    let mut sign = first;
+    velocity
+        .iter()
+        .map(|v| {
+            if v.abs() > band {
+                sign = v.signum();
+            }
+            sign
+        })
+        .collect()
+}
+
+/// The direction of a run that goes the other way in less than a tenth of its samples, if at all.
+pub fn main_direction(direction: &[f64]) -> Option<f64> {
+    const FEW: f64 = 0.1;
+    let ahead = direction.iter().sum::<f64>().signum();
+    let back = direction.iter().filter(|d| **d == -ahead).count() as f64;
+    (back < FEW * direction.len() as f64).then_some(ahead)
+}
+
+/// A joint that creeps over its own teeth swings back a little again and again: that is no motion the other way. Where
+/// these swings are short and few, the direction of the whole run is that of its way.
+pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -> Vec<f64> {
+    const SHORT: f64 = 0.01;
+    let Some(ahead) = main_direction(&direction) else { return direction };
+    let (mut reached, mut deepest, mut way) = (f64::NEG_INFINITY, 0.0f64, 0.0f64);
+    for (i, q) in position.iter().enumerate() {
+        if starts.contains(&i) {
+            reached = f64::NEG_INFINITY;
+        } else if ahead * q > reached {
+            way += ahead * q - reached;
+        }
+        reached = reached.max(ahead * q);
+        deepest = deepest.max(reached - ahead * q);
+    }
+    if deepest < SHORT * way { vec![ahead; direction.len()] } else { direction }
+}
+
+/// The rows of a way back, with those beside them, where filters see both ways.
+pub fn way_back(direction: &[f64], ahead: f64) -> Vec<bool> {
+    const BESIDE: usize = 3;
+    let near = |i: usize| i.saturating_sub(BESIDE)..(i + BESIDE + 1).min(direction.len());
+    (0..direction.len()).map(|i| direction[near(i)].contains(&-ahead)).collect()
+}
+
+/// The integers of a column, where the run has it.
+pub fn integers(run: &RunTable, column: &str) -> Option<Vec<i64>> {
+    run.column(column).map(|values| values.iter().map(|v| *v as i64).collect())
+}
+
+/// The segments as a run numbers them. `None` where the column numbers none: one number for all of the run, or another one every
+/// few samples.
+pub fn numbered(run: &RunTable) -> Option<Vec<i64>> {
+    const LEAST_SAMPLES: usize = 8;
+    let segment = integers(run, "segment")?;
+    let segments = segment.chunk_by(|a, b| a == b).count();
+    (1 < segments && segments * LEAST_SAMPLES < segment.len()).then_some(segment)
+}
+
+/// Rows of a long signal that are enough to know its period, and lags that are tried.
+const ENOUGH: usize = 4_000;
+
+/// The period after which a signal repeats itself, in rows: the first peak of its autocorrelation that is as good as
+/// perfect. `None` where fewer than two periods were recorded. A long signal is looked at in steps at first: cost stays
+/// linear.
+pub fn period(signal: &[f64]) -> Option<usize> {
+    let n = signal.len();
+    let stride = n.div_ceil(ENOUGH).max(1);
+    let mean = signal.iter().sum::<f64>() / n.max(1) as f64;
+    let x: Vec<f64> = signal.iter().map(|v| v - mean).collect();
+    let correlation = |lag: usize| {
+        let (a, b) = (&x[..n - lag], &x[lag..]);
+        let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+        for (a, b) in a.iter().zip(b).step_by(stride) {
+            ab += a * b;
+            aa += a * a;
+            bb += b * b;
+        }
+        if aa * bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
+    };
+    let mut lag = n / 100 + 2;
+    while lag < n / 2 && correlation(lag) > 0.5 {
+        lag += stride;
+    }
+    let best = |lags: &mut dyn Iterator<Item = usize>| {
+        lags.map(|l| (l, correlation(l))).fold((0, 0.0), |m, c| if c.1 > m.1 + 1e-3 { c } else { m })
+    };
+    let (near, _) = best(&mut (lag..=n / 2).step_by(stride));
+    let (period, value) = best(&mut (near.saturating_sub(stride - 1).max(1)..=(near + stride - 1).min(n / 2)));
+    (value > 0.98).then_some(period)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn swings_on_the_way_are_no_motion_the_other_way() {
+        let swinging = |size: f64| {
+            let position: Vec<f64> =
+                (0..2000).map(|i| 1e-3 * f64::from(i) + size * (0.02 * f64::from(i)).sin()).collect();
+            let velocity: Vec<f64> = position.windows(2).map(|w| w[1] - w[0]).collect();
+            without_swings(direction(&velocity, 0.0), &position[1..], &[0])
+        };
+        assert!(swinging(0.051).iter().all(|d| *d == 1.0));
+        assert!(swinging(0.2).contains(&-1.0), "a tenth of the way back and forth");
+    }
+
+    #[test]
+    fn a_period_is_found_in_short_and_long_signals() {
+        for (period_rows, rows) in [(50, 3_000), (1_237, 4_100), (20_011, 200_000)] {
+            let turn = std::f64::consts::TAU / period_rows as f64;
+            let signal: Vec<f64> =
+                (0..rows).map(|i| (turn * i as f64).sin() + 0.4 * (turn * 3.0 * i as f64).cos()).collect();
+            let found = period(&signal).unwrap();
+            assert!(found.abs_diff(period_rows) * 100 <= period_rows, "{found} instead of {period_rows}");
+        }
+        assert_eq!(period(&(0..50_000).map(|i| (f64::from(i) * 1e-4).exp()).collect::<Vec<_>>()), None);
+    }
+}

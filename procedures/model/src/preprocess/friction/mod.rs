@@ -1,0 +1,174 @@
+//! Friction runs: motor torque k_m·i_q over motion, load and temperature.
+
+pub(crate) mod reversals;
+pub(crate) mod steady_state;
+pub(crate) mod trajectory;
+pub(crate) mod unmeasured_gravity;
+pub(crate) mod velocity_delay;
+
+use crate::linear::basis::{Basis, dot};
+use crate::preprocess::chunks::Source;
+use crate::preprocess::design::segments;
+use crate::preprocess::{Prepared, TELLING, filter, median, sample_s};
+use crate::signal::{Signal, Signals};
+use crate::view::Constants;
+use crate::{ModelError, Options, ResidualKind};
+use jointbench_instrument::{Motion, RunTable};
+
+pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
+    let (samples, _) = read(run, options, Velocity::AsMeasured)?;
+    let plateaus = steady_state::find(&samples, run.meta().gear_ratio.unwrap_or(1.0), options);
+    let settled: usize = plateaus.iter().map(|p| p.len()).sum();
+    // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
+    // many steps does not take them away.
+    let in_steps = settled * 2 > run.len()
+        || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
+    let kind = options.residual.unwrap_or(if in_steps { ResidualKind::PlateauMean } else { ResidualKind::Raw });
+    match kind {
+        ResidualKind::PlateauMean => steady_state::prepare(run, samples, plateaus, options),
+        // Of settled motion a lag takes nothing. What is judged sample by sample has to be of one moment.
+        ResidualKind::Raw => {
+            let (samples, velocity_lag_s) = read(run, options, Velocity::Aligned)?;
+            let mut prepared = trajectory::prepare(run, samples, options)?;
+            prepared.about.velocity_lag_s = velocity_lag_s;
+            Ok(prepared)
+        }
+    }
+}
+
+/// What becomes of a measured velocity.
+#[derive(Clone, Copy, PartialEq)]
+enum Velocity {
+    AsMeasured,
+    /// Moved to the moments of the position.
+    Aligned,
+}
+
+/// With the lag that the velocity had, where it was moved.
+fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, Option<f64>), ModelError> {
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let km = run
+        .meta()
+        .torque_constant_nm_per_a
+        .ok_or(ModelError::MissingConstant { needed: "torque_constant_nm_per_a" })?;
+    let position = column("motor_position_rad");
+    if position.iter().all(|q| *q == position[0]) {
+        return Err(ModelError::Constant { column: "motor_position_rad".into() });
+    }
+    let time_s = column("time_s").to_vec();
+    let step_s = sample_s(&time_s);
+    let starts = segments::recordings(&time_s, position, step_s);
+    let cutoff_hz = crate::preprocess::cutoff_hz(options, step_s)?;
+    let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
+    let smoothed = |values: &[f64]| filter::by_recording(values, &starts, |_, v| smooth.both_ways(v, 12));
+    let slope =
+        |values: &[f64]| filter::by_recording(values, &starts, |range, v| filter::derivative(&time_s[range], v));
+
+    let measured = run.column("motor_velocity_rad_s");
+    let motion = || {
+        let (velocity, smooth_velocity, lag_s, of_row_s) = match measured {
+            Some(v) if wanted == Velocity::Aligned => {
+                let torque = smoothed(column("motor_current_a"));
+                let load = run.column("link_torque_nm").map(&smoothed);
+                // A current is mostly of the moments of the position. Where it clearly is of those of the velocity, that stays.
+                let left = |v: &[f64]| velocity_delay::left(&torque, v, &slope(v), load.as_deref());
+                let measured = smoothed(v);
+                let lag_s = velocity_delay::of(&time_s, &measured, &slope(&smoothed(position)), &starts, cutoff_hz);
+                let moved = lag_s.map(|lag_s| (velocity_delay::moved(&time_s, v, &starts, lag_s), lag_s));
+                let moved = moved.map(|(v, lag_s)| (smoothed(&v), v, lag_s));
+                let at_most = (1.0 + options.practical_share) * left(&measured);
+                match moved.filter(|(smooth, _, _)| left(smooth) < at_most) {
+                    Some((smooth, v, lag_s)) => (v, smooth, Some(lag_s), Some([0.0, lag_s])),
+                    None => (v.to_vec(), measured, None, lag_s.map(|lag_s| [-lag_s, 0.0])),
+                }
+            }
+            Some(v) => (v.to_vec(), smoothed(v), None, None),
+            None => {
+                let v = slope(&smoothed(position));
+                (v.clone(), v, None, None)
+            }
+        };
+        let slopes = || {
+            let acceleration = slope(&smooth_velocity);
+            (slope(&acceleration), acceleration)
+        };
+        let ways = || {
+            let every = velocity.len().div_ceil(TELLING);
+            let off = velocity.iter().zip(&smooth_velocity).step_by(every).map(|(a, b)| (a - b).abs());
+            let noise = median(off);
+            let fastest = smooth_velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+            let direction = segments::direction(&smooth_velocity, (2.0 * noise).min(0.02 * fastest));
+            segments::without_swings(direction, position, &starts)
+        };
+        let ((jerk, acceleration), direction) = rayon::join(slopes, ways);
+        let signals = [
+            (Signal::Velocity, velocity),
+            (Signal::Acceleration, acceleration),
+            (Signal::Jerk, jerk),
+            (Signal::Direction, direction),
+        ];
+        (signals, lag_s, of_row_s)
+    };
+    let beside = || {
+        let gear = run.meta().gear_ratio.unwrap_or(1.0);
+        let mut signals = Signals::new(run.len());
+        signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
+        signals.set(Signal::Position, position.to_vec());
+        let link = match run.column("link_position_rad") {
+            Some(link) => link.to_vec(),
+            None => position.iter().map(|q| q / gear).collect(),
+        };
+        signals.set(Signal::Link, link);
+        if let Some(load) = run.column("link_torque_nm") {
+            signals.set(Signal::Load, load.iter().map(|t| t / gear).collect());
+        }
+        if let Some(temperature) = run.column("temperature_c") {
+            signals.set(Signal::Temperature, temperature.to_vec());
+        }
+        crate::preprocess::unknown_columns::keep(&mut signals, run);
+        let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
+        (signals, torque_nm, segments::numbered(run), segments::integers(run, "repeat"))
+    };
+    let ((of_motion, lag_s, of_row_s), (mut signals, target, segment, repeat)) = rayon::join(motion, beside);
+    of_motion.into_iter().for_each(|(signal, values)| signals.set(signal, values));
+    let slides = run.meta().motion == Motion::Linear;
+    let source = Source {
+        signals,
+        target: target.into(),
+        step_s,
+        starts,
+        runs: segments::runs(run),
+        cutoff_hz,
+        segment,
+        repeat,
+        derived_velocity: measured.is_none(),
+        constants: Constants {
+            slides,
+            of_row_s,
+            rotor_inertia: run.meta().rotor_inertia_kg_m2,
+            ..Constants::default()
+        },
+        time_s,
+    };
+    Ok((source, lag_s))
+}
+
+/// The motor torque as load, direction, speed and acceleration explain it: the measured one without its own noise, which
+/// would be found again in any power of itself, and without what the cube of itself adds when the iron saturates.
+fn drive(signals: &Signals, torque_nm: &[f64]) -> Vec<f64> {
+    let of = |signal| signals.find(signal).map(<[f64]>::to_vec);
+    let inputs = [Signal::Direction, Signal::Velocity, Signal::Load, Signal::Acceleration];
+    let mut columns: Vec<Vec<f64>> = inputs.into_iter().filter_map(of).collect();
+    columns.push(vec![1.0; torque_nm.len()]);
+    let linear = Basis::of(&columns);
+    let explained = |y: &[f64]| -> Vec<f64> { y.iter().zip(linear.rest(y)).map(|(y, e)| y - e).collect() };
+    let mut drive = explained(torque_nm);
+    for _ in 0..2 {
+        let cube: Vec<f64> = drive.iter().map(|t| t * t * t).collect();
+        let beside = linear.rest(&cube);
+        let share = dot(&beside, torque_nm) / dot(&beside, &beside).max(f64::MIN_POSITIVE);
+        let rest: Vec<f64> = torque_nm.iter().zip(&cube).map(|(y, c)| y - share * c).collect();
+        drive = explained(&rest);
+    }
+    drive
+}

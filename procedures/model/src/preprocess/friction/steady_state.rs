@@ -1,0 +1,250 @@
+//! Measurements in steps: settled stretches of constant speed and load, cut into chunks.
+//!
+//! The response and every signal are averaged over chunks of about 40 ms: noise falls, memory effects stay out, and a
+//! periodic effect fades at speed exactly as its data does. Ramps and reversals are kept apart, where signals of
+//! different instruments are not aligned and friction has memory.
+
+use crate::preprocess::chunks::{Layout, Source, problem};
+use crate::preprocess::design::{blocks, segments};
+use crate::preprocess::friction::unmeasured_gravity;
+use crate::preprocess::{Prepared, Problem, median};
+use crate::report::fit::Preparation;
+use crate::signal::Signal;
+use crate::{ModelError, Options, ResidualKind};
+use jointbench_instrument::RunTable;
+use rayon::prelude::*;
+use std::ops::Range;
+
+const CHUNK_S: f64 = 0.04;
+const MOVING_CHUNK_S: f64 = 0.02;
+/// Of a run of more chunks than these neighbours are averaged: what a plateau says, it says in few of them.
+const MOST_ROWS: usize = 12_000;
+/// So many chunks beside a reversal the change of the acceleration is not asked for.
+const REACH: usize = 3;
+/// Around reversals a long run is judged by some of its pairs of segments.
+const MOST_MOVING_ROWS: usize = 8_000;
+/// How far speed and load may be from the plateau's own middle, as a share of their size.
+const SETTLED_SHARE: f64 = 0.04;
+/// From one half of a settled stretch to the other a kept speed changes by less than this share, or by what it scatters by.
+const KEPT_SHARE: f64 = 0.2;
+/// Speed is at least so many times its own scatter, or half of that where it only wavers about its middle: a slow step
+/// over teeth.
+const STEADY: f64 = 5.0;
+/// A wave goes through its middle at least so often, the arc of a swing does not.
+const WAVERS: usize = 4;
+
+/// The settled stretch of every segment that has one.
+pub fn find(samples: &Source, gear_ratio: f64, options: &Options) -> Vec<Range<usize>> {
+    let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
+    let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
+    let load = samples.signals.find(Signal::Load);
+    let heaviest = load.map_or(0.0, |l| l.iter().fold(0.0f64, |m, v| m.max(v.abs())));
+    let link_s = n as f64 * samples.step_s / gear_ratio.abs();
+    samples.legs().into_par_iter().filter_map(|leg| settled(leg, velocity, load, heaviest, (n, link_s))).collect()
+}
+
+/// A load that changes by more than the way of the link (`link_s` for each rad/s of the motor) can change it winds the joint up,
+/// and nothing slips there.
+fn settled(
+    leg: Range<usize>,
+    velocity: &[f64],
+    load: Option<&[f64]>,
+    heaviest: f64,
+    (n, link_s): (usize, f64),
+) -> Option<Range<usize>> {
+    let means = |signal: &[f64]| -> Vec<f64> {
+        signal[leg.clone()].chunks_exact(n).map(|c| c.iter().sum::<f64>() / n as f64).collect()
+    };
+    let speed = means(velocity);
+    if speed.len() < 6 {
+        return None;
+    }
+    let late = speed.len() / 2..speed.len() - 1;
+    let target = median(speed[late.clone()].iter().copied());
+    let scatter = 1.5 * median(speed[late.clone()].iter().map(|v| (v - target).abs()));
+    let crossings = speed[late.clone()].windows(2).filter(|w| (w[0] > target) != (w[1] > target)).count();
+    let steady = if crossings >= WAVERS { STEADY / 2.0 } else { STEADY };
+    if target.abs() < steady * scatter || target == 0.0 {
+        return None;
+    }
+    let within = (SETTLED_SHARE * target.abs()).max(5.0 * scatter);
+    let mut steady: Vec<bool> = speed.iter().map(|v| (v - target).abs() <= within).collect();
+    let load = load.map(means);
+    if let Some(load) = &load {
+        let held = median(load[late.clone()].iter().copied());
+        let scatter = 1.5 * median(load[late.clone()].iter().map(|v| (v - held).abs()));
+        let within = (SETTLED_SHARE * heaviest).max(5.0 * scatter);
+        steady.iter_mut().zip(load).for_each(|(s, l)| *s &= (l - held).abs() <= within);
+    }
+    let longest = segments::stretches(&steady).into_iter().filter(|r| steady[r.start]).max_by_key(Range::len)?;
+    // Before that it may creep towards its speed.
+    let kept = longest.start.max(late.start).min(longest.end)..longest.end;
+    let changes = |of: &[f64]| {
+        let (first, second) = of[kept.clone()].split_at(kept.len() / 2);
+        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        (mean(second) - mean(first)).abs()
+    };
+    let by_chance = 3.0 * scatter * (4.0 / kept.len() as f64).sqrt();
+    let way_rad = target.abs() * link_s * kept.len() as f64 / 2.0;
+    let winds_up = load.is_some_and(|load| changes(&load) > (SETTLED_SHARE + way_rad) * heaviest);
+    if winds_up || changes(&speed) > KEPT_SHARE * target.abs() + by_chance {
+        return None;
+    }
+    // What follows a ramp at once still remembers it.
+    let skip = 2 + longest.len() / 20;
+    let (start, end) = (longest.start + skip, longest.end.min(speed.len()));
+    (end >= start + 3).then(|| leg.start + start * n..leg.start + end * n)
+}
+
+pub fn prepare(
+    run: &RunTable,
+    samples: Source,
+    plateaus: Vec<Range<usize>>,
+    options: &Options,
+) -> Result<Prepared, ModelError> {
+    let n = samples.chunk(options.chunk_s.unwrap_or(CHUNK_S));
+    let legs = samples.legs();
+    let mut chunks = Vec::new();
+    let mut group = Vec::new();
+    let mut phase = Vec::new();
+    let merge = plateaus.iter().map(|p| p.len() / n).sum::<usize>().div_ceil(MOST_ROWS);
+    for (number, plateau) in plateaus.iter().enumerate() {
+        let leg = legs.partition_point(|l| l.start <= plateau.start).saturating_sub(1);
+        let before = (plateau.start - legs.get(leg).map_or(plateau.start, |l| l.start)) / n;
+        // At least two, so that neighbours in different repeats can be compared.
+        let parts = (plateau.len() / n).div_ceil(merge).max(2);
+        for part in 0..parts {
+            let edge = |part: usize| plateau.start + plateau.len() / n * part / parts * n;
+            chunks.push(edge(part)..edge(part + 1));
+            group.push(number);
+            phase.push(before / merge + part);
+        }
+    }
+    if chunks.len() < 12 {
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks of settled motion" });
+    }
+    let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
+    let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();
+    let layout = Layout { chunks, group, condition, phase: Some(phase), settled: true, inputs: &[] };
+    let speed = |p: &Range<usize>| {
+        median(samples.signals.find(Signal::Velocity).unwrap_or_default()[p.clone()].iter().map(|v| v.abs()))
+    };
+    let slowest = plateaus.iter().map(speed).fold(f64::INFINITY, f64::min);
+    let settled = || {
+        let mut main = problem(&samples, layout);
+        set_drive(&mut main);
+        main.view.constants.weight = unmeasured_gravity::unmeasured(&main.view.points, &main.target);
+        main
+    };
+    let apart = |fastest| apart(&samples, &plateaus, fastest);
+    let told =
+        || (crate::preprocess::checks::unit_mismatch::clashes(run), crate::preprocess::checks::metadata::doubts(run));
+    let ((main, (clashes, doubts)), (moving, memory)) =
+        rayon::join(|| rayon::join(settled, told), || rayon::join(|| apart(f64::INFINITY), || apart(slowest)));
+    let repeats = main.repeat.iter().max().copied().unwrap_or(0) > main.repeat.iter().min().copied().unwrap_or(0);
+    let about = Preparation {
+        residual: ResidualKind::PlateauMean,
+        sample_rate_hz: 1.0 / samples.step_s,
+        cutoff_hz: samples.derived_velocity.then_some(samples.cutoff_hz),
+        velocity_lag_s: None,
+        decimation: 1,
+        chunk_s: Some(n as f64 * samples.step_s),
+        samples: run.len(),
+        rows: main.rows(),
+        blocks: main.blocks,
+        segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
+        repeats_from: if repeats { "column" } else { "none" }.into(),
+    };
+    Ok(Prepared {
+        kind: run.kind(),
+        motion: run.meta().motion,
+        baseline: run.meta().baseline.clone(),
+        load_scale: run.meta().gear_ratio.unwrap_or(1.0),
+        constants: crate::preprocess::constants(run),
+        clashes,
+        doubts,
+        main,
+        moving,
+        memory,
+        about,
+    })
+}
+
+/// What the motor gives belongs to settled motion and to ramps alike.
+fn set_drive(problem: &mut Problem) {
+    let drive = crate::preprocess::friction::drive(&problem.view.points, &problem.target);
+    problem.view.points.set(Signal::Drive, drive);
+}
+
+/// Plateaus of the same speed, direction and load are one condition.
+fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&[f64]>) -> Vec<usize> {
+    let middle = |signal: &[f64], p: &Range<usize>| median(signal[p.clone()].iter().copied());
+    let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
+    let speeds: Vec<f64> = plateaus.iter().map(|p| middle(velocity, p)).collect();
+    let lengths: Vec<f64> = plateaus.iter().map(|p| p.len() as f64).collect();
+    let middles = |signal: &[f64]| -> Vec<f64> { plateaus.iter().map(|p| middle(signal, p)).collect() };
+    let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let measured = samples.signals.find(Signal::Load);
+    let loads = command.or(measured).map_or_else(|| vec![0.0; plateaus.len()], middles);
+    // Where nothing loads the joint, what its sensor reads is noise and small beside the torque.
+    let peak = match command {
+        Some(_) => largest(&loads),
+        None => largest(&loads).max(largest(&middles(&samples.target))),
+    };
+    let speed = blocks::clusters(&speeds, |v| 0.03 * v.abs());
+    let load = blocks::clusters(&loads, |l| 0.03 * l.abs() + 0.01 * peak);
+    // Short steps and long turns at one speed are different conditions: they start at different places.
+    let length = blocks::clusters(&lengths, |l| 0.3 * l);
+    let mut known: Vec<(usize, usize, usize)> = (0..plateaus.len()).map(|i| (length[i], load[i], speed[i])).collect();
+    let each = known.clone();
+    known.sort_unstable();
+    known.dedup();
+    each.iter().map(|c| known.binary_search(c).unwrap_or(0)).collect()
+}
+
+/// What is not settled and not faster than a speed, in short chunks.
+fn apart(samples: &Source, plateaus: &[Range<usize>], fastest: f64) -> Option<Problem> {
+    let n = samples.chunk(MOVING_CHUNK_S);
+    let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
+    let mut settled = vec![false; samples.time_s.len()];
+    plateaus.iter().for_each(|p| settled[p.clone()].fill(true));
+    let mut chunks = Vec::new();
+    for (number, leg) in samples.legs().into_iter().enumerate() {
+        for start in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n) {
+            let mean = velocity[start..start + n].iter().sum::<f64>() / n as f64;
+            if mean.abs() <= fastest && !settled[start..start + n].iter().any(|s| *s) {
+                chunks.push((number, start..start + n));
+            }
+        }
+    }
+    // Multiples of the golden ratio are spread evenly whatever the order of the profile.
+    let share = MOST_MOVING_ROWS as f64 / chunks.len() as f64;
+    chunks.retain(|(leg, _)| ((leg / 2) as f64 * 0.618_033_988_749_895).fract() < share);
+    let (group, chunks): (Vec<usize>, Vec<Range<usize>>) = chunks.into_iter().unzip();
+    if chunks.len() < 50 {
+        return None;
+    }
+    let (samples, chunks) = samples.around(chunks);
+    let layout = Layout { chunks, condition: group.clone(), group, phase: None, settled: false, inputs: &[] };
+    let mut moving = problem(&samples, layout);
+    set_drive(&mut moving);
+    still_at_turns(&mut moving, REACH * n);
+    Some(moving)
+}
+
+/// Where the direction changes friction jumps, and a torque that is read late jumps late: far more than the change of the
+/// acceleration is worth there. It counts where nothing turns within some samples.
+fn still_at_turns(moving: &mut Problem, reach: usize) {
+    let view = &mut moving.view;
+    let direction = view.samples.find(Signal::Direction).unwrap_or_default();
+    let mut turns = vec![0u32];
+    turns.extend(direction.windows(2).scan(0, |turns, d| {
+        *turns += u32::from(d[0] != d[1]);
+        Some(*turns)
+    }));
+    let at = |sample: usize| turns[sample.min(direction.len().saturating_sub(1))];
+    let turning = |c: &Range<usize>| at(c.start.saturating_sub(reach)) != at(c.end + reach);
+    let jerk = view.get(Signal::Jerk).iter().zip(&view.chunks);
+    let still = jerk.map(|(jerk, chunk)| if turning(chunk) { 0.0 } else { *jerk }).collect();
+    view.points.set(Signal::Jerk, still);
+}

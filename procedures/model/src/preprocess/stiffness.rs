@@ -1,0 +1,170 @@
+//! Stiffness runs: torsion between motor and link over the link torque.
+
+use crate::linear::cholesky::Cholesky;
+use crate::preprocess::chunks::Source;
+use crate::preprocess::design::replicates::Same;
+use crate::preprocess::design::segments;
+use crate::preprocess::{Prepared, filter, sample_s, sweeps};
+use crate::signal::{Signal, Signals};
+use crate::view::Constants;
+use crate::words::figure;
+use crate::{ModelError, Options};
+use jointbench_instrument::RunTable;
+use std::collections::BTreeMap;
+
+const CHUNK_S: f64 = 0.04;
+
+pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let gear = run.meta().gear_ratio.ok_or(ModelError::MissingConstant { needed: "gear_ratio" })?;
+    let torque = column("link_torque_nm");
+    if torque.iter().all(|t| *t == torque[0]) {
+        return Err(ModelError::Constant { column: "link_torque_nm".into() });
+    }
+    let time_s = column("time_s").to_vec();
+    let step_s = sample_s(&time_s);
+    let link = column("link_position_rad");
+    let mut target: Vec<f64> = column("motor_position_rad").iter().zip(link).map(|(m, l)| m / gear - l).collect();
+    let repeat = segments::integers(run, "repeat");
+    let zeros_rad = repeat.as_deref().and_then(|repeat| own_zeros(&mut target, repeat));
+    let cutoff_hz = crate::preprocess::cutoff_hz(options, step_s)?;
+    let measured = run.column("link_velocity_rad_s");
+    let velocity = measured.map_or_else(
+        || {
+            let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
+            let slope =
+                |range: std::ops::Range<usize>, q: &[f64]| filter::derivative(&time_s[range], &smooth.both_ways(q, 12));
+            filter::by_recording(link, &segments::runs(run), slope)
+        },
+        <[f64]>::to_vec,
+    );
+    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let mut signals = Signals::new(run.len());
+    signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
+    signals.set(Signal::Direction, segments::direction(&velocity, 0.01 * fastest));
+    signals.set(Signal::Link, link.to_vec());
+    signals.set(Signal::Position, column("motor_position_rad").to_vec());
+    signals.set(Signal::Velocity, velocity);
+    for (name, signal) in [("temperature_c", Signal::Temperature), ("repeat", Signal::Repeat)] {
+        if let Some(values) = run.column(name) {
+            signals.set(signal, values.to_vec());
+        }
+    }
+    crate::preprocess::unknown_columns::keep(&mut signals, run);
+    let mut source = Source {
+        signals,
+        target: target.into(),
+        step_s,
+        starts: segments::runs(run),
+        runs: segments::runs(run),
+        cutoff_hz,
+        segment: segments::numbered(run),
+        repeat,
+        derived_velocity: measured.is_none(),
+        time_s,
+        constants: Constants::default(),
+    };
+    let mut smooth = torque.to_vec();
+    let chunk = source.chunk(CHUNK_S);
+    for leg in source.legs() {
+        let even = source.even_part(&leg, chunk);
+        smooth[even.clone()].copy_from_slice(&smooth_leg(&torque[even]));
+    }
+    source.signals.set(Signal::Load, smooth);
+    let inputs = [Signal::Velocity, Signal::Load].map(Same::Value);
+    let mut prepared = sweeps::prepare(run, source, CHUNK_S, &inputs, options)?;
+    prepared.main.view.felt = Some(torque.to_vec().into());
+    prepared.doubts.extend(zeros_rad.map(|apart| {
+        let apart = figure(apart, &prepared.unit());
+        format!("motor and link have another zero in every repeat, {apart} RMS apart, as encoders do that are set to zero before each: it is taken off")
+    }));
+    Ok(prepared)
+}
+
+/// Takes off each repeat's mean beside that of all, where these lie farther apart than everything that happens within the repeats,
+/// and tells how far.
+fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+    let all = mean(twist);
+    let mut sums: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
+    for (t, r) in twist.iter().zip(repeat) {
+        let (sum, n) = sums.entry(*r).or_default();
+        (*sum, *n) = (*sum + t - all, *n + 1.0);
+    }
+    let zero = |r: &i64| sums[r].0 / sums[r].1;
+    let square = |of: f64| of * of / twist.len() as f64;
+    let between: f64 = repeat.iter().map(|r| square(zero(r))).sum();
+    let within: f64 = twist.iter().zip(repeat).map(|(t, r)| square(t - all - zero(r))).sum();
+    (between > within).then(|| {
+        twist.iter_mut().zip(repeat).for_each(|(t, r)| *t -= zero(r));
+        between.sqrt()
+    })
+}
+
+/// Most Chebyshev polynomials of one leg.
+const ORDERS: [usize; 5] = [3, 5, 8, 11, 15];
+
+/// One smooth curve for a leg: Chebyshev polynomials of the square root of the time since the reversal, which follow a
+/// fast beginning and a slow end, as many as the leg asks for (Schwarz 1978). Noise in the torque would feed hysteresis
+/// and sign terms; a filter across the reversal would blur what those terms live from.
+fn smooth_leg(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let most = (n / 12).min(ORDERS[ORDERS.len() - 1]);
+    if most < ORDERS[0] {
+        return values.to_vec();
+    }
+    let terms = |i: usize| {
+        let x = 2.0 * ((i as f64 + 0.5) / n as f64).sqrt() - 1.0;
+        let mut t = vec![1.0, x];
+        for k in 2..=most {
+            t.push(2.0 * x * t[k - 1] - t[k - 2]);
+        }
+        t
+    };
+    let all: Vec<Vec<f64>> = (0..n).map(terms).collect();
+    let curve = |order: usize| {
+        let p = order + 1;
+        let mut gram = vec![0.0; p * p];
+        let mut side = vec![0.0; p];
+        for (t, v) in all.iter().zip(values) {
+            for a in 0..p {
+                side[a] += t[a] * v;
+                (0..p).for_each(|b| gram[a * p + b] += t[a] * t[b]);
+            }
+        }
+        let factors = Cholesky::new(&gram, p, 0.0).solve(&side);
+        let fit: Vec<f64> = all.iter().map(|t| t.iter().zip(&factors).map(|(t, f)| t * f).sum()).collect();
+        let sse: f64 = fit.iter().zip(values).map(|(f, v)| (f - v).powi(2)).sum();
+        (n as f64 * sse.max(1e-300).ln() + p as f64 * (n as f64).ln(), fit)
+    };
+    let curves = ORDERS.into_iter().filter(|o| *o <= most).map(curve);
+    curves.min_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(|| values.to_vec(), |c| c.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_that_lie_apart_are_taken_off_and_a_creep_is_not() {
+        let twist = |i: usize| 1e-3 * (i as f64 * 0.1).sin();
+        let repeat: Vec<i64> = (0..900).map(|i| i / 300).collect();
+        let moved = |zeros: [f64; 3]| -> Vec<f64> { (0..900).map(|i| twist(i) + zeros[i / 300]).collect() };
+        let mut apart = moved([2e-3, -1e-3, -1e-3]);
+        let told = own_zeros(&mut apart, &repeat).unwrap();
+        assert!((told - 2f64.sqrt() * 1e-3).abs() < 5e-5, "{told}");
+        let level = |r: usize| apart[300 * r..300 * (r + 1)].iter().sum::<f64>() / 300.0;
+        assert!((level(0) - level(1)).abs() < 1e-9 && (level(1) - level(2)).abs() < 1e-9);
+        let creep = moved([0.0, 2e-4, 3e-4]);
+        let mut kept = creep.clone();
+        assert_eq!((own_zeros(&mut kept, &repeat), kept), (None, creep));
+    }
+
+    #[test]
+    fn a_relaxing_torque_is_followed_and_noise_is_not() {
+        let truth = |i: usize| 14.0 - 28.0 * (-(i as f64) / 27.0).exp();
+        let noisy: Vec<f64> = (0..300).map(|i| truth(i) + 0.03 * (i as f64 * 2.1).sin()).collect();
+        let worst = smooth_leg(&noisy).iter().enumerate().map(|(i, v)| (v - truth(i)).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.025, "{worst}");
+    }
+}

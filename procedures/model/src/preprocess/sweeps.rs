@@ -1,0 +1,152 @@
+//! Runs in legs without plateaus: every sample counts, averaged over short chunks.
+
+use crate::hysteresis_operators;
+use crate::linear::Basis;
+use crate::preprocess::chunks::{Layout, Source, problem};
+use crate::preprocess::design::blocks;
+use crate::preprocess::design::replicates::Same;
+use crate::preprocess::{Prepared, Problem, current_dwells, initial_hysteresis_state, loading_history};
+use crate::report::fit::Preparation;
+use crate::signal::Signal;
+use crate::{ModelError, Options, ResidualKind};
+use jointbench_instrument::{Kind, RunTable};
+use std::ops::Range;
+
+/// Of a run of more chunks than these some are taken: what it says, it says in few of them.
+const MOST_ROWS: usize = 12_000;
+
+pub fn prepare(
+    run: &RunTable,
+    samples: Source,
+    chunk_s: f64,
+    inputs: &[Same],
+    options: &Options,
+) -> Result<Prepared, ModelError> {
+    let raw = options.residual == Some(ResidualKind::Raw);
+    let n = if raw { 1 } else { samples.chunk(options.chunk_s.unwrap_or(chunk_s)) };
+    let legs = samples.legs();
+    let conditions = conditions(&samples, &legs, inputs);
+    let thin = if raw { 1 } else { (run.len() / n).div_ceil(MOST_ROWS).max(1) };
+    let (mut chunks, mut group, mut phase, mut condition) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (number, leg) in legs.iter().enumerate() {
+        let leg = match run.kind() {
+            Kind::Stiffness | Kind::Brake => samples.even_part(leg, n),
+            _ => leg.clone(),
+        };
+        let held = match (run.kind(), samples.signals.find(Signal::Current)) {
+            (Kind::Brake, Some(current)) => current_dwells::held(&current[leg.clone()], n),
+            _ => Vec::new(),
+        };
+        // One of several and not their mean, which would blur a short wave.
+        for (k, start) in (leg.start..(leg.end + 1).saturating_sub(n)).step_by(n * thin).enumerate() {
+            if held.get(k * thin) == Some(&false) {
+                continue;
+            }
+            chunks.push(start..start + n);
+            group.push(number);
+            phase.push(k);
+            condition.push(conditions[number]);
+        }
+    }
+    if chunks.len() < 12 {
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks" });
+    }
+    let layout = Layout { chunks, group, condition, phase: Some(phase), settled: false, inputs };
+    let mut main = problem(&samples, layout);
+    let mut doubts = crate::preprocess::checks::metadata::doubts(run);
+    doubts.extend(past(&mut main, run.kind()));
+    if run.kind() == Kind::Brake {
+        let drive = brake_torque_of_current(&main);
+        main.view.points.set(Signal::Drive, drive);
+        loading_history::part(&mut main);
+    }
+    let repeats_from = match main.repeat.iter().any(|r| *r != main.repeat[0]) {
+        true => "column",
+        false if main.replicate_pairs.is_empty() => "none",
+        false => "found",
+    };
+    let about = Preparation {
+        residual: if raw { ResidualKind::Raw } else { ResidualKind::PlateauMean },
+        sample_rate_hz: 1.0 / samples.step_s,
+        cutoff_hz: samples.derived_velocity.then_some(samples.cutoff_hz),
+        velocity_lag_s: None,
+        decimation: 1,
+        chunk_s: Some(n as f64 * samples.step_s),
+        samples: run.len(),
+        rows: main.rows(),
+        blocks: main.blocks,
+        segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
+        repeats_from: repeats_from.into(),
+    };
+    Ok(Prepared {
+        kind: run.kind(),
+        motion: run.meta().motion,
+        baseline: run.meta().baseline.clone(),
+        main,
+        moving: None,
+        memory: None,
+        load_scale: 1.0,
+        constants: crate::preprocess::constants(run),
+        clashes: crate::preprocess::checks::unit_mismatch::clashes(run),
+        doubts,
+        about,
+    })
+}
+
+/// What is remembered of the time before the run, in a sentence.
+fn past(main: &mut Problem, kind: Kind) -> Option<String> {
+    let (signal, told) = match kind {
+        Kind::Brake => (
+            Signal::Current,
+            "the brake still remembered an earlier current when the run began, which is taken into account; demagnetise it \
+             before a run, by loops that become smaller and smaller while it turns",
+        ),
+        Kind::Stiffness => (
+            Signal::Load,
+            "the joint still remembered an earlier torque when the run began, which is taken into account; load it once to \
+             both sides before a run, or let the torque die down in swings that become smaller and smaller",
+        ),
+        Kind::Friction | Kind::Encoder => return None,
+    };
+    initial_hysteresis_state::find(main, signal).then(|| told.into())
+}
+
+/// Legs that start and end alike are repeats of one condition.
+fn conditions(samples: &Source, legs: &[Range<usize>], inputs: &[Same]) -> Vec<usize> {
+    let mut keys: Vec<Vec<usize>> = vec![Vec::new(); legs.len()];
+    for same in inputs {
+        let Some(values) = samples.signals.find(same.signal()) else { continue };
+        let values = same.of(values);
+        let peak = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        let early = |leg: &Range<usize>| leg.start + leg.len() / 4..leg.start + leg.len() / 2;
+        let late = |leg: &Range<usize>| leg.end - leg.len() / 4..leg.end;
+        for part in [early as fn(&Range<usize>) -> Range<usize>, late] {
+            let means: Vec<f64> = legs
+                .iter()
+                .map(|leg| {
+                    let range = part(leg);
+                    values[range.clone()].iter().sum::<f64>() / range.len().max(1) as f64
+                })
+                .collect();
+            let cluster = blocks::clusters(&means, |v| 0.03 * v.abs() + 0.01 * peak);
+            keys.iter_mut().zip(cluster).for_each(|(k, c)| k.push(c));
+        }
+    }
+    let mut known = keys.clone();
+    known.sort();
+    known.dedup();
+    keys.iter().map(|k| known.binary_search(k).unwrap_or(0)).collect()
+}
+
+/// The torque as the current and its history explain it: what speed and temperature may scale as a whole.
+pub fn brake_torque_of_current(problem: &Problem) -> Vec<f64> {
+    let view = &problem.view;
+    let current = view.samples.find(Signal::Current).unwrap_or_default();
+    let peak = view.peak(Signal::Current);
+    let mut columns: Vec<Vec<f64>> = (0..=3).map(|k| view.map(Signal::Current, |i| (i / peak).powi(k))).collect();
+    columns.extend(
+        (1..=8).map(|k| view.average(hysteresis_operators::stop(current, peak * f64::from(k) / 8.0, &view.starts))),
+    );
+    let rest = Basis::of(&columns).rest(&problem.target);
+    problem.target.iter().zip(rest).map(|(y, e)| y - e).collect()
+}

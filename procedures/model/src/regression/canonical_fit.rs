@@ -1,0 +1,111 @@
+//! How a set of effects becomes a model: in one way only, whatever order they came together in.
+
+use crate::Options;
+use crate::effect::Effect;
+use crate::preprocess::Problem;
+use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::form_selection::{extend, reselect_forms};
+use crate::regression::linear_model::{LinearModel, Term, varpro};
+use crate::regression::partial_regression::PartialRegression;
+use crate::thresholds::BETTER_FORM;
+use rayon::prelude::*;
+
+/// How often the forms are chosen again, each beside all others.
+const PASSES: usize = 3;
+
+/// Lays effects out on the problem of `bare`: those of one form first, then always the one that explains most.
+pub fn lay<'p>(
+    bare: &LinearModel<'p>,
+    effects: &[&str],
+    library: &CandidateSet<'p>,
+    options: &Options,
+) -> LinearModel<'p> {
+    let mut laid = LinearModel { terms: Vec::new(), ..bare.clone() };
+    let wanted = library.effects.iter().copied().filter(|e| effects.contains(&e.info().id));
+    let (fixed, mut open): (Vec<_>, Vec<_>) = wanted.partition(|e| is_fixed(*e, laid.problem));
+    fixed.into_iter().for_each(|effect| enter(&mut laid, effect));
+    while !open.is_empty() {
+        let ground = PartialRegression::of(&laid);
+        let best: Vec<Vec<(f64, &Regressor)>> = open.iter().map(|e| best_of_forms(*e, library, &ground)).collect();
+        let share = |forms: &Vec<(f64, &Regressor)>| forms.iter().map(|f| f.0).fold(0.0, f64::max);
+        let most = best.iter().map(share).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |most| most.0);
+        open.remove(most);
+        let terms = best[most].iter().map(|(_, candidate)| candidate.term(laid.problem)).collect();
+        laid.terms.extend(choose(terms, &ground, laid.problem));
+        laid.refine();
+    }
+    for _ in 0..PASSES {
+        if !reselect_forms(&mut laid, library) {
+            break;
+        }
+    }
+    extend(&mut laid, library, options);
+    laid
+}
+
+/// There is nothing to choose about the effect.
+fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
+    matches!(&effect.forms(&problem.view)[..], [form] if form.grid.len() == 1)
+}
+
+/// The shape of each form of an effect that explains most of what is left, with its share.
+fn best_of_forms<'l, 'p>(
+    effect: &dyn Effect,
+    library: &'l CandidateSet<'p>,
+    ground: &PartialRegression,
+) -> Vec<(f64, &'l Regressor<'p>)> {
+    let mut best: Vec<(f64, &Regressor)> = Vec::new();
+    for candidate in library.candidates.iter().filter(|c| c.id() == effect.info().id) {
+        let share = ground.own(&candidate.columns).share;
+        match best.iter_mut().find(|b| b.1.form.name == candidate.form.name) {
+            Some(b) if share > b.0 => *b = (share, candidate),
+            Some(_) => {}
+            None => best.push((share, candidate)),
+        }
+    }
+    best
+}
+
+/// Enters an effect in the form that explains most of what is left, each form at its own best shape.
+pub fn enter<'p>(terms: &mut LinearModel<'p>, effect: &'p dyn Effect) {
+    let problem: &Problem = terms.problem;
+    let forms = effect.forms(&problem.view);
+    if let [form] = &forms[..]
+        && form.grid.len() == 1
+    {
+        terms.terms.push(Term::new(effect, form.clone(), form.grid[0].clone(), problem));
+        return;
+    }
+    let ground = PartialRegression::of(terms);
+    let mut best: Vec<Term<'p>> = Vec::new();
+    for form in forms {
+        let shapes = form.grid.iter().map(|shape| Term::new(effect, form.clone(), shape.clone(), problem));
+        let shares = shapes.map(|term| (ground.own(&term.columns).share, term));
+        best.extend(shares.max_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1));
+    }
+    terms.terms.extend(choose(best, &ground, problem));
+}
+
+/// The form that explains most, a longer one only where it is worth it. What is physically impossible is chosen only where
+/// nothing else is possible.
+fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
+    forms.sort_by_key(Term::size);
+    let polished = |term: Term<'p>| {
+        let mut term = [term];
+        let sse = varpro(&mut term, &ground.basis, &ground.residual, problem);
+        let [term] = term;
+        (term.allows(&ground.own(&term.columns).factors()), sse, term)
+    };
+    let forms: Vec<(bool, f64, Term<'p>)> = forms.into_par_iter().map(polished).collect();
+    let mut chosen: Option<(bool, f64, Term<'p>)> = None;
+    for (possible, sse, term) in forms {
+        let is_better = chosen.as_ref().is_none_or(|(as_possible, least, simple)| {
+            let more = term.size().saturating_sub(simple.size()) as f64;
+            possible == *as_possible && sse < least * (1.0 - BETTER_FORM * more) || possible && !as_possible
+        });
+        if is_better {
+            chosen = Some((possible, sse, term));
+        }
+    }
+    chosen.map(|c| c.2)
+}

@@ -1,0 +1,16 @@
+//! The error of a model on folds that were left out of its fit.
+
+use crate::linear::gram::BlockGrams;
+use crate::regression::linear_model::LinearModel;
+
+/// Held-out squared error of each fold.
+pub fn held_out(terms: &LinearModel) -> Vec<f64> {
+    let linear = terms.linear();
+    let problem = terms.problem;
+    BlockGrams::new(&terms.columns(), &linear.residual, &problem.fold, problem.folds).held_out()
+}
+
+/// RMS of the same over all folds.
+pub fn held_out_rms(terms: &LinearModel) -> f64 {
+    (held_out(terms).iter().sum::<f64>() / terms.problem.rows() as f64).sqrt()
+}

@@ -1,0 +1,129 @@
+//! Second thoughts about the forms of the effects that are in the model.
+
+use crate::Options;
+use crate::effect::ShapeSearch;
+use crate::preprocess::Problem;
+use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::linear_model::{LinearModel, Term, allows, varpro};
+use crate::regression::partial_regression::PartialRegression;
+use crate::regression::significance::significance;
+use crate::thresholds::{BETTER_FORM, COMPONENT_OWN_SHARE};
+
+/// Gives an effect of several parts another one, as long as no effect that is not in the model explains more of the same, and
+/// it passes the same tests.
+pub fn extend<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>, options: &Options) {
+    for at in 0..terms.terms.len() {
+        while let Some(longer) = one_more(terms, at, library, options) {
+            terms.terms[at] = longer;
+            terms.refine();
+        }
+    }
+}
+
+/// The term with the part that explains most, where that is worth it.
+fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, options: &Options) -> Option<Term<'p>> {
+    let term = &terms.terms[at];
+    let (part, form) = term.effect.extended(&term.form)?;
+    let ground = PartialRegression::of(terms);
+    let share = |c: &Regressor| ground.own(&c.columns).share;
+    let is_part = |c: &&Regressor| c.id() == term.id() && c.form.name == part && !term.shape.contains(&c.shape[0]);
+    let parts = library.candidates.iter().filter(is_part).map(|c| (share(c), c));
+    let (share_of_part, part) = parts.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let part = part.term(terms.problem);
+    let mut others: Vec<(f64, &Regressor)> = Vec::new();
+    for (share, other) in library.candidates.iter().filter(|c| !terms.contains(c.id())).map(|c| (share(c), c)) {
+        match others.iter_mut().find(|known| known.1.id() == other.id()) {
+            Some(known) if share > known.0 => *known = (share, other),
+            None if share > share_of_part => others.push((share, other)),
+            _ => {}
+        }
+    }
+    // What explains more is added first, unless it explains something else.
+    let instead = |other: &Regressor| {
+        let mut beside = ground.basis.clone();
+        for column in &other.term(terms.problem).columns {
+            beside.push(column);
+        }
+        let left = PartialRegression::new(beside.clone(), beside.rest(&ground.residual), terms.problem);
+        left.own(&part.columns).share * left.energy < COMPONENT_OWN_SHARE * share_of_part * ground.energy
+    };
+    let is_weak = share_of_part < options.practical_share || others.into_iter().any(|(_, other)| instead(other));
+    if is_weak || significance(&part, library, &ground, options) > options.alpha {
+        return None;
+    }
+    let shape = term.shape.iter().chain(&part.shape).copied().collect();
+    let longer = Term::new(term.effect, form, shape, terms.problem);
+    let mut with = terms.clone();
+    with.terms[at] = longer.clone();
+    longer.allows(&with.linear().factors[at]).then_some(longer)
+}
+
+/// Asks of every effect with several forms, or with an order that was found beside fewer effects, whether another one
+/// fits better beside the effects that came in since. Says whether one does.
+pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p>) -> bool {
+    let mut changed = false;
+    for i in 0..terms.terms.len() {
+        let mut others = terms.clone();
+        let term = others.terms.remove(i);
+        let same: Vec<_> = library.candidates.iter().filter(|c| c.id() == term.id()).collect();
+        let of_order = term.form.shape.len() == 1 && term.form.shape[0].search == ShapeSearch::Whole;
+        let is_open = |form: &str| form != term.form.name || of_order;
+        if !same.iter().any(|c| is_open(c.form.name)) {
+            continue;
+        }
+        let basis = others.tangent();
+        let rest = basis.rest(&terms.response());
+        let ground = PartialRegression::new(basis, rest, terms.problem);
+        let sse = |term: &Term<'p>| {
+            let mut one = [term.clone()];
+            let sse = varpro(&mut one, &ground.basis, &ground.residual, terms.problem);
+            let [term] = one;
+            (sse, term)
+        };
+        let mut forms: Vec<&str> = same.iter().map(|c| c.form.name).filter(|f| is_open(f)).collect();
+        forms.dedup();
+        let share = |c: &&&Regressor| ground.own(&c.columns).share;
+        let start = |form: &str| {
+            let of_form = same.iter().filter(|c| c.form.name == form);
+            of_form.max_by(|a, b| share(a).total_cmp(&share(b))).map(|c| c.term(terms.problem))
+        };
+        let mut best = sse(&term);
+        for trial in forms.into_iter().filter_map(start).chain(two_parts(&same, &ground, terms.problem)) {
+            let trial = sse(&trial);
+            // Beside an equally long form it stays; a shorter one may be a little worse.
+            let more = match trial.1.size() as f64 - best.1.size() as f64 {
+                0.0 => 1.0,
+                more => more,
+            };
+            let possible = trial.1.allows(&ground.own(&trial.1.columns).factors());
+            if possible && trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
+                best = trial;
+            }
+        }
+        if best.1.form.name != term.form.name || of_order && best.1.shape != term.shape {
+            terms.terms[i] = best.1;
+            terms.refine();
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// The two parts of one kind that explain most together, where an effect is a sum of such parts. Two dry contacts look
+/// like one that yields little by little, and no third part added to that would make them out.
+fn two_parts<'p>(same: &[&Regressor<'p>], ground: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
+    let smooth = |c: &&&Regressor| c.form.shape.iter().all(|s| s.is_smooth());
+    let extends = |c: &&Regressor<'p>| c.effect.extended(&c.form).filter(|(part, _)| *part == c.form.name);
+    let (part, form) = same.iter().filter(smooth).find_map(extends)?;
+    let parts: Vec<&&Regressor> = same.iter().filter(|c| c.form.name == part).collect();
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for (i, one) in parts.iter().enumerate() {
+        for other in &parts[..i] {
+            let own = ground.own(&[&other.columns[..], &one.columns].concat());
+            if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.factors()) {
+                best = Some((own.share, [&other.shape[..], &one.shape].concat()));
+            }
+        }
+    }
+    best.map(|(_, shape)| Term::new(same[0].effect, form, shape, problem))
+}

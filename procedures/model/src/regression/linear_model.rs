@@ -1,0 +1,338 @@
+//! A model at work: effects with their forms, shapes and columns at the rows of a problem.
+
+use crate::effect::{Columns, Effect, Form, ShapeSearch};
+use crate::linear::basis::{Basis, dot};
+use crate::linear::cholesky::Cholesky;
+use crate::preprocess::Problem;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// One effect of the model in one form.
+#[derive(Clone)]
+pub struct Term<'e> {
+    pub effect: &'e dyn Effect,
+    pub form: Arc<Form<'e>>,
+    pub shape: Vec<f64>,
+    pub columns: Columns,
+}
+
+impl<'e> Term<'e> {
+    pub fn new(effect: &'e dyn Effect, form: impl Into<Arc<Form<'e>>>, shape: Vec<f64>, problem: &Problem) -> Self {
+        let form = form.into();
+        let columns = columns(effect, form.name, &shape, problem);
+        Self { effect, form, shape, columns }
+    }
+
+    pub fn id(&self) -> &'e str {
+        self.effect.info().id
+    }
+
+    /// Shape parameters that are refined continuously.
+    fn free(&self) -> impl Iterator<Item = usize> {
+        let free: Vec<usize> = (0..self.shape.len()).filter(|i| self.form.shape[*i].is_smooth()).collect();
+        free.into_iter()
+    }
+
+    /// A shape parameter that is refined, but for an exponent, lies at the edge of what the data can speak about.
+    pub fn is_at_edge(&self) -> bool {
+        let sudden = self.effect.exponent_parameter();
+        let mut slots = self.form.shape.iter().zip(&self.shape);
+        slots.any(|(shape, value)| shape.is_smooth() && sudden != Some(shape.name) && shape.is_edge(*value))
+    }
+
+    /// The factors are physically possible.
+    pub fn allows(&self, factors: &[f64]) -> bool {
+        allows(self.effect, &self.form, factors)
+    }
+
+    /// Number of parameters, linear and shape, that the data decides.
+    pub fn size(&self) -> usize {
+        self.columns.len() + self.form.shape.iter().filter(|s| s.min < s.max).count()
+    }
+}
+
+/// Factors of an effect in this form that are physically possible.
+pub fn allows(effect: &dyn Effect, form: &Form, factors: &[f64]) -> bool {
+    let info = effect.info();
+    form.linear.iter().zip(factors).all(|(name, value)| {
+        info.parameters.iter().find(|p| p.name == *name).is_none_or(|p| (p.min..=p.max).contains(value))
+    })
+}
+
+/// Columns of an effect at the rows of a problem.
+pub fn columns(effect: &dyn Effect, form: &str, shape: &[f64], problem: &Problem) -> Columns {
+    problem.reduce.apply_all(effect.columns(form, shape, &problem.view))
+}
+
+/// A model on one problem.
+#[derive(Clone)]
+pub struct LinearModel<'p> {
+    pub problem: &'p Problem,
+    /// Sum of what enters with a factor of one.
+    pub given: Vec<f64>,
+    pub terms: Vec<Term<'p>>,
+}
+
+/// The least squares solution of a model: factors of every term's columns and what they leave.
+pub struct Linear {
+    pub factors: Vec<Vec<f64>>,
+    pub residual: Vec<f64>,
+    pub sse: f64,
+}
+
+impl<'p> LinearModel<'p> {
+    pub fn new(problem: &'p Problem) -> Self {
+        Self { problem, given: vec![0.0; problem.rows()], terms: Vec::new() }
+    }
+
+    pub fn contains(&self, id: &str) -> bool {
+        self.terms.iter().any(|t| t.id() == id)
+    }
+
+    /// The same without one effect.
+    pub fn without(&self, id: &str) -> Self {
+        let mut less = self.clone();
+        less.terms.retain(|t| t.id() != id);
+        less.refine();
+        less
+    }
+
+    /// The same without an effect that enters with a factor of one.
+    pub fn without_given(&self, effect: &dyn Effect) -> Self {
+        let mut less = self.clone();
+        for column in columns(effect, "linear", &[], self.problem) {
+            less.given.iter_mut().zip(column).for_each(|(g, c)| *g -= c);
+        }
+        less.refine();
+        less
+    }
+
+    /// The same with the shape of one effect held where it is.
+    pub fn held(&self, id: &str) -> Self {
+        let mut held = self.clone();
+        for term in held.terms.iter_mut().filter(|t| t.id() == id) {
+            for (shape, value) in Arc::make_mut(&mut term.form).shape.iter_mut().zip(&term.shape) {
+                (shape.min, shape.max) = (*value, *value);
+            }
+        }
+        held
+    }
+
+    /// The response without what is given.
+    pub fn response(&self) -> Vec<f64> {
+        self.problem.target.iter().zip(&self.given).map(|(y, g)| y - g).collect()
+    }
+
+    pub fn columns(&self) -> Vec<&[f64]> {
+        self.terms.iter().flat_map(|t| t.columns.iter().map(Vec::as_slice)).collect()
+    }
+
+    pub fn linear(&self) -> Linear {
+        let columns = self.columns();
+        let response = self.response();
+        let basis = Basis::of(self.terms.iter().flat_map(|t| &t.columns));
+        let residual = basis.rest(&response);
+        let p = columns.len();
+        let mut gram = vec![0.0; p * p];
+        for a in 0..p {
+            for b in 0..=a {
+                gram[a * p + b] = dot(columns[a], columns[b]);
+                gram[b * p + a] = gram[a * p + b];
+            }
+        }
+        let explained: Vec<f64> = response.iter().zip(&residual).map(|(y, e)| y - e).collect();
+        let side: Vec<f64> = columns.iter().map(|c| dot(c, &explained)).collect();
+        let flat = Cholesky::new(&gram, p, 0.0).solve(&side);
+        let mut next = flat.into_iter();
+        let factors = self.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
+        let sse = dot(&residual, &residual);
+        Linear { factors, residual, sse }
+    }
+
+    /// Columns of the model and the directions in which its shape parameters would move it: what a new effect must
+    /// explain more than.
+    pub fn tangent(&self) -> Basis {
+        let mut basis = Basis::of(self.terms.iter().flat_map(|t| &t.columns));
+        if self.terms.iter().all(|t| t.free().next().is_none()) {
+            return basis;
+        }
+        let linear = self.linear();
+        for (term, factors) in self.terms.iter().zip(&linear.factors) {
+            for slope in slopes(term, factors, self.problem) {
+                basis.push(&slope);
+            }
+        }
+        basis
+    }
+
+    /// Slopes of the model in every free shape parameter, term by term.
+    pub fn slopes(&self, factors: &[Vec<f64>]) -> Vec<(usize, usize, Vec<f64>)> {
+        let mut out = Vec::new();
+        for (i, (term, factors)) in self.terms.iter().zip(factors).enumerate() {
+            out.extend(term.free().zip(slopes(term, factors, self.problem)).map(|(k, slope)| (i, k, slope)));
+        }
+        out
+    }
+
+    /// Refines all shape parameters together. A coarse grid leaves a remainder that a second, false effect explains.
+    pub fn refine(&mut self) {
+        let moves = |t: &Term| t.form.shape.iter().any(|s| s.search != ShapeSearch::Whole);
+        let free: Vec<usize> = (0..self.terms.len()).filter(|i| moves(&self.terms[*i])).collect();
+        if free.is_empty() {
+            return;
+        }
+        let fixed = (0..self.terms.len()).filter(|i| !free.contains(i)).flat_map(|i| &self.terms[i].columns);
+        let basis = Basis::of(fixed);
+        let rest = basis.rest(&self.response());
+        let mut moving: Vec<Term<'p>> = free.iter().map(|i| self.terms[*i].clone()).collect();
+        varpro(&mut moving, &basis, &rest, self.problem);
+        for (i, term) in free.into_iter().zip(moving) {
+            self.terms[i] = term;
+        }
+    }
+}
+
+/// ∂(Σ factor·column) by a step of each free shape parameter (see [`Shape::moved`]), by a central difference: what a column
+/// becomes as a row is linear, so that their sum becomes rows once.
+///
+/// [`Shape::moved`]: crate::effect::Shape::moved
+fn slopes(term: &Term, factors: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
+    const STEP: f64 = 1e-4;
+    let slope = |k: usize| {
+        let at = |sign: f64| {
+            let mut shape = term.shape.clone();
+            shape[k] = term.form.shape[k].moved(shape[k], sign * STEP);
+            term.effect.columns(term.form.name, &shape, &problem.view)
+        };
+        let (up, down) = (at(1.0), at(-1.0));
+        let mut slope = vec![0.0; up.first().map_or(0, Vec::len)];
+        for ((u, d), f) in up.iter().zip(&down).zip(factors) {
+            let scale = f / (2.0 * STEP);
+            slope.iter_mut().zip(u.iter().zip(d)).for_each(|(s, (u, d))| *s += scale * (u - d));
+        }
+        slope
+    };
+    let free: Vec<usize> = term.free().collect();
+    problem.reduce.apply_all(free.into_par_iter().map(slope).collect())
+}
+
+struct Reduced {
+    columns: Vec<Vec<f64>>,
+    factors: Vec<f64>,
+    residual: Vec<f64>,
+    sse: f64,
+    spd: Cholesky,
+}
+
+fn reduce(terms: &[Term], basis: &Basis, rest: &[f64]) -> Reduced {
+    let columns: Vec<Vec<f64>> = terms.iter().flat_map(|t| t.columns.iter().map(|c| basis.rest(c))).collect();
+    let p = columns.len();
+    let mut gram = vec![0.0; p * p];
+    for a in 0..p {
+        for b in 0..=a {
+            gram[a * p + b] = dot(&columns[a], &columns[b]);
+            gram[b * p + a] = gram[a * p + b];
+        }
+    }
+    let spd = Cholesky::new(&gram, p, 1e-12);
+    let side: Vec<f64> = columns.iter().map(|c| dot(c, rest)).collect();
+    let factors = spd.solve(&side);
+    let mut residual = rest.to_vec();
+    for (c, f) in columns.iter().zip(&factors) {
+        residual.iter_mut().zip(c).for_each(|(r, c)| *r -= f * c);
+    }
+    let sse = dot(&residual, &residual);
+    Reduced { columns, factors, residual, sse, spd }
+}
+
+/// Narrows down moments of jumps: both neighbours at half the distance, again and again.
+fn narrow(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> Reduced {
+    let mut best = reduce(terms, basis, rest);
+    for i in 0..terms.len() {
+        for k in 0..terms[i].shape.len() {
+            let bounds = terms[i].form.shape[k];
+            if bounds.search != ShapeSearch::Jump {
+                continue;
+            }
+            let mut reach = (bounds.max - bounds.min) / terms[i].form.grid.len().max(2) as f64;
+            for _ in 0..16 {
+                for sign in [-1.0, 1.0] {
+                    let mut trial = terms.to_vec();
+                    trial[i].shape[k] = (trial[i].shape[k] + sign * reach).clamp(bounds.min, bounds.max);
+                    trial[i].columns = columns(trial[i].effect, trial[i].form.name, &trial[i].shape, problem);
+                    let reduced = reduce(&trial, basis, rest);
+                    if reduced.sse < best.sse {
+                        terms.clone_from_slice(&trial);
+                        best = reduced;
+                        break;
+                    }
+                }
+                reach *= 0.6;
+            }
+        }
+    }
+    best
+}
+
+/// Variable projection with Kaufman's Jacobian (Golub, Pereyra 2003; Kaufman 1975) in a Levenberg–Marquardt loop over
+/// the steps of the shape parameters (in their logarithms, where they cannot be negative), held within their bounds.
+pub fn varpro(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem) -> f64 {
+    let mut best = narrow(terms, basis, rest, problem);
+    let index: Vec<(usize, usize)> =
+        terms.iter().enumerate().flat_map(|(i, t)| t.free().map(move |k| (i, k))).collect();
+    if index.is_empty() {
+        return best.sse;
+    }
+    let mut damping = 1e-3;
+    for _ in 0..12 {
+        let mut jacobian = Vec::new();
+        let mut next = best.factors.iter();
+        for term in terms.iter() {
+            let factors: Vec<f64> = next.by_ref().take(term.columns.len()).copied().collect();
+            for slope in slopes(term, &factors, problem) {
+                let mut slope = basis.rest(&slope);
+                let side: Vec<f64> = best.columns.iter().map(|c| dot(c, &slope)).collect();
+                for (c, f) in best.columns.iter().zip(best.spd.solve(&side)) {
+                    slope.iter_mut().zip(c).for_each(|(s, c)| *s -= f * c);
+                }
+                jacobian.push(slope);
+            }
+        }
+        let m = jacobian.len();
+        let mut normal = vec![0.0; m * m];
+        for a in 0..m {
+            for b in 0..m {
+                normal[a * m + b] = dot(&jacobian[a], &jacobian[b]);
+            }
+        }
+        let side: Vec<f64> = jacobian.iter().map(|j| dot(j, &best.residual)).collect();
+        let mut improved = false;
+        for _ in 0..6 {
+            let step = Cholesky::new(&normal, m, damping).solve(&side);
+            let mut trial = terms.to_vec();
+            for ((i, k), s) in index.iter().zip(&step) {
+                let bounds = trial[*i].form.shape[*k];
+                let value = bounds.moved(trial[*i].shape[*k], s.clamp(-1.0, 1.0));
+                trial[*i].shape[*k] = value.clamp(bounds.min, bounds.max);
+            }
+            for term in &mut trial {
+                if !term.shape.is_empty() {
+                    term.columns = columns(term.effect, term.form.name, &term.shape, problem);
+                }
+            }
+            let reduced = reduce(&trial, basis, rest);
+            if reduced.sse < best.sse {
+                improved = best.sse - reduced.sse > 1e-5 * best.sse;
+                terms.clone_from_slice(&trial);
+                best = reduced;
+                damping = (damping * 0.2).max(1e-9);
+                break;
+            }
+            damping *= 8.0;
+        }
+        if !improved {
+            break;
+        }
+    }
+    best.sse
+}

@@ -1,0 +1,11 @@
+//! Models as sums of effects: candidates, their canonical fit to a run, and what each explains beside the others.
+
+pub(crate) mod candidates;
+pub(crate) mod canonical_fit;
+pub(crate) mod cross_validation;
+pub(crate) mod form_selection;
+pub(crate) mod hysteresis_form;
+pub(crate) mod linear_model;
+pub(crate) mod partial_regression;
+pub(crate) mod significance;
+pub(crate) mod two_stage_model;

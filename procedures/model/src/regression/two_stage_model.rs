@@ -1,0 +1,186 @@
+//! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
+
+use crate::effect::Regime;
+use crate::preprocess::{Prepared, Problem};
+use crate::regression::candidates::CandidateSet;
+use crate::regression::canonical_fit::{enter, lay};
+use crate::regression::hysteresis_form::form_of;
+use crate::regression::linear_model::{LinearModel, Term, columns};
+use crate::report::diagnosis::Invisible;
+use crate::{Effect, ModelError, ModelSpec, Options};
+
+#[derive(Clone)]
+pub struct TwoStageModel<'p> {
+    pub prepared: &'p Prepared,
+    /// What the model was at first, and the effects that it may hold.
+    pub spec: &'p ModelSpec,
+    /// Ids in the order of the model.
+    pub effects: Vec<String>,
+    pub main: LinearModel<'p>,
+    pub moving: Option<LinearModel<'p>>,
+    /// What the main part takes as given of effects that ramps have decided: a slow step over teeth accelerates as well.
+    wavering: Vec<f64>,
+    /// Effects of the model that this data cannot show.
+    pub hidden: Vec<Invisible>,
+}
+
+impl<'p> TwoStageModel<'p> {
+    /// Finds forms and shapes of every effect: the same set of effects is laid out in one way only, whether it was asked
+    /// for or found.
+    pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec, options: &Options) -> Result<Self, ModelError> {
+        Self::of_effects(prepared, spec, spec.effects.clone(), options)
+    }
+
+    fn of_effects(
+        prepared: &'p Prepared,
+        spec: &'p ModelSpec,
+        effects: Vec<String>,
+        options: &Options,
+    ) -> Result<Self, ModelError> {
+        if spec.kind != prepared.kind {
+            return Err(ModelError::WrongKind { run: prepared.kind, model: spec.kind });
+        }
+        let mut assembly = Self {
+            prepared,
+            spec,
+            effects,
+            main: LinearModel::new(&prepared.main),
+            moving: prepared.moving.as_ref().map(LinearModel::new),
+            wavering: vec![0.0; prepared.main.rows()],
+            hidden: Vec::new(),
+        };
+        let mut settled = Vec::new();
+        for id in &assembly.effects {
+            let effect = spec.find(id)?;
+            if let Some(own) = spec.own.iter().find(|own| own.id() == id) {
+                own.check(&prepared.main.view)?;
+            }
+            if let Some(why) = effect.hidden(&prepared.main.view) {
+                assembly.hidden.push(Invisible { effect: id.clone(), why });
+            } else if effect.is_offset() {
+                let given = columns(effect, "linear", &[], assembly.main.problem);
+                add(&mut assembly.main.given, &given, &[1.0]);
+            } else if !assembly.is_apart(effect) {
+                settled.push(effect.info().id);
+            }
+        }
+        let library = CandidateSet::for_layout(spec, &prepared.main, prepared.regimes(), &settled);
+        // What the ramps decide needs the settled part, and that a little of what they decide.
+        for _ in 0..2 {
+            assembly.main.terms.clear();
+            assembly.main = lay(&assembly.main, &settled, &library, options);
+            assembly.enter_moving();
+            if !assembly.take_wavering() {
+                break;
+            }
+        }
+        Ok(assembly)
+    }
+
+    /// Plateaus say nothing about the effect: it is judged where the motion changes.
+    pub fn is_apart(&self, effect: &dyn Effect) -> bool {
+        !self.prepared.regimes().contains(&effect.regime())
+    }
+
+    /// What the model predicts at the rows of another problem of the same run.
+    pub fn predict(&self, problem: &Problem) -> Vec<f64> {
+        let mut sum = vec![0.0; problem.rows()];
+        for id in &self.effects {
+            let Ok(effect) = self.spec.find(id) else { continue };
+            if effect.is_offset() && !self.hidden.iter().any(|h| h.effect == *id) {
+                add(&mut sum, &columns(effect, "linear", &[], problem), &[1.0]);
+            }
+        }
+        for part in std::iter::once(&self.main).chain(&self.moving) {
+            for (term, factors) in part.terms.iter().zip(part.linear().factors) {
+                add(&mut sum, &columns(term.effect, term.form.name, &term.shape, problem), &factors);
+            }
+        }
+        sum
+    }
+
+    /// Lays the settled part under the moving problem, which then holds nothing else.
+    fn relay(&mut self) {
+        let Some(moving) = &mut self.moving else { return };
+        moving.given.fill(0.0);
+        moving.terms.clear();
+        for id in &self.effects {
+            let Ok(effect) = self.spec.find(id) else { continue };
+            if effect.is_offset() && !self.hidden.iter().any(|h| h.effect == *id) {
+                add(&mut moving.given, &columns(effect, "linear", &[], moving.problem), &[1.0]);
+            }
+        }
+        for (term, factors) in self.main.terms.iter().zip(self.main.linear().factors) {
+            let columns = columns(term.effect, term.form.name, &term.shape, moving.problem);
+            add(&mut moving.given, &columns, &factors);
+        }
+    }
+
+    /// Enters the effects that are judged where the motion changes.
+    fn enter_moving(&mut self) {
+        let is_in = |id: &str| self.effects.iter().any(|e| e == id) && !self.hidden.iter().any(|h| h.effect == id);
+        let apart = self.spec.known().filter(|e| self.is_apart(*e) && is_in(e.info().id));
+        let (remembering, ramps): (Vec<&'p dyn Effect>, Vec<_>) = apart.partition(|e| e.regime() == Regime::Hysteresis);
+        if self.moving.is_none() {
+            let why = "the run has no ramps or reversals that could show it".to_owned();
+            let apart = ramps.iter().chain(&remembering);
+            self.hidden.extend(apart.map(|e| Invisible { effect: e.info().id.into(), why: why.clone() }));
+            return;
+        }
+        self.relay();
+        let Some(moving) = &mut self.moving else { return };
+        ramps.into_iter().for_each(|effect| enter(moving, effect));
+        moving.refine();
+        for effect in remembering {
+            let form = self
+                .prepared
+                .memory
+                .as_ref()
+                .and_then(|problem| form_of(problem, self.predict(problem), self.spec, effect.info().id));
+            let Some(moving) = &mut self.moving else { return };
+            match form {
+                Some(term) => moving.terms.push(Term::new(effect, term.form, term.shape, moving.problem)),
+                None => enter(moving, effect),
+            }
+            moving.refine();
+        }
+    }
+
+    /// Takes what ramps tell into the main part, where it has anything to say there.
+    fn take_wavering(&mut self) -> bool {
+        let mut wavering = vec![0.0; self.wavering.len()];
+        if let Some(moving) = &self.moving {
+            let told = moving.terms.iter().zip(moving.linear().factors);
+            for (term, factors) in told.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
+                let columns = columns(term.effect, term.form.name, &term.shape, self.main.problem);
+                add(&mut wavering, &columns, &factors);
+            }
+        }
+        add(&mut self.main.given, &[std::mem::replace(&mut self.wavering, wavering.clone())], &[-1.0]);
+        add(&mut self.main.given, &[wavering], &[1.0]);
+        self.wavering.iter().any(|torque| *torque != 0.0)
+    }
+
+    /// The same from the beginning, where ramps reach into the main part: the order in which effects came in would show there
+    /// in the last digits.
+    pub fn settled(self, options: &Options) -> Result<Self, ModelError> {
+        match self.wavering.iter().any(|torque| *torque != 0.0) {
+            true => Self::of_effects(self.prepared, self.spec, self.effects, options),
+            false => Ok(self),
+        }
+    }
+
+    /// The model of other effects, whose settled part is laid out already.
+    pub fn of(&self, main: LinearModel<'p>, effects: Vec<String>) -> Self {
+        let mut next = Self { main, effects, ..self.clone() };
+        next.enter_moving();
+        next.take_wavering();
+        next
+    }
+}
+
+fn add(sum: &mut [f64], columns: &[Vec<f64>], factors: &[f64]) {
+    for (column, factor) in columns.iter().zip(factors) {
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+    }
+}

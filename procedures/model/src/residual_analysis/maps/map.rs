@@ -1,0 +1,146 @@
+//! The residual over one or two scales: means with bands, and what a function of them would remove.
+
+use crate::linear::basis::dot;
+use crate::preprocess::Problem;
+use crate::residual_analysis::maps::binned_axis::BinnedAxis;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Rows sorted into the cells of one scale, or of two.
+#[derive(Debug, Clone)]
+pub struct Map {
+    pub x: BinnedAxis,
+    pub y: Option<BinnedAxis>,
+    /// Cells with rows, in the order of x and then y.
+    pub cells: Vec<Cell>,
+    /// Share of the squared residual that the means of the cells take off rows that they were not made from.
+    pub removable: f64,
+}
+
+/// Mean of the residual in one cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    pub x: usize,
+    pub y: usize,
+    pub mean: f64,
+    /// Standard error over the pieces that pass through; `None` with fewer than three, which say nothing about a fourth.
+    error: Option<f64>,
+    pub pieces: usize,
+    pub rows: usize,
+}
+
+impl Map {
+    pub fn new(x: BinnedAxis, y: Option<BinnedAxis>, problem: &Problem, piece: &[usize], residual: &[f64]) -> Self {
+        let width = y.as_ref().map_or(1, |y| y.bins.len());
+        let cell: Vec<usize> =
+            (0..residual.len()).map(|i| x.bin[i] * width + y.as_ref().map_or(0, |y| y.bin[i])).collect();
+        let count = x.bins.len() * width;
+        let cells = statistics(&cell, count, piece, residual)
+            .into_iter()
+            .enumerate()
+            .filter_map(|(c, (mean, error, pieces, rows))| {
+                (rows > 0).then_some(Cell { x: c / width, y: c % width, mean, error, pieces, rows })
+            })
+            .collect();
+        // A function of what the run was held at knows nothing of a level that is left out with all its repeats; what passes in
+        // each of them has to be the same at all levels.
+        let is_held = x.is_held && y.as_ref().is_none_or(|y| y.is_held);
+        let removable = held_out_share(&cell, count, if is_held { piece } else { &problem.fold }, residual);
+        Self { x, y, cells, removable }
+    }
+
+    /// The same for a choice of what to show. What a drive did follows from the motion, which says more.
+    pub fn telling(&self) -> f64 {
+        const FOLLOWS: f64 = 0.9;
+        let is_drive = std::iter::once(&self.x).chain(&self.y).any(|s| s.name == "motor_torque_nm");
+        if is_drive { FOLLOWS * self.removable } else { self.removable }
+    }
+}
+
+impl Cell {
+    /// Half of a band that holds for `many` cells together (Bonferroni), whatever they have in common.
+    pub fn half_width(&self, alpha: f64, many: usize) -> Option<f64> {
+        let t = StudentsT::new(0.0, 1.0, (self.pieces - 1) as f64).ok()?;
+        Some(self.error? * t.inverse_cdf(1.0 - alpha / (2.0 * many.max(1) as f64)))
+    }
+}
+
+/// Mean, standard error over the pieces, pieces and rows of every cell. The rows of a piece are consecutive.
+fn statistics(
+    cell: &[usize],
+    count: usize,
+    piece: &[usize],
+    residual: &[f64],
+) -> Vec<(f64, Option<f64>, usize, usize)> {
+    let mut all = vec![(0.0, 0usize); count];
+    for (c, e) in cell.iter().zip(residual) {
+        all[*c].0 += e;
+        all[*c].1 += 1;
+    }
+    let mean = |c: usize| all[c].0 / all[c].1.max(1) as f64;
+    let mut spread = vec![(0.0, 0usize); count];
+    let mut sums: Vec<Option<f64>> = vec![None; count];
+    let mut passed: Vec<usize> = Vec::new();
+    let mut at = 0;
+    for rows in piece.chunk_by(|a, b| a == b) {
+        for i in at..at + rows.len() {
+            let c = cell[i];
+            let sum = sums[c].get_or_insert_with(|| {
+                passed.push(c);
+                0.0
+            });
+            *sum += residual[i] - mean(c);
+        }
+        at += rows.len();
+        for c in passed.drain(..) {
+            spread[c].0 += sums[c].take().unwrap_or_default().powi(2);
+            spread[c].1 += 1;
+        }
+    }
+    (0..count)
+        .map(|c| {
+            let ((square, pieces), rows) = (spread[c], all[c].1);
+            let g = pieces as f64;
+            let error = (pieces >= 3).then(|| (square * g / (g - 1.0)).sqrt() / rows as f64);
+            (mean(c), error, pieces, rows)
+        })
+        .collect()
+}
+
+/// What the means of the cells, taken from the other parts of the run, take off a part's squared error.
+fn held_out_share(cell: &[usize], count: usize, part: &[usize], residual: &[f64]) -> f64 {
+    let energy = dot(residual, residual);
+    let mut all = vec![(0.0, 0.0); count];
+    let mut parts = vec![(0.0, 0.0); count * part.iter().max().map_or(0, |last| last + 1)];
+    for (i, c) in cell.iter().enumerate() {
+        for (sum, n) in [&mut all[*c], &mut parts[part[i] * count + c]] {
+            *sum += residual[i];
+            *n += 1.0;
+        }
+    }
+    let mut saved = 0.0;
+    for (at, (sum, n)) in parts.iter().enumerate() {
+        let (total, rows) = all[at % count];
+        if *n > 0.0 && rows > *n {
+            let predicted = (total - sum) / (rows - n);
+            saved += 2.0 * predicted * sum - n * predicted * predicted;
+        }
+    }
+    if energy > 0.0 { saved / energy } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_as_sure_as_its_pieces_are_alike() {
+        let (cell, piece) = ([0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 1, 2]);
+        let found = statistics(&cell, 3, &piece, &[1.0, 1.0, 9.0, 3.0, 3.0, 2.0]);
+        let (mean, error, pieces, rows) = found[0];
+        assert_eq!((mean, pieces, rows), (2.0, 3, 5));
+        // Sums of the pieces about the mean: −2, 2, 0.
+        assert!((error.unwrap() - (8.0f64 * 3.0 / 2.0).sqrt() / 5.0).abs() < 1e-12);
+        assert_eq!(found[1], (9.0, None, 1, 1), "one piece says nothing about the next");
+        assert_eq!(found[2].3, 0);
+    }
+}

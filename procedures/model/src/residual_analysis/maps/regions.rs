@@ -1,0 +1,211 @@
+//! The worst regions of the maps, in sentences with figures.
+
+use crate::report::diagnosis::NoiseFloor;
+use crate::report::fit::Fit;
+use crate::report::maps::Region;
+use crate::residual_analysis::maps::Maps;
+use crate::residual_analysis::maps::binned_axis::BinnedAxis;
+use crate::residual_analysis::maps::map::{Cell, Map};
+use crate::thresholds::{AXIS_DOMINATES, AXIS_SHADOW, REGION_OVERLAP, REGION_WORSE};
+use crate::words::{figure, percent, spoken_axis, way};
+use jointbench_instrument::Kind;
+
+/// More regions than these nobody reads.
+const MOST: usize = 8;
+
+/// What an error is measured against in words.
+pub struct ReferenceMagnitude {
+    value: f64,
+    /// `the Coulomb friction`, `the noise`.
+    what: &'static str,
+}
+
+impl ReferenceMagnitude {
+    /// `18 % of the Coulomb friction`, `35 times the noise`.
+    pub fn says(&self, size: f64) -> String {
+        match size / self.value {
+            times if times >= 9.95 => format!("{times:.0} times {}", self.what),
+            times if times >= 1.995 => format!("{times:.1} times {}", self.what),
+            share => format!("{} of {}", percent(share), self.what),
+        }
+    }
+}
+
+/// Coulomb friction where the model has it, how well the run repeats itself else.
+pub fn yardstick(fit: &Fit, floor: Option<&NoiseFloor>) -> Option<ReferenceMagnitude> {
+    let coulomb = fit.parameters.iter().find(|p| p.effect == "coulomb" && p.value > 0.0);
+    let coulomb = coulomb.map(|p| ReferenceMagnitude { value: p.value, what: "the Coulomb friction" });
+    coulomb.or_else(|| {
+        let value = floor?.rms.filter(|rms| *rms > 0.0)?;
+        Some(ReferenceMagnitude { value, what: "the noise" })
+    })
+}
+
+/// Neighbouring cells of one sign that are all beyond their bands.
+struct Stretch<'m> {
+    map: &'m Map,
+    first: usize,
+    last: usize,
+    y: usize,
+    mean: f64,
+    half_width: f64,
+    count: usize,
+}
+
+pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&ReferenceMagnitude>) -> Vec<Region> {
+    let mut stretches: Vec<Stretch> = maps.axes.iter().chain(&maps.by_direction).flat_map(|m| join(maps, m)).collect();
+    if let Some(best) = unbanded(maps) {
+        stretches.retain(|stretch| stretch.map.removable > AXIS_SHADOW * best.removable);
+    }
+    stretches.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
+    // What lies at a time lies there because of what was done then, where another axis tells it too.
+    stretches.sort_by_key(|stretch| stretch.map.x.name == "time_s");
+    let mut told: Vec<(&Stretch, Vec<usize>)> = Vec::new();
+    for stretch in &stretches {
+        let rows = stretch.rows();
+        let again = |(other, known): &(&Stretch, Vec<usize>)| {
+            let no_worse = stretch.mean / other.mean < REGION_WORSE && stretch.mean * other.mean > 0.0;
+            no_worse && inside(&rows, known) >= REGION_OVERLAP
+        };
+        if told.len() < MOST && !told.iter().any(again) {
+            told.push((stretch, rows));
+        }
+    }
+    told.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
+    told.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
+}
+
+/// The map that takes most off by far, where none of its axis's parts was passed often enough to have a band: what other axes
+/// show is then its shadow.
+fn unbanded(maps: &Maps) -> Option<&Map> {
+    let best = maps.best().filter(|best| best.removable > AXIS_DOMINATES)?;
+    let mut of_axis = maps.axes.iter().chain(&maps.by_direction).filter(|map| map.x.name == best.x.name);
+    of_axis.all(|map| map.cells.iter().all(|cell| maps.half_width(cell).is_none())).then_some(best)
+}
+
+/// Why no region is named, with the part of an axis that comes nearest to being one.
+pub fn nowhere(maps: &Maps, unit: &str) -> String {
+    let of = |map: &Map, cell: &Cell, half_width: f64| {
+        let (mean, count) = (cell.mean, cell.rows);
+        Stretch { map, first: cell.x, last: cell.x, y: cell.y, mean, half_width, count }.region(maps.kind, unit, None)
+    };
+    if let Some(best) = unbanded(maps) {
+        let worst = best.cells.iter().max_by(|a, b| a.mean.abs().total_cmp(&b.mean.abs()));
+        return format!(
+            ", though a function of {} would take {} off: fewer than three independent stretches of motion passed each part of it. \
+             Most is left where {}",
+            spoken_axis(&best.x.name, maps.kind),
+            percent(best.removable),
+            worst.map(|cell| of(best, cell, 0.0).sentence).unwrap_or_default(),
+        );
+    }
+    let cells =
+        maps.axes.iter().chain(&maps.by_direction).flat_map(|map| map.cells.iter().map(move |cell| (map, cell)));
+    let banded = cells.filter_map(|(map, cell)| Some((map, cell, maps.half_width(cell)?)));
+    let beyond = |(_, cell, half_width): &(&Map, &Cell, f64)| cell.mean.abs() / half_width.max(f64::MIN_POSITIVE);
+    let Some((map, cell, half_width)) = banded.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else {
+        return ", because none was passed by three independent stretches of motion".into();
+    };
+    format!(
+        "; nearest to it, {}, known to ±{} from {} independent stretches of motion",
+        of(map, cell, half_width).sentence,
+        figure(half_width, unit),
+        cell.pieces,
+    )
+}
+
+/// Share of the rows that are among others in rising order.
+fn inside(rows: &[usize], others: &[usize]) -> f64 {
+    let shared = rows.iter().filter(|row| others.binary_search(row).is_ok()).count();
+    shared as f64 / rows.len().max(1) as f64
+}
+
+/// Joins what lies beside each other: the mean of means lies within the mean of their bands.
+fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
+    let mut out: Vec<Stretch> = Vec::new();
+    let mut cells: Vec<&Cell> = map.cells.iter().collect();
+    cells.sort_by_key(|c| (c.y, c.x));
+    for cell in cells {
+        let Some(half_width) = maps.half_width(cell).filter(|h| cell.mean.abs() > *h) else { continue };
+        let beside = |s: &&mut Stretch| s.y == cell.y && s.last + 1 == cell.x && s.mean * cell.mean > 0.0;
+        match out.last_mut().filter(beside) {
+            Some(s) => {
+                let (n, more) = (s.count as f64, cell.rows as f64);
+                s.mean = (s.mean * n + cell.mean * more) / (n + more);
+                s.half_width = (s.half_width * n + half_width * more) / (n + more);
+                s.count += cell.rows;
+                s.last = cell.x;
+            }
+            None => {
+                let (mean, count) = (cell.mean, cell.rows);
+                out.push(Stretch { map, first: cell.x, last: cell.x, y: cell.y, mean, half_width, count });
+            }
+        }
+    }
+    out
+}
+
+impl Stretch<'_> {
+    /// Squared error that it stands for.
+    fn weight(&self) -> f64 {
+        self.mean.powi(2) * self.count as f64
+    }
+
+    fn rows(&self) -> Vec<usize> {
+        let inside = |row: &usize| {
+            let side = self.map.y.as_ref().is_none_or(|y| y.bin[*row] == self.y);
+            side && (self.first..=self.last).contains(&self.map.x.bin[*row])
+        };
+        (0..self.map.x.bin.len()).filter(inside).collect()
+    }
+
+    fn region(&self, kind: Kind, unit: &str, yardstick: Option<&ReferenceMagnitude>) -> Region {
+        let x = &self.map.x;
+        let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
+        let direction = self.map.y.as_ref().map(|y| if y.bins[self.y].centre > 0.0 { "positive" } else { "negative" });
+        let side = if self.mean > 0.0 { "low" } else { "high" };
+        let measure = yardstick.map_or_else(String::new, |y| format!(", {}", y.says(self.mean.abs())));
+        let motion = direction.map_or_else(String::new, |d| format!(" {}", way(kind, d == "positive")));
+        Region {
+            axis: x.name.clone(),
+            from,
+            to,
+            mean_residual: self.mean,
+            ci95: [self.mean - self.half_width, self.mean + self.half_width],
+            samples: self.count,
+            direction: direction.map(Into::into),
+            sentence: format!(
+                "the model is {} too {side} {}{motion}{measure}",
+                figure(self.mean.abs(), unit),
+                self.place(kind, x)
+            ),
+        }
+    }
+
+    /// `below 9.0 rad/s`, `near 2.4 Nm`, `between a link position of 1.1 rad and 1.3 rad`.
+    fn place(&self, kind: Kind, x: &BinnedAxis) -> String {
+        if x.name == "direction" {
+            return way(kind, x.bins[self.first].centre > 0.0).into();
+        }
+        let (from, to) = (x.bins[self.first].from, x.bins[self.last].to);
+        if x.name == "repeat" {
+            // People count from one, whatever the column begins with.
+            let [from, to] = [from, to].map(|repeat| repeat - x.bins[0].from + 1.0);
+            return if from == to { format!("in repeat {from}") } else { format!("in repeats {from} to {to}") };
+        }
+        let say = |value: f64| figure(value, &x.unit);
+        let quantity = spoken_axis(&x.name, kind);
+        let article = if quantity.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" };
+        let one = format!("{article} {quantity}");
+        let end = x.bins.len() - 1;
+        if self.first == self.last && (say(from) == say(to) || (to - from).abs() < 0.03 * (to + from).abs() / 2.0) {
+            return format!("at {one} of about {}", say(x.bins[self.first].centre));
+        }
+        match (self.first == 0, self.last == end) {
+            (true, true) => format!("at every {quantity}"),
+            (true, false) => format!("at {one} below {}", say(to)),
+            (false, true) => format!("at {one} above {}", say(from)),
+            (false, false) => format!("at {one} between {} and {}", say(from), say(to)),
+        }
+    }
+}

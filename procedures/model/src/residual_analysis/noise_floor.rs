@@ -1,0 +1,150 @@
+//! How well the measurement repeats itself, from rows that should be equal but for noise.
+
+use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::{Prepared, Problem};
+use crate::report::diagnosis::NoiseFloor;
+use crate::thresholds::FLOOR_INTERVAL_RATIO;
+use crate::words::{figure, spoken};
+use jointbench_instrument::Kind;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Fewer pairs than these have no scatter that could be told.
+const FEWEST: usize = 8;
+
+/// From the residual, not from the response, so that small differences of speed or load between repeats cancel.
+///
+/// Pure error of pairs, σ² = Σ (e_a − e_b)²/2 over their number; the mean product of the same pairs is what repeats
+/// itself, whatever the noise within a repeat remembers. What came there on different ways is equal only in a model that
+/// `remembers`.
+pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> NoiseFloor {
+    let problem = &prepared.main;
+    let is_equal = |replicate_pairs: &(usize, usize)| remembers || !problem.different_history.contains(replicate_pairs);
+    let replicate_pairs: Vec<(usize, usize)> = problem.replicate_pairs.iter().copied().filter(is_equal).collect();
+    if replicate_pairs.len() < FEWEST {
+        return NoiseFloor { source: unknown(prepared), ..NoiseFloor::default() };
+    }
+    let (all, of_piece) = Pairs::sums(problem, residual, &replicate_pairs);
+    // What depends on an angle comes again where that does.
+    let met: Vec<_> = replicate_pairs.iter().copied().filter(|pair| !problem.different_angle.contains(pair)).collect();
+    let elsewhere = replicate_pairs.len() - met.len();
+    let of_met = (elsewhere > 0 && met.len() >= FEWEST).then(|| Pairs::sums(problem, residual, &met));
+    let (again, again_of) = of_met.as_ref().map_or((&all, &of_piece), |(again, of)| (again, of));
+    NoiseFloor {
+        rms: Some((all.noise / all.count).sqrt()),
+        ci95: interval(&all, &of_piece),
+        source: format!(
+            "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
+             different repeats ({}{})",
+            replicate_pairs.len(),
+            match (prepared.about.repeats_from.as_str(), prepared.main.settled || prepared.kind == Kind::Friction) {
+                ("column", _) => "as numbered",
+                (_, true) => "found by the period of the motion",
+                (_, false) => "legs that run alike",
+            },
+            if elsewhere > 0 { format!(", {elsewhere} of them at other angles") } else { String::new() }
+        ),
+        repeatable_share: Some(again.share().max(0.0)),
+        repeatable_ci95: Some(share_interval(again, again_of)),
+    }
+}
+
+/// Sums over pairs of moments.
+#[derive(Clone, Default)]
+struct Pairs {
+    /// Halves of the squared differences.
+    noise: f64,
+    /// Products.
+    common: f64,
+    count: f64,
+}
+
+impl Pairs {
+    /// Of all pairs, and of those that touch each piece of the run.
+    fn sums(problem: &Problem, residual: &[f64], replicate_pairs: &[(usize, usize)]) -> (Self, Vec<Self>) {
+        let (piece, count) = pieces(problem, 1);
+        let (mut all, mut of_piece) = (Pairs::default(), vec![Pairs::default(); count]);
+        for (a, b) in replicate_pairs {
+            let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
+            let pair = Pairs { noise: half, common: residual[*a] * residual[*b], count: 1.0 };
+            all.add(&pair, 1.0);
+            [a, b].into_iter().for_each(|row| of_piece[piece[*row]].add(&pair, 1.0));
+        }
+        of_piece.retain(|pairs| pairs.count > 0.0);
+        (all, of_piece)
+    }
+
+    fn add(&mut self, other: &Pairs, times: f64) {
+        self.noise += times * other.noise;
+        self.common += times * other.common;
+        self.count += times * other.count;
+    }
+
+    fn without(&self, piece: &Pairs) -> Pairs {
+        let mut rest = self.clone();
+        rest.add(piece, -1.0);
+        rest
+    }
+
+    /// Of the squared residual, what both of a pair have in common.
+    fn share(&self) -> f64 {
+        let total = self.common.max(0.0) + self.noise;
+        if total > 0.0 { self.common / total } else { 0.0 }
+    }
+}
+
+/// 95 % interval of the share in common: jackknife over pieces.
+fn share_interval(all: &Pairs, of_piece: &[Pairs]) -> [f64; 2] {
+    let whole = all.share();
+    let reach = reach(of_piece.iter().map(|piece| all.without(piece).share() - whole));
+    [(whole - reach).max(0.0), (whole.max(0.0) + reach).min(1.0)]
+}
+
+/// Half of a 95 % interval from what a figure changes by without each piece.
+fn reach(steps: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let groups = steps.len().max(2) as f64;
+    let spread = (groups - 1.0) / groups * steps.map(|step| step * step).sum::<f64>();
+    StudentsT::new(0.0, 1.0, groups - 1.0).map_or(2.0, |t| t.inverse_cdf(0.975)) * spread.sqrt()
+}
+
+/// Why there is no floor.
+fn unknown(prepared: &Prepared) -> String {
+    let problem = &prepared.main;
+    if let Some(unlike) = problem.unlike {
+        let (column, unit) = (prepared.column_name(unlike.signal), prepared.column_unit(unlike.signal));
+        let say = |value: f64| figure(prepared.column_scale(unlike.signal) * value, &unit);
+        return format!(
+            "no noise floor: the repeats are different motions, whose {} differs by {} RMS at the same moment where it \
+             varies by {} in the whole run",
+            spoken(column),
+            say(unlike.apart),
+            say(unlike.spread)
+        );
+    }
+    if !problem.different_history.is_empty() {
+        return "no noise floor: the brake came to no moment twice on the same way; repeat its loops in the same order"
+            .into();
+    }
+    let source = match problem.repeat.iter().any(|r| *r != problem.repeat[0]) {
+        true => {
+            "no noise floor: the repeats have no moments of the same condition and phase in common; make every repeat of the \
+             same steps, in whatever order"
+        }
+        false => "no noise floor: the run has no repeats of the same profile",
+    };
+    source.to_owned()
+}
+
+/// 95 % interval of the root: jackknife over pieces, because the pairs of one are not independent of each other, on the
+/// logarithm, because a variance is skew. Where a few pieces chance to agree it is what so many independent pairs of normal
+/// noise would scatter by, 2/n in the logarithm of their variance: no noise is known better. `None` where a few pieces hold
+/// all of it: nobody can say how well it is known then.
+fn interval(all: &Pairs, of_piece: &[Pairs]) -> Option<[f64; 2]> {
+    let whole = all.noise / all.count;
+    let without = |piece: &Pairs| {
+        let rest = all.without(piece);
+        (rest.noise.max(0.0) / rest.count.max(1.0)).max(1e-12 * whole)
+    };
+    let reach = reach(of_piece.iter().map(|piece| (without(piece) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
+    let factor = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
+    (factor <= FLOOR_INTERVAL_RATIO).then(|| [whole.sqrt() / factor, whole.sqrt() * factor])
+}

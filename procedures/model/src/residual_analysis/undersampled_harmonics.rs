@@ -1,0 +1,33 @@
+//! Waves that pass faster than samples follow.
+
+use crate::linear::basis::Basis;
+use crate::preprocess::design::segments::stretches;
+use crate::regression::linear_model::LinearModel;
+use crate::thresholds::SAMPLES_FOLLOW_RAD;
+
+/// Fewer rows of a stretch do not tell a wave from noise.
+const FEWEST: usize = 10;
+
+/// What a model of settled motion leaves, without the waves of its own effects where these pass that fast. What of a wave
+/// reaches the motor's current there is up to inertia and the drive's control, and says nothing of the joint.
+pub fn without_swift_waves(now: &LinearModel, mut residual: Vec<f64>) -> Vec<f64> {
+    let view = &now.problem.view;
+    for term in &now.terms {
+        let Some(angle) = term.effect.wave() else { continue };
+        let Some(samples) = view.samples.find(angle).filter(|_| !view.chunks.is_empty()) else { continue };
+        for order in &term.shape {
+            let columns = view.harmonic(angle, *order);
+            for stretch in stretches(&now.problem.segment) {
+                let chunks = &view.chunks[stretch.clone()];
+                let way: f64 = chunks.iter().map(|c| (samples[c.end - 1] - samples[c.start]).abs()).sum();
+                let steps: usize = chunks.iter().map(|c| c.len() - 1).sum();
+                if stretch.len() >= FEWEST && order * way > SAMPLES_FOLLOW_RAD * steps as f64 {
+                    let waves = columns.iter().map(|c| c[stretch.clone()].to_vec()).collect::<Vec<_>>();
+                    let rest = Basis::of(&waves).rest(&residual[stretch.clone()]);
+                    residual[stretch].copy_from_slice(&rest);
+                }
+            }
+        }
+    }
+    residual
+}

@@ -1,0 +1,130 @@
+//! Whether what looks like a wave over an angle is one.
+//!
+//! Whatever repeats with time at one speed is a wave over the angle there, with the number that fits: the counts of an
+//! encoder that beat with the samples, and how a drive settles behind every reversal. A wave over the angle shows at
+//! every speed at which it passes slowly enough, and it is in the samples as well as in their means.
+
+use crate::linear::basis::{Basis, dot};
+use crate::preprocess::Problem;
+use crate::preprocess::design::segments::stretches;
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::partial_regression::{PartialRegression, products};
+use crate::signal::{Signal, Signals};
+use crate::thresholds::{
+    ALIAS_ERRORS, ALIAS_SHARE, COMPARABLE_SPEED, MANY_ORDERS, MEANS_FOLLOW_RAD, PERIODIC_SHARE, SAME_SPEED,
+};
+use crate::view::View;
+use std::ops::Range;
+
+/// The samples of more rows than these say no more.
+const MOST_ROWS: usize = 4_000;
+
+/// The least share of the squared error that an effect must take for its waves' sake.
+pub fn least_share(term: &Term) -> f64 {
+    let sought = term.effect.wave().is_some() && term.form.grid.len() >= MANY_ORDERS as usize;
+    if sought { PERIODIC_SHARE } else { 0.0 }
+}
+
+/// The wave is not in the data where it has to be.
+pub fn is_none(term: &Term, now: &LinearModel, ground: &PartialRegression) -> bool {
+    if term.effect.wave().is_none() || !now.problem.settled || term.columns.is_empty() {
+        return false;
+    }
+    let part = Part::of(term, now.problem, ground);
+    part.shows_at_one_speed(now.problem) || part.is_beat(term, now.problem)
+}
+
+/// A wave beside the model, of the size that explains most.
+struct Part {
+    stretches: Vec<Range<usize>>,
+    factors: Vec<f64>,
+    /// What it takes of the residual in each stretch, and what it would take where it is there as it should be.
+    found: Vec<f64>,
+    asked: Vec<f64>,
+}
+
+impl Part {
+    fn of(term: &Term, problem: &Problem, ground: &PartialRegression) -> Self {
+        let stretches = stretches(&problem.segment);
+        let factors = ground.own(&term.columns).factors();
+        let mut wave = vec![0.0; problem.rows()];
+        for (column, factor) in term.columns.iter().zip(&factors) {
+            wave.iter_mut().zip(ground.basis.rest(column)).for_each(|(w, c)| *w += factor * c);
+        }
+        let (found, asked) = (products(&wave, &ground.residual, &stretches), products(&wave, &wave, &stretches));
+        Self { stretches, factors, found, asked }
+    }
+
+    /// Nothing of it shows at any other speed than the one at which it explains most, though it would.
+    fn shows_at_one_speed(&self, problem: &Problem) -> bool {
+        let velocity = problem.view.get(Signal::Velocity);
+        let mean = |rows: &Range<usize>| velocity[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+        let mut by_speed: Vec<(f64, usize)> =
+            self.stretches.iter().enumerate().map(|(k, rows)| (mean(rows).abs(), k)).collect();
+        by_speed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut found = vec![0.0];
+        by_speed.iter().for_each(|(_, k)| found.push(found[found.len() - 1] + self.found[*k]));
+        let slower = |than: f64| by_speed.partition_point(|(speed, _)| *speed < than);
+        let near = |speed: f64| slower((1.0 - SAME_SPEED) * speed)..slower((1.0 + SAME_SPEED) * speed);
+        let gain = |speed: f64| found[near(speed).end] - found[near(speed).start];
+        let Some((main, _)) = by_speed.iter().max_by(|a, b| gain(a.0).total_cmp(&gain(b.0))) else { return false };
+        let (here, end) = (near(*main), slower(COMPARABLE_SPEED * main));
+        let others = by_speed[..here.start].iter().chain(&by_speed[here.end..end.max(here.end)]);
+        let (found, asked): (Vec<f64>, Vec<f64>) = others.map(|(_, k)| (self.found[*k], self.asked[*k])).unzip();
+        is_missing(&found, &asked)
+    }
+
+    /// It shows where means follow it too slowly to tell, and the samples behind these know nothing of it.
+    fn is_beat(&self, term: &Term, problem: &Problem) -> bool {
+        let view = &problem.view;
+        let Some(angle) = term.effect.wave().and_then(|angle| view.samples.find(angle)) else { return false };
+        let order = term.shape.first().copied().unwrap_or_default();
+        let is_swift = |rows: &Range<usize>| {
+            let chunks = &view.chunks[rows.clone()];
+            let way: f64 = chunks.iter().map(|c| (angle[c.end - 1] - angle[c.start]).abs()).sum();
+            order * way > MEANS_FOLLOW_RAD * chunks.len() as f64
+        };
+        let mut swift: Vec<usize> = (0..self.stretches.len()).filter(|k| is_swift(&self.stretches[*k])).collect();
+        let (whole, part): (f64, f64) = (self.found.iter().sum(), swift.iter().map(|k| self.found[*k]).sum());
+        if part < ALIAS_SHARE * whole || problem.sampled.is_empty() {
+            return false;
+        }
+        let mut rows = 0;
+        swift.retain(|k| {
+            rows += self.stretches[*k].len();
+            rows <= MOST_ROWS
+        });
+        let asked: Vec<f64> = swift.iter().map(|k| self.asked[*k]).collect();
+        let share = swift.iter().map(|k| self.share_of_samples(term, problem, &self.stretches[*k]));
+        let found: Vec<f64> = share.zip(&asked).map(|(share, asked)| share * asked).collect();
+        is_missing(&found, &asked)
+    }
+
+    /// What it takes of the samples of a stretch, as a share of what it should.
+    fn share_of_samples(&self, term: &Term, problem: &Problem, rows: &Range<usize>) -> f64 {
+        let view = &problem.view;
+        let range = view.chunks[rows.start].start..view.chunks[rows.end - 1].end;
+        let mut signals = Signals::new(range.len());
+        view.samples.iter().for_each(|(signal, values)| signals.set(signal, values[range.clone()].to_vec()));
+        let load = signals.find(Signal::Load).map(<[f64]>::to_vec);
+        let at = View::new(signals.clone(), signals, Vec::new(), vec![0], view.sample_s);
+        let trend = (0..range.len()).map(|i| i as f64).collect();
+        let basis = Basis::of([vec![1.0; range.len()], trend].iter().chain(&load));
+        let mut wave = vec![0.0; range.len()];
+        for (column, factor) in term.effect.columns(term.form.name, &term.shape, &at).iter().zip(&self.factors) {
+            wave.iter_mut().zip(basis.rest(column)).for_each(|(w, c)| *w += factor * c);
+        }
+        dot(&wave, &problem.sampled[range]) / dot(&wave, &wave).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// Clearly less than half of what is asked was found.
+fn is_missing(found: &[f64], asked: &[f64]) -> bool {
+    let (sum, all) = (found.iter().sum::<f64>(), asked.iter().sum::<f64>());
+    if all <= 0.0 {
+        return false;
+    }
+    let share = sum / all;
+    let error = found.iter().zip(asked).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
+    share < ALIAS_SHARE && 1.0 - share > ALIAS_ERRORS * error
+}

@@ -1,0 +1,6 @@
+//! What a candidate has to pass before it enters a model, one rule a file.
+
+pub(crate) mod aliasing;
+pub(crate) mod between_leg_variance;
+pub(crate) mod feasible_parameters;
+pub(crate) mod formula_error;

@@ -1,0 +1,92 @@
+//! What was looked for and not found, and how large it would have been.
+
+use crate::linear::basis::dot;
+use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::linear_model::LinearModel;
+use crate::regression::partial_regression::PartialRegression;
+use crate::selection::acceptance::formula_error::AcceptanceThreshold;
+use crate::selection::floating_search::FloatingSearch;
+use crate::stats::permutation_test::{MaxTNull, Score};
+use crate::thresholds::DETECTION_POWER;
+use rayon::prelude::*;
+
+/// A candidate that was looked for and not found.
+pub struct DetectionLimit<'p> {
+    pub effect: &'p str,
+    /// RMS of the smallest one that would have been found with 80 % probability.
+    pub detectable_rms: f64,
+}
+
+impl<'p> FloatingSearch<'_, 'p> {
+    pub fn silences(&self) -> Vec<DetectionLimit<'p>> {
+        silences(&self.now, self.library, &self.withdrawn, self.bar())
+    }
+}
+
+/// For each effect that is not in the model what would have been seen of it: in the form that is hardest to see, at the shape
+/// in the middle of those looked for.
+fn silences<'p>(
+    end: &LinearModel<'p>,
+    library: &CandidateSet<'p>,
+    withdrawn: &[&'p str],
+    bar: AcceptanceThreshold,
+) -> Vec<DetectionLimit<'p>> {
+    let ground = PartialRegression::of(end);
+    let n = end.problem.rows() as f64;
+    let least = bar.least_share(end, ground.energy) * ground.energy;
+    let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
+    let candidates: Vec<&Regressor> = library.candidates.iter().filter(|c| is_out(c.id())).collect();
+    let looked_for: Vec<Tested> = candidates.into_par_iter().filter_map(|c| Tested::new(c, &ground)).collect();
+    let scores: Vec<&Score> = looked_for.iter().map(|looked| &looked.score).collect();
+    let clear = MaxTNull::new(&scores, bar.options.flips, bar.options.seed).quantile(1.0 - bar.options.alpha);
+    let found = |looked: &&Tested| {
+        let clear =
+            ground.deciding(&looked.candidate.columns).map_or(f64::INFINITY, |by| looked.score.needed(clear, by));
+        ((clear * looked.noise).max(least.sqrt()) / looked.noise + DETECTION_POWER) * looked.scatter() / n.sqrt()
+    };
+    let middles: Vec<&Tested> = looked_for.chunk_by(Tested::is_formed_as).filter_map(Tested::middle).collect();
+    let rms: Vec<f64> = middles.par_iter().map(found).collect();
+    let mut out: Vec<DetectionLimit> = Vec::new();
+    for (looked, detectable_rms) in middles.into_iter().zip(rms) {
+        let effect = looked.candidate.id();
+        match out.iter_mut().find(|s| s.effect == effect) {
+            Some(s) => s.detectable_rms = s.detectable_rms.max(detectable_rms),
+            None => out.push(DetectionLimit { effect, detectable_rms }),
+        }
+    }
+    out
+}
+
+/// What the rows tell of a candidate.
+struct Tested<'a, 'p> {
+    candidate: &'a Regressor<'p>,
+    score: Score,
+    /// What its factor scatters by, as the square root of what that explains.
+    noise: f64,
+    /// Of the effect itself the model's own columns take the rest.
+    visible: f64,
+}
+
+impl<'a, 'p> Tested<'a, 'p> {
+    fn new(candidate: &'a Regressor<'p>, ground: &PartialRegression) -> Option<Self> {
+        let own = ground.own(&candidate.columns);
+        let sums = ground.sums(&candidate.columns, &own);
+        let noise = sums.iter().zip(own.squares()).map(|(s, square)| (dot(s, s) / square).sqrt()).reduce(f64::max)?;
+        Some(Self { candidate, score: Score::new(&sums), noise, visible: own.visible })
+    }
+
+    fn is_formed_as(&self, other: &Self) -> bool {
+        self.candidate.id() == other.candidate.id() && self.candidate.form.name == other.candidate.form.name
+    }
+
+    /// The same of the whole effect.
+    fn scatter(&self) -> f64 {
+        self.noise / self.visible.sqrt()
+    }
+
+    fn middle(shapes: &[Self]) -> Option<&Self> {
+        let mut shapes: Vec<&Self> = shapes.iter().collect();
+        shapes.sort_by(|a, b| a.scatter().total_cmp(&b.scatter()));
+        shapes.get(shapes.len() / 2).copied()
+    }
+}

@@ -1,0 +1,267 @@
+//! From a model to the model that is left when nothing more can be named.
+
+use crate::Options;
+use crate::effect::{Effect, Form};
+use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::canonical_fit::lay;
+use crate::regression::cross_validation::held_out;
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::partial_regression::PartialRegression;
+use crate::selection::acceptance::formula_error::AcceptanceThreshold;
+use crate::selection::equivalence::{encompasses, is_tie};
+use crate::selection::forward_step::{ScoredCandidate, step};
+use crate::thresholds::{MOST_EXCHANGES, SIMPLER_GAIN, STAND_IN_LOSS};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Effects of a model with their forms and shapes.
+type Laid<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
+
+pub enum Move<'p> {
+    Added { rival: Box<ScoredCandidate<'p>>, ties: Vec<&'p str> },
+    Removed(&'p str),
+}
+
+/// An effect with what the run cannot tell it from.
+pub(crate) type Found<'p> = (ScoredCandidate<'p>, Vec<&'p str>);
+
+/// Adds the best effect again and again until none passes, and drops what lost its reason: one move at a time.
+pub struct FloatingSearch<'l, 'p> {
+    pub now: LinearModel<'p>,
+    pub(crate) library: &'l CandidateSet<'p>,
+    pub(crate) options: &'l Options,
+    /// Squared error of the model without any effect but those of the baseline and those whose formula is exact.
+    plain: f64,
+    /// Effects of the model that was given.
+    pub(crate) initial_terms: Vec<&'p str>,
+    /// Effects that were withdrawn and are not tried again.
+    pub(crate) withdrawn: Vec<&'p str>,
+    /// Effects whose reason is not the error, but what the others would be without them.
+    pub retained_for_bias: Vec<&'p str>,
+    /// Held-out squared errors, fold by fold, of the models that they were withdrawn from.
+    rejected_losses: Vec<Vec<f64>>,
+    /// The effect that was added last.
+    pub(crate) last: Option<&'p str>,
+    pub(crate) left: usize,
+    exchanges: usize,
+    /// What takes the place of an effect that was just removed.
+    pending_swap: Option<Found<'p>>,
+    /// Models that were laid out, without their columns.
+    laid: Mutex<BTreeMap<Vec<&'p str>, Laid<'p>>>,
+    /// Something from outside the library was seen: whatever entered now would stand for it.
+    pub unmodelled_structure: bool,
+}
+
+impl<'l, 'p> FloatingSearch<'l, 'p> {
+    /// `most` effects are added at most. `baseline` is what the run's own facts take for granted.
+    pub fn new(
+        start: LinearModel<'p>,
+        library: &'l CandidateSet<'p>,
+        baseline: &[String],
+        most: usize,
+        options: &'l Options,
+    ) -> Self {
+        let initial_terms = start.terms.iter().map(Term::id).collect();
+        let mut plain = start.clone();
+        plain.terms.retain(|t| baseline.is_empty() || baseline.iter().any(|b| b == t.id()) || t.effect.is_exact());
+        let exact = library.candidates.iter().filter(|c| c.effect.is_exact());
+        plain.terms.extend(exact.map(|c| c.term(start.problem)));
+        plain.refine();
+        let plain = plain.linear().sse;
+        Self {
+            now: start,
+            library,
+            options,
+            plain,
+            initial_terms,
+            withdrawn: Vec::new(),
+            retained_for_bias: Vec::new(),
+            rejected_losses: Vec::new(),
+            last: None,
+            left: most,
+            exchanges: MOST_EXCHANGES as usize,
+            pending_swap: None,
+            laid: Mutex::default(),
+            unmodelled_structure: false,
+        }
+    }
+
+    pub(crate) fn step(&self, now: &LinearModel<'p>) -> Option<Found<'p>> {
+        step(now, self.library, &self.withdrawn, self.bar())
+    }
+
+    pub(crate) fn bar(&self) -> AcceptanceThreshold<'_> {
+        AcceptanceThreshold { plain: self.plain, kind: self.library.kind, options: self.options }
+    }
+
+    /// Takes an effect back that turned out not to be the answer.
+    pub fn withdraw(&mut self, id: &'p str) -> Move<'p> {
+        self.withdrawn.push(id);
+        self.rejected_losses.push(held_out(&self.now));
+        self.remove(id)
+    }
+
+    /// Adds an effect that hardly shows in the error, and keeps it.
+    pub fn uphold(&mut self, rival: ScoredCandidate<'p>) -> Move<'p> {
+        self.retained_for_bias.push(rival.term.id());
+        self.add(rival, Vec::new())
+    }
+
+    fn add(&mut self, rival: ScoredCandidate<'p>, ties: Vec<&'p str>) -> Move<'p> {
+        self.left -= 1;
+        let id = rival.term.id();
+        self.now = self.model_with(id);
+        self.last = Some(id);
+        Move::Added { rival: rival.into(), ties }
+    }
+
+    fn remove(&mut self, id: &'p str) -> Move<'p> {
+        self.left += 1;
+        self.drop(id)
+    }
+
+    fn drop(&mut self, id: &'p str) -> Move<'p> {
+        self.now = self.model_without(id);
+        Move::Removed(id)
+    }
+
+    /// What to add next.
+    fn best(&self) -> Option<Found<'p>> {
+        let plain = self.step(&self.now);
+        if !self.now.terms.iter().any(|term| self.bends(term)) {
+            return plain;
+        }
+        let than = plain.as_ref().map_or_else(|| held_out(&self.now), |p| held_out(&self.model_with(p.0.term.id())));
+        self.behind_bent(&self.now, None, &than).or(plain)
+    }
+
+    /// A given effect may have bent into the place of another one until nothing of that shows beside it: without a viscous
+    /// torque a Stribeck peak becomes negative and wide. What is missing without the given one, and makes the model with
+    /// both clearly better than one that has these held-out errors, is what it stands for.
+    pub(crate) fn behind_bent(&self, now: &LinearModel<'p>, but: Option<&'p str>, than: &[f64]) -> Option<Found<'p>> {
+        now.terms.iter().filter(|term| self.bends(term)).find_map(|given| {
+            let out: Vec<&str> = self.withdrawn.iter().copied().chain([given.id()]).chain(but).collect();
+            let found = step(&now.without(given.id()), self.library, &out, self.bar())?;
+            let losses = held_out(&self.lay(now.terms.iter().map(Term::id).chain([found.0.term.id()])));
+            let less = 1.0 - losses.iter().sum::<f64>() / than.iter().sum::<f64>();
+            (less > self.options.practical_share && !is_tie(&losses, than)).then_some(found)
+        })
+    }
+
+    /// A given effect of which the data decides more than one factor.
+    fn bends(&self, term: &Term) -> bool {
+        self.initial_terms.contains(&term.id()) && term.size() > 1
+    }
+
+    /// The model with one effect more.
+    pub fn model_with(&self, id: &'p str) -> LinearModel<'p> {
+        self.lay(self.now.terms.iter().map(Term::id).chain([id]))
+    }
+
+    pub(crate) fn model_without(&self, id: &str) -> LinearModel<'p> {
+        self.lay(self.now.terms.iter().map(Term::id).filter(|other| *other != id))
+    }
+
+    /// The model of these effects, which is asked for more than once.
+    fn lay(&self, effects: impl Iterator<Item = &'p str>) -> LinearModel<'p> {
+        let mut effects: Vec<&str> = effects.collect();
+        effects.sort_unstable();
+        let known = |laid: &BTreeMap<Vec<&str>, Laid<'p>>| laid.get(&effects).cloned();
+        if let Some(terms) = known(&self.laid.lock().unwrap_or_else(PoisonError::into_inner)) {
+            let problem = self.now.problem;
+            let terms =
+                terms.into_iter().map(|(effect, form, shape)| Term::new(effect, form, shape, problem)).collect();
+            return LinearModel { terms, ..self.now.clone() };
+        }
+        let made = lay(&self.now, &effects, self.library, self.options);
+        let shapes = made.terms.iter().map(|term| (term.effect, term.form.clone(), term.shape.clone())).collect();
+        self.laid.lock().unwrap_or_else(PoisonError::into_inner).insert(effects, shapes);
+        made
+    }
+
+    /// The model is as good with another effect in place of one, of a size that is physically possible.
+    pub fn ties(&self, effect: &str, rival: &'p str) -> bool {
+        let others = self.now.terms.iter().map(Term::id).filter(|id| *id != effect);
+        let other = self.lay(others.chain([rival]));
+        let mut sized = other.terms.iter().zip(other.linear().factors);
+        let is_possible = sized.all(|(term, factors)| term.id() != rival || term.allows(&factors));
+        // What stands in for an effect that hardly shows in the error leaves the others where it does.
+        let is_elsewhere = self.retained_for_bias.contains(&effect) && self.is_wrong_beside(&other);
+        is_possible && !is_elsewhere && is_tie(&held_out(&self.now), &held_out(&other))
+    }
+
+    /// Effects that explain nearly as much in the place of one, and with which the model is as good.
+    pub fn stand_ins(&self, term: &Term<'p>) -> Vec<&'p str> {
+        let without = self.now.without(term.id());
+        let ground = PartialRegression::of(&without);
+        let enough = SIMPLER_GAIN * (1.0 - self.now.linear().sse / ground.energy);
+        let mut near: Vec<(f64, &Regressor<'p>)> = Vec::new();
+        for candidate in &self.library.candidates {
+            let id = candidate.id();
+            if id == term.id() || self.now.contains(id) || self.withdrawn.contains(&id) {
+                continue;
+            }
+            let share = ground.own(&candidate.columns).share;
+            match near.iter_mut().find(|known| known.1.id() == id) {
+                Some(known) if share > known.0 => *known = (share, candidate),
+                None if share >= enough => near.push((share, candidate)),
+                _ => {}
+            }
+        }
+        near.retain(|(_, other)| {
+            self.ties(term.id(), other.id())
+                && !encompasses(&without, term, &other.term(self.now.problem), self.options)
+        });
+        near.into_iter().map(|(_, candidate)| candidate.id()).collect()
+    }
+
+    /// Effects that were added and are still there.
+    pub fn added(&self) -> impl Iterator<Item = &Term<'p>> {
+        self.now.terms.iter().filter(|t| !self.initial_terms.contains(&t.id()))
+    }
+
+    /// Added effects that have to be worth their error.
+    pub(crate) fn on_trial(&self) -> impl Iterator<Item = &Term<'p>> {
+        self.added().filter(|term| !self.retained_for_bias.contains(&term.id()))
+    }
+
+    /// Effects that were withdrawn and stayed out.
+    pub fn given_back(&self) -> impl Iterator<Item = &'p str> {
+        self.withdrawn.iter().copied().filter(|id| !self.now.contains(id))
+    }
+}
+
+impl<'p> Iterator for FloatingSearch<'_, 'p> {
+    type Item = Move<'p>;
+
+    fn next(&mut self) -> Option<Move<'p>> {
+        if let Some(id) = self.redundant() {
+            return Some(self.drop(id));
+        }
+        if self.unmodelled_structure {
+            return None;
+        }
+        // What explains clearly less than an effect that was withdrawn only stands in for it.
+        let stands_in = |rival: &ScoredCandidate| {
+            let clearly = |losses: &Vec<f64>| {
+                let rejected: f64 = losses.iter().sum();
+                rejected < STAND_IN_LOSS * rival.held_out || rejected < rival.held_out && !is_tie(losses, &rival.losses)
+            };
+            self.rejected_losses.iter().any(clearly)
+        };
+        let found = self.pending_swap.take().or_else(|| if self.left > 0 { self.best() } else { None });
+        let found = found.filter(|(rival, _)| !stands_in(rival));
+        let Some((rival, ties)) = found else {
+            if let Some(id) = self.impossible(&self.now).or_else(|| self.mutually_cancelling()).or_else(|| self.idle())
+            {
+                self.withdrawn.push(id);
+                return Some(self.remove(id));
+            }
+            self.exchanges = self.exchanges.checked_sub(1)?;
+            let (id, better) = self.swapped()?;
+            self.pending_swap = Some(better);
+            return Some(self.remove(id));
+        };
+        Some(self.add(rival, ties))
+    }
+}

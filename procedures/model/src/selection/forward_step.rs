@@ -1,0 +1,131 @@
+//! The candidates of one step: which is best, whether it is more than luck, and what the run cannot tell it from.
+
+use crate::linear::augmented_gram::AugmentedGrams;
+use crate::regression::candidates::CandidateSet;
+use crate::regression::linear_model::{LinearModel, Term, varpro};
+use crate::regression::partial_regression::{Orthogonalized, PartialRegression};
+use crate::regression::significance::family_wise;
+use crate::selection::acceptance::formula_error::AcceptanceThreshold;
+use crate::selection::acceptance::{aliasing, between_leg_variance};
+use crate::selection::equivalence::{encompasses, is_tie};
+use crate::thresholds::SIMPLER_GAIN;
+use rayon::prelude::*;
+
+/// Candidates that are refined and held against each other at each step.
+const SHORT_LIST: usize = 8;
+
+/// A candidate of one step with its evidence.
+#[derive(Clone)]
+pub struct ScoredCandidate<'p> {
+    pub term: Term<'p>,
+    /// Share of the remaining squared error.
+    pub share: f64,
+    /// Held-out squared error of the model with it.
+    pub held_out: f64,
+    pub p_value: f64,
+    /// Held-out squared error of each fold.
+    pub(crate) losses: Vec<f64>,
+}
+
+impl<'p> ScoredCandidate<'p> {
+    /// A candidate that was judged apart from the others, without folds.
+    pub fn alone(term: Term<'p>, share: f64, p_value: f64) -> Self {
+        Self { term, share, held_out: f64::NAN, p_value, losses: Vec::new() }
+    }
+}
+
+/// The effect that makes the model best, with those that it ties with.
+pub fn step<'p>(
+    now: &LinearModel<'p>,
+    library: &CandidateSet<'p>,
+    withdrawn: &[&'p str],
+    bar: AcceptanceThreshold,
+) -> Option<(ScoredCandidate<'p>, Vec<&'p str>)> {
+    let options = bar.options;
+    let problem = now.problem;
+    let ground = PartialRegression::of(now);
+    let PartialRegression { basis, residual, energy, .. } = &ground;
+    let energy = *energy;
+    let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
+    let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
+    let gains: Vec<Orthogonalized> = open.par_iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
+
+    // The best shape of each form of each effect, the most telling first.
+    let mut best: Vec<usize> = Vec::new();
+    let form = |at: usize| (library.candidates[open[at]].id(), library.candidates[open[at]].form.name);
+    for at in 0..open.len() {
+        match best.iter_mut().find(|b| form(**b) == form(at)) {
+            Some(b) if gains[at].share > gains[*b].share => *b = at,
+            Some(_) => {}
+            None => best.push(at),
+        }
+    }
+    best.sort_by(|a, b| gains[*b].share.total_cmp(&gains[*a].share));
+    best.truncate(SHORT_LIST);
+    best.retain(|b| gains[*b].share > 0.5 * options.practical_share);
+    if best.is_empty() {
+        return None;
+    }
+
+    let least_share = bar.least_share(now, energy);
+    let worth_it: Vec<(Term, f64)> = best
+        .par_iter()
+        .map(|b| {
+            let mut term = [library.candidates[open[*b]].term(problem)];
+            let sse = varpro(&mut term, basis, residual, problem);
+            let [term] = term;
+            let possible =
+                term.allows(&ground.own(&term.columns).factors()) && bar.keeps_parameters_feasible(now, &term);
+            let possible = possible
+                && !between_leg_variance::is_random_leg_effect(&term, now, &ground, bar.kind, options)
+                && !aliasing::is_none(&term, now, &ground);
+            let sse = if possible { sse } else { energy };
+            (term, 1.0 - sse / energy)
+        })
+        .filter(|(term, share)| *share >= least_share.max(aliasing::least_share(term)))
+        .collect();
+    let sets = std::iter::once([].as_slice()).chain(worth_it.iter().map(|(term, _)| term.columns.as_slice()));
+    let beside = AugmentedGrams::new(&now.columns(), sets, residual, &problem.fold, problem.folds);
+    let present: f64 = beside.grams(0).held_out().iter().sum();
+    let mut rivals: Vec<ScoredCandidate> = worth_it
+        .par_iter()
+        .enumerate()
+        .map(|(k, (term, share))| {
+            let losses = beside.grams(1 + k).held_out();
+            ScoredCandidate { term: term.clone(), share: *share, held_out: losses.iter().sum(), p_value: 1.0, losses }
+        })
+        .filter(|r| r.held_out < present)
+        .collect();
+    rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
+    // The forms of one effect are one group: the best of them speaks for it.
+    let mut seen: Vec<&str> = Vec::new();
+    rivals.retain(|r| {
+        !seen.contains(&r.term.id()) && {
+            seen.push(r.term.id());
+            true
+        }
+    });
+    let first = rivals.first()?;
+
+    let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(&first.losses, &rivals[*i].losses)).collect();
+    // Of what explains the data equally well, the simplest, and of those the one that the contract names first.
+    let near = |i: &usize| {
+        let gain = |i: usize| present - rivals[i].held_out;
+        let as_good = rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;
+        as_good && gain(*i) >= SIMPLER_GAIN * gain(0)
+    };
+    let rank = |i: &usize| {
+        let id = rivals[*i].term.id();
+        (rivals[*i].term.size(), library.candidates.iter().position(|c| c.id() == id))
+    };
+    let winner = ties.iter().copied().filter(near).chain([0]).min_by_key(rank).unwrap_or(0);
+    ties.push(0);
+    ties.retain(|i| *i != winner && !encompasses(now, &rivals[winner].term, &rivals[*i].term, options));
+
+    let ties = ties.into_iter().map(|i| rivals[i].term.id()).collect();
+    let mut rival = rivals.swap_remove(winner);
+    let scores =
+        open.par_iter().zip(&gains).map(|(i, own)| ground.score(&library.candidates[*i].columns, own)).collect();
+    rival.p_value = family_wise(&rival.term.columns, scores, &ground, options);
+    (rival.p_value <= options.alpha).then_some((rival, ties))
+}

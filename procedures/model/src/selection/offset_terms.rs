@@ -1,0 +1,45 @@
+//! What enters a model with a factor of one has no size that a search could find: it is there or it is not.
+
+use crate::Options;
+use crate::regression::candidates::CandidateSet;
+use crate::regression::cross_validation::held_out;
+use crate::regression::linear_model::Term;
+use crate::regression::partial_regression::PartialRegression;
+use crate::regression::significance::significance;
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::selection::advance::SelectionStep;
+use crate::selection::equivalence::is_tie;
+use crate::selection::forward_step::ScoredCandidate;
+
+/// The power balance that a model lacks and its data shows. Effects of friction must not explain what the joint only passes on.
+pub fn advance<'p>(
+    start: &TwoStageModel<'p>,
+    library: &CandidateSet<'p>,
+    options: &Options,
+) -> Option<SelectionStep<'p>> {
+    let problem = start.main.problem;
+    let is_out = |id: &str| !start.effects.iter().any(|e| e == id);
+    let missing = |e: &&dyn crate::Effect| e.is_offset() && is_out(e.info().id) && e.hidden(&problem.view).is_none();
+    let effect = start.spec.known().find(missing)?;
+    let form = effect.forms(&problem.view).into_iter().next()?;
+    let term = Term::new(effect, form, Vec::new(), problem);
+    let mut with = start.main.clone();
+    for column in &term.columns {
+        with.given.iter_mut().zip(column).for_each(|(g, c)| *g += c);
+    }
+    with.refine();
+    let (was, is) = (held_out(&start.main), held_out(&with));
+    let share = 1.0 - with.linear().sse / start.main.linear().sse;
+    let p_value = significance(&term, library, &PartialRegression::of(&start.main), options);
+    if share < options.practical_share || p_value > options.alpha || is_tie(&is, &was) {
+        return None;
+    }
+    let effects = start.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
+    let after = start.of(with, effects);
+    Some(SelectionStep {
+        added: Some(ScoredCandidate::alone(term, share, p_value)),
+        removed: None,
+        ties: Vec::new(),
+        after,
+    })
+}

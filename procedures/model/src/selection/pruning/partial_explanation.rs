@@ -1,0 +1,79 @@
+//! An added effect that explains only a part of what shows over its own axis.
+
+use crate::Options;
+use crate::effect::Regime;
+use crate::linear::basis::dot;
+use crate::preprocess::{Prepared, Problem};
+use crate::regression::linear_model::Term;
+use crate::residual_analysis::lack_of_fit::structured;
+use crate::residual_analysis::maps::Maps;
+use crate::selection::floating_search::FloatingSearch;
+use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
+
+/// An added effect that is only the nearest relative of what is missing: structure remains over its own axis, and any
+/// function of that axis would take away much more than it does. A wave over the angle is not the answer to a bump at
+/// one angle.
+pub fn half_explained<'p>(
+    search: &FloatingSearch<'_, 'p>,
+    axis: &str,
+    prepared: &Prepared,
+    options: &Options,
+) -> Option<&'p str> {
+    // What depends on the past is a function of no axis, even where a repeated motion makes it look like one.
+    let of_axes = search.added().filter(|term| term.effect.regime() != Regime::Hysteresis);
+    least_whole(search, of_axes, axis, prepared, options)
+}
+
+/// A wave over a part of a turn of which less than two periods were seen, where any function of its angle would take more, or
+/// structure remains over the angle beside it: a bump at this place. A weak one leaves nothing that could be called structure.
+pub fn bump<'p>(
+    search: &FloatingSearch<'_, 'p>,
+    maps: &Maps,
+    prepared: &Prepared,
+    options: &Options,
+) -> Option<&'p str> {
+    let view = &search.now.problem.view;
+    let is_open = |term: &&Term<'p>| {
+        let turns = term.effect.wave().map(|angle| view.turns(angle));
+        turns.zip(term.shape.first()).is_some_and(|(turns, order)| turns < 1.0 && order * turns < PERIODS_SEEN)
+    };
+    let open = search.added().find(is_open)?;
+    let axis = prepared.column_name(open.effect.wave()?);
+    let remains = (structured(maps) == Some(axis)).then_some(open.id());
+    remains.or_else(|| least_whole(search, search.added().filter(is_open), axis, prepared, options))
+}
+
+/// The effect that takes least of what any function of the axis would take, where that is too little.
+fn least_whole<'s, 'p: 's>(
+    search: &'s FloatingSearch<'_, 'p>,
+    terms: impl Iterator<Item = &'s Term<'p>>,
+    axis: &str,
+    prepared: &Prepared,
+    options: &Options,
+) -> Option<&'p str> {
+    let now = &search.now;
+    let (full, factors) = (now.linear().sse, now.linear().factors);
+    let share = |term: &Term<'p>| {
+        let at = now.terms.iter().position(|t| t.id() == term.id())?;
+        let mut contribution = vec![0.0; now.problem.rows()];
+        for (column, factor) in term.columns.iter().zip(&factors[at]) {
+            contribution.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        }
+        let residual = search.now.without(term.id()).linear().residual;
+        let own = 1.0 - full / dot(&residual, &residual);
+        let any =
+            Maps::new(prepared, residual, options).any_function(&Maps::new(prepared, contribution, options), axis)?;
+        Some((term.id(), own / any / least_share(term, now.problem)))
+    };
+    let least = terms.filter_map(share).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (least.1 < 1.0).then_some(least.0)
+}
+
+/// Share of what any function of its own axis would take that an effect has to take.
+fn least_share(term: &Term, problem: &Problem) -> f64 {
+    let wave = term.effect.wave().zip(term.shape.first());
+    match wave.is_some_and(|(angle, order)| order * problem.view.turns(angle) < PERIODS_SEEN) {
+        true => WHOLE_CURVE,
+        false => WHOLE_EXPLANATION,
+    }
+}

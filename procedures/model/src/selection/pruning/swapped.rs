@@ -1,0 +1,28 @@
+//! An added effect gives way to another one with which the model is clearly better.
+
+use crate::regression::cross_validation::held_out;
+use crate::regression::linear_model::Term;
+use crate::selection::equivalence::is_tie;
+use crate::selection::floating_search::{FloatingSearch, Found};
+use rayon::prelude::*;
+
+impl<'p> FloatingSearch<'_, 'p> {
+    /// An added effect in whose place another one makes the model clearly better, with that one: an effect that came first
+    /// because it looks a little like two that are missing. No effect gives way to one that this run cannot tell it from.
+    pub(crate) fn swapped(&self) -> Option<(&'p str, Found<'p>)> {
+        let losses = held_out(&self.now);
+        let present: f64 = losses.iter().sum();
+        let ids: Vec<&'p str> = self.added().map(Term::id).collect();
+        let alone = self.now.terms.len() <= self.initial_terms.len() + 1;
+        let better = |id: &'p str| {
+            let rest = self.now.without(id);
+            let plain = if alone { None } else { self.step(&rest) };
+            let plain = plain.filter(|(rival, _)| {
+                let clearly = rival.held_out < (1.0 - self.options.practical_share) * present;
+                rival.term.id() != id && clearly && !is_tie(&rival.losses, &losses)
+            });
+            plain.or_else(|| self.behind_bent(&rest, Some(id), &losses)).map(|found| (id, found))
+        };
+        ids.into_par_iter().find_map_first(better)
+    }
+}

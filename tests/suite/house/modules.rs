@@ -1,0 +1,148 @@
+//! Arrows inside the model crate: no circle between the modules of a folder, and stages lean only on earlier ones.
+
+use super::root;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+type ModulePath = Vec<String>;
+/// For each module of a folder those of the same folder that it leans on, with an example of who does.
+type Arrows = BTreeMap<String, BTreeMap<String, String>>;
+
+/// The pipeline, as ARCHITECTURE.md draws it: a stage leans on those before it, never on one behind it.
+const PIPELINE: [&str; 9] = [
+    "signal",
+    "effect",
+    "preprocess",
+    "regression",
+    "inference",
+    "residual_analysis",
+    "selection",
+    "diagnosis",
+    // Leans on neither selection nor diagnosis: it imagines runs of a model that is given.
+    "experiment_design",
+];
+
+#[test]
+fn no_modules_of_the_model_lean_on_each_other_in_a_circle() {
+    for (folder, arrows) in &arrows_of(&sources(&root().join("procedures/model/src"))) {
+        for module in arrows.keys() {
+            assert!(
+                !reach(arrows, module).contains(module),
+                "{} is in a circle: {:?}",
+                [folder.clone(), vec![module.clone()]].concat().join("::"),
+                arrows[module]
+            );
+        }
+    }
+}
+
+#[test]
+fn stages_of_the_model_lean_on_earlier_ones() {
+    let all = arrows_of(&sources(&root().join("procedures/model/src")));
+    let arrows = &all[&Vec::new()];
+    for (at, stage) in PIPELINE.iter().enumerate() {
+        for later in &PIPELINE[at + 1..] {
+            let example = arrows.get(*stage).and_then(|to| to.get(*later));
+            assert!(example.is_none(), "{stage} must not lean on {later}: {example:?}");
+        }
+    }
+}
+
+fn reach<'a>(arrows: &'a Arrows, from: &'a str) -> BTreeSet<&'a String> {
+    let (mut seen, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(next) = open.pop() {
+        for to in arrows.get(next).into_iter().flat_map(BTreeMap::keys) {
+            if seen.insert(to) {
+                open.push(to);
+            }
+        }
+    }
+    seen
+}
+
+/// Every module's source without comments and tests. The root is the empty path.
+fn sources(folder: &Path) -> BTreeMap<ModulePath, String> {
+    let (mut found, mut open) = (BTreeMap::new(), vec![(folder.to_owned(), Vec::new())]);
+    while let Some((folder, module)) = open.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder of sources").map(|entry| entry.expect("an entry")) {
+            let path = entry.path();
+            let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            let inner = [module.clone(), vec![name.clone()]].concat();
+            if path.is_dir() {
+                open.push((path, inner));
+            } else if path.extension().is_some_and(|e| e == "rs") && name != "tests" {
+                let own = if ["mod", "lib"].contains(&name.as_str()) { module.clone() } else { inner };
+                found.insert(own, code(&std::fs::read_to_string(&path).expect("a source file")));
+            }
+        }
+    }
+    found
+}
+
+fn code(source: &str) -> String {
+    let source = source.split("#[cfg(test)]\n").next().unwrap_or_default();
+    source.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+}
+
+/// Arrows between the modules of each folder; what lies in a subfolder counts for it.
+fn arrows_of(sources: &BTreeMap<ModulePath, String>) -> BTreeMap<ModulePath, Arrows> {
+    let root = &sources[&Vec::new()];
+    let exported: Vec<ModulePath> = statements(root, "pub use ").flat_map(|tree| leaves(&tree)).collect();
+    let mut all: BTreeMap<ModulePath, Arrows> = BTreeMap::new();
+    for (from, text) in sources.iter().filter(|(from, _)| !from.is_empty()) {
+        for path in references(text) {
+            let to = module_of(&path, sources, &exported);
+            let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+            if let (Some(one), Some(other)) = (from.get(shared), to.get(shared)) {
+                let arrows = all.entry(from[..shared].to_vec()).or_default();
+                let example = format!("{} uses {}", from.join("::"), to.join("::"));
+                arrows.entry(one.clone()).or_default().insert(other.clone(), example);
+            }
+        }
+    }
+    all
+}
+
+/// Paths below `crate` that a source names, in `use` and in place.
+fn references(text: &str) -> Vec<ModulePath> {
+    let used = statements(text, "use crate").flat_map(|tree| leaves(&format!("crate{tree}")));
+    let in_place = text.split("crate::").skip(1).map(|rest| {
+        let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).unwrap_or(rest.len());
+        rest[..end].split("::").filter(|s| !s.is_empty()).map(String::from).collect()
+    });
+    used.map(|path| path[1..].to_vec()).chain(in_place.filter(|path: &ModulePath| !path.is_empty())).collect()
+}
+
+fn statements<'t>(text: &'t str, begin: &'t str) -> impl Iterator<Item = String> + 't {
+    text.split(begin).skip(1).filter_map(|rest| Some(rest.split_once(';')?.0.split_whitespace().collect::<String>()))
+}
+
+/// `a::{b, c::d}` as `a::b` and `a::c::d`.
+fn leaves(tree: &str) -> Vec<ModulePath> {
+    let Some((before, inner)) = tree.split_once('{') else {
+        return vec![tree.split("::").filter(|s| !s.is_empty()).map(String::from).collect()];
+    };
+    let before: ModulePath = before.split("::").filter(|s| !s.is_empty()).map(String::from).collect();
+    let (mut depth, mut parts) = (0, vec![String::new()]);
+    for c in inner.trim_end_matches('}').chars() {
+        depth += i32::from(c == '{') - i32::from(c == '}');
+        match c {
+            ',' if depth == 0 => parts.push(String::new()),
+            c => parts.last_mut().expect("one part at least").push(c),
+        }
+    }
+    let parts = parts.iter().filter(|part| !part.is_empty());
+    // What `trim_end_matches` took too many of closes the last part.
+    let closed = parts.map(|p| p.clone() + &"}".repeat(p.matches('{').count() - p.matches('}').count()));
+    closed.flat_map(|part| leaves(&part)).map(|leaf| [before.clone(), leaf].concat()).collect()
+}
+
+/// The module that a path leads into: the longest that there is, or the one that the root exports the name from.
+fn module_of(path: &[String], sources: &BTreeMap<ModulePath, String>, exported: &[ModulePath]) -> ModulePath {
+    let longest = (1..=path.len()).rev().map(|n| path[..n].to_vec()).find(|module| sources.contains_key(module));
+    longest.unwrap_or_else(|| {
+        let from = exported.iter().find(|leaf| leaf.last() == path.first());
+        // `report::*` exports the rest.
+        from.map_or_else(|| vec!["report".into()], |leaf| leaf[..leaf.len() - 1].to_vec())
+    })
+}
