@@ -14,8 +14,12 @@ fn a_long_run_is_judged_on_some_of_its_rows() {
         let shape = Shape { rows: 150_795, segment: 785, repeats: 3, ..Shape::default() };
         let problem = prepare(&table(kind, &shape), &Options::default()).unwrap().main;
         assert!((4_000..=13_000).contains(&problem.rows()), "{kind}: {} rows", problem.rows());
-        assert!(problem.twins.len() > 1_000, "{kind}: {} pairs of moments in different repeats", problem.twins.len());
-        let (first, second) = problem.twins[problem.twins.len() / 2];
+        assert!(
+            problem.replicate_pairs.len() > 1_000,
+            "{kind}: {} pairs of moments in different repeats",
+            problem.replicate_pairs.len()
+        );
+        let (first, second) = problem.replicate_pairs[problem.replicate_pairs.len() / 2];
         let of = |row: usize| (problem.repeat[row], problem.segment[row]);
         assert_ne!(of(first), of(second), "{kind}");
     }
