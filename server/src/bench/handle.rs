@@ -101,7 +101,12 @@ impl BenchHandle {
 
     /// A run is on, about to be, or not yet stored.
     pub fn is_busy(&self) -> bool {
-        self.shared.is_busy()
+        self.shared.is_busy(&self.shared.status.borrow())
+    }
+
+    /// Returns when no run is on, about to be, or not yet stored; also when the daemon ends.
+    pub async fn until_free(&self) {
+        drop(self.watch().wait_for(|status| !self.shared.is_busy(status)).await);
     }
 
     /// Whether this run was there to hear it.

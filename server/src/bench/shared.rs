@@ -110,8 +110,9 @@ impl Shared {
         }
     }
 
-    pub fn is_busy(&self) -> bool {
-        self.claimed.load(Ordering::Acquire) || !self.status.borrow().runs.is_empty()
+    /// `status` is that of this bench: whoever waits for a change holds it already, and must not ask for it again.
+    pub fn is_busy(&self, status: &Status) -> bool {
+        self.claimed.load(Ordering::Acquire) || !status.runs.is_empty()
     }
 
     pub fn change<T: Default>(&self, change: impl FnOnce(&mut Status) -> T) -> T {

@@ -121,9 +121,8 @@ impl Lab {
     pub(super) fn judge_at_its_end(&self, bench: &BenchHandle, run: i64) {
         let (lab, bench) = (self.clone(), bench.clone());
         tokio::spawn(async move {
-            if bench.watch().wait_for(|_| !bench.is_busy()).await.is_ok() {
-                lab.judge(run).await;
-            }
+            bench.until_free().await;
+            lab.judge(run).await;
         });
     }
 

@@ -185,17 +185,14 @@ impl Pilot {
         );
         self.keep(AutopilotStep { run: Some(id), experiment: Some(experiment.clone()), ..step }).await?;
 
-        let mut watch = handle.watch();
-        let over = |_: &_| !handle.is_busy();
         let cut = tokio::select! {
-            _ = watch.wait_for(over) => None,
+            () = handle.until_free() => None,
             by = self.stop.wait_for(Option::is_some) => by.ok().and_then(|by| by.clone()),
         };
         if let Some(by) = cut {
             // It may have come to its end by itself in between.
             let _ = self.lab.control(id, Control::Stop, &by).await;
-            // An error says that the thread has ended, and the run with it.
-            let _ = watch.wait_for(over).await;
+            handle.until_free().await;
         }
         let run = self.lab.run(id).await?;
         let summary = &run.summary;
