@@ -7,6 +7,11 @@ use crate::view::{self, Run, RunEvent, RunList, Samples};
 use jointbench_instrument::{Meta, RunTable};
 use jointbench_procedure::{Control, Demand, Plan};
 use serde_json::{Map, Value, json};
+use std::time::Duration;
+use tokio::time::timeout;
+
+/// The end of a run is stored within this time, or the disk does not take it.
+const STORES: Duration = Duration::from_secs(2);
 
 impl Lab {
     /// Plans, checks against the limits, and hands the plan to the thread of the bench.
@@ -59,13 +64,13 @@ impl Lab {
         self.run(run).await
     }
 
-    /// Returns when a run of this bench whose end is stored, so that anybody may know of it, has given the bench back.
+    /// Returns when a run of this bench that is over, so that anybody may know of it, has given the bench back.
     async fn let_go(&self, bench: &BenchHandle) {
         let over: Vec<i64> =
-            bench.status().runs.iter().filter(|(_, run)| run.stored && !run.ended).map(|(id, _)| *id).collect();
+            bench.status().runs.iter().filter(|(_, run)| run.state.is_final()).map(|(id, _)| *id).collect();
         let gone = |status: &Status| over.iter().all(|run| !status.runs.contains_key(run));
-        // An error says that the daemon ends.
-        drop(bench.watch().wait_for(gone).await);
+        // One that cannot be stored keeps the bench, which is told to whoever claims it.
+        drop(timeout(STORES, bench.watch().wait_for(gone)).await);
     }
 
     pub async fn run(&self, id: i64) -> Answer<Run> {
