@@ -46,11 +46,6 @@ impl Fault {
         matches!(self.kind, FaultKind::Disconnected { .. } | FaultKind::NotOpened { .. })
     }
 
-    /// Somebody else answers than when the bench was opened.
-    pub fn is_wrong_instrument(&self) -> bool {
-        matches!(self.kind, FaultKind::WrongInstrument { .. })
-    }
-
     /// Worth one more try after the link was drained and the instrument identified again.
     pub fn is_retryable(&self) -> bool {
         matches!(self.kind, FaultKind::Silent { .. } | FaultKind::Garbled { .. } | FaultKind::StreamGap { .. })

@@ -151,45 +151,6 @@ fn another_unit_in_the_place_of_an_instrument_is_named_as_one() {
     check_all(others, &[Safe::SafeCommanded, Safe::UnsafeUnknown]);
 }
 
-/// Nothing else is wrong: only its own word gives it away, which is asked for before a step counts as finished.
-#[test]
-fn another_unit_behind_a_port_that_was_never_lost_is_named_before_its_step_counts() {
-    let check = |id: &str, instrument, safe: Safe, before: Option<Trouble>| {
-        let case = format!("{id}: {instrument:?} behind {before:?}");
-        let swap = (instrument, Trouble::Exchanged, FROM_S + PULLED_S, None);
-        let off = before.map(|trouble| (instrument, trouble, FROM_S, None));
-        let (mock, mut bench) = start(off.into_iter().chain([swap]));
-        let (end, Kept { events, .. }) = play(&mut bench, id, serde_json::Value::Null);
-        let reason = end.reason.unwrap_or_default();
-        assert_eq!((end.state, end.safe), (RunState::Failed, safe), "{case}: {reason}");
-        assert!(reason.contains("another instrument answers: expected"), "{case}: {reason}");
-        let named = |event: &EventKind| match event {
-            EventKind::Fault { fault, recovered: false } => matches!(fault.kind, FaultKind::WrongInstrument { .. }),
-            _ => false,
-        };
-        assert!(events.iter().any(named), "{case}: the journal names it");
-        let steps = |wanted: fn(&EventKind) -> bool| events.iter().filter(|event| wanted(event)).count();
-        let begun = steps(|event| matches!(event, EventKind::StepStarted { .. }));
-        let finished = steps(|event| matches!(event, EventKind::StepFinished { .. }));
-        assert_eq!(begun, finished + 1, "{case}: the step in which it happened does not count");
-        mock.trouble(instrument, Trouble::None);
-        bench.clock.sleep_until_s(bench.clock.now_s() + 3.0);
-        let _told = bench.joint.recover();
-        assert_eq!(secure(&mut bench).safe, Safe::SafeVerified, "{case}");
-    };
-    use MockInstrument::{Brake, Joint, TorqueSensor};
-    let check = &check;
-    std::thread::scope(|scope| {
-        for before in [None, Some(Trouble::PowerCycled)] {
-            scope.spawn(move || check("friction", TorqueSensor, Safe::SafeVerified, before));
-            scope.spawn(move || check("stiffness", TorqueSensor, Safe::SafeVerified, before));
-            scope.spawn(move || check("friction", Brake, Safe::SafeCommanded, before));
-        }
-        // A drive without power does not answer, whatever is in its place afterwards.
-        scope.spawn(move || check("friction", Joint, Safe::SafeCommanded, None));
-    });
-}
-
 #[test]
 fn a_torque_stream_that_fails_ends_its_run_and_the_bench_is_read_back_safe() {
     std::thread::scope(|scope| {

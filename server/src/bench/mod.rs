@@ -2,7 +2,6 @@
 //! them go messages ([`wire`]); what is to be stored goes through one task ([`keeper`]), which alone waits for the disk.
 
 mod display;
-mod exchanged;
 mod handle;
 mod health;
 mod instruments;

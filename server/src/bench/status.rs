@@ -1,8 +1,6 @@
 //! What the server knows of a bench.
 
-use super::exchanged;
 use super::health::Incoming;
-use crate::config::BenchDescription;
 use crate::store::RunCommit;
 use crate::view::{BenchState, Blocked, Instrument, InstrumentFault, Progress};
 use jiff::Timestamp;
@@ -127,15 +125,14 @@ impl Status {
     }
 
     /// A run has met a fault of an instrument, which is not ready until it was tried again where it did not come back.
-    pub(super) fn met(&mut self, Met { at, fault, recovered }: &Met, description: &BenchDescription) -> Option<New> {
+    pub(super) fn met(&mut self, Met { at, fault, recovered }: &Met) -> Option<New> {
         let instrument = self.instruments.iter_mut().find(|one| one.name == fault.instrument)?;
-        let told = exchanged::told(fault, &instrument.role, description);
         if !recovered {
             instrument.ready = false;
-            instrument.fault = Some(told.clone());
+            instrument.fault = Some(fault.to_string());
             instrument.since.get_or_insert_with(|| at.to_string());
         }
-        Some(enter(instrument, *at, told))
+        Some(enter(instrument, *at, fault.to_string()))
     }
 
     /// The instruments as they were found by asking them. What was wrong before stays known; what is new is told.

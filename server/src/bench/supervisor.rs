@@ -190,7 +190,7 @@ impl Supervisor {
                 status.state = bench_state(commit.state);
             }
             let met = commit.events.iter().filter_map(|event| met(&event.kind));
-            met.filter_map(|met| status.met(&met, &shared.description)).collect()
+            met.filter_map(|met| status.met(&met)).collect()
         });
         self.keep_faults(new);
         if !commit.state.is_final() && commit.events.iter().any(|event| matches!(event.kind, EventKind::State { .. })) {

@@ -196,7 +196,7 @@ impl CurrentSource for ScpiSource {
         self.command_off()?;
         match self.output(false) {
             // Whichever supply answers, it is the one that feeds the coil. It may be one of another dialect.
-            Err(fault) if fault.is_wrong_instrument() => {
+            Err(Fault { kind: FaultKind::WrongInstrument { .. }, .. }) => {
                 self.command_off()?;
                 self.read_back(false)
             }

@@ -85,7 +85,7 @@ impl Session<'_> {
         })
     }
 
-    pub(super) fn ask_stage<T>(
+    fn ask_stage<T>(
         &mut self,
         request: impl FnMut(&mut (dyn AlignmentStage + 'static)) -> Result<T, Fault>,
     ) -> Result<T, Ending> {

@@ -2,7 +2,6 @@
 
 mod arm;
 mod ask;
-mod confirm;
 mod drive;
 mod encoders;
 mod ending;

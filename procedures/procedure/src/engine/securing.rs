@@ -6,6 +6,7 @@ use super::session::Session;
 use crate::event::{EventKind, Safe};
 use crate::guard::STANDSTILL_LINK_RAD_S;
 use crate::profile::Profile;
+use jointbench_instrument::FaultKind;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -53,12 +54,9 @@ impl Session<'_> {
         secured.safe
     }
 
-    /// An instrument that is gone, or silent, may have been exchanged for another: what answers in its place now is the
-    /// reason then.
+    /// An instrument that is gone may have been exchanged for another: what answers in its place now is the reason then.
     pub(super) fn look_behind(&mut self, ending: &mut Ending) {
-        let Some(gone) = ending.fault_mut().filter(|fault| fault.is_port_lost() || fault.is_retryable()) else {
-            return;
-        };
+        let Some(gone) = ending.fault_mut().filter(|fault| fault.is_port_lost()) else { return };
         let clock = Arc::clone(&self.bench.clock);
         let Some(instrument) = self.bench.instrument(&gone.instrument) else { return };
         let give_up_s = clock.now_s() + PLUGGED_S;
@@ -71,7 +69,7 @@ impl Session<'_> {
             }
         };
         if let Err(found) = found
-            && found.is_wrong_instrument()
+            && matches!(found.kind, FaultKind::WrongInstrument { .. })
         {
             *gone = found.clone();
             self.journal.tell(clock.now_s(), EventKind::Fault { fault: found, recovered: false });

@@ -1,7 +1,6 @@
 //! The state of one run while it lasts.
 
 use super::ask::{Trouble, ask};
-use super::confirm::Confirming;
 use super::encoders::Stood;
 use super::ending::Ending;
 use super::journal::Journal;
@@ -66,7 +65,6 @@ pub(super) struct Session<'a> {
     pub pose: Option<Pose>,
     pub stood: Option<Stood>,
     pub learning: Learning,
-    pub confirming: Confirming,
     /// The encoder under test has not been seen inconsistent since this was last set.
     pub consistent: bool,
     /// Replies that were missed and asked for again in this step.
@@ -171,7 +169,6 @@ impl<'a> Session<'a> {
             pose: None,
             stood: None,
             learning: Learning::default(),
-            confirming: Confirming::default(),
             consistent: true,
             recoveries: 0,
             bench,

@@ -60,17 +60,13 @@ impl Session<'_> {
         }
         let start_s = self.beat.next_s.max(self.bench.clock.now_s());
         (self.beat.late, self.recoveries) = (0, 0);
-        self.trust_nobody();
         let rows_before = self.journal.rows();
         self.pace.step_started(index, &step.label, start_s);
         let label = step.label.clone();
         self.journal.tell(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
         if let Place::Edge(edge) = &step.place {
             return match self.hunt(step, segment, edge)? {
-                Left::Done => {
-                    self.confirm_rest()?;
-                    self.checkpoint(index, segment, rows_before)
-                }
+                Left::Done => self.checkpoint(index, segment, rows_before),
                 paused => Ok(paused),
             };
         }
@@ -86,7 +82,6 @@ impl Session<'_> {
             least_brake_a = if planned_a >= least_brake_a { 0.0 } else { least_brake_a };
             let velocity_rad_s = step.velocity.at(t_s);
             let asked = self.asked(step, t_s, &mut friction);
-            self.confirm_towards_end(duration_s - t_s);
             self.tick_asking(now_s, asked, planned_a.max(least_brake_a), Some((segment, step.repeat)))?;
             if let (Drive::Current { until, .. }, Asked::Current { a }) = (&step.drive, asked)
                 && moved.is_enough(*until, a, self.joint)
@@ -105,7 +100,6 @@ impl Session<'_> {
         }
         // The tick that was waited for belongs to the next step.
         self.beat.next_s -= self.beat.period_s;
-        self.confirm_rest()?;
         self.checkpoint(index, segment, rows_before)
     }
 

@@ -148,7 +148,18 @@ impl Session<'_> {
         let torque = self.feel_torque(&joint)?;
         self.link_torque_nm = torque.map(|torque| torque.nm);
         let encoders = self.feel_encoders()?;
-        self.feel_slow(now_s)?;
+        if now_s >= self.held.next_s {
+            self.held.next_s = now_s + SLOW_EVERY_S;
+            self.check_drive()?;
+        }
+        if now_s >= self.held.brake_next_s && !self.lost.brake {
+            let changes = now_s < self.commanded.brake_at_s + CHANGES_FOR_S;
+            self.held.brake_next_s = now_s + if changes { CHANGING_EVERY_S } else { SLOW_EVERY_S };
+            self.feel_brake()?;
+        }
+        if now_s >= self.felt_next_s {
+            self.feel_warmth()?;
+        }
         let row_s = encoders.map_or(joint.at_s, |both| both.test.at_s);
         Ok(Moment {
             time_s: to_time_step(row_s - self.journal.started_s),
@@ -166,27 +177,6 @@ impl Session<'_> {
             pose: self.pose,
             motor_current_setpoint_a: self.commanded.motor_current_a,
         })
-    }
-
-    /// What is read seldom; a tick that has nothing of it to read has room for a question who is there.
-    fn feel_slow(&mut self, now_s: f64) -> Result<(), Ending> {
-        let mut has_room = true;
-        if now_s >= self.held.next_s {
-            has_room = false;
-            self.held.next_s = now_s + SLOW_EVERY_S;
-            self.check_drive()?;
-        }
-        if now_s >= self.held.brake_next_s && !self.lost.brake {
-            has_room = false;
-            let changes = now_s < self.commanded.brake_at_s + CHANGES_FOR_S;
-            self.held.brake_next_s = now_s + if changes { CHANGING_EVERY_S } else { SLOW_EVERY_S };
-            self.feel_brake()?;
-        }
-        if now_s >= self.felt_next_s {
-            has_room &= self.bench.thermometer.is_none();
-            self.feel_warmth()?;
-        }
-        if has_room { self.confirm_next() } else { Ok(()) }
     }
 
     /// The thermometer's channels, where there is one. The first stands for the joint's temperature where the joint tells none.
@@ -229,8 +219,6 @@ impl Session<'_> {
     fn check_drive(&mut self) -> Result<(), Ending> {
         let health = self.ask_joint(|joint| joint.health())?;
         if !health.armed || !health.errors.is_empty() {
-            // Another drive in its place is not armed either.
-            self.ask_joint(|joint| joint.identify())?;
             let what = format!("the drive gave up in mid-run: {}", health.errors.join(", "));
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
@@ -240,7 +228,7 @@ impl Session<'_> {
     }
 
     /// While a link was being recovered nobody fed the drive's watchdog.
-    pub(super) fn trust_joint(&mut self, recovered_before: u32) -> Result<(), Ending> {
+    fn trust_joint(&mut self, recovered_before: u32) -> Result<(), Ending> {
         if self.recoveries == recovered_before {
             return Ok(());
         }

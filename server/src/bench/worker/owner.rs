@@ -3,7 +3,6 @@
 use super::Command;
 use super::desk::Desk;
 use super::recorder::OutboxRecorder;
-use crate::bench::exchanged;
 use crate::bench::health::expected;
 use crate::bench::instruments::{Opened, open, unreached};
 use crate::bench::wire::Report;
@@ -96,10 +95,7 @@ impl Owner {
                     (instrument.ready, instrument.identity) = (true, Some(identity.into()));
                     (instrument.fault, instrument.since) = (None, None);
                 }
-                Some(Err(fault)) => {
-                    let told = exchanged::told(&fault, &instrument.role, &self.description);
-                    (instrument.ready, instrument.fault) = (false, Some(told));
-                }
+                Some(Err(fault)) => (instrument.ready, instrument.fault) = (false, Some(fault.to_string())),
                 None => {}
             }
         }
