@@ -333,16 +333,17 @@ export async function flyAndStop(page, address) {
 	const form = page.getByRole('form', { name: 'Autopilot' });
 	await form.getByLabel('runs, at most').fill('2');
 	await form.getByLabel('bench time').fill('20');
-	const flight = page.locator('[data-autopilot=running]');
-	// A mock bench that keeps to no clock measures within a moment: every picture is looked at.
+	// A mock bench that keeps to no clock measures within a moment: every picture is looked at, and the stop pressed in it.
 	const measuring = () => {
-		const said = document.querySelector('[data-autopilot=running]')?.textContent ?? '';
-		return said.includes('Measuring') && /step \d+ of \d+/.test(said);
+		const running = document.querySelector('[data-autopilot=running]');
+		const said = running?.textContent ?? '';
+		if (!said.includes('Measuring') || !/step \d+ of \d+/.test(said)) return false;
+		[...running.querySelectorAll('button')].find((button) => button.textContent.trim() === 'Stop')?.click();
+		return true;
 	};
 	const measures = page.waitForFunction(measuring, null, { polling: 'raf', timeout: 30_000 });
 	await form.getByRole('button', { name: 'Start the autopilot' }).click();
 	await measures.catch(() => expect(false, 'the autopilot does not measure'));
-	await flight.getByRole('button', { name: 'Stop' }).click();
 	const ended = page.locator('[data-autopilot=stopped]');
 	await ended.waitFor({ timeout: RUN_MS }).catch(() => expect(false, 'the autopilot does not stop'));
 	return ended.innerText();

@@ -56,8 +56,10 @@ fn a_changed_byte_is_named_and_hides_no_other_run() {
 
     let file = data.join("jointbench.db");
     let mut bytes = std::fs::read(&file).expect("the database is there");
-    let at = bytes.windows(6).position(|six| six == b"0.0641").expect("the fact is in the file");
-    bytes[at + 5] = b'9';
+    // Wherever it is: a page that is no longer used may hold it too.
+    let places: Vec<usize> = (0..bytes.len() - 6).filter(|at| &bytes[*at..at + 6] == b"0.0641").collect();
+    assert!(!places.is_empty(), "the fact is in the file");
+    places.iter().for_each(|at| bytes[at + 5] = b'9');
     std::fs::write(&file, bytes).expect("written");
 
     let (code, report) = verify(&data);

@@ -14,7 +14,7 @@ const PRESSES: usize = 5;
 const HANG_UPS: usize = 15;
 const OPERATIONS: usize = 200;
 /// On a machine that has other things to do.
-const SLOWEST_STOP: Duration = Duration::from_secs(1);
+const SLOWEST_STOP: Duration = Duration::from_secs(5);
 
 /// One scenario at a time: each wants the machine for itself.
 fn alone() -> MutexGuard<'static, ()> {
