@@ -24,16 +24,22 @@ struct Leftovers {
     entries: Vec<Arc<Entry>>,
 }
 
-/// Writes what is left, where something is. What cannot be written is told in the log, and lost.
-pub(super) fn leave(data: &Path, bench: &str, block: Option<SafetyRecord>, entries: &[Arc<Entry>]) {
+/// Writes what is left, where something is, and returns the file. What cannot be written is logged, and lost.
+pub(super) fn leave(data: &Path, bench: &str, block: Option<SafetyRecord>, entries: &[Arc<Entry>]) -> Option<PathBuf> {
     if block.is_none() && entries.is_empty() {
-        return;
+        return None;
     }
     let rows: usize = entries.iter().map(|entry| entry.commit.rows.len()).sum();
     let left = Leftovers { bench: bench.to_owned(), block, entries: entries.to_vec() };
     match write(&data.join(FOLDER), &left) {
-        Ok(path) => tracing::warn!(bench, rows, file = %path.display(), "left for the next start to store"),
-        Err(fault) => tracing::error!(bench, rows, %fault, "what was not yet stored could not be left and is lost"),
+        Ok(path) => {
+            tracing::warn!(bench, rows, file = %path.display(), "kept in a file until the store has it");
+            Some(path)
+        }
+        Err(fault) => {
+            tracing::error!(bench, rows, %fault, "what is not yet stored cannot be written to a file");
+            None
+        }
     }
 }
 

@@ -1,13 +1,14 @@
 //! The worker of a bench: a process of its own that holds the instruments, so that nothing that happens to the server part of
 //! the daemon (a fit that takes all memory, a disk that stands, a panic) reaches them.
 //!
-//! Three threads: the owner runs the engine, `orders` listens to the server and carries the software stop out at once, and
-//! `reports` says what is to be stored and shown. Where the server is gone, the run that is on is ended, the bench secured,
-//! and what the store has not got is left in the data folder.
+//! Four threads: the owner runs the engine, `orders` listens to the server and carries the software stop out at once, `reports`
+//! says what is to be stored and shown, and `presses` keeps a press of the stop in a file until it is stored. Where the server is
+//! gone, the run that is on is ended, the bench secured, and what the store has not got is left in the data folder.
 
 mod desk;
 mod outbox;
 mod owner;
+mod press_file;
 mod recorder;
 mod seat;
 
@@ -20,6 +21,7 @@ use desk::Desk;
 use jointbench_procedure::{Control, Demand, Plan, RunId};
 use outbox::Outbox;
 use owner::Owner;
+use press_file::PressFiles;
 use std::io::{self, Read};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -48,8 +50,8 @@ pub fn serve() -> io::Result<()> {
     let desk = Arc::new(Desk::new(outbox, block));
     let (commands, to_do) = mpsc::channel();
     seat::end_when_told(desk.clone(), commands.clone())?;
-    let listening = desk.clone();
-    std::thread::Builder::new().name("orders".into()).spawn(move || listen(orders, &listening, &commands))?;
+    let (listening, presses) = (desk.clone(), PressFiles::start(&data, &name)?);
+    std::thread::Builder::new().name("orders".into()).spawn(move || listen(orders, &listening, &presses, &commands))?;
     // Held to the very end: whoever waits for it finds what is left here.
     let seat = seat::take(&data, &name);
     match &seat {
@@ -68,10 +70,10 @@ pub fn serve() -> io::Result<()> {
     Ok(())
 }
 
-fn listen(mut orders: impl Read, desk: &Desk, commands: &Sender<Command>) {
+fn listen(mut orders: impl Read, desk: &Desk, presses: &PressFiles, commands: &Sender<Command>) {
     loop {
         match wire::receive(&mut orders) {
-            Ok(Some(order)) => obey(order, desk, commands),
+            Ok(Some(order)) => obey(order, desk, presses, commands),
             Ok(None) => break,
             Err(fault) => {
                 tracing::error!(%fault, "an order of the server cannot be read");
@@ -84,10 +86,11 @@ fn listen(mut orders: impl Read, desk: &Desk, commands: &Sender<Command>) {
     let _ = commands.send(Command::Quit);
 }
 
-fn obey(order: Order, desk: &Desk, commands: &Sender<Command>) {
+fn obey(order: Order, desk: &Desk, presses: &PressFiles, commands: &Sender<Command>) {
     let command = match order {
         Order::Stop { block, ticket } => {
-            let secures_itself = desk.stop(block);
+            let secures_itself = desk.stop(block.clone());
+            presses.pressed(block);
             desk.outbox.say(wire::Report::Done { ticket });
             if secures_itself {
                 return;
@@ -100,7 +103,11 @@ fn obey(order: Order, desk: &Desk, commands: &Sender<Command>) {
         }
         Order::Run { run, plan } => Command::Run { run, plan, controls: desk.expect(run) },
         Order::Release { until } => return desk.release(&until),
-        Order::BlockStored { at } => return desk.block_is_stored(&at),
+        Order::BlockStored { at } => {
+            presses.stored(&at);
+            desk.block_is_stored(&at);
+            return;
+        }
         Order::Stored { number } => return desk.outbox.stored(number),
         Order::Storage { fault } => return desk.outbox.set_fault(fault),
         Order::Reopen { wanting, ticket } => Command::Reopen { wanting, ticket },

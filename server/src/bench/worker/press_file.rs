@@ -1,0 +1,109 @@
+//! A press of the software stop on its way to the store: a small file in the data folder until the store has it. A press
+//! survives that server and worker are both killed, also while another program holds the database.
+
+use crate::bench::leftovers;
+use crate::store::SafetyRecord;
+use std::collections::HashMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+enum News {
+    Pressed(SafetyRecord),
+    /// The press of this moment.
+    Stored(String),
+}
+
+/// Hands the work to a thread of its own: a disk that stands delays no order.
+#[derive(Clone)]
+pub(super) struct PressFiles {
+    news: Sender<News>,
+}
+
+impl PressFiles {
+    pub fn start(data: &Path, bench: &str) -> io::Result<Self> {
+        let (news, heard) = channel();
+        let (data, bench) = (data.to_owned(), bench.to_owned());
+        std::thread::Builder::new().name("presses".into()).spawn(move || keep(&heard, &data, &bench))?;
+        Ok(Self { news })
+    }
+
+    pub fn pressed(&self, block: SafetyRecord) {
+        self.say(News::Pressed(block));
+    }
+
+    pub fn stored(&self, at: &str) {
+        self.say(News::Stored(at.to_owned()));
+    }
+
+    fn say(&self, news: News) {
+        if self.news.send(news).is_err() {
+            tracing::error!("the thread that keeps presses of the software stop has ended");
+        }
+    }
+}
+
+fn keep(heard: &Receiver<News>, data: &Path, bench: &str) {
+    let mut files: HashMap<String, PathBuf> = HashMap::new();
+    for news in heard {
+        match news {
+            News::Pressed(block) => {
+                let at = block.at.clone();
+                files.extend(leftovers::leave(data, bench, Some(block), &[]).map(|path| (at, path)));
+            }
+            News::Stored(at) => {
+                // A file that stays is stored once more by the next start, which changes nothing.
+                if let Some(path) = files.remove(&at)
+                    && let Err(fault) = fs::remove_file(&path)
+                {
+                    tracing::warn!(file = %path.display(), %fault, "the press is stored, but its file is not removed");
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::Store;
+    use std::time::{Duration, Instant};
+
+    fn files(data: &Path) -> usize {
+        fs::read_dir(data.join("unstored")).map_or(0, Iterator::count)
+    }
+
+    fn wait_for(data: &Path, count: usize) {
+        let give_up = Instant::now() + Duration::from_secs(20);
+        while files(data) != count && Instant::now() < give_up {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!(files(data), count);
+    }
+
+    #[tokio::test]
+    async fn a_press_is_a_file_until_it_is_stored_and_the_next_start_stores_it_once() {
+        let data = tempfile::tempdir().unwrap();
+        let presses = PressFiles::start(data.path(), "a").unwrap();
+        let block = |at: &str| SafetyRecord {
+            blocked: true,
+            stopped: true,
+            reason: "software stop".into(),
+            run: None,
+            by: Some("a person".into()),
+            at: at.into(),
+        };
+        presses.pressed(block("2026-01-01T00:00:00Z"));
+        presses.pressed(block("2026-01-01T00:00:01Z"));
+        wait_for(data.path(), 2);
+        presses.stored("2026-01-01T00:00:01Z");
+        wait_for(data.path(), 1);
+        let store = Store::open(data.path()).await.unwrap();
+        for _ in 0..2 {
+            leftovers::store_all(data.path(), &store).await.unwrap();
+            assert_eq!(store.safety("a", 10).await.unwrap().len(), 1);
+        }
+        assert_eq!(files(data.path()), 0);
+    }
+}
