@@ -70,7 +70,8 @@ impl Bench {
         self.instruments().into_iter().find(|instrument| instrument.name() == name)
     }
 
-    fn instruments(&mut self) -> Vec<&mut dyn Instrument> {
+    /// Every instrument that the bench has, the joint first.
+    pub fn instruments(&mut self) -> Vec<&mut dyn Instrument> {
         let mut instruments: Vec<&mut dyn Instrument> = vec![self.joint.as_mut()];
         instruments.extend(self.torque_sensor.as_mut().map(|sensor| -> &mut dyn Instrument { sensor.as_mut() }));
         instruments.extend(self.brake.as_mut().map(|brake| -> &mut dyn Instrument { brake.as_mut() }));

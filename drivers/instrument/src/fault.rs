@@ -46,6 +46,11 @@ impl Fault {
         matches!(self.kind, FaultKind::Disconnected { .. } | FaultKind::NotOpened { .. })
     }
 
+    /// Another instrument answers than the one that was there before.
+    pub fn is_wrong_instrument(&self) -> bool {
+        matches!(self.kind, FaultKind::WrongInstrument { .. })
+    }
+
     /// Worth one more try after the link was drained and the instrument identified again.
     pub fn is_retryable(&self) -> bool {
         matches!(self.kind, FaultKind::Silent { .. } | FaultKind::Garbled { .. } | FaultKind::StreamGap { .. })

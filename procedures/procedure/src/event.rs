@@ -105,6 +105,10 @@ pub enum EventKind {
     Note {
         text: String,
     },
+    /// The run found a precondition of its result broken: an identified result carries this as a warning.
+    Warning {
+        text: String,
+    },
     Safe {
         safe: Safe,
     },

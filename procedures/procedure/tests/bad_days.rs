@@ -152,6 +152,23 @@ fn another_unit_in_the_place_of_an_instrument_is_named_as_one() {
 }
 
 #[test]
+fn another_unit_behind_a_port_that_was_never_lost_is_named_at_the_end() {
+    for instrument in [MockInstrument::TorqueSensor, MockInstrument::Brake] {
+        let short = json!({"load_levels": 3, "dwell_s": 0.5, "top_load": 0.3});
+        let (_mock, mut bench) = start([(instrument, Trouble::Exchanged, FROM_S, None)]);
+        let (end, Kept { events, .. }) = play(&mut bench, "stiffness", short);
+        let reason = end.reason.unwrap_or_default();
+        assert_eq!(end.state, RunState::Failed, "{instrument:?}: {reason}");
+        assert!(reason.contains("another instrument answers: expected"), "{instrument:?}: {reason}");
+        let is_named = |event: &EventKind| match event {
+            EventKind::Fault { fault, recovered: false } => fault.is_wrong_instrument(),
+            _ => false,
+        };
+        assert!(events.iter().any(is_named), "{instrument:?}");
+    }
+}
+
+#[test]
 fn a_torque_stream_that_fails_ends_its_run_and_the_bench_is_read_back_safe() {
     std::thread::scope(|scope| {
         for trouble in CABLE.into_iter().chain([Trouble::StreamGap, Trouble::Saturated, Trouble::Exchanged]) {
@@ -190,8 +207,8 @@ fn a_gap_in_the_torque_stream_is_told_and_stays_one() {
         .collect();
     assert!(!counts.is_empty() && counts.iter().all(|count| *count == 8), "{counts:?}");
     let missing: u64 = counts.iter().sum();
-    let told = format!("{missing} are missing");
-    assert!(events.iter().any(|event| matches!(event, EventKind::Note { text } if text.contains(&told))));
+    let told = format!("{missing} torque samples are missing");
+    assert!(events.iter().any(|event| matches!(event, EventKind::Warning { text } if text.contains(&told))));
     // Eight samples are two rows of 250 a second: they are not there, and the others are where they were.
     let holes = times_s.windows(2).filter(|pair| (0.0061..0.1).contains(&(pair[1] - pair[0]))).count();
     assert_eq!(holes, counts.len());

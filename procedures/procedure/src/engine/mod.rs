@@ -89,6 +89,7 @@ impl Session<'_> {
         std::mem::take(&mut self.shaft).told().into_iter().for_each(|told| self.note(told));
         let _told = self.caught(Session::stop_torque_stream);
         self.look_behind(&mut ending);
+        self.identify_again(&mut ending);
         let now_s = self.bench.clock.now_s();
         self.journal.tell(now_s, Some(EventKind::Safe { safe }));
         if let Err(unkept) = self.end(&ending) {

@@ -6,7 +6,7 @@ use super::session::Session;
 use crate::event::{EventKind, Safe};
 use crate::guard::STANDSTILL_LINK_RAD_S;
 use crate::profile::Profile;
-use jointbench_instrument::FaultKind;
+use jointbench_instrument::Fault;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -69,10 +69,29 @@ impl Session<'_> {
             }
         };
         if let Err(found) = found
-            && matches!(found.kind, FaultKind::WrongInstrument { .. })
+            && found.is_wrong_instrument()
         {
             *gone = found.clone();
             self.journal.tell(clock.now_s(), EventKind::Fault { fault: found, recovered: false });
+        }
+    }
+
+    /// Another instrument can answer behind a port that was never lost. Each identifies itself once more when the bench is
+    /// safe: during the steps there is no time for it. A run that ended by a fault has its reason.
+    pub(super) fn identify_again(&mut self, ending: &mut Ending) {
+        if !self.armed || ending.fault_mut().is_some() {
+            return;
+        }
+        let found = self.bench.instruments().into_iter().filter_map(|instrument| instrument.identify().err());
+        let exchanged: Vec<_> = found.filter(Fault::is_wrong_instrument).collect();
+        let now_s = self.bench.clock.now_s();
+        for fault in exchanged {
+            let name = fault.instrument.clone();
+            self.journal.tell(now_s, EventKind::Fault { fault: fault.clone(), recovered: false });
+            self.warn(format!("{name} was exchanged during the run: its readings may come from either instrument"));
+            if matches!(ending, Ending::Completed) {
+                *ending = Ending::OtherFault(fault);
+            }
         }
     }
 

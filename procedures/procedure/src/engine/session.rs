@@ -189,6 +189,12 @@ impl<'a> Session<'a> {
         self.journal.tell(now_s, EventKind::Note { text: text.into() });
     }
 
+    /// A precondition of the result is broken.
+    pub fn warn(&mut self, text: impl Into<String>) {
+        let now_s = self.bench.clock.now_s();
+        self.journal.tell(now_s, EventKind::Warning { text: text.into() });
+    }
+
     /// Work that may panic: what it leaves behind is only looked at by securing, which trusts nothing.
     pub fn caught(&mut self, work: impl FnOnce(&mut Self) -> Result<(), Ending>) -> Result<(), Ending> {
         catch_unwind(AssertUnwindSafe(|| work(self))).unwrap_or_else(|panic| Err(Ending::Panicked(panic_text(&*panic))))

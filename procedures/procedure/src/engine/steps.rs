@@ -124,7 +124,7 @@ impl Session<'_> {
         let last = self.plan.steps.get(index + 1).is_none_or(|next| next.phase != Phase::WarmUp);
         match (watch.is_steady(), last) {
             (true, _) => self.note(format!("warm: {drift}")),
-            (false, true) => self.note(format!("not yet steady at the end of the warm-up: {drift}")),
+            (false, true) => self.warn(format!("not warmed up: at the end of the warm-up the {drift}")),
             (false, false) => {}
         }
     }

@@ -49,10 +49,11 @@ impl Session<'_> {
     /// Single readings again, and a word on what has come.
     pub(super) fn stop_torque_stream(&mut self) -> Result<(), Ending> {
         let Some(Streaming { period, samples, missing }) = self.streaming.take() else { return Ok(()) };
-        self.note(format!(
-            "{samples} torque samples, {:.0} a second, came for the rows, each of which has the mean of its own; {missing} are missing",
-            1.0 / period.0
-        ));
+        let rate_hz = 1.0 / period.0;
+        self.note(format!("{samples} torque samples at {rate_hz:.0} Hz; each row has the mean of its own samples"));
+        if missing > 0 {
+            self.warn(format!("lost samples: {missing} torque samples are missing; {samples} were received"));
+        }
         let sensor = self.bench.torque_sensor.as_mut();
         if let Some(Err(fault)) = sensor.and_then(|sensor| sensor.as_stream()).map(|stream| stream.stop_stream()) {
             self.note(format!("the torque stream could not be ended: {fault}"));

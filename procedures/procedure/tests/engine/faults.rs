@@ -227,3 +227,18 @@ fn a_panic_passes_the_safe_state() {
     assert_eq!(in_disarm.end.safe, Safe::UnsafeUnknown);
     assert!(!in_disarm.world.brake_on, "the brake is secured all the same");
 }
+
+#[test]
+fn an_instrument_that_was_exchanged_during_a_run_is_named_at_its_end() {
+    let another = || FaultKind::WrongInstrument { expected: "fake 1".into(), found: "fake 2".into() };
+    for role in [Role::Joint, Role::Torque, Role::Brake] {
+        let done = scripted(move |call, world| match call {
+            Call::Identify(asked) if asked == role && world.now_s >= 102.0 => Err(another()),
+            _ => Ok(()),
+        });
+        done.check_safe(RunState::Failed);
+        assert!(done.end.reason.as_ref().unwrap().contains("expected fake 1, found fake 2"), "{:?}", done.end.reason);
+        let is_noted = |kind: &EventKind| matches!(kind, EventKind::Warning { text } if text.contains("was exchanged during the run"));
+        assert_eq!(done.ledger.events().filter(|event| is_noted(&event.kind)).count(), 1, "{role:?}");
+    }
+}

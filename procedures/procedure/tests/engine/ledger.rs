@@ -54,12 +54,10 @@ impl Ledger {
     }
 
     pub fn notes(&self) -> Vec<&str> {
-        let note = |event: &'_ Event| matches!(event.kind, EventKind::Note { .. });
         self.events()
-            .filter(|event| note(event))
-            .map(|event| match &event.kind {
-                EventKind::Note { text } => text.as_str(),
-                _ => "",
+            .filter_map(|event| match &event.kind {
+                EventKind::Note { text } | EventKind::Warning { text } => Some(text.as_str()),
+                _ => None,
             })
             .collect()
     }
