@@ -3,6 +3,7 @@
 use super::Firmware;
 use crate::sim::plant::{AMBIENT_C, Plant, Signal};
 use crate::sim::trouble::Trouble;
+use std::ops::Range;
 
 const SLAVE: u8 = 1;
 const CHANNELS: usize = 6;
@@ -16,6 +17,9 @@ const SPAN_C: f64 = 400.0;
 const TYPE_CODES: u16 = 200;
 const MODULE_NAME: [u16; 2] = [0x4015, 0x0000];
 const ENABLED: u16 = 0x3F;
+
+/// Of a Modbus frame on a serial line.
+const LONGEST_FRAME: usize = 256;
 
 const ILLEGAL_FUNCTION: u8 = 1;
 const ILLEGAL_ADDRESS: u8 = 2;
@@ -93,21 +97,39 @@ pub(super) fn crc(bytes: &[u8]) -> u16 {
     sum
 }
 
+/// The first request with a right checksum. Its length follows from its function (Modbus application protocol 1.1b3).
+fn first_frame(input: &[u8]) -> Option<Range<usize>> {
+    (0..input.len()).find_map(|start| {
+        let length = match input.get(start + 1)? {
+            7 | 11 | 12 | 17 => 4,
+            15 | 16 => 9 + usize::from(*input.get(start + 6)?),
+            _ => 8,
+        };
+        let frame = input.get(start..start + length)?;
+        let (body, sum) = frame.split_at(length - 2);
+        (crc(body).to_le_bytes() == sum).then_some(start..start + length)
+    })
+}
+
 impl Firmware for Adam {
     fn receive(&mut self, input: &mut Vec<u8>, _plant: &mut Plant, output: &mut Vec<u8>) {
-        // Requests of all functions that it has are eight bytes; without gaps in time the checksum finds them.
-        while let Some(at) = input.windows(8).position(|frame| crc(&frame[..6]).to_le_bytes() == frame[6..]) {
-            let frame: Vec<u8> = input.drain(..at + 8).skip(at).collect();
+        // Without gaps in time the checksum finds the requests.
+        while let Some(found) = first_frame(input) {
+            let frame: Vec<u8> = input.drain(..found.end).skip(found.start).collect();
             if frame[0] == SLAVE {
                 let word = |at: usize| u16::from_be_bytes([frame[at], frame[at + 1]]);
                 let mut reply = vec![SLAVE];
-                reply.extend(self.answer(frame[1], word(2), word(4)));
+                reply.extend(match frame.len() {
+                    8 => self.answer(frame[1], word(2), word(4)),
+                    // None of the functions that it has.
+                    _ => vec![frame[1] | 0x80, ILLEGAL_FUNCTION],
+                });
                 reply.extend(crc(&reply).to_le_bytes());
                 output.extend(reply);
             }
         }
         // What is left may begin a frame.
-        let spent = input.len().saturating_sub(7);
+        let spent = input.len().saturating_sub(LONGEST_FRAME - 1);
         input.drain(..spent);
     }
 

@@ -5,6 +5,9 @@ use std::collections::VecDeque;
 /// Entries of the error queue; the last one of a full queue says so.
 const QUEUE_DEPTH: usize = 20;
 
+/// Bit 0 of the standard event status register.
+const OPERATION_COMPLETE: u8 = 1;
+
 /// One node of a header pattern, `[:SOURce#]`: short form, long form, optional, takes a number.
 #[derive(Debug)]
 struct Node {
@@ -180,7 +183,9 @@ impl Status {
             ("*ESE", false) => self.event_enable = mask()?,
             ("*SRE", false) => self.service_enable = mask()?,
             ("*CLS", false) => self.clear(),
-            ("*OPC" | "*WAI" | "*TRG", false) => {}
+            // Every command before it is done when it is read.
+            ("*OPC", false) => self.events |= OPERATION_COMPLETE,
+            ("*WAI" | "*TRG", false) => {}
             _ => return Err(Error::UndefinedHeader),
         }
         Ok(None)
@@ -248,6 +253,21 @@ mod tests {
         assert_eq!(found[1].parameters, ["0.6"]);
         assert_eq!(units(":SOUR1:VOLT 5;CURR 1")[1].header, ["SOUR1", "CURR"]);
         assert_eq!(units("*IDN?;:OUTP? CH1")[1].parameters, ["CH1"]);
+    }
+
+    #[test]
+    fn a_finished_operation_sets_its_bit() {
+        let mut status = Status::power_on();
+        status.clear();
+        let mut ask = |line: &str| {
+            let unit = units(line).remove(0);
+            status.common(&unit.header[0], &unit).unwrap()
+        };
+        assert_eq!(ask("*ESE 1"), None);
+        assert_eq!(ask("*OPC"), None);
+        assert_eq!(ask("*STB?").as_deref(), Some("32"), "the summary of enabled events");
+        assert_eq!(ask("*ESR?").as_deref(), Some("1"));
+        assert_eq!(ask("*ESR?").as_deref(), Some("0"), "reading clears it");
     }
 
     #[test]

@@ -10,7 +10,7 @@ fn say(adam: &mut Adam, pieces: &[&[u8]]) -> Vec<u8> {
     for piece in pieces {
         input.extend_from_slice(piece);
         adam.receive(&mut input, &mut plant, &mut output);
-        assert!(input.len() < 8);
+        assert!(input.len() < 256, "a frame at most");
     }
     output
 }
@@ -36,4 +36,18 @@ fn silence_and_exceptions() {
     let mut beyond = b"\x01\x03\x01\x00\x00\x01".to_vec();
     beyond.extend(super::super::adam::crc(&beyond).to_le_bytes());
     assert_eq!(say(&mut adam, &[&beyond]), b"\x01\x83\x02\xC0\xF1");
+}
+
+#[test]
+fn functions_that_it_does_not_have_are_refused_whatever_their_length() {
+    let mut adam = Adam::new();
+    let mut ask = |body: &[u8]| {
+        let mut frame = body.to_vec();
+        frame.extend(super::super::adam::crc(body).to_le_bytes());
+        say(&mut adam, &[&frame])
+    };
+    assert_eq!(ask(&[1, 16, 0, 200, 0, 1, 2, 0, 0x23])[..3], [1, 0x90, 1], "write several registers");
+    assert_eq!(ask(&[1, 17])[..3], [1, 0x91, 1], "report the slave's identity");
+    assert_eq!(ask(&[1, 5, 0, 0, 0xFF, 0])[..3], [1, 0x85, 1], "write a coil");
+    assert_eq!(ask(&[1, 3, 0, 210, 0, 2])[..3], [1, 3, 4], "and it goes on answering");
 }
