@@ -2,6 +2,8 @@
 //!
 //! tokio, axum and sqlx live here and nowhere below.
 
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
+
 pub mod api;
 pub mod bench;
 pub mod cli;

@@ -11,6 +11,8 @@
 //!
 //! The traffic of any link can be written down ([`PortSettings::record`]) and replayed as an instrument ([`sim::Replay`]).
 
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
+
 pub mod driver;
 mod instruments;
 pub mod protocol;

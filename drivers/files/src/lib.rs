@@ -3,6 +3,8 @@
 //! What goes out comes in again bit by bit. What comes in is checked whole before anything is returned, and refused with
 //! file, line, column and what was expected.
 
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
+
 mod arrow_check;
 mod bounds;
 mod columnar;

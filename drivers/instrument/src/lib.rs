@@ -3,6 +3,8 @@
 //! Units, samples, run tables, instrument roles, limits, faults and clocks. No I/O, no threads, no async: every other
 //! crate stands on this one, and this one stands on nothing but serde.
 
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
+
 pub mod bench;
 pub mod clock;
 pub mod fault;
