@@ -255,10 +255,31 @@ export async function loseAndFind(another, base) {
 	return said;
 }
 
-/** The software stop by key alone; gives what the page says of it. */
-export async function stopByKey(page, who) {
-	await page.keyboard.press('Escape');
-	await page.keyboard.press('Escape');
+/**
+ * The software stop by key alone. Esc twice stops neither a bench at rest nor one whose field has the focus; `keys` then stop the run.
+ * Needs the bench `paced`, whose runs last.
+ */
+export async function stopByKey(page, base, who, keys) {
+	const state = async () => (await (await fetch(`${base}/api/v1/bench/paced`)).json()).state;
+	const escapeTwice = async () => {
+		await page.keyboard.press('Escape');
+		await page.keyboard.press('Escape');
+		await page.waitForTimeout(300);
+	};
+	await page.goto(`${base}/?bench=paced`);
+	await page.locator('header .state', { hasText: 'IDLE' }).waitFor({ timeout: 30_000 });
+	await escapeTwice();
+	expect((await state()) === 'idle', `Esc twice of the ${who} stops a bench at rest`);
+	const headers = { 'content-type': 'application/json' };
+	const body = JSON.stringify({ bench: 'paced', procedure: 'friction', parameters: {} });
+	const run = await (await fetch(`${base}/api/v1/runs`, { method: 'POST', headers, body })).json();
+	await page.goto(`${base}/runs/${run.id}`);
+	await page.locator('header .state', { hasText: 'RUNNING' }).waitFor({ timeout: 30_000 });
+	await page.keyboard.press('?');
+	await page.getByRole('heading', { name: 'Keys' }).waitFor({ timeout: 30_000 });
+	await escapeTwice();
+	expect((await state()) === 'running', `the Esc of the ${who} that closes the help sheet counts for a stop`);
+	for (const key of keys) await page.keyboard.press(key);
 	const said = page.getByText(/acknowledged (in|late)/i).first();
 	await said.waitFor({ timeout: 30_000 }).catch(() => expect(false, `nobody acknowledged the stop of the ${who}`));
 	await page.getByRole('button', { name: 'The bench stands still' }).click({ timeout: 500 }).catch(() => {});

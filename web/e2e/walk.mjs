@@ -148,9 +148,9 @@ await tell('walk', async () => {
 	await makeAndRevoke(page, another, where.base);
 	const moves = await moving(watcher);
 	expect(moves.length === 0, `with little motion asked for these still move: ${moves.join(', ')}`);
-	await stopByKey(watcher, 'observer');
+	await stopByKey(watcher, where.base, 'observer', ['Control+Shift+Space']);
 	expect((await resetStopped(page, where.base)) === 1, 'the stop of the observer does not hold');
-	await stopByKey(page, 'operator');
+	await stopByKey(page, where.base, 'operator', ['Escape', 'Escape']);
 	expect((await resetStopped(page, where.base)) === 1, 'the stop of the operator does not hold');
 	await page.goto(`${where.base}/runs?search=${encodeURIComponent('procedure:fric duration>1s rows>')}`);
 	await page.getByRole('link', { name: `#${run}` }).first().waitFor({ timeout: 30_000 });
