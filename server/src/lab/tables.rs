@@ -46,6 +46,9 @@ impl Lab {
 }
 
 fn columns(Table { head, rows }: Table) -> Answer<Vec<(String, TableColumn)>> {
+    if head.is_empty() {
+        return Err(LabError::Invalid("the table has no columns: name at least one in `head`".into()));
+    }
     if let Some(row) = rows.iter().position(|row| row.len() != head.len()) {
         let (found, wanted) = (rows[row].len(), head.len());
         return Err(LabError::Invalid(format!("row {} has {found} values, and there are {wanted} columns", row + 1)));

@@ -20,6 +20,9 @@ fn a_table_leaves_as_csv_and_as_parquet() {
     assert_eq!(String::from_utf8(csv).unwrap(), "series,x [s],x [s] (2)\n\"a, b\",0.1,\nc,2,-0.000000001\n");
     let ragged = json!({"head": ["x"], "rows": [[1], [1, 2]]});
     assert_eq!(write("csv", &ragged).0, 422);
+    for format in ["csv", "parquet"] {
+        assert_eq!(write(format, &json!({"head": [], "rows": []})).0, 422, "{format}");
+    }
 
     let rows: Vec<[f64; 3]> = (0..200).map(f64::from).map(|i| [0.01 * i, 0.1 * i, (0.03 * i).sin()]).collect();
     let head = ["time_s", "motor_position_rad", "motor_current_a"];
