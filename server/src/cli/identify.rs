@@ -28,7 +28,7 @@ pub fn identify(arguments: &Identify) -> Done {
 /// How a command ends that has told what was found.
 pub(super) fn ending(found: &Identification) -> Done {
     match found.result.verdict {
-        Identified::Identified => Ok(()),
+        Identified::Identified | Identified::IdentifiedWithWarning => Ok(()),
         Identified::Inconclusive => Err(Exit::undecided("")),
         Identified::Failed => Err(Exit::failed("")),
     }
@@ -55,6 +55,7 @@ pub(super) fn verdict(found: &Identification) -> String {
 pub(super) fn print(found: &Identification) {
     let result = &found.result;
     println!("{}", verdict(found));
+    result.warnings.iter().for_each(|warning| println!("warning: {warning}"));
     if let Some(advice) = &result.advice {
         println!("next: {advice}");
     }

@@ -142,6 +142,7 @@ pub(super) mod tests {
         let result = Shown {
             verdict: Identified::Identified,
             summary: String::new(),
+            warnings: Vec::new(),
             advice: None,
             quantities: vec![quantity],
             figures: Vec::new(),

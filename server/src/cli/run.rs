@@ -248,6 +248,7 @@ fn junit(
         (_, Some(Ok(found))) => Some(("failure", identify::verdict(found))),
         (Ok(run), None) => Some(("failure", ending(run))),
     };
+    let warnings = found.and_then(|found| found.as_ref().ok()).map(|found| found.result.warnings.join("\n"));
     let mut cases = vec![(case, time_s, outcome)];
     cases.extend(demands.iter().map(|(demand, kept)| {
         let outcome = match kept {
@@ -276,6 +277,9 @@ fn junit(
             "    <testcase classname=\"{suite}\" name=\"{}\" time=\"{time_s:.3}\">{body}</testcase>\n",
             escape(name)
         );
+    }
+    if let Some(warnings) = warnings.filter(|text| !text.is_empty()) {
+        report += &format!("    <system-out>{}</system-out>\n", escape(&warnings));
     }
     report + "  </testsuite>\n</testsuites>\n"
 }
@@ -344,6 +348,7 @@ mod tests {
             |found: Found, kept: Kept| judge(Some(&found), &[(&demand, kept)], true).err().map_or(0, |exit| exit.code);
         let (yes, no) = (Kept::Yes(String::new()), Kept::No(String::new()));
         assert_eq!(code(shown(Identified::Identified), yes.clone()), 0);
+        assert_eq!(code(shown(Identified::IdentifiedWithWarning), yes.clone()), 0);
         assert_eq!(code(shown(Identified::Inconclusive), yes.clone()), 3);
         assert_eq!(code(shown(Identified::Inconclusive), no), 1);
         assert_eq!(code(shown(Identified::Failed), yes.clone()), 1);

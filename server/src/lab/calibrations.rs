@@ -2,7 +2,7 @@
 //! which is taken off, and friction, with which its compensation is planned.
 
 use super::{Answer, Lab, LabError};
-use crate::view::{Applies, Calibration, Identified, NewCalibration};
+use crate::view::{Applies, Calibration, NewCalibration};
 use jointbench_procedure::{Procedure, RunState};
 use serde_json::{Map, Value};
 
@@ -72,7 +72,7 @@ impl Lab {
                 )));
             }
             let found = self.identification(id).await?.result.verdict;
-            if record.state != RunState::Completed || found != Identified::Identified {
+            if record.state != RunState::Completed || !found.is_identified() {
                 return Err(LabError::Invalid(format!(
                     "run {id} has not identified what it was made for: apply one that has"
                 )));

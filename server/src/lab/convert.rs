@@ -86,6 +86,8 @@ pub(super) fn safety_entry(record: SafetyRecord) -> view::SafetyEntry {
 }
 
 pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
+    let is_modelled =
+        jointbench_procedure::procedure(&record.procedure).is_none_or(|procedure| procedure.is_modelled());
     view::RunSummary {
         id: record.id,
         bench: record.bench.clone(),
@@ -104,7 +106,8 @@ pub(super) fn summary(record: &RunRecord) -> view::RunSummary {
         note: record.note.clone(),
         verdict: record.verdict.as_ref().and_then(|verdict| reread(verdict).ok()),
         // Figures of a model that cannot be read any more are none.
-        model: record.model.as_ref().and_then(|model| reread(model).ok()),
+        is_modelled,
+        model: record.model.as_ref().filter(|_| is_modelled).and_then(|model| reread(model).ok()),
         not_stored: None,
         damaged: record.damaged.clone(),
     }
@@ -176,7 +179,7 @@ fn sentence(kind: &EventKind) -> String {
         EventKind::Fault { fault, recovered: true } => format!("{fault}; recovered"),
         EventKind::Fault { fault, recovered: false } => fault.to_string(),
         EventKind::Breach { breach } => breach.to_string(),
-        EventKind::Note { text } => text.clone(),
+        EventKind::Note { text } | EventKind::Warning { text } => text.clone(),
         EventKind::Safe { safe } => format!("bench {safe}"),
     }
 }

@@ -6,7 +6,7 @@ use super::{Answer, Lab, LabError, reread};
 use crate::bench::BenchHandle;
 use crate::job::Job;
 use crate::store::Subject;
-use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, word};
+use crate::view::{Earlier, FollowUp, Identification, LiveMessage, Quantity, Shown, word};
 use jointbench_procedure::RunState;
 use jointbench_procedure::parameter::Values;
 use serde::Serialize;
@@ -19,6 +19,8 @@ const LEFT: u32 = 200;
 /// Under which names parts of what a complete run has found are kept.
 const QUANTITIES: &str = "quantities";
 const FOLLOW_UP: &str = "follow_up";
+/// Of the journal's entries.
+const WARNING: &str = "warning";
 
 impl Lab {
     /// What earlier runs have found with which this one can be compared, newest first. A run of which this version makes
@@ -113,8 +115,21 @@ impl Lab {
             procedure: record.procedure.clone(),
             software: concat!("jointbench ", env!("CARGO_PKG_VERSION")).to_owned(),
             follow_up: procedure.follow_up(&found).map(|next| reread(&next)).transpose()?,
-            result: reread(&found)?,
+            result: reread::<_, Shown>(&found)?.with_warnings(self.warnings(&runs).await?),
         })
+    }
+
+    /// What the runs of one measurement found broken, each once.
+    async fn warnings(&self, runs: &[i64]) -> Answer<Vec<String>> {
+        let mut warnings = Vec::new();
+        for run in runs {
+            let journal = self.inner.store.events(*run, 0).await?;
+            let told =
+                journal.iter().filter(|event| event.kind == WARNING).filter_map(|event| event.data["text"].as_str());
+            warnings.extend(told.map(str::to_owned));
+        }
+        warnings.dedup();
+        Ok(warnings)
     }
 
     /// Has the list of runs say what came of a run, once it is over: who looks there has not asked for the result.

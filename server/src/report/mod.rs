@@ -197,12 +197,14 @@ fn result(found: &Identification) -> Markup {
     let result = &found.result;
     let verdict = match result.verdict {
         Identified::Identified => "Identified",
+        Identified::IdentifiedWithWarning => "Identified with a warning",
         Identified::Inconclusive => "Inconclusive",
         Identified::Failed => "Failed",
     };
     html! {
         h2 { "Result" }
         p.verdict { strong { (verdict) ". " } (result.summary) }
+        @for warning in &result.warnings { p.verdict { strong { "Warning. " } (warning) } }
         @if let Some(advice) = &result.advice { p.verdict { "Next: " (advice) } }
         @if !result.quantities.is_empty() {
             table {

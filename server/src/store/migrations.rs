@@ -7,7 +7,7 @@ use std::future::{self, Future};
 use std::pin::Pin;
 
 /// Name and text of every file in `migrations/`, in order. Listed by hand: the macro that would do it compiles SQLite twice.
-const FILES: [(&str, &str); 20] = [
+const FILES: [(&str, &str); 21] = [
     ("0001_runs.sql", include_str!("../../../migrations/0001_runs.sql")),
     ("0002_models.sql", include_str!("../../../migrations/0002_models.sql")),
     ("0003_safety.sql", include_str!("../../../migrations/0003_safety.sql")),
@@ -28,6 +28,7 @@ const FILES: [(&str, &str); 20] = [
     ("0018_commits.sql", include_str!("../../../migrations/0018_commits.sql")),
     ("0019_checksums.sql", include_str!("../../../migrations/0019_checksums.sql")),
     ("0020_store_log.sql", include_str!("../../../migrations/0020_store_log.sql")),
+    ("0021_warnings.sql", include_str!("../../../migrations/0021_warnings.sql")),
 ];
 
 #[derive(Debug)]

@@ -8,10 +8,19 @@ use utoipa::ToSchema;
 #[serde(rename_all = "snake_case")]
 pub enum Identified {
     Identified,
+    /// Identified, although the run found a precondition broken; `warnings` tells which.
+    IdentifiedWithWarning,
     /// The run says too little; `advice` tells what to measure.
     Inconclusive,
     /// The run cannot be used; `summary` tells why.
     Failed,
+}
+
+impl Identified {
+    /// With or without a warning.
+    pub fn is_identified(self) -> bool {
+        matches!(self, Self::Identified | Self::IdentifiedWithWarning)
+    }
 }
 
 /// Worked out from the stored samples each time it is asked for, by the version that answers.
@@ -52,10 +61,25 @@ pub struct Shown {
     pub verdict: Identified,
     /// One plain sentence, or a line for each part of a campaign.
     pub summary: String,
+    /// Preconditions that the run itself found broken, such as a joint that was not warmed up.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// What to measure or mend next.
     pub advice: Option<String>,
     pub quantities: Vec<Quantity>,
     pub figures: Vec<Figure>,
+}
+
+impl Shown {
+    /// With preconditions that the run found broken. The rule: what was identified is identified with a warning; what is
+    /// inconclusive or failed stays so.
+    pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
+        if self.verdict == Identified::Identified && !warnings.is_empty() {
+            self.verdict = Identified::IdentifiedWithWarning;
+        }
+        self.warnings = warnings;
+        self
+    }
 }
 
 /// What an earlier run of the same bench and procedure has found.

@@ -61,6 +61,8 @@ pub struct RunSummary {
     /// What the procedure makes of it, as soon as that is worked out after its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Identified>,
+    /// Whether the models of its kind describe it: a run for the zero of a sensor, a compensation or a warm-up has no model.
+    pub is_modelled: bool,
     /// The last version of the run's model that is neither idle nor only tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<LastModel>,

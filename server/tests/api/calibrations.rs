@@ -3,7 +3,7 @@
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon};
 use serde_json::{Value, json};
 
-fn made(daemon: &TestDaemon, procedure: &str, parameters: Value) -> i64 {
+pub fn made(daemon: &TestDaemon, procedure: &str, parameters: Value) -> i64 {
     let asked = json!({"bench": BENCH, "procedure": procedure, "parameters": parameters});
     let (status, run) = daemon.post("/api/v1/runs", &asked.to_string());
     assert_eq!(status, 201, "{run}");

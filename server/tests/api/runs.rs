@@ -1,5 +1,6 @@
 //! The life of a run on the mock bench, over HTTP.
 
+use crate::calibrations::made;
 use crate::daemon::{BENCH, SHORT_RUN, TestDaemon, settings};
 use jointbench::config::BenchDescription;
 use jointbench::daemon::Daemon;
@@ -115,6 +116,20 @@ fn a_result_stands_beside_those_of_earlier_runs() {
     assert_eq!(earlier(third).1, told, "read where it was worked out");
     assert_eq!(earlier(second).1.as_array().unwrap().len(), 1);
     assert_eq!(earlier(77).0, 404);
+}
+
+#[test]
+fn a_joint_that_was_not_warmed_up_is_a_warning_of_its_result() {
+    let daemon = TestDaemon::start();
+    let id = made(&daemon, "friction", json!({ "warm_up_s": 20.0, "repeats": 1 }));
+    let (_, events) = daemon.get(&format!("/api/v1/runs/{id}/events"));
+    let told = events.as_array().unwrap().iter().find(|event| event["kind"] == "warning").expect("a warning");
+    assert!(told["text"].as_str().unwrap().starts_with("not warmed up: "), "{told}");
+    let (_, found) = daemon.get(&format!("/api/v1/runs/{id}/identification"));
+    assert_eq!(found["warnings"], json!([told["text"]]), "{found}");
+    assert!(["identified_with_warning", "inconclusive"].contains(&found["verdict"].as_str().unwrap()), "{found}");
+    let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
+    assert!(page.contains("not warmed up: "), "{page}");
 }
 
 /// Its end is kept a moment before its bench is free.

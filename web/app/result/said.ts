@@ -4,6 +4,7 @@ import type { Mood } from '../ui/states';
 
 const VERDICTS: Record<Identification['verdict'], { word: string; icon: string; mood: Mood }> = {
 	identified: { word: 'IDENTIFIED', icon: '✓', mood: 'good' },
+	identified_with_warning: { word: 'IDENTIFIED WITH A WARNING', icon: '⚠', mood: 'warn' },
 	inconclusive: { word: 'INCONCLUSIVE', icon: '◔', mood: 'warn' },
 	failed: { word: 'FAILED', icon: '✕', mood: 'bad' },
 };

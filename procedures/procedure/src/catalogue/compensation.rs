@@ -129,6 +129,10 @@ impl Procedure for Compensation {
         Kind::Friction
     }
 
+    fn is_modelled(&self) -> bool {
+        false
+    }
+
     fn schema(&self) -> &'static [Parameter] {
         SCHEMA
     }

@@ -45,6 +45,10 @@ impl Procedure for Demagnetise {
         Kind::Brake
     }
 
+    fn is_modelled(&self) -> bool {
+        false
+    }
+
     fn schema(&self) -> &'static [Parameter] {
         SCHEMA
     }

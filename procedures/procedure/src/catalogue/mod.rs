@@ -52,6 +52,10 @@ pub trait Procedure: Sync {
     fn schema(&self) -> &'static [Parameter];
     /// Plans with checked values.
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault>;
+    /// Whether the models of its kind describe its run. Not where the run shows something else, such as the zero of a sensor.
+    fn is_modelled(&self) -> bool {
+        true
+    }
     /// What `identify` may find.
     fn finds(&self) -> Vec<Findable>;
     /// What a run of this procedure shows, with the values that it was planned with. Pure; a run that ended early or a

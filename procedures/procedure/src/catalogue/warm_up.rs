@@ -49,6 +49,10 @@ impl Procedure for WarmUp {
         Kind::Friction
     }
 
+    fn is_modelled(&self) -> bool {
+        false
+    }
+
     fn schema(&self) -> &'static [Parameter] {
         SCHEMA
     }
