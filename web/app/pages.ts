@@ -1,4 +1,4 @@
-/** The pages that nobody sees first: their scripts come when they are opened, or when the first page has nothing more to do. */
+/** The pages beside the first: their scripts come when they are opened. */
 import { later } from './ui/later.svelte';
 
 export const pages = {
@@ -15,7 +15,7 @@ export const pages = {
 /** [ms] The first page asks the daemon for what it shows meanwhile. */
 const REST_MS = 2000;
 
-/** So that another page opens at once, and also while the daemon does not answer. */
-export function fetchPages(): void {
-	setTimeout(() => Object.values(pages).forEach((page) => page.want()), REST_MS);
+/** A run is watched also where the daemon does not answer when its page is opened. */
+export function fetchRunPage(): void {
+	setTimeout(() => [pages.live, pages.run].forEach((page) => page.want()), REST_MS);
 }
