@@ -117,7 +117,7 @@ const plainSvelte: Plugin = {
 
 export default defineConfig({
 	plugins: [svelte(), plainUplot, plainSvelte, smaller],
-	build: { target: 'es2022', cssTarget: ['chrome123', 'firefox121', 'safari17.5'], modulePreload: false, assetsInlineLimit: 0, cssCodeSplit: false, outDir: 'dist' },
+	build: { target: 'es2022', cssTarget: ['chrome123', 'firefox121', 'safari17.5'], modulePreload: { polyfill: false }, assetsInlineLimit: 0, cssCodeSplit: false, outDir: 'dist' },
 	// `npm run dev` beside a daemon: pages from Vite, everything else from the daemon, which takes only its own origin.
 	server: { proxy: { '/api': { target: daemon, ws: true, changeOrigin: true, headers: { origin: daemon } } } },
 	test: { include: ['app/**/*.test.ts'] },

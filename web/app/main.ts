@@ -4,4 +4,7 @@ import { mount } from 'svelte';
 import App from './App.svelte';
 import './state/theme.svelte';
 
-mount(App, { target: document.getElementById('app')! });
+/** The frame that came with the first answer makes room. */
+const target = document.getElementById('app')!;
+target.replaceChildren();
+mount(App, { target });

@@ -1,13 +1,14 @@
 // The product's main path in a real browser, against a running daemon:
 //   node web/e2e/walk.mjs http://127.0.0.1:8080 [/usr/bin/chromium]
-// Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, open the workbench, have the run made that would tell more, see where the model fails on
-// both, by keyboard too, take its map away as a file, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; a token made, used and revoked; an observer in a second browser; the software stop by key, and its reset; a search that is still being typed; a list ordered, held against a run and kept as a view; a foreign table dropped on the page; three runs compared, with their dashes and colours; two runs ticked and opened as one model; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; a brake applied to its bench and gone back on; the log back to its first run;
+// Read what an empty daemon says; lose it and find it again; start the procedure, watch it finish, read its result by keyboard, zoom one plot alone, hide a channel, go to a step, compute a channel, draw one over another, open the workbench, have the run made that would tell more, see where the model fails on
+// both, by keyboard too, take its map away as a file, take samples out of the fit and in again, add the first suggestion, see the error fall, undo, hold two versions side by side, be shown a version made elsewhere, find the same through REST; write an own effect; start and end an autopilot, follow another to its end; take an effect out and in again without a jump; a token made, used and revoked; an observer in a second browser; the software stop by key, and before any script has come, and its reset; a search that is still being typed; a list ordered, held against a run and kept as a view; a foreign table dropped on the page; three runs compared, with their dashes and colours, in two channels; a figure followed over runs; two runs ticked and opened as one model; a run that is on zoomed while it is followed; ten thousand runs; a run taken away as table and report, brought back as a copy and with a wrong unit; results of other procedures; a brake applied to its bench and gone back on; the log back to its first run;
 // no page breaks a rule of axe. Exits with 1 and a sentence where that does not hold.
 import { gzipSync } from 'node:zlib';
 import { expect, open, settings, tell } from './browser.mjs';
 import { audit } from './audit.mjs';
 import { askForNone, bringBack, byKeyboard, dashesOf, keepView, manyRuns, openTogether, readResults, showEarlier, takeAway, takeMap, countCurves, zoomWhileFollowing } from './looks.mjs';
 import { FOREIGN, importForeign } from './files.mjs';
+import { analyse, compareChannels, followTrend, goToTimes, hideChannel, openTradeOffs, shadeMap, stopEarly } from './plots.mjs';
 import { BARE, brush, compareVersions, excludeAndUndo, firstUse, flyAndStop, flyToEnd, loseAndFind, makeRun, measureNext, moving, observe, openWorkbench, readResult, readVersion, removeAndUndo, resetStopped, showForeign, startRun, stopByKey, toAnotherVersion, tryAndDrop, watchRun, writeEffect, zoomAlone } from './steps.mjs';
 import { applyAndGoBack, makeAndRevoke } from './settings.mjs';
 
@@ -52,6 +53,9 @@ await tell('walk', async () => {
 	const result = await readResult(page);
 	expect(result.verdict !== 'failed' && result.quantities > 2 && result.rows > 10, `the result says too little: ${JSON.stringify(result)}`);
 	await zoomAlone(page);
+	await hideChannel(page);
+	await goToTimes(page);
+	await analyse(page);
 	await audit(page, 'the run');
 	console.log(`run ${run} is done`);
 
@@ -78,6 +82,8 @@ await tell('walk', async () => {
 	const cell = await byKeyboard(page);
 	expect(/standard errors|too few|never visited/.test(cell), `the map does not say what its cell is: ${cell}`);
 	await brush(page);
+	await shadeMap(page);
+	await openTradeOffs(page);
 	const map = await takeMap(page);
 	expect(/-map\.parquet$/.test(map.name) && map.begins === 'PAR1', `the map leaves as ${JSON.stringify(map)}`);
 	const excluded = await excludeAndUndo(page, 'walked over the cable');
@@ -150,6 +156,8 @@ await tell('walk', async () => {
 	expect(moves.length === 0, `with little motion asked for these still move: ${moves.join(', ')}`);
 	await stopByKey(watcher, where.base, 'observer', ['Control+Shift+Space']);
 	expect((await resetStopped(page, where.base)) === 1, 'the stop of the observer does not hold');
+	await stopEarly(another, where.base);
+	expect((await resetStopped(page, where.base)) > 0, 'the stop of the first answer does not hold');
 	await stopByKey(page, where.base, 'operator', ['Escape', 'Escape']);
 	expect((await resetStopped(page, where.base)) === 1, 'the stop of the operator does not hold');
 	await page.goto(`${where.base}/runs?search=${encodeURIComponent('procedure:fric duration>1s rows>')}`);
@@ -175,6 +183,7 @@ await tell('walk', async () => {
 	await page.getByRole('heading', { name: 'Compare 3 runs' }).waitFor({ timeout: 30_000 });
 	await page.locator('.uplot').first().waitFor({ timeout: 30_000 });
 	await audit(page, 'the comparison');
+	await compareChannels(page);
 
 	const beside = await another();
 	await zoomWhileFollowing(beside, where.base);
@@ -191,6 +200,7 @@ await tell('walk', async () => {
 	await page.goto(`${where.base}/runs/${again}`);
 	await page.locator('[data-trend=tau_c]').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'the result does not stand behind that of the earlier run'));
 	await audit(page, 'the result over runs');
+	await followTrend(page, where.base);
 
 	const { name, table, report } = await takeAway(page, where.base, run + 1);
 	expect(name === `run-${run + 1}.csv` && /^time_s,/.test(table), `the run leaves as ${name}: ${table.slice(0, 60)}`);

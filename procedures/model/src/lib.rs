@@ -1,6 +1,7 @@
 //! The heart: effects, identification and diagnosis of joints, encoders, stiffness and brakes. Pure numbers, no I/O.
 
 mod allocator;
+pub mod channels;
 mod compare;
 mod diagnosis;
 pub mod effect;

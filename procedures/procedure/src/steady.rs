@@ -38,6 +38,15 @@ pub(crate) struct Drift {
 }
 
 impl Drift {
+    fn between(first: Mean, last: Mean) -> Self {
+        let minutes = (last.of(last.time_s) - first.of(first.time_s)) / 60.0;
+        let (before_a, after_a) = (first.of(first.current_a), last.of(last.current_a));
+        Self {
+            temperature_c_per_min: (last.of(last.temperature_c) - first.of(first.temperature_c)) / minutes,
+            current_share_per_min: (after_a - before_a) / after_a / minutes,
+        }
+    }
+
     pub fn is_temperature_steady(&self, rule: &Steady) -> bool {
         self.temperature_c_per_min.abs() <= rule.temperature_c_per_min
     }
@@ -93,12 +102,12 @@ impl SteadyWatch {
     /// The drift over the last two intervals between cycles; `None` before three cycles are done.
     pub fn drift(&self) -> Option<Drift> {
         let [.., first, _, last] = self.cycles[..] else { return None };
-        let minutes = (last.of(last.time_s) - first.of(first.time_s)) / 60.0;
-        let (before_a, after_a) = (first.of(first.current_a), last.of(last.current_a));
-        Some(Drift {
-            temperature_c_per_min: (last.of(last.temperature_c) - first.of(first.temperature_c)) / minutes,
-            current_share_per_min: (after_a - before_a) / after_a / minutes,
-        })
+        Some(Drift::between(first, last))
+    }
+
+    /// The same at the end of each cycle from the third on, with the mean time of that cycle [s].
+    pub fn drifts(&self) -> impl Iterator<Item = (f64, Drift)> + '_ {
+        self.cycles.windows(3).map(|three| (three[2].of(three[2].time_s), Drift::between(three[0], three[2])))
     }
 
     pub fn is_steady(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::extract::{Answer, Json, Path, Query};
 use super::problem::{Problem, Refusals};
 use crate::lab::Lab;
-use crate::view::{Beside, Earlier, Identification};
+use crate::view::{Beside, Earlier, Identification, Trends};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{Html, IntoResponse};
@@ -22,6 +22,21 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Identifi
     responses((status = 200, description = "Quantities of earlier runs", body = Vec<Earlier>), Refusals))]
 pub async fn earlier(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Earlier>> {
     Ok(Json(lab.earlier(id).await?))
+}
+
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(default, deny_unknown_fields)]
+pub struct TrendQuery {
+    /// As in the list of runs; terms that are not understood are left out.
+    pub search: String,
+}
+
+/// What the newest 500 complete runs that a search finds have found, the oldest first
+#[utoipa::path(get, path = "/trends", operation_id = "trends", tag = "runs", params(TrendQuery),
+    responses((status = 200, description = "Quantities with intervals, and the conditions of each run", body = Trends), Refusals))]
+pub async fn trends(State(lab): State<Lab>, Query(query): Query<TrendQuery>) -> Answer<Trends> {
+    Ok(Json(lab.trends(&query.search).await?))
 }
 
 /// The run, also one that is on, beside the last model of its kind from another run of its bench; `null` without one

@@ -4,6 +4,7 @@ mod autopilots;
 mod bench;
 mod calibrations;
 mod dashboard;
+mod derived;
 mod door;
 mod extract;
 mod headers;
@@ -108,6 +109,7 @@ fn operations() -> OpenApiRouter<Lab> {
     let tables = sized(tables, size::TABLE_LIMIT_BYTES);
     let rest = OpenApiRouter::new()
         .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(runs::samples))))
+        .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(derived::samples))))
         .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(models::residuals))))
         .merge(gated(ANSWERS_AT_ONCE, OpenApiRouter::new().routes(routes!(runs::events))))
         .routes(routes!(bench::list))
@@ -134,8 +136,10 @@ fn operations() -> OpenApiRouter<Lab> {
         .routes(routes!(notes::tags))
         .routes(routes!(runs::statistics))
         .routes(routes!(runs::differences))
+        .routes(routes!(derived::spectrum))
         .routes(routes!(identifications::get))
         .routes(routes!(identifications::earlier))
+        .routes(routes!(identifications::trends))
         .routes(routes!(identifications::beside))
         .routes(routes!(identifications::report))
         .routes(routes!(transfer::export))

@@ -18,7 +18,7 @@ mod reply;
 pub use inside::main;
 pub use process::{Jobs, Streamed};
 
-use crate::lab::{Alignment, ExportRequest, ImportRequest, Offer};
+use crate::lab::{Alignment, ExportRequest, ImportRequest, Most, Offer};
 use crate::view::{EffectTrial, Exclusion};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -85,6 +85,17 @@ pub enum Job {
     Differences {
         runs: Vec<i64>,
         how: Alignment,
+    },
+    Derived {
+        run: i64,
+        formulas: Vec<String>,
+        window: [Option<f64>; 2],
+        most: Most,
+    },
+    Spectrum {
+        run: i64,
+        formula: String,
+        window: [Option<f64>; 2],
     },
     Export(ExportRequest),
     /// Rows are laid down in a file; a file that was `uploaded` has closer bounds than one of the user's own.

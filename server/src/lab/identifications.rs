@@ -45,6 +45,12 @@ impl Lab {
         self.kept_of(run, QUANTITIES, |found| found.result.quantities).await
     }
 
+    /// The same where they were worked out before.
+    pub(super) async fn quantities_known(&self, run: i64) -> Answer<Option<Vec<Quantity>>> {
+        let kept = self.inner.store.kept(Subject::Run(run), QUANTITIES).await?;
+        kept.map(|kept| serde_json::from_slice(&kept)).transpose().map_err(|fault| LabError::Internal(fault.to_string()))
+    }
+
     /// The run for which a complete one has found the parameters.
     pub(super) async fn follow_up(&self, run: i64) -> Answer<Option<FollowUp>> {
         self.kept_of(run, FOLLOW_UP, |found| found.follow_up).await

@@ -42,6 +42,10 @@ impl Lab {
                 json(&self.statistics_here(run, channels.as_deref(), from_s, to_s).await?)
             }
             Job::Differences { runs, how } => json(&self.differences_here(&runs, &how).await?),
+            Job::Derived { run, formulas, window, most } => {
+                json(&self.derived_here(run, &formulas, window, most).await?)
+            }
+            Job::Spectrum { run, formula, window } => json(&self.spectrum_here(run, &formula, window).await?),
             Job::Import { request, rows, uploaded } => json(&self.read_here(request, &rows, uploaded).await?),
             Job::Export(request) => {
                 let out = Arc::<Mutex<Vec<u8>>>::default();

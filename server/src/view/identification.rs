@@ -92,6 +92,29 @@ pub struct Earlier {
     pub quantities: Vec<Quantity>,
 }
 
+/// What complete runs have found, the oldest first.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Trends {
+    pub runs: Vec<TrendRun>,
+    /// Runs whose figures are not worked out yet: ask again.
+    pub pending: u64,
+    /// Older runs that the search finds too.
+    pub left_out: u64,
+}
+
+/// What one complete run has found, and under which conditions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TrendRun {
+    pub run: i64,
+    pub created_at: String,
+    pub bench: String,
+    pub procedure: String,
+    pub tags: Vec<String>,
+    /// Mean over the run; `null` where no temperature was measured.
+    pub temperature_c: Option<f64>,
+    pub quantities: Vec<Quantity>,
+}
+
 /// A run beside the last model of its kind that its bench has from another run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Beside {

@@ -6,6 +6,7 @@
 mod autopilot;
 mod bench;
 mod calibration;
+mod derived;
 mod diagnosis;
 mod identification;
 mod live;
@@ -20,6 +21,7 @@ mod token;
 pub use autopilot::*;
 pub use bench::*;
 pub use calibration::*;
+pub use derived::*;
 pub use diagnosis::*;
 pub use identification::*;
 pub use live::*;

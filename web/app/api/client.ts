@@ -34,6 +34,8 @@ export const api = {
 		ask('get', '/api/v1/runs/{id}/identification', { path: { id } }, signal),
 	earlier: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/earlier', { path: { id } }, signal),
 	beside: (id: number, signal?: Signal) => ask('get', '/api/v1/runs/{id}/beside', { path: { id } }, signal),
+	/** What complete runs have found; some of them later. */
+	trends: (search: string, signal?: Signal) => ask('get', '/api/v1/trends', { query: { search } }, signal),
 	start: (bench: string, procedure: string, parameters: Values) =>
 		ask('post', '/api/v1/runs', { body: { bench, procedure, parameters } }),
 	control: (id: number, what: 'pause' | 'resume' | 'stop' | 'abort') =>
@@ -53,6 +55,12 @@ export const api = {
 
 	statistics: (id: number, query: { channels?: string; from_s?: number; to_s?: number }, signal?: Signal) =>
 		ask('get', '/api/v1/runs/{id}/statistics', { path: { id }, query }, signal),
+
+	/** Channels by formulas over the columns of the run: a view `px` wide, or at most so many `rows` as they are. */
+	derived: (id: number, query: { formulas: string; from_s?: number; to_s?: number; px?: number; rows?: number }, signal?: Signal) =>
+		ask('get', '/api/v1/runs/{id}/derived', { path: { id }, query }, signal),
+	spectrum: (id: number, query: { formula: string; from_s?: number; to_s?: number }, signal?: Signal) =>
+		ask('get', '/api/v1/runs/{id}/spectrum', { path: { id }, query }, signal),
 
 	differences: (id: number, query: { others: string; channel: string; by?: string; from?: string }, signal?: Signal) =>
 		ask('get', '/api/v1/runs/{id}/differences', { path: { id }, query }, signal),

@@ -44,4 +44,5 @@ export type Samples = Schemas['Samples'];
 export type Suggestion = Schemas['Suggestion'];
 export type Table = Schemas['Table'];
 export type TradeOff = Schemas['TradeOff'];
+export type Trends = Schemas['Trends'];
 export type Worth = Schemas['Worth'];

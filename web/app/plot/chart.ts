@@ -1,10 +1,11 @@
 import uPlot from 'uplot';
 import { spanOf } from '../figure/figure';
+import { BARE, type Backdrop, paintBackdrop } from './backdrop';
 import { colour } from './colour';
 import { type Asked, type View, gestures } from './gestures';
 import { dashes, points } from './marks';
 import { type Cursors, type Moved, rulers } from './measure';
-import { tickText } from './ticks';
+import { powerText, tickText } from './ticks';
 import { trace } from './trace';
 
 /** `line` joins the points, `chord` only the first and the last; the others mark each point by itself. */
@@ -40,15 +41,8 @@ export interface Frame {
 	banded?: boolean;
 	/** Both axes show the same stretch. */
 	square?: boolean;
-}
-
-/** Behind the curves: stretches of x, and a band of y about zero. */
-export interface Backdrop {
-	gaps: readonly (readonly [number, number])[];
-	region: readonly [number, number] | null;
-	band: number | null;
-	/** Moments of which somebody has written something down. */
-	notes: readonly number[];
+	/** The values are powers of ten: the axis says what they stand for. */
+	log?: boolean;
 }
 
 export interface Chart {
@@ -61,8 +55,6 @@ export interface Chart {
 	destroy: () => void;
 }
 
-const NOTHING: Backdrop = { gaps: [], region: null, band: null, notes: [] };
-
 /** The one place that knows uPlot. The zoom is ours: data never moves it (uPlot issues 505 and 942). */
 export function makeChart(
 	host: HTMLElement,
@@ -72,7 +64,7 @@ export function makeChart(
 	moved: Moved = () => {},
 ): Chart {
 	let view: View | null = null;
-	let backdrop = NOTHING;
+	let backdrop = BARE;
 	let whole: View = [0, 1];
 	let lines: ReturnType<typeof rulers> | null = null;
 	const hands = gestures(asked);
@@ -88,7 +80,7 @@ export function makeChart(
 				x: { time: false, range: (_u, low, high) => view ?? (frame.square ? whole : padded(low, high, marked ? 0.012 : 0)) },
 				y: frame.square ? { range: () => view ?? whole } : frame.banded ? { range: (_u, low, high) => withBand(low, high, backdrop.band ?? 0) } : {},
 			},
-			axes: [axis(frame.bareX ? '' : frame.xTitle, frame.bareX), axis(frame.yTitle, false, 58)],
+			axes: [axis(frame.bareX ? '' : frame.xTitle, tickText, frame.bareX), axis(frame.yTitle, frame.log ? powerText : tickText, false, 58)],
 			series: [{}, ...frame.curves.map((curve) => series(curve, () => backdrop))],
 			cursor: {
 				...hands.cursor,
@@ -135,7 +127,7 @@ function withBand(low: number | null, high: number | null, band: number): View {
 	return padded(from - 0.1 * (to - from), to + 0.1 * (to - from));
 }
 
-function axis(title: string, bare = false, size?: number): uPlot.Axis {
+function axis(title: string, say: (tick: number) => string, bare = false, size?: number): uPlot.Axis {
 	return {
 		label: title || undefined,
 		labelSize: title ? 18 : 0,
@@ -148,7 +140,7 @@ function axis(title: string, bare = false, size?: number): uPlot.Axis {
 		gap: 4,
 		size: bare ? 8 : (size ?? 28),
 		space: size ? 24 : 60,
-		values: (_u, splits) => splits.map((tick) => (bare ? '' : tickText(tick))),
+		values: (_u, splits) => splits.map((tick) => (bare ? '' : say(tick))),
 	};
 }
 
@@ -173,31 +165,3 @@ function chord(u: uPlot, index: number, spread: number): uPlot.Series.Paths {
 		corners.reduce((path, [i, above]) => (path.lineTo(u.valToPos(xs[i] ?? 0, 'x', true), u.valToPos((ys[i] ?? 0) + above, 'y', true)), path), new Path2D());
 	return { stroke: joined([[0, 0], [last, 0]]), fill: joined([[0, spread], [last, spread], [last, -spread], [0, -spread]]) };
 }
-
-function paintBackdrop(u: uPlot, { region, band, notes }: Backdrop): void {
-	const { left, top, width, height } = u.bbox;
-	const { ctx } = u;
-	ctx.save();
-	ctx.beginPath();
-	ctx.rect(left, top, width, height);
-	ctx.clip();
-	if (region) {
-		const from = u.valToPos(region[0], 'x', true);
-		const to = u.valToPos(region[1], 'x', true);
-		ctx.fillStyle = colour('--accent-wash');
-		const width = Math.max(6 * devicePixelRatio, Math.abs(to - from));
-		ctx.fillRect((from + to - width) / 2, top, width, height);
-	}
-	if (band !== null) {
-		const high = u.valToPos(band, 'y', true);
-		const low = u.valToPos(-band, 'y', true);
-		ctx.fillStyle = colour('--sunk');
-		ctx.fillRect(left, high, width, low - high);
-	}
-	ctx.fillStyle = colour('--ink');
-	for (const at of notes) ctx.fill(flag(u.valToPos(at, 'x', true), top, height, devicePixelRatio));
-	ctx.restore();
-}
-
-/** On the axis, with a hair over the whole height. */
-const flag = (x: number, top: number, height: number, size: number) => new Path2D(`M${x} ${top}h${size / 2}v${height - 8 * size}l${4 * size} ${8 * size}h${-8 * size}l${3.5 * size} ${-8 * size}Z`);

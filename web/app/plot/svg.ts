@@ -1,7 +1,8 @@
 /** A plot as a drawing of lines: what is on the canvas, to be scaled and edited. */
-import type { Backdrop, Curve } from './chart';
+import { type Backdrop, everyOther } from './backdrop';
+import type { Curve } from './chart';
 import type { View } from './gestures';
-import { tickText, ticks } from './ticks';
+import { powerText, tickText, ticks } from './ticks';
 
 export interface Drawing {
 	xTitle: string;
@@ -14,6 +15,8 @@ export interface Drawing {
 	backdrop: Backdrop;
 	width: number;
 	height: number;
+	/** The values are powers of ten. */
+	log?: boolean;
 }
 
 const [LEFT, RIGHT, HEAD, FOOT] = [76, 10, 26, 44];
@@ -32,13 +35,17 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 
 	const axes = [
 		...ticks(...drawing.x, 8).flatMap((tick) => [path(`M${short(x(tick))} ${HEAD}V${foot}`, '--hair'), text([x(tick), foot + 16], tickText(tick), middle)]),
-		...ticks(...drawing.y, 5).flatMap((tick) => [path(`M${LEFT} ${short(y(tick))}H${right}`, '--hair'), text([LEFT - 6, y(tick) + 4], tickText(tick), 'text-anchor="end"')]),
+		...ticks(...drawing.y, 5).flatMap((tick) => [path(`M${LEFT} ${short(y(tick))}H${right}`, '--hair'), text([LEFT - 6, y(tick) + 4], (drawing.log ? powerText : tickText)(tick), 'text-anchor="end"')]),
 		text([(LEFT + right) / 2, height - 8], drawing.xTitle, middle),
 		text([0, 0], drawing.yTitle, `${middle} transform="translate(14 ${short((HEAD + foot) / 2)}) rotate(-90)"`),
 	];
+	const lineOf = ({ levels, x: xs, y: ys }: Backdrop['lines'][number]) =>
+		levels.map((level) => `M${LEFT} ${short(y(level))}H${right}`).join('') + xs.map((at, i) => `${i ? 'L' : 'M'}${short(x(at))} ${short(y(ys[i]!))}`).join('');
 	const behind = [
+		...everyOther(backdrop.steps, drawing.x, right - LEFT).map(([begin, end]) => `<rect x="${short(x(begin))}" y="${HEAD}" width="${short(x(end) - x(begin))}" height="${foot - HEAD}" fill="${ink('--step')}"/>`),
 		backdrop.region && `<rect x="${short(x(backdrop.region[0]))}" y="${HEAD}" width="${short(Math.max(2, x(backdrop.region[1]) - x(backdrop.region[0])))}" height="${foot - HEAD}" fill="${ink('--accent-wash')}"/>`,
 		backdrop.band !== null && `<rect x="${LEFT}" y="${short(y(backdrop.band))}" width="${right - LEFT}" height="${short(y(-backdrop.band) - y(backdrop.band))}" fill="${ink('--sunk')}"/>`,
+		...backdrop.lines.map((line) => path(lineOf(line), line.stroke, `stroke-dasharray="${line.dash.join(' ')}"`)),
 		...backdrop.notes.map((at) => path(`M${short(x(at))} ${HEAD}V${foot - 8}l4 8h-8l4 -8`, '--ink', 'stroke-width="0.5"')),
 	].filter((shape) => shape);
 	const drawn = curves.map((curve, i) => {
@@ -62,7 +69,8 @@ export function svgOf(drawing: Drawing, ink: (property: string) => string): stri
 		return curve.mark === 'dot' ? `<path d="${dots}" fill="${ink(curve.stroke)}"/>` : path(dots, curve.stroke);
 	});
 	let from = LEFT;
-	const legend = curves.map(({ label, stroke, mark, dash }) => {
+	const lines = backdrop.lines.map(({ label, said, stroke, dash }) => ({ label: `${label} ${said}`.trim(), stroke, dash, mark: 'line' as const }));
+	const legend = [...curves, ...lines].map(({ label, stroke, mark, dash }) => {
 		const d = mark === 'dot' || mark === 'ring' ? `M${from + 7.5} 13a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0` : `M${from} 13h20`;
 		const entry = path(d, stroke, `stroke-width="2" stroke-dasharray="${dash?.join(' ') || 'none'}"`) + text([from + 26, 17], label);
 		from += 46 + 6.6 * label.length;

@@ -27,3 +27,6 @@ export function tickText(tick: number): string {
 	if (size !== 0 && (size < 1e-4 || size >= 1e6)) return figure(tick, 2);
 	return String(Number(tick.toPrecision(6))).replace('-', '−');
 }
+
+/** A tick of a logarithmic scale: what it is the power of. */
+export const powerText = (power: number): string => figure(10 ** power, Number.isInteger(power) ? 1 : 2);

@@ -9,7 +9,7 @@ import { middle, place } from './place';
 import { inOneTurn, withMore } from './points';
 import { half, quantile, score, Sums } from './tally';
 import { wholeBins } from './bins';
-import { deepest, depth } from './tally';
+import { atDepth, depth, reachOfMap, readShading, toldOf, writeShading } from './shade';
 
 /** Repeatable noise in −1…1. */
 function noise(seed = 1): () => number {
@@ -142,11 +142,32 @@ describe('scores', () => {
 	});
 });
 
-it('goes on deepening past the clip, and ends', () => {
-	expect([0, 2.5, 5, 50, 500].map((z) => depth(z, 50))).toEqual([0, 0.5, 1, 2, 2]);
-	expect(depth(-20, 50)).toBeLessThan(depth(-10, 50));
-	expect(deepest([{ n: 100, mean: 3, se: 0.1, pieces: 9 }, { n: 2, mean: 9, se: 0.1, pieces: 2 }])).toBe(30);
-	expect(deepest([])).toBe(10);
+describe('the colours of the map', () => {
+	const cells = [{ n: 100, mean: 3, se: 0.1, pieces: 9 }, { n: 100, mean: -0.5, se: 0.1, pieces: 9 }, { n: 2, mean: 9, se: 0.1, pieces: 2 }];
+
+	it('end at the worst cell, however far that is', () => {
+		for (const of of ['errors', 'value'] as const) {
+			for (const log of [true, false]) {
+				const most = reachOfMap(cells, of, 0.01);
+				const deep = cells.slice(0, 2).map((cell) => depth(toldOf(cell, of)!, most, { of, log }));
+				expect(deep[0]).toBeCloseTo(2, 12);
+				expect(deep[1]).toBeLessThan(0);
+				expect(deep[1]).toBeGreaterThan(-2);
+				expect(atDepth(deep[1]!, most, { of, log })).toBeCloseTo(toldOf(cells[1]!, of)!, 9);
+			}
+		}
+	});
+
+	it('are pale where there is only noise, and none where there are too few points', () => {
+		const noise = [{ n: 100, mean: 0.05, se: 0.1, pieces: 9 }];
+		expect(depth(toldOf(noise[0]!, 'errors')!, reachOfMap(noise, 'errors', 1), { of: 'errors', log: false })).toBeCloseTo(0.2, 12);
+		expect(depth(0.05, reachOfMap(noise, 'value', 1), { of: 'value', log: false })).toBeCloseTo(0.1, 12);
+		expect([toldOf(cells[2]!, 'errors'), toldOf(cells[2]!, 'value')]).toEqual([null, null]);
+	});
+
+	it('are kept in the address', () => {
+		for (const text of ['errors-linear', 'value-log', 'value-linear', null]) expect(writeShading(readShading(text))).toBe(text);
+	});
 });
 
 it('frames whole cells: those whose middle lies in the stretch, or the one that holds it', () => {

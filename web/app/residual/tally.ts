@@ -103,26 +103,12 @@ function tails(t: number, freedom: number): number {
 
 /** Fewer points than this show no colour. */
 export const ENOUGH = 10;
-/** Standard errors at which the colour is full; beyond, it only deepens. */
-export const CLIP = 5;
-/** Standard errors at which it is deepest, at least; a map that is further off goes on to its worst cell. */
-export const DEEP = 10;
+/** Of a cell without any scatter: as far from zero as a plain one can be, in standard errors. */
+const EXACT = 10;
 
 /** Mean in standard errors; `null` where there are too few points to say. */
 export function score(tally: Tally): number | null {
 	if (tally.n < ENOUGH || !Number.isFinite(tally.se)) return null;
-	if (tally.se === 0) return tally.mean === 0 ? 0 : Math.sign(tally.mean) * DEEP;
+	if (tally.se === 0) return tally.mean === 0 ? 0 : Math.sign(tally.mean) * EXACT;
 	return tally.mean / tally.se;
-}
-
-/** The end of the palette for these cells. */
-export function deepest(cells: readonly Tally[]): number {
-	return cells.reduce((most, cell) => Math.max(most, Math.abs(score(cell) ?? 0)), DEEP);
-}
-
-/** How deep the colour is: −1 to 1 up to the clip, on to ±2 beyond it in equal ratios, so that a hundred cells past the clip still differ. */
-export function depth(z: number, deep: number): number {
-	const size = Math.abs(z);
-	const beyond = size > CLIP ? Math.min(1, Math.log(size / CLIP) / Math.log(deep / CLIP)) : 0;
-	return Math.sign(z) * (Math.min(1, size / CLIP) + beyond);
 }

@@ -38,3 +38,13 @@ export const writeOwns = (owns: ReadonlyMap<string, string>): string => [...owns
 export function readOwns(text: string | null): Map<string, string> {
 	return new Map(Array.from((text ?? '').matchAll(/([^:,]*):([^,]+)/g), ([, unit = '', look = '']) => [unit, look]));
 }
+
+/** `Nm:link torque:limit;A:brake current`: what is hidden in the plots, by unit. Names hold commas. */
+export const writeOffs = (offs: ReadonlyMap<string, readonly string[]>): string => [...offs].flatMap(([unit, names]) => (names.length > 0 ? [[unit, ...names].join(':')] : [])).join(';');
+
+export function readOffs(text: string | null): Map<string, string[]> {
+	return new Map((text ?? '').split(';').flatMap((part) => {
+		const [unit, ...names] = part.split(':');
+		return unit !== undefined && names.length > 0 ? [[unit, names] as const] : [];
+	}));
+}

@@ -1,5 +1,4 @@
 import { label } from '../format/label';
-import { speedScale } from '../format/speed';
 import type { Channel } from '../api/types';
 import type { Curve } from '../plot/chart';
 import { curveStyle } from '../plot/colour';
@@ -33,8 +32,8 @@ const QUANTITIES = new Map([
 ]);
 const ORDER = [...QUANTITIES.keys()];
 
-/** `rpm`: what is read in rad/s is shown in rpm; the group keeps the unit of its channels. `model`: what the model is called. */
-export function groupsOf(channels: readonly Channel[], rpm = false, model = MODEL): Group[] {
+/** `shown`: in which unit a unit is read; the group keeps the unit of its channels. `model`: what the model is called. */
+export function groupsOf(channels: readonly Channel[], shown = (unit: string) => unit, model = MODEL): Group[] {
 	const byUnit = new Map<string, string[]>();
 	for (const channel of channels) {
 		if (COUNTERS.has(channel.name)) continue;
@@ -42,14 +41,14 @@ export function groupsOf(channels: readonly Channel[], rpm = false, model = MODE
 		byUnit.set(unit, [...(byUnit.get(unit) ?? []), channel.name]);
 	}
 	const place = (unit: string) => (ORDER.includes(unit) ? ORDER.indexOf(unit) : ORDER.length);
-	return [...byUnit].map(([unit, names]) => makeGroup(unit, names, rpm, model)).sort((a, b) => place(a.unit) - place(b.unit));
+	return [...byUnit].map(([unit, names]) => makeGroup(unit, names, shown, model)).sort((a, b) => place(a.unit) - place(b.unit));
 }
 
-function makeGroup(unit: string, names: string[], rpm: boolean, model: string): Group {
+function makeGroup(unit: string, names: string[], read: (unit: string) => string, model: string): Group {
 	const titles = unit === MODEL ? ['measured', model] : names.map((name) => label(name).title);
 	// Where a stage stands is told by its ways.
 	const title = (names[0]?.startsWith('stage_') && unit !== STAGE ? null : QUANTITIES.get(unit)) ?? titles.join(', ');
-	const shown = unit === MODEL ? 'Nm' : unit === STAGE ? 'rad' : speedScale(unit, rpm).unit;
+	const shown = unit === MODEL ? 'Nm' : unit === STAGE ? 'rad' : read(unit);
 	const curves = titles.map((title, i) => ({ label: title, unit: shown, mark: 'line' as const, ...curveStyle(i) }));
 	return { unit, title: unit ? `${title} [${shown}]` : title, names, curves };
 }

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { afterHand, readLook, readOwns, viewOf, writeLook, writeOwns } from './follow';
+import { afterHand, readLook, readOffs, readOwns, viewOf, writeLook, writeOffs, writeOwns } from './follow';
 import { groupsOf } from './groups';
 import { meansOf } from './means';
 import { stepOn } from './progress';
@@ -54,7 +54,7 @@ it('draws the small angles of a stage apart from the turns of a shaft', () => {
 
 it('draws the model of a run that is on beside what was measured, apart from the load', () => {
 	const names = ['link_torque_nm', 'motor_torque_nm', 'model_torque_nm'];
-	const [torque, load] = groupsOf(names.map((name) => ({ name })), false, 'model 12');
+	const [torque, load] = groupsOf(names.map((name) => ({ name })), undefined, 'model 12');
 	expect([torque!.title, ...torque!.curves.map((curve) => curve.label)]).toEqual(['motor torque [Nm]', 'measured', 'model 12']);
 	expect(torque!.curves[1]!.dash).not.toEqual([]);
 	expect(load!.names).toEqual(['link_torque_nm']);
@@ -67,4 +67,11 @@ it('counts the step that is on, and stays on the last', () => {
 
 it('takes what a model leaves together over fifths of a second', () => {
 	expect(meansOf([0, 0.1, 0.25, 0.3, 0.7], [3, 5, 7, NaN, 1], [1, 1, 1, 1, null])).toEqual([[0.1, 3], [expect.closeTo(0.3), 6]]);
+});
+
+it('keeps in the address which channels are hidden, by unit', () => {
+	const offs = new Map([['Nm', ['link torque', 'limit, link torque']], ['A', []], ['', ['torque valid']]]);
+	expect(writeOffs(offs)).toBe('Nm:link torque:limit, link torque;:torque valid');
+	expect([...readOffs(writeOffs(offs))]).toEqual([['Nm', ['link torque', 'limit, link torque']], ['', ['torque valid']]]);
+	expect(readOffs(null).size).toBe(0);
 });

@@ -1,4 +1,4 @@
-import type { ChannelStatistics, RunEvent, Samples } from '../api/types';
+import type { Channel, ChannelStatistics, RunEvent, Samples } from '../api/types';
 
 /** One channel of a run over time. */
 export interface Course {
@@ -87,4 +87,12 @@ function flatten(value: unknown, name = ''): [string, string][] {
 	}
 	// A part of a campaign is its procedure.
 	return [[name, Array.isArray(value) ? value.map((one) => (one as { procedure?: string } | null)?.procedure ?? String(one)).join(', ') : String(value)]];
+}
+
+/** The channels that the address names, in its order; without a name that all runs have, the first torque or current. */
+export function chosenChannels(text: string | null, drawable: readonly Channel[]): Channel[] {
+	const named = (text ?? '').split(',').flatMap((name) => drawable.find((one) => one.name === name) ?? []);
+	if (named.length > 0) return [...new Set(named)];
+	const usual = drawable.find((one) => /torque|current/.test(one.name)) ?? drawable[0];
+	return usual ? [usual] : [];
 }

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Samples } from '../api/types';
-import { alignCourses, courseOf, factTable, meanRow, momentOf, sharedMoments } from './align';
+import { alignCourses, chosenChannels, courseOf, factTable, meanRow, momentOf, sharedMoments } from './align';
 import { completions } from './complete';
 import { against, differ } from './differ';
 import { readMarked, toggleMarked, withBase } from './marked';
@@ -87,4 +87,11 @@ it('holds the others against the base, which comes first', () => {
 	expect(against({ value: 4 }, { value: 3.9 })).toBe('−2.5 %');
 	expect(against({ value: 0.1, ci95: [-0.1, 0.3] }, { value: 0.4 }, 1000)).toBe('+300');
 	expect([against(null, { value: 1 }), against({ value: 0 }, { value: 1 })]).toEqual(['', '']);
+});
+
+it('compares the channels that the address names, or a torque', () => {
+	const drawable = ['motor_velocity_rad_s', 'motor_current_a', 'link_torque_nm'].map((name) => ({ name }));
+	expect(chosenChannels('link_torque_nm,gone,motor_velocity_rad_s', drawable).map(({ name }) => name)).toEqual(['link_torque_nm', 'motor_velocity_rad_s']);
+	expect(chosenChannels('gone', drawable).map(({ name }) => name)).toEqual(['motor_current_a']);
+	expect(chosenChannels(null, [])).toEqual([]);
 });

@@ -1,11 +1,13 @@
+import { type Angle, angleScale, readAngle } from '../format/angle';
 import { axisTitle, label } from '../format/label';
 import { speedScale, spokenSpeeds } from '../format/speed';
 import type { Scale } from '../format/number';
 import { router } from './router.svelte';
 
 const KEPT = 'jointbench.speed';
+const ANGLE = 'jointbench.angle';
 
-/** Whether speeds are read in rad/s or in rpm: as the address says, or as this browser was left. What is sent and stored stays in rad/s. */
+/** In which units speeds and angles are read: as the address says, or as this browser was left. What is sent and stored stays in rad/s and rad. */
 class Speed {
 	private kept = $state(localStorage.getItem(KEPT));
 	rpm = $derived((router.query.get('speed') ?? this.kept) === 'rpm');
@@ -15,8 +17,16 @@ class Speed {
 		router.set({ speed: this.kept });
 	}
 
+	private keptAngle = $state(localStorage.getItem(ANGLE));
+	angle: Angle = $derived(readAngle(router.query.get('angle') ?? this.keptAngle));
+
+	setAngle(angle: Angle): void {
+		localStorage.setItem(ANGLE, (this.keptAngle = angle));
+		router.set({ angle });
+	}
+
 	scale(unit: string): Scale {
-		return speedScale(unit, this.rpm);
+		return unit === 'rad/s' ? speedScale(unit, this.rpm) : angleScale(unit, this.angle);
 	}
 
 	/** A sentence with its speeds in the unit that is shown. */

@@ -27,10 +27,7 @@ pub enum What {
 impl Expression {
     /// The value of every row.
     pub fn column(&self, parameters: &[f64], signals: &Signals) -> Vec<f64> {
-        match self.value(parameters, signals) {
-            Value::One(value) => vec![value; signals.len()],
-            Value::Many(values) => values.into_owned(),
-        }
+        self.value(parameters, signals).of_rows(signals.len())
     }
 
     fn value<'s>(&self, parameters: &[f64], signals: &'s Signals) -> Value<'s> {
@@ -41,18 +38,8 @@ impl Expression {
             // A signal that is not there is asked for by nobody: the effect is not visible.
             What::Signal(signal) => signals.find(*signal).map_or(Value::One(f64::NAN), |v| Value::Many(v.into())),
             What::Negate(a) => of(a).map(|x| -x),
-            What::Binary(operator, a, b) => match operator {
-                Operator::Add => of(a).with(of(b), |x, y| x + y),
-                Operator::Subtract => of(a).with(of(b), |x, y| x - y),
-                Operator::Multiply => of(a).with(of(b), |x, y| x * y),
-                Operator::Divide => of(a).with(of(b), |x, y| x / y),
-                Operator::Power => of(a).with(of(b), f64::powf),
-            },
-            What::Call(function, arguments) => match arguments.as_slice() {
-                [x, y] => of(x).with(of(y), |x, y| function.apply(x, y)),
-                [x, ..] => of(x).map(|x| function.apply(x, 0.0)),
-                [] => Value::One(f64::NAN),
-            },
+            What::Binary(operator, a, b) => of(a).operated(*operator, of(b)),
+            What::Call(function, arguments) => Value::called(*function, arguments.iter().map(of).collect()),
         }
     }
 
@@ -102,13 +89,41 @@ impl Expression {
 }
 
 /// One value for all rows, or one for each.
-enum Value<'s> {
+pub(crate) enum Value<'s> {
     One(f64),
     Many(Cow<'s, [f64]>),
 }
 
 impl<'s> Value<'s> {
-    fn map(self, f: impl Fn(f64) -> f64) -> Value<'s> {
+    /// The value of each of `len` rows.
+    pub fn of_rows(self, len: usize) -> Vec<f64> {
+        match self {
+            Value::One(value) => vec![value; len],
+            Value::Many(values) => values.into_owned(),
+        }
+    }
+
+    pub fn operated(self, operator: Operator, other: Value<'s>) -> Value<'s> {
+        match operator {
+            Operator::Add => self.with(other, |x, y| x + y),
+            Operator::Subtract => self.with(other, |x, y| x - y),
+            Operator::Multiply => self.with(other, |x, y| x * y),
+            Operator::Divide => self.with(other, |x, y| x / y),
+            Operator::Power => self.with(other, f64::powf),
+        }
+    }
+
+    /// NaN for a function without arguments, which no formula has.
+    pub fn called(function: Function, arguments: Vec<Value<'s>>) -> Value<'s> {
+        let mut arguments = arguments.into_iter();
+        match (arguments.next(), arguments.next()) {
+            (Some(x), Some(y)) => x.with(y, |x, y| function.apply(x, y)),
+            (Some(x), None) => x.map(|x| function.apply(x, 0.0)),
+            (None, _) => Value::One(f64::NAN),
+        }
+    }
+
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Value<'s> {
         match self {
             Value::One(x) => Value::One(f(x)),
             Value::Many(values) => {

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 /// A mistake at a character of a text that a user wrote, with the others of the same text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("effect {effect}: {message} ({field}, character {}){}", .position + 1, more(.also))]
+#[error("{}{message} ({field}, character {}){}", whose(.effect), .position + 1, more(.also))]
 pub struct FormulaFault {
+    /// Whose formula it is; empty where it is that of no effect.
     pub effect: String,
     /// `formula`, or the part of the definition that is wrong.
     pub field: &'static str,
@@ -27,6 +28,10 @@ pub struct Also {
     pub position: usize,
     pub length: usize,
     pub message: String,
+}
+
+fn whose(effect: &str) -> String {
+    if effect.is_empty() { String::new() } else { format!("effect {effect}: ") }
 }
 
 fn more(also: &[Also]) -> String {

@@ -13,6 +13,7 @@ pub(crate) mod syntax;
 pub(crate) mod units;
 
 pub use crate::formula::expression::{Expression, What};
+pub(crate) use crate::formula::expression::Value;
 pub(crate) use crate::formula::fault::Mistake;
 pub use crate::formula::fault::{Also, FormulaFault};
 pub use crate::formula::function::Function;

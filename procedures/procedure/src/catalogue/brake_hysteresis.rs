@@ -97,7 +97,7 @@ impl Procedure for BrakeHysteresis {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("Nm", "torque_top width drag"), ("", "error_max error_rms error_line"), ("A", "current_error")])
+        findable(&[("Nm", "torque_top width drag"), ("", "model_currents error_max error_rms error_line"), ("A", "current_error")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

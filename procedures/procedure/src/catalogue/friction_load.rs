@@ -6,7 +6,7 @@
 use super::friction::Friction;
 use super::legs::sample_rate;
 use super::{Findable, Procedure, findable};
-use crate::findings::{Unusable, interval_of, keep, legs, parameter, plateaus, quantity, scatter, settled, verdict};
+use crate::findings::{Unusable, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
@@ -89,10 +89,9 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             quantities.push(quantity(words, value, Some(ci95)));
         }
     }
+    let laws = Law::of(&fit);
     let heaviest = held().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
-    let more_nm = |effect: &str, name: &str, of: f64| parameter(&fit, effect, name).map_or(0.0, |p| p.value * of);
-    let motor_nm = heaviest / gear;
-    let added_nm = more_nm("load_linear", "mu", motor_nm) + more_nm("load_quadratic", "mu_2", motor_nm * motor_nm);
+    let added_nm = laws.added_nm(heaviest / gear);
     quantities.push(quantity(["added", "Δτ", "Friction that the highest load adds, motor side", "Nm"], added_nm, None));
     let more = format!("{} more at {heaviest:.1} Nm (commanded)", words::figure(added_nm, "Nm"));
     let summary = match law {
@@ -106,7 +105,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         summary,
         advice: None,
         quantities,
-        figures: vec![over_load(&table, gear)?],
+        figures: vec![over_load(&table, gear, laws)?],
     })
 }
 
@@ -142,17 +141,44 @@ fn under(table: &RunTable, law: &[&'static str]) -> Result<Fit, ModelError> {
     })
 }
 
-/// Friction over load, one series for each speed, both directions as magnitudes.
-fn over_load(table: &RunTable, gear: f64) -> Result<Figure, Unusable> {
+/// What the load adds to friction, as it was fitted.
+#[derive(Debug, Clone, Copy)]
+struct Law {
+    mu: f64,
+    mu_2_per_nm: f64,
+}
+
+impl Law {
+    fn of(fit: &Fit) -> Self {
+        let value = |effect: &str, name: &str| parameter(fit, effect, name).map_or(0.0, |p| p.value);
+        Self { mu: value("load_linear", "mu"), mu_2_per_nm: value("load_quadratic", "mu_2") }
+    }
+
+    /// Both on the motor's side [Nm].
+    fn added_nm(self, load_nm: f64) -> f64 {
+        self.mu * load_nm + self.mu_2_per_nm * load_nm * load_nm
+    }
+}
+
+/// Steps of a fitted line from no load to the highest.
+const STEPS: u32 = 20;
+
+/// Friction over load with the fitted law, one series for each speed, both directions as magnitudes.
+fn over_load(table: &RunTable, gear: f64, law: Law) -> Result<Figure, Unusable> {
     let mut points = plateaus(&settled(table)?);
     points.sort_by(|a, b| a.velocity_rad_s.abs().total_cmp(&b.velocity_rad_s.abs()));
     let alike = |a: &crate::findings::Plateau, b: &crate::findings::Plateau| {
         (a.velocity_rad_s.abs() / b.velocity_rad_s.abs() - 1.0).abs() < 0.05
     };
-    let series = points.chunk_by(alike).filter(|same| same.len() >= 4).map(|same| {
+    let series = points.chunk_by(alike).filter(|same| same.len() >= 4).flat_map(|same| {
         let label = format!("{:.1} rad/s", same[same.len() / 2].velocity_rad_s.abs());
         let point = |p: &crate::findings::Plateau| ((p.load_nm * gear).abs(), (p.target - p.load_nm).abs());
-        scatter(&label, same.iter().map(point))
+        let seen: Vec<(f64, f64)> = same.iter().map(point).collect();
+        // What is left without the load is that of the speed.
+        let bare_nm = seen.iter().map(|(link_nm, nm)| nm - law.added_nm(link_nm / gear)).sum::<f64>() / seen.len() as f64;
+        let top_nm = seen.iter().map(|p| p.0).fold(0.0, f64::max);
+        let line = curve(&format!("fit, {label}"), [0.0, top_nm], STEPS, |link_nm| bare_nm + law.added_nm(link_nm / gear));
+        [scatter(&label, seen), line]
     });
     Ok(Figure {
         name: "friction_over_load".into(),

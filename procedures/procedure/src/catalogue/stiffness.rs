@@ -4,6 +4,7 @@
 //! 1/k_joint = 1/k_measured − 1/k_bearing.
 
 mod identify;
+mod zones;
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};
@@ -91,7 +92,7 @@ impl Procedure for Stiffness {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("rad/Nm", "inverse_k"), ("Nm/rad", "k"), ("rad", "beta_0 xi line_rms rms"), ("J", "loop_area")])
+        findable(&[("rad/Nm", "inverse_k"), ("Nm/rad", "k k_1 k_2 k_3"), ("rad", "beta_0 xi hysteresis_width lost_motion line_rms rms"), ("J", "loop_area")])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -2,11 +2,11 @@
 
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::{Findable, Procedure, findable};
-use crate::findings::{Plateau, Unusable, plateaus, quantity, scatter, settled, verdict};
+use crate::findings::{Plateau, Unusable, curve, plateaus, quantity, scatter, settled, verdict};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
-use crate::steady::SteadyWatch;
+use crate::steady::{Drift, SteadyWatch};
 use jointbench_instrument::{Kind, RunTable};
 
 pub(super) struct WarmUp;
@@ -95,7 +95,8 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let end = &fast[fast.len().saturating_sub(JUDGED)..];
     let rule = rule(values);
     // By the very rule that ends a warm-up: one that ended by itself has just come below the bound.
-    let Some(drift) = SteadyWatch::of(rule, run).and_then(|watch| watch.drift()) else {
+    let watch = SteadyWatch::of(rule, run);
+    let Some((watch, drift)) = watch.and_then(|watch| watch.drift().map(|drift| (watch, drift))) else {
         return Err(Unusable::TooLittle("the warm-up ended before three cycles were done: give it a higher longest_s"));
     };
     let last_nm = end.iter().map(|p| p.target.abs()).sum::<f64>() / end.len() as f64;
@@ -105,6 +106,12 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     ];
     let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());
     let mut figures = vec![over_time("torque", "Motor torque of the fast legs", "motor torque", "Nm", &fast, torque)];
+    figures.push(until_steady(
+        ["current_drift_over_time", "Drift of the motor current", "drift of the current", "1/min"],
+        &watch,
+        rule.current_share_per_min,
+        |drift| drift.current_share_per_min,
+    ));
     let mut drifts = vec![(
         drift.is_current_steady(&rule),
         format!("its current drifts by {:.2} %/min", 100.0 * drift.current_share_per_min),
@@ -115,6 +122,12 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         quantities.push(quantity(words, drift.temperature_c_per_min, None));
         let temperature = |p: &Plateau| (p.time_s / 60.0, p.temperature_c);
         figures.push(over_time("temperature", "Temperature", "temperature", "°C", &fast, temperature));
+        figures.push(until_steady(
+            ["temperature_drift_over_time", "Drift of the temperature", "drift of the temperature", "°C/min"],
+            &watch,
+            rule.temperature_c_per_min,
+            |drift| drift.temperature_c_per_min,
+        ));
         drifts.push((
             drift.is_temperature_steady(&rule),
             format!("its temperature drifts by {:.3} °C/min", drift.temperature_c_per_min),
@@ -152,6 +165,24 @@ fn over_time(
         x: Axis::of("time", "min"),
         y: Axis::of(label, unit),
         series: vec![scatter("fast legs", points.iter().map(of))],
+    }
+}
+
+/// A drift at the end of each cycle, between the bounds within which the joint is warm. `words`: name, title, label and unit.
+fn until_steady([name, title, label, unit]: [&str; 4], watch: &SteadyWatch, bound: f64, of: fn(&Drift) -> f64) -> Figure {
+    let points: Vec<(f64, f64)> = watch.drifts().map(|(time_s, drift)| (time_s / 60.0, of(&drift))).collect();
+    let ends = [points.first().map_or(0.0, |p| p.0), points.last().map_or(1.0, |p| p.0)];
+    Figure {
+        name: name.into(),
+        title: title.into(),
+        form: Form::Cartesian,
+        x: Axis::of("time", "min"),
+        y: Axis::of(label, unit),
+        series: vec![
+            scatter("over three cycles", points),
+            curve("warm within", ends, 1, |_| bound),
+            curve("warm within", ends, 1, |_| -bound),
+        ],
     }
 }
 

@@ -65,6 +65,11 @@ impl Everett {
     }
 
     /// The highest current that was measured.
+    /// How many currents it is made of, 0 among them.
+    pub fn currents(&self) -> usize {
+        self.grid_a.len()
+    }
+
     pub fn top_a(&self) -> f64 {
         self.grid_a[self.grid_a.len() - 1]
     }

@@ -67,6 +67,11 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let falling = everett.torque_nm(&History::default().after(top).after(middle));
     let full: Vec<f64> = major.iter().filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
     let quantities = vec![
+        quantity(
+            ["model_currents", "N", "Currents of the Preisach model (Everett form), 0 among them", ""],
+            everett.currents() as f64,
+            None,
+        ),
         quantity(["torque_top", "T_max", "Torque at the highest current", "Nm"], mean(&full), spread(&full)),
         quantity(["width", "ΔT", "Width of the loop at half the current", "Nm"], falling - rising, None),
         quantity(["drag", "T₀", "Torque without current", "Nm"], everett.torque_nm(&History::default()), None),
@@ -87,7 +92,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     Ok(Identification {
         verdict: if good { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "The brake gives {:.2} Nm at {top:.3} A, {:.2} Nm more on the way down than up at half of it; a torque commanded through the model errs by at most {:.2} % of rated after a random history.",
+            "The brake gives {:.2} Nm at {top:.3} A, {:.2} Nm more on the way down than up at half of it; a torque commanded through the Preisach model errs by at most {:.2} % of rated after a random history.",
             mean(&full),
             falling - rising,
             100.0 * worst

@@ -4,7 +4,7 @@ use super::before_after::{Left, figures};
 use super::say::{quantity, too_little};
 use super::spectrum::PolePairs;
 use super::sweeps::{Sweep, sweeps};
-use super::table::{Class, Table, Terms};
+use super::table::{Class, Table, Terms, means};
 use super::{ACCELERATION, both_ways, counts, meta, radial, sample_rate, stage};
 use crate::catalogue::legs::Legs;
 use crate::catalogue::{Findable, Procedure, findable};
@@ -82,7 +82,7 @@ impl Procedure for EncoderLinearity {
     fn finds(&self) -> Vec<Findable> {
         findable(&[
             ("", "bits_before bits_table bits_velocity bits_direction pole_period_order"),
-            ("rad", "peak_before peak_table peak_velocity peak_direction harmonic_1 harmonic_2 pole_period"),
+            ("rad", "repeatability peak_before peak_table peak_velocity peak_direction harmonic_1 harmonic_2 pole_period"),
         ])
     }
 
@@ -109,7 +109,7 @@ impl Procedure for EncoderLinearity {
         let delayed = |sweep: &Sweep, i: usize| direct(sweep, i) + terms.delay_s * sweep.speed_rad_s;
         let full = |sweep: &Sweep, i: usize| delayed(sweep, i) + terms.hysteresis_rad * sweep.speed_rad_s.signum();
         let stages: [(&str, &str, f64); 4] = [
-            ("before", "before compensation", peak(&before)),
+            ("before", "before compensation (INL)", peak(&before)),
             ("table", "with the look-up table", peak(&direct)),
             ("velocity", "with table and velocity term", peak(&delayed)),
             ("direction", "with table, velocity and direction term", peak(&full)),
@@ -121,6 +121,7 @@ impl Procedure for EncoderLinearity {
             quantities.push(quantity([&bits_name, "", &format!("Usable bits {title}"), ""], bits(peak_rad), None));
             quantities.push(quantity([&peak_name, "", &format!("Largest error {title}"), "rad"], peak_rad, None));
         }
+        quantities.extend(repeatability(&known, &unseen));
         quantities.extend(harmonics(&known, &terms));
         let poles = PolePairs::of(&table)?;
         let name = ["pole_period", "", "Largest error inside a pole pair", "rad"];
@@ -155,6 +156,29 @@ fn what_it_takes(without_direction: f64, full: f64) -> String {
         (false, true) => format!("{BEYOND_BITS} bits take the direction term."),
         (false, false) => format!("{BEYOND_BITS} bits are not reached, with the direction term neither."),
     }
+}
+
+/// Places of the turn at which repeats are held against each other.
+const PLACES: usize = 180;
+
+/// How far the error at one place of the turn, at one speed in one direction, differs from repeat to repeat. `None` for one
+/// repeat.
+fn repeatability(known: &[Sweep], unseen: &[Sweep]) -> Option<Quantity> {
+    let mut sweeps: Vec<&Sweep> = known.iter().chain(unseen).collect();
+    sweeps.sort_by(|a, b| a.speed_rad_s.total_cmp(&b.speed_rad_s));
+    let (mut squares, mut freedom) = (0.0, 0.0);
+    for alike in sweeps.chunk_by(|a, b| b.speed_rad_s - a.speed_rad_s < 0.1 * b.speed_rad_s.abs().max(a.speed_rad_s.abs())) {
+        let error = |sweep: &Sweep, i: usize| sweep.error_rad[i];
+        let each: Vec<_> = alike.iter().map(|sweep| means(std::iter::once(*sweep), PLACES, &error)).collect();
+        for place in 0..PLACES {
+            let seen: Vec<f64> = each.iter().filter_map(|means| means[place]).collect();
+            let mean = seen.iter().sum::<f64>() / seen.len() as f64;
+            squares += seen.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+            freedom += seen.len().saturating_sub(1) as f64;
+        }
+    }
+    let title = "Repeatability: standard deviation at one place of the turn";
+    (freedom > 0.0).then(|| quantity(["repeatability", "s", title, "rad"], (squares / freedom).sqrt(), None))
 }
 
 /// Amplitudes of the two lowest harmonics with their intervals.

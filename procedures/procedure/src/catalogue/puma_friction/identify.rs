@@ -96,6 +96,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
         (false, true) => "in viscous friction the directions differ at 95 %, in Coulomb friction they do not",
         (false, false) => "the directions do not differ at 95 %",
     };
+    let over_volts = over_speed(&points, &forward, &backward);
     let complete = held == 0 && out.is_some() && back.is_some();
     Ok(Identification {
         verdict: if complete { Verdict::Identified } else { Verdict::Inconclusive },
@@ -106,7 +107,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
         ),
         advice: (!complete).then(|| "Not every breakaway was seen: raise top_torque_nm, or breakaways.".into()),
         quantities,
-        figures: vec![over_speed(&points, &forward, &backward), figures.over_angle(&holds, arc_rad)],
+        figures: vec![over_volts.clone(), in_torque(over_volts, nm_per_v), figures.over_angle(&holds, arc_rad)],
     })
 }
 
@@ -254,5 +255,21 @@ fn over_speed(points: &[Point], forward: &Line, backward: &Line) -> Figure {
             curve("line, positive", [0.0, top], 1, |x| forward.at(x)),
             curve("line, negative", [-top, 0.0], 1, |x| backward.at(x)),
         ],
+    }
+}
+
+/// The same figure in newton metres at the motor.
+fn in_torque(volts: Figure, nm_per_v: f64) -> Figure {
+    let series = volts.series.into_iter().map(|mut one| {
+        one.y.iter_mut().for_each(|y| *y *= nm_per_v);
+        one.band.iter_mut().flatten().for_each(|end| *end *= nm_per_v);
+        one
+    });
+    Figure {
+        name: "torque_over_speed".into(),
+        title: "Motor torque over speed".into(),
+        y: Axis::of("motor torque", "Nm"),
+        series: series.collect(),
+        ..volts
     }
 }

@@ -1,7 +1,8 @@
 //! A line of torsion over torque with an offset by direction, and whether the joint asks for more than a line.
 
+use super::zones::zones;
 use crate::findings::{Unusable, holds, interval_of, keep_rows, parameter, quantity, scatter};
-use crate::identification::{Axis, Figure, Form, Identification, Mark, Series, Verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Mark, Quantity, Series, Verdict};
 use jointbench_instrument::RunTable;
 use jointbench_model::{Definition, Fit, ModelSpec, Options, OwnEffect, OwnParameter, fit, residuals};
 
@@ -127,6 +128,8 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         let (value, ci95) = with_steps(interval_of(found, 1.0), run, gear);
         quantities.push(quantity(["xi", "ξ", "Offset of the encoders", "rad"], value, Some(ci95)));
     }
+    quantities.extend(zones(&points, bearing));
+    quantities.extend(reversal.iter().flat_map(Reversal::quantities));
     quantities.extend([
         quantity(["line_rms", "e_line", "What a line leaves on loads not seen", "rad"], line.validation_rms, None),
         quantity(["rms", "e", "What the chosen curve leaves on loads not seen", "rad"], best.validation_rms, None),
@@ -195,6 +198,24 @@ impl Reversal {
         Some(Self { course, there: turn - begin })
     }
 
+    /// Width of the loop and lost motion, where the run comes back to the load from which the loop began.
+    fn quantities(&self) -> Vec<Quantity> {
+        let (there, back) = self.course.split_at(self.there);
+        let top = self.course.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+        let at = |torque: f64| Some([crossing(there, torque)?, crossing(back, torque)?]);
+        let mut found = Vec::new();
+        if let Some([down, up]) = at(0.0) {
+            let words = ["hysteresis_width", "Δφ₀", "Hysteresis: torsion between both branches without torque", "rad"];
+            found.push(quantity(words, (down - up).abs(), None));
+        }
+        if let (Some(low), Some(high)) = (at(-LOST_MOTION * top), at(LOST_MOTION * top)) {
+            let lost = (high[0] + high[1] - low[0] - low[1]) / 2.0;
+            let words = ["lost_motion", "φ_L", "Lost motion: torsion from −3 % to +3 % of the highest torque", "rad"];
+            found.push(quantity(words, lost.abs(), None));
+        }
+        found
+    }
+
     /// Work that it takes: the area between torsion and torque. What a straight spring between the ends of the way there
     /// would take is given back; the rest is lost, in both halves.
     fn area_j(&self) -> f64 {
@@ -209,6 +230,20 @@ impl Reversal {
         let (x, y) = self.course.iter().copied().step_by(every).unzip();
         Series::new("loop at the highest load", Mark::Line, x, y)
     }
+}
+
+/// Torque to either side between which the lost motion lies, as a share of the highest (catalogues of strain wave gears take 3
+/// or 4 % of the rated torque).
+const LOST_MOTION: f64 = 0.03;
+
+/// Mean torsion where a branch crosses a torque: noise crosses it more than once. `None` where it does not.
+fn crossing(branch: &[Point], torque: f64) -> Option<f64> {
+    let crossings: Vec<f64> = branch
+        .windows(2)
+        .filter(|pair| (pair[0].0 - torque) * (pair[1].0 - torque) <= 0.0 && pair[0].0 != pair[1].0)
+        .map(|pair| pair[0].1 + (torque - pair[0].0) / (pair[1].0 - pair[0].0) * (pair[1].1 - pair[0].1))
+        .collect();
+    (!crossings.is_empty()).then(|| crossings.iter().sum::<f64>() / crossings.len() as f64)
 }
 
 /// The chosen model over the loads that were held, each direction on its own.

@@ -1,0 +1,66 @@
+//! What complete runs have found, over any number of them.
+
+use super::{Answer, Lab, LabError};
+use crate::store::{RunFilter, RunRecord, Search};
+use crate::view::{TrendRun, Trends};
+use jointbench_procedure::RunState;
+
+/// As many as a plot can tell apart.
+const MOST: u32 = 500;
+/// So many are worked out for one answer: whoever waits sees those that are known meanwhile.
+const AT_ONCE: usize = 8;
+/// Stretches of a run whose middles give its mean temperature.
+const STRETCHES: usize = 200;
+
+impl Lab {
+    /// Of the newest complete runs that a search finds, the oldest first. What is not known yet is worked out, a few at a time:
+    /// `pending` are left for the next question.
+    pub async fn trends(&self, search: &str) -> Answer<Trends> {
+        let (understood, _) = Search::understood(search);
+        let filter = RunFilter { limit: MOST, offset: 0, search: Some(format!("{understood} state:completed")), ..RunFilter::default() };
+        let (total, records) = self.inner.store.runs(&filter).await?;
+        let (mut runs, mut pending, mut worked_out) = (Vec::new(), 0, 0);
+        for record in records.iter().rev().filter(|record| has_result(record)) {
+            let known = self.quantities_known(record.id).await?;
+            if known.is_none() && worked_out == AT_ONCE {
+                pending += 1;
+                continue;
+            }
+            worked_out += usize::from(known.is_none());
+            let quantities = match known {
+                Some(quantities) => quantities,
+                None => match self.quantities(record.id).await {
+                    Ok(quantities) => quantities,
+                    Err(LabError::NotFound(_) | LabError::Invalid(_)) => continue,
+                    Err(fault) => return Err(fault),
+                },
+            };
+            let temperature_c = self.temperature_of(record).await?;
+            runs.push(TrendRun {
+                run: record.id,
+                created_at: record.created_at.clone(),
+                bench: record.bench.clone(),
+                procedure: record.procedure.clone(),
+                tags: record.tags.clone(),
+                temperature_c,
+                quantities,
+            });
+        }
+        Ok(Trends { runs, pending, left_out: total.saturating_sub(u64::from(MOST)) })
+    }
+
+    /// Mean of the run's temperature [°C], from the middles of its stretches.
+    async fn temperature_of(&self, record: &RunRecord) -> Answer<Option<f64>> {
+        let Some(channel) = record.channels.iter().find(|channel| channel.unit() == Some("°C")) else {
+            return Ok(None);
+        };
+        let view = self.inner.store.view(record.id, Some(&[channel.name.clone()]), None, None, STRETCHES).await?;
+        let middles = view.columns.iter().flat_map(|column| column.min.iter().zip(&column.max));
+        let middles: Vec<f64> = middles.map(|(low, high)| (low + high) / 2.0).filter(|middle| middle.is_finite()).collect();
+        Ok((!middles.is_empty()).then(|| middles.iter().sum::<f64>() / middles.len() as f64))
+    }
+}
+
+fn has_result(record: &RunRecord) -> bool {
+    record.state == RunState::Completed && jointbench_procedure::procedure(&record.procedure).is_some()
+}

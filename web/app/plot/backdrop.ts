@@ -1,0 +1,98 @@
+/** What lies behind the curves of a plot. */
+import type uPlot from 'uplot';
+import { colour } from './colour';
+
+/** A set point over time, or a limit at one height. It moves no scale: the curves decide what is in view. */
+export interface BackLine {
+	label: string;
+	/** In words, such as `± 20 rad/s`; empty for a course. */
+	said: string;
+	/** Custom property of the colour. */
+	stroke: string;
+	dash: number[];
+	/** A limit is at the same height everywhere. */
+	levels: readonly number[];
+	x: readonly number[];
+	y: readonly number[];
+}
+
+export interface Backdrop {
+	gaps: readonly (readonly [number, number])[];
+	region: readonly [number, number] | null;
+	/** Half height of a band about zero. */
+	band: number | null;
+	/** Moments about which somebody has written something down. */
+	notes: readonly number[];
+	/** Where steps begin, in order. */
+	steps: readonly number[];
+	lines: readonly BackLine[];
+}
+
+export const BARE: Backdrop = { gaps: [], region: null, band: null, notes: [], steps: [], lines: [] };
+
+/** Steps narrower than this are not told apart [px]. */
+const NARROWEST = 5;
+
+/** The stretches of every other step within the view; none where they are too narrow to be told apart on average. */
+export function everyOther(steps: readonly number[], [from, to]: readonly [number, number], width_px: number): [number, number][] {
+	const seen = steps.filter((at) => at > from && at < to).length;
+	if (steps.length < 2 || width_px / (seen + 1) < NARROWEST) return [];
+	return steps.flatMap((at, i) => {
+		const [begin, end] = [Math.max(from, at), Math.min(to, steps[i + 1] ?? to)];
+		return i % 2 === 1 && end > begin ? [[begin, end] as [number, number]] : [];
+	});
+}
+
+export function paintBackdrop(u: uPlot, { region, band, notes, steps, lines }: Backdrop): void {
+	const { left, top, width, height } = u.bbox;
+	const { ctx } = u;
+	const x = (value: number) => u.valToPos(value, 'x', true);
+	const y = (value: number) => u.valToPos(value, 'y', true);
+	ctx.save();
+	ctx.beginPath();
+	ctx.rect(left, top, width, height);
+	ctx.clip();
+	const { min: from, max: to } = u.scales.x!;
+	if (from != null && to != null) {
+		ctx.fillStyle = colour('--step');
+		for (const [begin, end] of everyOther(steps, [from, to], u.over.clientWidth)) ctx.fillRect(x(begin), top, x(end) - x(begin), height);
+	}
+	if (region) {
+		const [from, to] = region.map(x) as [number, number];
+		ctx.fillStyle = colour('--accent-wash');
+		const width = Math.max(6 * devicePixelRatio, Math.abs(to - from));
+		ctx.fillRect((from + to - width) / 2, top, width, height);
+	}
+	if (band !== null) {
+		ctx.fillStyle = colour('--sunk');
+		ctx.fillRect(left, y(band), width, y(-band) - y(band));
+	}
+	if (u.scales.y!.min != null) for (const line of lines) stroke(ctx, line, { left, width, x, y });
+	ctx.fillStyle = colour('--ink');
+	for (const at of notes) ctx.fill(flag(x(at), top, height, devicePixelRatio));
+	ctx.restore();
+}
+
+interface Place {
+	left: number;
+	width: number;
+	x: (value: number) => number;
+	y: (value: number) => number;
+}
+
+function stroke(ctx: CanvasRenderingContext2D, line: BackLine, { left, width, x, y }: Place): void {
+	ctx.beginPath();
+	for (const level of line.levels) {
+		ctx.moveTo(left, y(level));
+		ctx.lineTo(left + width, y(level));
+	}
+	line.x.forEach((at, i) => (i === 0 ? ctx.moveTo(x(at), y(line.y[i]!)) : ctx.lineTo(x(at), y(line.y[i]!))));
+	ctx.strokeStyle = colour(line.stroke);
+	ctx.lineWidth = 1.3 * devicePixelRatio;
+	ctx.setLineDash(line.dash.map((length) => length * devicePixelRatio));
+	ctx.stroke();
+	ctx.setLineDash([]);
+}
+
+/** On the axis, with a hair over the whole height. */
+const flag = (x: number, top: number, height: number, size: number) => new Path2D(`M${x} ${top}h${size / 2}v${height - 8 * size}l${4 * size} ${8 * size}h${-8 * size}l${3.5 * size} ${-8 * size}Z`);

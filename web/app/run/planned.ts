@@ -1,0 +1,104 @@
+import type { Preview, Run, RunEvent } from '../api/types';
+import { signed } from '../format/label';
+import { tickText } from '../plot/ticks';
+import type { Scale } from '../format/number';
+import type { BackLine } from '../plot/backdrop';
+import type { View } from '../plot/gestures';
+
+/** A step as the run has made it. */
+export interface StepMade {
+	/** Its place in the plan, from 0. */
+	step: number;
+	label: string;
+	at_s: number;
+	/** Where the next one begins, or the run ends. */
+	to_s: number;
+}
+
+/** The steps of a run in the order in which they began; a step that was repeated after a pause is there twice. */
+export function stepsOf(events: readonly Pick<RunEvent, 'kind' | 'at_s' | 'data'>[], end_s: number): StepMade[] {
+	const begun = events.filter(({ kind }) => kind === 'step_started');
+	return begun.map(({ at_s, data }, i) => ({
+		step: Number(data['step'] ?? i),
+		label: signed(String(data['label'] ?? '')),
+		at_s,
+		to_s: begun[i + 1]?.at_s ?? Math.max(at_s, end_s),
+	}));
+}
+
+/** [s] A moment alone is shown with so much around it. */
+const AROUND_S = 2;
+/** Of a step so much is shown before and behind it. */
+const MARGIN = 0.05;
+
+/** What is shown of a moment of the run. */
+export const aroundMoment = (at_s: number): View => [at_s - AROUND_S, at_s + AROUND_S];
+
+export function aroundStep({ at_s, to_s }: Pick<StepMade, 'at_s' | 'to_s'>): View {
+	const more = MARGIN * (to_s - at_s) || AROUND_S;
+	return [at_s - more, to_s + more];
+}
+
+type Course = { x: number[]; y: number[] };
+
+/**
+ * A planned course on the clock of the run: each step from where it began. A step takes as long as it was planned, or until
+ * the next one began.
+ */
+export function onRunClock(plan: Pick<Preview, 'steps'>, time_s: readonly number[], values: readonly number[], made: readonly StepMade[]): Course {
+	const begins = plan.steps.reduce<number[]>((list, { duration_s }) => [...list, list.at(-1)! + duration_s], [0]);
+	const course: Course = { x: [], y: [] };
+	for (const { step, at_s, to_s } of made) {
+		const [from, to] = [begins[step], begins[step + 1]];
+		if (from === undefined || to === undefined) continue;
+		const inside = time_s.flatMap((t, i) => (t > from + 1e-9 && t < to - 1e-9 ? [[t, values[i]!] as const] : []));
+		const corners = [[from, valueAt(time_s, values, from, 'after')] as const, ...inside, [to, valueAt(time_s, values, to, 'before')] as const];
+		for (const [t, value] of corners) {
+			course.x.push(Math.min(to_s, at_s + t - from));
+			course.y.push(value);
+		}
+	}
+	return course;
+}
+
+/** Where a course jumps it has two corners at one moment: the value before or after it. */
+function valueAt(time_s: readonly number[], values: readonly number[], at: number, side: 'before' | 'after'): number {
+	const close = (t: number) => Math.abs(t - at) < 1e-9;
+	const corner = side === 'after' ? time_s.findLastIndex(close) : time_s.findIndex(close);
+	if (corner >= 0) return values[corner]!;
+	const next = time_s.findIndex((t) => t > at);
+	if (next <= 0) return (next === 0 ? values[0] : values.at(-1)) ?? 0;
+	const share = (at - time_s[next - 1]!) / (time_s[next]! - time_s[next - 1]!);
+	return values[next - 1]! + share * (values[next]! - values[next - 1]!);
+}
+
+/** What follows a set point of the plan, and the channel in which the run itself keeps what was commanded: then the plan adds nothing. */
+const SET = [
+	['motor_velocity_rad_s', 'velocity_setpoint_rad_s'],
+	['brake_current_a', 'brake_current_command_a'],
+] as const;
+
+export const SET_POINT = 'set point';
+
+/** Set points of the plan that belong to these channels, in the unit that is shown. */
+export function setPointsOf(plan: Preview | undefined, made: readonly StepMade[], names: readonly string[], { factor }: Scale): BackLine[] {
+	if (!plan || made.length === 0) return [];
+	return SET.filter(([name, kept]) => names.includes(name) && !names.includes(kept)).flatMap(([name]) => {
+		const { x, y } = onRunClock(plan, plan.setpoints.time_s, plan.setpoints[name], made);
+		if (y.every((value) => value === 0)) return [];
+		return [{ label: SET_POINT, said: '', stroke: '--soft', dash: [2, 2], levels: [], x, y: y.map((value) => value * factor) }];
+	});
+}
+
+/** Limits of the bench at the time of the run for these channels, each once. They are of magnitudes; a temperature has only an upper one. */
+export function limitsOf({ provenance }: Pick<Run, 'provenance'>, names: readonly string[], { factor, unit }: Scale): BackLine[] {
+	const limits = (provenance['limits'] ?? {}) as Record<string, unknown>;
+	return names.flatMap((name) => {
+		const limit = limits[name];
+		if (typeof limit !== 'number') return [];
+		const level = limit * factor;
+		const oneSided = name.endsWith('_c');
+		const title = names.filter((one) => typeof limits[one] === 'number').length > 1 ? `limit, ${name.split('_').slice(0, 2).join(' ')}` : 'limit';
+		return [{ label: title, said: `${oneSided ? '' : '± '}${tickText(level)} ${unit}`, stroke: '--bad', dash: [8, 3], levels: oneSided ? [level] : [level, -level], x: [], y: [] }];
+	});
+}
