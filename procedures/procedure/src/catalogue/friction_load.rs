@@ -17,15 +17,15 @@ use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit};
 pub(super) struct FrictionLoad;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Highest speed (motor)", "rad/s", 120.0, [5.0, 1000.0]),
+    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 120.0, [5.0, 1000.0]),
     Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
-    Parameter::count("speeds", "Speeds above the Stribeck velocity", 3, [2, 20]),
-    Parameter::count("load_levels", "Load levels, no load included", 6, [3, 20]),
-    Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
-    Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
-    Parameter::number("warm_up_s", "Longest warm-up", "s", 20.0, [1.0, 3600.0]),
+    Parameter::count("speeds", "Number of speeds above the Stribeck velocity", 3, [2, 20]),
+    Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
+    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
+    Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
+    Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),
     sample_rate(250.0),
-    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
 impl Procedure for FrictionLoad {
@@ -38,7 +38,8 @@ impl Procedure for FrictionLoad {
     }
 
     fn summary(&self) -> &'static str {
-        "Measures friction on a grid of loads and speeds, and tells whether it grows with the load, in proportion or with its square."
+        "Measures friction on a grid of loads and speeds. Decides whether friction grows with the load, in proportion \
+         or with its square."
     }
 
     fn kind(&self) -> Kind {
@@ -81,8 +82,8 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     for (effect, name, words) in [
         ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction", "Nm"]),
         ("viscous", "c_v", ["c_v", "c_v", "Viscous friction", "Nm·s/rad"]),
-        ("load_linear", "mu", ["mu", "μ", "Friction for each Nm of load, motor side", ""]),
-        ("load_quadratic", "mu_2", ["mu_2", "μ₂", "Friction for each Nm² of load, motor side", "1/Nm"]),
+        ("load_linear", "mu", ["mu", "μ", "Friction per Nm of load, motor side", ""]),
+        ("load_quadratic", "mu_2", ["mu_2", "μ₂", "Friction per Nm² of load, motor side", "1/Nm"]),
     ] {
         if let Some(found) = parameter(&fit, effect, name) {
             let (value, ci95) = interval_of(found, 1.0);
@@ -93,13 +94,13 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let more_nm = |effect: &str, name: &str, of: f64| parameter(&fit, effect, name).map_or(0.0, |p| p.value * of);
     let motor_nm = heaviest / gear;
     let added_nm = more_nm("load_linear", "mu", motor_nm) + more_nm("load_quadratic", "mu_2", motor_nm * motor_nm);
-    quantities.push(quantity(["added", "Δτ", "Friction that the highest load adds, motor side", "Nm"], added_nm, None));
-    let more = format!("{} more at {heaviest:.1} Nm (commanded)", words::figure(added_nm, "Nm"));
+    quantities.push(quantity(["added", "Δτ", "Additional friction at maximum load, motor side", "Nm"], added_nm, None));
+    let more = format!("+{} at {heaviest:.1} Nm (commanded)", words::figure(added_nm, "Nm"));
     let summary = match law {
         [] => "Friction does not depend on the load.".to_owned(),
         ["load_linear"] => format!("Friction grows in proportion to the load: {more}."),
         ["load_quadratic"] => format!("Friction grows with the square of the load: {more}."),
-        _ => format!("Friction grows with the load, in proportion and with its square: {more}."),
+        _ => format!("Friction grows with the load, with a linear and a quadratic part: {more}."),
     };
     Ok(Identification {
         verdict: Verdict::Identified,
