@@ -151,7 +151,7 @@ impl Lab {
                         lab.judge(run).await;
                     }
                 }
-                Err(fault) => tracing::warn!(%fault, "runs that nobody has judged are not found"),
+                Err(fault) => tracing::warn!(%fault, "runs without a computed result cannot be listed"),
             }
         });
     }

@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 #[serde(rename_all = "snake_case")]
 pub enum Identified {
     Identified,
-    /// Identified, although the run found a precondition broken; `warnings` tells which.
+    /// Identified, although the run found a precondition broken; `warnings` lists them.
     IdentifiedWithWarning,
     /// The run says too little; `advice` tells what to measure.
     Inconclusive,
