@@ -111,23 +111,21 @@ fn tokens(settings: &DaemonSettings) -> Result<Tokens, LabError> {
     let refused = |why: String| Err(LabError::Setup(why));
     let token = settings.token.as_deref().map(str::trim);
     let read_token = settings.read_token.as_deref().map(str::trim);
-    for (what, token) in [("the token", token), ("the token that only reads", read_token)] {
+    for (what, token) in [("the token", token), ("the read token", read_token)] {
         if let Some(why) = token.and_then(weakness) {
             return refused(format!("{what} {why}"));
         }
     }
     match token {
-        None if read_token.is_some() => {
-            refused(format!("a token that only reads needs one that may do more beside it: {GIVE}"))
-        }
+        None if read_token.is_some() => refused(format!("a read token requires a token with full access: {GIVE}")),
         Some(_) if token == read_token => {
-            refused("the token that only reads is the other one too: give two different ones".into())
+            refused("read token and full token are equal: use two different tokens".into())
         }
         Some(token) => Ok(Tokens::given(Some(token), read_token)),
-        None if settings.network.behind_proxy => refused(format!("a proxy lets other machines in: {GIVE}")),
+        None if settings.network.behind_proxy => refused(format!("a proxy allows access from other machines: {GIVE}")),
         None if settings.listen.ip().is_loopback() => Ok(Tokens::default()),
         None => {
-            refused(format!("{} can be reached from other machines: {GIVE}, or listen on 127.0.0.1", settings.listen))
+            refused(format!("{} is reachable from other machines: {GIVE}, or listen on 127.0.0.1", settings.listen))
         }
     }
 }
@@ -141,8 +139,8 @@ fn refuse_plain(settings: &DaemonSettings) -> Result<(), LabError> {
         return Ok(());
     }
     Err(LabError::Setup(format!(
-        "{} can be reached from other machines, and without TLS they send their tokens in the clear: give --tls-cert and \
-         --tls-key, or --behind-proxy where a proxy with TLS is in front, or listen on 127.0.0.1 (docs/network.md)",
+        "{} is reachable from other machines, which would send tokens unencrypted: give --tls-cert and --tls-key, use \
+         --behind-proxy with a TLS proxy, or listen on 127.0.0.1 (docs/network.md)",
         settings.listen
     )))
 }
@@ -151,7 +149,7 @@ fn taken(address: SocketAddr, fault: &std::io::Error) -> LabError {
     LabError::Setup(match fault.kind() {
         std::io::ErrorKind::AddrInUse => {
             format!(
-                "port {} is taken: stop what listens there, or choose another with --listen {}:0",
+                "port {} is in use: stop the other program, or choose another port with --listen {}:0",
                 address.port(),
                 address.ip()
             )

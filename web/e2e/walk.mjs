@@ -21,10 +21,10 @@ const SLOW = { speed_rad_s: 0.5 };
 /** Short runs whose results look unlike each other; the last two where the daemon has an encoder bench. */
 const RESULTS = {
 	stiffness: { parameters: { load_levels: 4 }, title: /Torsion over torque/i },
-	compensation: { parameters: {}, title: /as a share of those without/i },
+	compensation: { parameters: {}, title: /Errors relative to no compensation/i },
 	brake_hysteresis: { parameters: { levels: 5, loops: 1, random_turns: 4, dwell_s: 0.8, ...SLOW }, title: /Minor loops/i },
-	encoder_alignment: { parameters: { halvings: 2, map_positions: 3 }, title: /Last consistent place/i },
-	encoder_linearity: { parameters: { turns: 2 }, title: /Error around the turn/i },
+	encoder_alignment: { parameters: { halvings: 2, map_positions: 3 }, title: /Usable range/i },
+	encoder_linearity: { parameters: { turns: 2 }, title: /Error over the turn/i },
 };
 const rest = async (path) => {
 	const answer = await fetch(`${where.base}/api/v1${path}`);
@@ -135,7 +135,7 @@ await tell('walk', async () => {
 	const none = await askForNone(page, where.base, run);
 	expect(/; v\d+ \(model \d+\) is shown/.test(none), `the page does not say which version it shows: ${none}`);
 	const ended = await flyAndStop(page, `${where.base}/workbench/${run}`);
-	expect(/Where it ended\. A person has ended it/.test(ended), `the autopilot does not say where it ended: ${ended}`);
+	expect(/stopped by the operator/i.test(ended), `the autopilot does not say where it ended: ${ended}`);
 	expect(ended.includes(`from run #${run}`), `the autopilot does not say where it was started: ${ended}`);
 	await audit(page, 'the autopilot');
 	const flown = await flyToEnd(page, `${where.base}/workbench/${run + 1}`);

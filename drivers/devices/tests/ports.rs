@@ -29,5 +29,8 @@ fn a_serial_number_that_is_not_plugged_in_is_named() {
     let port = PortSettings::new("usb://0000-NOBODY", 115_200);
     let opened = ScpiSource::open(ScpiSettings { name: "brake_a".into(), port, deadline_ms: 100 });
     let fault = opened.map(drop).unwrap_err();
-    assert!(fault.to_string().contains("0000-NOBODY") && fault.to_string().contains("plugged in"), "{fault}");
+    assert!(
+        fault.to_string().contains("0000-NOBODY") && fault.to_string().contains("check that it is connected"),
+        "{fault}"
+    );
 }

@@ -33,7 +33,7 @@ fn an_hmp_feeds_the_brake_as_far_as_its_voltage_goes() {
     assert!(brake.read().is_err());
     mock.trouble(MockInstrument::Brake, Trouble::None);
     let fault = (0..2).find_map(|_| brake.read().err()).expect("the output went off by itself");
-    assert!(fault.to_string().contains("mains were interrupted"), "{fault}");
+    assert!(fault.to_string().contains("mains power of the supply was interrupted"), "{fault}");
     brake.prepare(Volts(30.0)).unwrap();
     brake.output_off().unwrap();
     settle();

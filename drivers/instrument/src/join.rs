@@ -17,19 +17,23 @@ const SAME_RATE: f64 = 0.05;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum JoinFault {
     #[error(
-        "of the runs named, number {number} is of kind {kind} and the first of kind {first}: put runs of one kind together"
+        "run number {number} of the list is of kind {kind}, the first of kind {first}: combine only runs of the same \
+         kind"
     )]
     OtherKind { number: usize, kind: Kind, first: Kind },
     #[error(
-        "of the runs named, number {number} is of another joint: its {fact} is {value}, that of the first {first}; put runs of one joint together"
+        "run number {number} of the list belongs to a different joint ({fact} = {value}, first run {first}): combine \
+         only runs of the same joint"
     )]
     OtherJoint { number: usize, fact: &'static str, value: String, first: String },
     #[error(
-        "of the runs named, number {number} has {rate_hz:.0} samples a second and the first {first_hz:.0}: make it again with --set sample_rate_hz={first_hz:.0}, or resample the file"
+        "run number {number} of the list has a sample rate of {rate_hz:.0} Hz, the first {first_hz:.0} Hz: repeat it \
+         with --set sample_rate_hz={first_hz:.0}, or resample the file"
     )]
     OtherRate { number: usize, rate_hz: f64, first_hz: f64 },
     #[error(
-        "of the runs named, numbers {first} and {number} hold the same samples: a copy is no repeat, leave one of them out"
+        "runs number {first} and {number} of the list contain the same samples: omit one of them, because a copy is \
+         not a repeat"
     )]
     Copy { number: usize, first: usize },
     #[error(transparent)]

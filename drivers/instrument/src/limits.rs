@@ -74,7 +74,8 @@ pub struct Breach {
 impl fmt::Display for Breach {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (name, unit) = (self.quantity.name(), self.quantity.unit());
-        write!(f, "{name} {:.4} {unit} is beyond the limit of {:.4} {unit}", self.value, self.limit)
+        let [value, limit] = [self.value, self.limit].map(|v| (1e4 * v).round() / 1e4);
+        write!(f, "{name} {value} {unit} exceeds the limit of {limit} {unit}")
     }
 }
 
@@ -115,7 +116,7 @@ mod tests {
         };
         assert!(limits.check(Limited::MotorVelocity, -100.0).is_ok());
         let breach = limits.check(Limited::MotorVelocity, -100.1).unwrap_err();
-        assert_eq!(breach.to_string(), "motor velocity -100.1000 rad/s is beyond the limit of 100.0000 rad/s");
+        assert_eq!(breach.to_string(), "motor velocity -100.1 rad/s exceeds the limit of 100 rad/s");
         assert!(limits.check(Limited::Temperature, f64::NAN).is_err());
     }
 }

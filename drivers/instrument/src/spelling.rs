@@ -30,7 +30,7 @@ pub fn plainly(fault: &str) -> String {
     match parts.as_slice() {
         ["unknown variant " | "unknown field ", word, _, known @ ..] if !known.is_empty() => {
             let known: Vec<&str> = known.iter().step_by(2).copied().collect();
-            format!("{word} is not known here: {}", instead(word, &known))
+            format!("unknown value {word}: {}", instead(word, &known))
         }
         _ => fault.to_owned(),
     }

@@ -17,8 +17,8 @@ pub struct RunTable {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableFault {
     #[error(
-        "the kind of the run is not known: expected \"kind\": friction, encoder, stiffness or brake in the facts (meta.json \
-         beside the table, or --meta FILE)"
+        "unknown kind of run: expected \"kind\": friction, encoder, stiffness or brake in the facts (meta.json in the \
+         folder of the table, or --meta FILE)"
     )]
     UnknownKind,
     #[error(
@@ -39,7 +39,7 @@ pub enum TableFault {
          with --scale time_s=FACTOR, or correct sample_rate_hz"
     )]
     TimeAgainstRate { stated_hz: f64, found_hz: f64 },
-    #[error("column {0} is there twice")]
+    #[error("column {0} occurs twice")]
     DuplicateColumn(String),
     #[error("column {column}: expected a finite number, found {value}")]
     NotFinite { column: String, row: usize, value: f64 },

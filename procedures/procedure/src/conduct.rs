@@ -24,11 +24,11 @@ pub struct Conducted {
 pub enum ConductFault {
     #[error(transparent)]
     Plan(#[from] PlanFault),
-    #[error("{procedure} would not start: {why}")]
+    #[error("{procedure} did not start: {why}")]
     NotAllowed { procedure: &'static str, why: String },
     #[error("{procedure} ended {}: {}", .end.state, .end.reason.as_deref().unwrap_or("no reason given"))]
     Ended { procedure: &'static str, end: Box<RunEnd> },
-    #[error("the run's table: {0}")]
+    #[error("table of the run: {0}")]
     Table(#[from] TableFault),
 }
 

@@ -117,9 +117,9 @@ pub enum EventKind {
 impl fmt::Display for Safe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Safe::SafeVerified => "safe, verified by reading back",
-            Safe::SafeCommanded => "safe as commanded, not read back",
-            Safe::UnsafeUnknown => "not known to be safe",
+            Safe::SafeVerified => "safe state verified",
+            Safe::SafeCommanded => "safe state commanded, not verified",
+            Safe::UnsafeUnknown => "safe state not confirmed",
         })
     }
 }

@@ -24,11 +24,13 @@ pub enum Refusal {
     #[error(transparent)]
     Breach(#[from] Breach),
     #[error(
-        "brake current from {from_a:.3} A to {to_a:.3} A at standstill would leave the brake cogging: turn the shaft first"
+        "brake current from {from_a:.3} A to {to_a:.3} A at standstill would magnetise the rotor (cogging): turn the \
+         shaft first"
     )]
     BrakeAtStandstill { from_a: f64, to_a: f64 },
     #[error(
-        "link position {position_rad:.3} rad is beyond the range of ±{range_rad:.3} rad: turn the joint back by hand or with its own tool"
+        "link position {position_rad:.3} rad is beyond the range of ±{range_rad:.3} rad: move the joint back manually \
+         or with the tool of the drive"
     )]
     BeyondRange { position_rad: f64, range_rad: f64 },
 }

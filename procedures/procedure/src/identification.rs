@@ -6,8 +6,6 @@ use crate::state::RunState;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-const NOT_AT_ITS_END: &str = "The run did not come to its end";
-
 /// Whether the run has shown what it was made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -46,28 +44,26 @@ impl Identification {
     /// for, whatever its part says. `goes_on`: what is left of it may be made later. `step`: where it ended, such as `step 3 of 41`.
     pub fn of_run(mut self, run: RunId, state: RunState, goes_on: bool, step: Option<&str>) -> Self {
         if state != RunState::Completed {
-            let (part, next) = match (state.is_final(), goes_on) {
-                (false, _) => ("The run is not at its end yet", "let it come to its end"),
-                (true, false) => (NOT_AT_ITS_END, "make it again"),
-                (true, true) => (
-                    NOT_AT_ITS_END,
-                    "make the rest of it (“Make the rest” on its page, or jointbench run --continue RUN), or make it again",
-                ),
-            };
-            let ended = step.map(|step| format!(" in {step}")).unwrap_or_default();
-            let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
-            self.summary = match (&self.advice, self.verdict) {
-                // Nothing has failed while samples still come.
-                (Some(lacking), Verdict::Failed) if !state.is_final() => {
-                    format!("Not yet: {}.", without_remedy(lacking))
+            let next = match (state.is_final(), goes_on) {
+                (false, _) => "Let the run finish.",
+                (true, false) => "Repeat the run.",
+                (true, true) => {
+                    "Resume the run (“Resume” on its page, or jointbench run --continue RUN), or repeat it."
                 }
-                (Some(lacking), Verdict::Failed) => {
+            };
+            let at = step.map(|step| format!(" in {step}")).unwrap_or_default();
+            let gap = if self.summary.contains('\n') { '\n' } else { ' ' };
+            let said = &self.summary;
+            self.summary = match (self.verdict, state.is_final()) {
+                // Nothing has failed while samples still come.
+                (Verdict::Failed, false) => format!("No result yet. {said}"),
+                (Verdict::Failed, true) => {
                     format!(
-                        "{part} ({state}{ended}), and of its part nothing can be identified: {}.",
-                        without_remedy(lacking)
+                        "The run did not complete ({state}{at}). The recorded part allows no identification. {said}"
                     )
                 }
-                _ => format!("{part} ({state}{ended}), this is what its part says:{gap}{}", self.summary),
+                (_, false) => format!("The run is still in progress ({state}{at}). Result so far:{gap}{said}"),
+                (_, true) => format!("The run did not complete ({state}{at}). From the recorded part:{gap}{said}"),
             };
             // What a part lacks is no fault of how the run was planned.
             self.advice = Some(next.to_owned());
@@ -84,11 +80,6 @@ impl Identification {
     pub fn quantity(&self, name: &str) -> Option<&Quantity> {
         self.quantities.iter().find(|quantity| quantity.name == name)
     }
-}
-
-/// What is lacking, without what follows on it: how to make the run anew.
-fn without_remedy(lacking: &str) -> &str {
-    lacking.split_once("; ").or_else(|| lacking.rsplit_once(": ")).map_or(lacking, |(why, _)| why)
 }
 
 /// With a minus as long as a plus before each number that stands alone; a command has none of those.
@@ -209,28 +200,24 @@ mod tests {
         };
         assert_eq!(said(RunState::Completed, true), "look closer (jointbench export 12)");
         assert!(said(RunState::Stopped, true).contains("jointbench run --continue 12"));
-        assert_eq!(said(RunState::Failed, false), "make it again");
-        assert_eq!(said(RunState::Paused, true), "let it come to its end");
+        assert_eq!(said(RunState::Failed, false), "Repeat the run.");
+        assert_eq!(said(RunState::Paused, true), "Let the run finish.");
     }
 
     #[test]
     fn what_is_lacking_is_no_failure_while_the_run_is_on() {
         let said = |lacking: &str, state| {
-            Identification::failed("Nothing.", lacking).of_run(12, state, true, Some("step 3 of 41")).summary
+            Identification::failed(lacking, "Record a longer run.")
+                .of_run(12, state, true, Some("step 3 of 41"))
+                .summary
         };
-        let few = "too few samples: 12 usable in motion, at least 40 are needed; record a longer run";
-        assert_eq!(
-            said(few, RunState::Running),
-            "Not yet: too few samples: 12 usable in motion, at least 40 are needed."
-        );
-        assert_eq!(
-            said("too few speeds were held: make the run to its end", RunState::Paused),
-            "Not yet: too few speeds were held."
-        );
+        let few = "Too few samples: 12 usable in motion, at least 40 are needed.";
+        assert_eq!(said(few, RunState::Running), format!("No result yet. {few}"));
         assert_eq!(
             said(few, RunState::Aborted),
-            "The run did not come to its end (aborted in step 3 of 41), and of its part nothing can be identified: \
-             too few samples: 12 usable in motion, at least 40 are needed."
+            format!(
+                "The run did not complete (aborted in step 3 of 41). The recorded part allows no identification. {few}"
+            )
         );
     }
 

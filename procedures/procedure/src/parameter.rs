@@ -64,7 +64,7 @@ impl Parameter {
 pub enum ParameterFault {
     #[error("parameter {name} = {given}: expected {kind} from {range}")]
     OutOfRange { name: &'static str, given: String, kind: &'static str, range: String },
-    #[error("parameter {name} is not known: expected one of {}", .known.join(", "))]
+    #[error("unknown parameter {name}: expected one of {}", .known.join(", "))]
     Unknown { name: String, known: Vec<&'static str> },
 }
 
@@ -132,7 +132,7 @@ mod tests {
                 r#"{"top_speed_rad_s": "fast"}"#,
                 "parameter top_speed_rad_s = \"fast\": expected a number from 1 to 1000 rad/s",
             ),
-            (r#"{"speed": 1}"#, "parameter speed is not known: expected one of top_speed_rad_s, repeats"),
+            (r#"{"speed": 1}"#, "unknown parameter speed: expected one of top_speed_rad_s, repeats"),
         ] {
             assert_eq!(parse(given).unwrap_err(), said);
         }

@@ -208,7 +208,7 @@ pub struct Plan {
 fn known_procedure<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ProcedureId, D::Error> {
     let id = String::deserialize(deserializer)?;
     let known = procedure(&id).map(|known| known.id());
-    known.ok_or_else(|| serde::de::Error::custom(format!("there is no procedure {id}")))
+    known.ok_or_else(|| serde::de::Error::custom(format!("procedure {id} does not exist")))
 }
 
 impl Plan {

@@ -47,6 +47,15 @@ pub struct Setpoints {
     pub brake_current_a: Vec<f64>,
 }
 
+impl Extreme {
+    /// To a thousandth: `motor velocity 900 rad/s exceeds the limit of 350 rad/s`.
+    fn exceeds(&self) -> String {
+        let [value, limit] = [self.value, self.limit.unwrap_or(f64::INFINITY)].map(|v| (1e3 * v).round() / 1e3);
+        let Self { quantity, unit, .. } = self;
+        format!("{quantity} {value} {unit} exceeds the limit of {limit} {unit}")
+    }
+}
+
 /// One condition of the start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
@@ -101,7 +110,7 @@ impl Plan {
             limited(Limited::LinkTorque, torque_nm),
             limited(Limited::BrakePower, power_w),
             Extreme {
-                quantity: "motor current before friction",
+                quantity: "motor current, friction not included",
                 ..limited(Limited::MotorCurrent, motor_nm / constants.torque_constant_nm_per_a)
             },
         ];
@@ -121,12 +130,8 @@ impl Plan {
     }
 
     fn checks(&self, facts: &BenchFacts) -> Vec<Check> {
-        let broken: Vec<String> = self
-            .extremes(facts)
-            .iter()
-            .filter(|extreme| !extreme.ok)
-            .map(|e| format!("{} {:.3} {} over {:.3}", e.quantity, e.value, e.unit, e.limit.unwrap_or(f64::INFINITY)))
-            .collect();
+        let broken: Vec<String> =
+            self.extremes(facts).iter().filter(|extreme| !extreme.ok).map(Extreme::exceeds).collect();
         let needs_brake = self.top_brake_current_a() > 0.0;
         let feeds = self.steps.iter().any(|step| matches!(step.drive, Drive::Fed(_)));
         let cannot_feed = feeds && !facts.feeds_forward;
@@ -134,35 +139,39 @@ impl Plan {
             Check {
                 name: "limits",
                 ok: broken.is_empty(),
-                detail: if broken.is_empty() { "all within the limits of the bench".into() } else { broken.join("; ") },
-                cure: (!broken.is_empty()).then(|| "choose lower speeds or loads, or another bench".into()),
+                detail: if broken.is_empty() {
+                    "all values are within the limits of the bench".into()
+                } else {
+                    broken.join("; ")
+                },
+                cure: (!broken.is_empty()).then(|| "reduce speed or load, or select another bench".into()),
             },
             Check {
                 name: "brake",
                 ok: facts.has_brake || !needs_brake,
                 detail: match (needs_brake, facts.has_brake) {
                     (false, _) => "not needed",
-                    (true, true) => "there",
-                    (true, false) => "missing",
+                    (true, true) => "connected",
+                    (true, false) => "not connected",
                 }
                 .into(),
-                cure: (needs_brake && !facts.has_brake).then(|| "connect a brake or plan without load".into()),
+                cure: (needs_brake && !facts.has_brake).then(|| "connect a brake, or plan without load".into()),
             },
             Check {
                 name: "Feed-forward",
                 ok: !cannot_feed,
                 detail: match (feeds, cannot_feed) {
                     (false, _) => "not needed",
-                    (true, false) => "taken by the drive",
-                    (true, true) => "this drive takes no motor current beside a velocity",
+                    (true, false) => "supported by the drive",
+                    (true, true) => "the drive does not support motor current feed-forward",
                 }
                 .into(),
-                cure: cannot_feed.then(|| "choose a bench whose drive does, or another procedure".into()),
+                cure: cannot_feed.then(|| "select a bench with feed-forward, or another procedure".into()),
             },
             Check {
                 name: "rest",
                 ok: self.steps.iter().all(|step| step.velocity.at(0.0) == 0.0 && step.velocity.end() == 0.0),
-                detail: format!("{} steps, each from rest to rest", self.steps.len()),
+                detail: format!("{} steps, each starts and ends at rest", self.steps.len()),
                 cure: None,
             },
         ];

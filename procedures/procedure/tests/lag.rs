@@ -48,7 +48,7 @@ fn told(bench: &mut Bench, plan: &Plan) -> [String; 2] {
     let mut notes = Notes::default();
     let end = run(bench, plan, 1, &controls, &mut notes);
     assert_eq!(end.state, RunState::Completed, "{:?}", end.reason);
-    ["the motor's own encoder was read", "the encoder under test was read"].map(|about| {
+    ["Skew of the motor's own encoder", "Skew of the encoder under test"].map(|about| {
         notes
             .0
             .iter()
@@ -60,11 +60,11 @@ fn told(bench: &mut Bench, plan: &Plan) -> [String; 2] {
 
 /// The lag of a note and half the width of its interval [s].
 fn lag(note: &str) -> [f64; 2] {
-    let (_, told) = note.split_once("it tells ").unwrap_or_else(|| panic!("{note}"));
+    let (_, told) = note.split_once("by a further ").unwrap_or_else(|| panic!("{note}"));
     let mut words = told.split(' ');
     let mut figure = || 1e-3 * words.next().unwrap().parse::<f64>().unwrap();
     let size_s = figure();
-    let way = if told.contains("ms earlier") { -1.0 } else { 1.0 };
+    let way = if note.contains("it leads by") { -1.0 } else { 1.0 };
     [way * size_s, told.split(' ').nth(2).unwrap().parse::<f64>().unwrap() * 1e-3]
 }
 
@@ -73,11 +73,11 @@ fn clock_and_values_agree_but_for_the_delay_of_the_encoder_under_test() {
     let (mock, mut bench) = start();
     let plan = strokes(&bench);
     let [motor, test] = told(&mut bench, &plan);
-    assert!(motor.contains("clock and values agree"), "{motor}");
+    assert!(motor.contains("Time stamps and signals agree"), "{motor}");
     let [lag_s, reach_s] = lag(&test);
     let truth_s = mock.truth().encoders.delay_s;
     assert!((lag_s - truth_s).abs() <= reach_s && reach_s < 0.2 * truth_s, "{truth_s} s: {test}");
-    assert!(test.contains("its own delay"), "{test}");
+    assert!(test.contains("delay of this encoder"), "{test}");
 }
 
 /// A counter behind a buffer that always holds one reply back, and a clock that knows nothing of it.
@@ -143,7 +143,7 @@ fn a_delay_that_no_clock_knows_contradicts_it() {
     // What a drive tells may be one turn of its control loop old.
     let held_s = -1.0 / plan.rate_hz;
     assert!((lag_s - held_s).abs() <= reach_s + 125e-6 && reach_s < 0.1e-3, "{held_s} s: {motor}");
-    assert!(motor.contains("contradict each other"), "{motor}");
+    assert!(motor.contains("Unrecorded latency"), "{motor}");
 }
 
 #[test]
@@ -152,6 +152,6 @@ fn without_motion_nothing_is_told_of_a_lag() {
     let mut plan = strokes(&bench);
     plan.steps.iter_mut().for_each(|step| step.velocity = Profile::from(0.0).hold(0.5));
     for note in told(&mut bench, &plan) {
-        assert!(note.contains("cannot show it here"), "{note}");
+        assert!(note.contains("do not determine it"), "{note}");
     }
 }

@@ -7,10 +7,10 @@ use crate::view::{Autopilot, NewAutopilot, NewExperiment};
 use axum::Extension;
 use axum::extract::State;
 
-/// Measures, diagnoses, adds what is missing or makes the run that would tell, again, until nothing is missing or the
-/// budget is spent
+/// Measures, diagnoses, adds missing effects or performs the recommended run, until no effect is missing or the budget
+/// is used up
 #[utoipa::path(post, path = "/autopilots", operation_id = "start_autopilot", tag = "autopilots", request_body = NewAutopilot,
-    responses((status = 201, description = "The autopilot, on its way", body = Autopilot), Refusals))]
+    responses((status = 201, description = "The started autopilot", body = Autopilot), Refusals))]
 pub async fn start(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
@@ -19,10 +19,10 @@ pub async fn start(
     created(lab.start_autopilot(&new, &caller.name).await?)
 }
 
-/// Makes the run that a diagnosis asks for and diagnoses the same model again, with all its runs together
+/// Performs the run that a diagnosis recommends and diagnoses the same model with all its runs
 #[utoipa::path(post, path = "/diagnoses/{id}/experiment", operation_id = "start_experiment", tag = "autopilots",
     params(("id" = i64, Path, description = "Diagnosis")), request_body = NewExperiment,
-    responses((status = 201, description = "An autopilot that makes this one run", body = Autopilot), Refusals))]
+    responses((status = 201, description = "An autopilot that performs this run", body = Autopilot), Refusals))]
 pub async fn experiment(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
@@ -39,7 +39,7 @@ pub async fn list(State(lab): State<Lab>) -> Answer<Vec<Autopilot>> {
     Ok(Json(lab.autopilots().await?))
 }
 
-/// One autopilot with every step so far
+/// One autopilot with all steps so far
 #[utoipa::path(get, path = "/autopilots/{id}", operation_id = "get_autopilot", tag = "autopilots",
     params(("id" = i64, Path, description = "Autopilot")),
     responses((status = 200, description = "The autopilot", body = Autopilot), Refusals))]
@@ -47,10 +47,10 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Autopilo
     Ok(Json(lab.autopilot(id).await?))
 }
 
-/// Ends an autopilot after the step at hand; a run that is on ends early and is kept
+/// Ends an autopilot after the current step; an active run ends early and is kept
 #[utoipa::path(post, path = "/autopilots/{id}/stop", operation_id = "stop_autopilot", tag = "autopilots",
     params(("id" = i64, Path, description = "Autopilot")),
-    responses((status = 200, description = "Taken; the autopilot as it is now", body = Autopilot), Refusals))]
+    responses((status = 200, description = "Accepted; present state of the autopilot", body = Autopilot), Refusals))]
 pub async fn stop(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,

@@ -21,12 +21,12 @@ pub async fn get(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Be
     Ok(Json(lab.bench(&bench)?))
 }
 
-/// Software stop: ends the run at once and secures the bench, which is `stopped` until it is acknowledged
+/// Software stop: ends the run immediately and secures the bench, which stays `stopped` until it is reset
 ///
-/// Answers when the bench thread has taken the command and the stop is kept. It is no replacement for a hardware stop.
+/// Responds when the bench worker has accepted the command and the stop is stored. It does not replace a hardware stop.
 #[utoipa::path(post, path = "/bench/{bench}/stop", operation_id = "stop_bench", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
-    responses((status = 200, description = "Taken; the bench as it is now", body = Bench), Refusals))]
+    responses((status = 200, description = "Accepted; present state of the bench", body = Bench), Refusals))]
 pub async fn stop(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
@@ -35,10 +35,10 @@ pub async fn stop(
     Ok(Json(lab.emergency_stop(&bench, &caller.name).await?))
 }
 
-/// Resets the bench after a software stop, or after an end that could not be verified as safe
+/// Resets the bench after a software stop or after a run whose safe state is not confirmed
 #[utoipa::path(post, path = "/bench/{bench}/acknowledge", tag = "bench",
     params(("bench" = String, Path, description = "Name")), request_body = Acknowledgement,
-    responses((status = 200, description = "The bench, ready again", body = Bench), Refusals))]
+    responses((status = 200, description = "The released bench", body = Bench), Refusals))]
 pub async fn acknowledge(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,
@@ -49,10 +49,10 @@ pub async fn acknowledge(
     Ok(Json(lab.acknowledge(&bench, reason, &caller.name).await?))
 }
 
-/// Tries the instruments again that are not ready
+/// Reconnects the instruments that are not ready
 #[utoipa::path(post, path = "/bench/{bench}/retry", operation_id = "retry_instruments", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
-    responses((status = 200, description = "The bench as it is now", body = Bench), Refusals))]
+    responses((status = 200, description = "Present state of the bench", body = Bench), Refusals))]
 pub async fn retry(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Bench> {
     Ok(Json(lab.retry(&bench).await?))
 }
@@ -65,7 +65,7 @@ pub async fn description(State(lab): State<Lab>, Path(bench): Path<String>) -> R
     Ok(lab.handle(&bench)?.description().text.clone())
 }
 
-/// What stopped or blocked the bench and who released it with which reason, newest first
+/// Stops, blocks and resets of the bench with user and reason, newest first
 #[utoipa::path(get, path = "/bench/{bench}/safety", operation_id = "bench_safety", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
     responses((status = 200, description = "The newest entries", body = Vec<SafetyEntry>), Refusals))]

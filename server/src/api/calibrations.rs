@@ -7,18 +7,18 @@ use crate::view::{Calibration, NewCalibration};
 use axum::Extension;
 use axum::extract::State;
 
-/// What was applied to the bench, newest first
+/// Results applied to the bench, newest first
 #[utoipa::path(get, path = "/bench/{bench}/calibrations", operation_id = "list_calibrations", tag = "bench",
     params(("bench" = String, Path, description = "Name")),
-    responses((status = 200, description = "Every entry; those that hold say so", body = Vec<Calibration>), Refusals))]
+    responses((status = 200, description = "All entries; the active ones are marked", body = Vec<Calibration>), Refusals))]
 pub async fn list(State(lab): State<Lab>, Path(bench): Path<String>) -> Answer<Vec<Calibration>> {
     Ok(Json(lab.calibrations(&bench).await?))
 }
 
-/// Applies the result of a run to the bench: the next runs use it. An earlier one again, or none, is the way back
+/// Applies the result of a run to the bench for subsequent runs. To revert, apply an earlier one or none
 #[utoipa::path(post, path = "/bench/{bench}/calibrations", operation_id = "calibrate", tag = "bench",
     params(("bench" = String, Path, description = "Name")), request_body = NewCalibration,
-    responses((status = 201, description = "Every entry, the new one first", body = Vec<Calibration>), Refusals))]
+    responses((status = 201, description = "All entries, the new one first", body = Vec<Calibration>), Refusals))]
 pub async fn apply(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,

@@ -31,7 +31,11 @@ pub struct DerivedQuery {
 #[utoipa::path(get, path = "/runs/{id}/derived", operation_id = "derived_samples", tag = "samples",
     params(("id" = i64, Path, description = "Run"), DerivedQuery),
     responses((status = 200, description = "The window; a channel is named by its formula", body = Samples), Refusals))]
-pub async fn samples(State(lab): State<Lab>, Path(id): Path<i64>, Query(query): Query<DerivedQuery>) -> Answer<Samples> {
+pub async fn samples(
+    State(lab): State<Lab>,
+    Path(id): Path<i64>,
+    Query(query): Query<DerivedQuery>,
+) -> Answer<Samples> {
     let formulas = query.formulas.split(';').map(|formula| formula.trim().to_owned()).collect();
     let most = query.rows.map_or(Most::Pixels(query.px.unwrap_or(2000)), Most::Rows);
     Ok(Json(lab.derived(id, formulas, [query.from_s, query.to_s], most).await?))

@@ -60,7 +60,7 @@ fn check(
 ) -> Result<Caller, Problem> {
     let host = text(headers, header::HOST).or_else(|| uri.authority().map(|a| a.as_str()));
     if !tokens.are_needed() && host.is_some_and(|host| !is_loopback(host)) {
-        let detail = "this daemon answers on loopback only; open it as http://127.0.0.1 or http://localhost";
+        let detail = "this daemon accepts loopback connections only; open http://127.0.0.1 or http://localhost";
         return Err(Problem::forbidden(detail));
     }
     let upgrades = headers.contains_key(header::UPGRADE);
@@ -69,7 +69,7 @@ fn check(
         && !same_origin(origin, host)
     {
         return Err(Problem::forbidden(format!(
-            "the page at {origin} may not steer this bench; open the dashboard of the daemon itself"
+            "the page at {origin} is not allowed to control this bench; open the dashboard of the daemon"
         )));
     }
     let caller = match secret(headers, uri).and_then(|secret| tokens.holder(&secret)) {
@@ -79,7 +79,7 @@ fn check(
     };
     match caller.access {
         Access::Read if !reader_may(method, route) => Err(Problem::forbidden(
-            "this token only reads: it looks and stops, starts or changes nothing, and is told of no other token",
+            "read token: allows viewing and the software stop, but no other command and no access to tokens",
         )),
         _ => Ok(caller),
     }
@@ -99,7 +99,7 @@ pub async fn guard(State(door): State<Door>, mut request: Request, next: Next) -
     };
     let is_wrong = problem.status == 401 && secret(request.headers(), request.uri()).is_some();
     if is_wrong && door.tries.slow(door.source(&request)).await == Slowed::TooMany {
-        return Problem::too_many("too many wrong tokens come in; a right one is answered at once").into_response();
+        return Problem::too_many("too many wrong tokens; a valid token is accepted immediately").into_response();
     }
     problem.into_response()
 }

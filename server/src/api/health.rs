@@ -13,21 +13,21 @@ use utoipa::ToSchema;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Health {
     pub version: String,
-    /// The number of its process, which the lock of its data folder names too.
+    /// Process id, as in the lock file of the data folder.
     pub process: u32,
-    /// Why the dashboard is not part of this build, where it is not.
+    /// Why the dashboard is not part of this build, if it is missing.
     pub dashboard_missing: Option<String>,
     /// What the caller may do.
     pub access: Access,
-    /// What the last check of the store has found.
+    /// Result of the latest check of the store.
     #[serde(default)]
     #[schema(required = true)]
     pub store: StoreHealth,
 }
 
-/// Whether the daemon is there
+/// Whether the daemon is running
 #[utoipa::path(get, path = "/health", tag = "daemon",
-    responses((status = 200, description = "It is", body = Health), Refusals))]
+    responses((status = 200, description = "The daemon is running", body = Health), Refusals))]
 pub async fn health(State(lab): State<Lab>, Extension(caller): Extension<Caller>) -> Answer<Health> {
     let dashboard_missing = jointbench_ui::missing().map(str::to_owned);
     Ok(Json(Health {

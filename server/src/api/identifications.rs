@@ -10,14 +10,14 @@ use axum::response::{Html, IntoResponse};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-/// Quantities with intervals, figures and a verdict, worked out from the samples by the procedure of the run
+/// Quantities with intervals, figures and a verdict, computed from the samples by the procedure of the run
 #[utoipa::path(get, path = "/runs/{id}/identification", tag = "runs", params(("id" = i64, Path, description = "Run")),
-    responses((status = 200, description = "What the run shows", body = Identification), Refusals))]
+    responses((status = 200, description = "Result of the run", body = Identification), Refusals))]
 pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Identification> {
     Ok(Json(lab.identification(id).await?))
 }
 
-/// What the complete runs of the same bench and procedure before this one have found, newest first, twelve at most
+/// Results of earlier complete runs of the same bench and procedure, newest first, at most twelve
 #[utoipa::path(get, path = "/runs/{id}/earlier", tag = "runs", params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "Quantities of earlier runs", body = Vec<Earlier>), Refusals))]
 pub async fn earlier(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Earlier>> {
@@ -39,9 +39,10 @@ pub async fn trends(State(lab): State<Lab>, Query(query): Query<TrendQuery>) -> 
     Ok(Json(lab.trends(&query.search).await?))
 }
 
-/// The run, also one that is on, beside the last model of its kind from another run of its bench; `null` without one
+/// A run, also an active one, compared with the latest model of its kind from another run of its bench; `null` without
+/// one
 #[utoipa::path(get, path = "/runs/{id}/beside", tag = "runs", params(("id" = i64, Path, description = "Run")),
-    responses((status = 200, description = "Measured, model and what it leaves", body = Option<Beside>), Refusals))]
+    responses((status = 200, description = "Measured signal, model and residual", body = Option<Beside>), Refusals))]
 pub async fn beside(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Option<Beside>> {
     Ok(Json(lab.beside(id).await?))
 }
@@ -50,13 +51,13 @@ pub async fn beside(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Optio
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReportQuery {
-    /// The version of the run's model that is told of; the last that is neither idle nor only tried where left out.
+    /// Model version of the report; the latest active version if omitted.
     pub model: Option<i64>,
 }
 
-/// The run as one page to send and to print: result, figures, model, diagnosis, provenance
+/// Report of the run as one HTML page: result, figures, model, diagnosis, provenance
 #[utoipa::path(get, path = "/runs/{id}/report", tag = "runs", params(("id" = i64, Path, description = "Run"), ReportQuery),
-    responses((status = 200, description = "The page, complete in itself", body = String, content_type = "text/html"), Refusals))]
+    responses((status = 200, description = "The self-contained page", body = String, content_type = "text/html"), Refusals))]
 pub async fn report(
     State(lab): State<Lab>,
     Path(id): Path<i64>,

@@ -10,7 +10,7 @@ use utoipa::IntoParams;
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct DetachQuery {
-    /// The computation goes on when the client leaves, and its result is kept; it is given up otherwise.
+    /// The computation continues when the client disconnects, and its result is stored.
     pub detach: bool,
 }
 
@@ -27,6 +27,6 @@ pub async fn waited_for<T: Send + 'static>(
     tokio::select! {
         done = work => Ok(done?),
         // Nobody reads this answer.
-        () = presence.gone() => Err(LabError::Over("the client has left: the computation was given up".into()).into()),
+        () = presence.gone() => Err(LabError::Over("the client disconnected: the computation was cancelled".into()).into()),
     }
 }

@@ -12,10 +12,11 @@ const LARGEST_HEARD: usize = 4096;
 
 /// Live stream (WebSocket)
 ///
-/// Text frames are `LiveMessage`s. Binary frames carry samples, little endian: u32 sequence, u32 dropped frames, u32 rows,
-/// u32 channels, f64 t0 [s], then one f32 column after the other in the order of the last `channels` message; `time_s` is
-/// relative to t0. A token comes as the header `Authorization: Bearer TOKEN`, as `?token=TOKEN`, or, out of a browser and away from
-/// the address, among the subprotocols: `jointbench` and `token.TOKEN`, percent-encoded. At most 30 frames a second; a slow client gets larger frames, never older ones.
+/// Text frames are `LiveMessage`s. Binary frames carry samples, little endian: u32 sequence, u32 dropped frames, u32
+/// rows, u32 channels, f64 t0 [s], then one f32 column after the other in the order of the last `channels` message;
+/// `time_s` is relative to t0. A token is sent as the header `Authorization: Bearer TOKEN`, as `?token=TOKEN`, or, from
+/// a browser and outside the address, in the subprotocols `jointbench` and `token.TOKEN` (percent-encoded). At most 30
+/// frames a second; a slow client gets larger frames, never older ones.
 #[utoipa::path(get, path = "/events", tag = "live",
     responses((status = 101, description = "The stream", body = crate::view::LiveMessage), Refusals))]
 pub async fn stream(

@@ -13,14 +13,15 @@ use utoipa::IntoParams;
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct LogQuery {
-    /// What is about this run alone; the benches and the newest runs where left out.
+    /// Only this run; all benches and the newest runs if omitted.
     pub run: Option<i64>,
-    /// What was earlier: the runs before this one, and the benches meanwhile. Of an answer that is the run with the smallest number.
+    /// Earlier entries: the runs before this one and the benches in that time. To page, use the smallest run number of
+    /// the previous response.
     pub before: Option<i64>,
 }
 
-/// What has happened and who did it, newest first: safety records, journals of runs, versions of their models, and tokens where the
-/// caller may know of them
+/// Event log with users, newest first: safety records, journals of runs, model versions, and tokens for callers with
+/// full access
 #[utoipa::path(get, path = "/log", operation_id = "log", tag = "daemon", params(LogQuery),
     responses((status = 200, description = "The entries", body = Vec<LogEntry>), Refusals))]
 pub async fn log(

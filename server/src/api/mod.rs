@@ -55,8 +55,7 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 #[openapi(
     info(
         title = "jointbench",
-        description = "Test bench for robot joints: measure, fit, find what the model lacks.\n\nSI units; the unit is the \
-                       suffix of a name. Errors are problem documents (RFC 9457).",
+        description = "Test bench for robot joints: measure, identify a model, find the missing effect.\n\nSI units; the unit is the suffix of a name. Errors are problem documents (RFC 9457).",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
     components(schemas(Problem, LiveMessage)),
@@ -64,15 +63,15 @@ use utoipa_axum::{router::OpenApiRouter, routes};
     security((), ("token" = [])),
     tags(
         (name = "bench", description = "Benches and instruments"),
-        (name = "procedures", description = "What a bench can be asked to do"),
-        (name = "runs", description = "Measurements, running and kept"),
+        (name = "procedures", description = "Procedures that a bench can run"),
+        (name = "runs", description = "Measurements, running and stored"),
         (name = "samples", description = "Windows of samples"),
-        (name = "effects", description = "The library of physical causes"),
-        (name = "models", description = "Fitted versions, a tree for each run"),
-        (name = "diagnoses", description = "Where a model fails and what it lacks"),
-        (name = "autopilots", description = "The run that would tell more, and chains of runs that find out by themselves"),
-        (name = "live", description = "State, progress, events and samples as they come"),
-        (name = "daemon", description = "The daemon itself"),
+        (name = "effects", description = "The library of physical effects"),
+        (name = "models", description = "Fitted model versions, a tree for each run"),
+        (name = "diagnoses", description = "Where a model fails and which effect is missing"),
+        (name = "autopilots", description = "Recommended runs, and the autopilot that performs them"),
+        (name = "live", description = "Live state, progress, events and samples"),
+        (name = "daemon", description = "The daemon"),
     )
 )]
 struct Description;
@@ -85,7 +84,8 @@ impl Modify for Token {
         let scheme = HttpBuilder::new()
             .scheme(HttpAuthScheme::Bearer)
             .description(Some(
-                "Needed where the daemon was started with one (`--token-file`); more are made at `/tokens`",
+                "Required if the daemon was started with a token (`--token-file`); further tokens are created at \
+                 `/tokens`",
             ))
             .build();
         document.components.get_or_insert_default().add_security_scheme("token", SecurityScheme::Http(scheme));

@@ -17,18 +17,18 @@ use utoipa::IntoParams;
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct EffectQuery {
-    /// `friction`, `encoder`, `stiffness` or `brake`; all where left out.
+    /// `friction`, `encoder`, `stiffness` or `brake`; all if omitted.
     pub kind: Option<String>,
 }
 
-/// The library of effects, with those that users wrote
+/// The library of effects, including user-defined effects
 #[utoipa::path(get, path = "/effects", tag = "effects", params(EffectQuery),
     responses((status = 200, description = "The effects", body = Vec<Effect>), Refusals))]
 pub async fn effects(State(lab): State<Lab>, Query(query): Query<EffectQuery>) -> Answer<Vec<Effect>> {
     Ok(Json(lab.effects(query.kind.as_deref()).await?))
 }
 
-/// Fits a set of effects to a run and keeps it as a version
+/// Fits a set of effects to a run and stores it as a version
 #[utoipa::path(post, path = "/models", tag = "models", params(DetachQuery), request_body = NewModel,
     responses((status = 201, description = "The version", body = Model), Refusals))]
 pub async fn create(
@@ -44,7 +44,7 @@ pub async fn create(
     created(waited_for(presence, query, fit).await?)
 }
 
-/// Keeps a version that was only tried, or that gained next to nothing, as one of the run's
+/// Keeps a trial version or a version without significant gain as a regular version of the run
 #[utoipa::path(post, path = "/models/{id}/keep", operation_id = "keep_model", tag = "models", params(("id" = i64, Path, description = "Model version")),
     responses((status = 200, description = "The version", body = Model), Refusals))]
 pub async fn keep(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Model> {
@@ -55,7 +55,7 @@ pub async fn keep(State(lab): State<Lab>, Extension(caller): Extension<Caller>, 
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct ModelQuery {
-    /// The run that they were fitted to.
+    /// The run that the versions were fitted to.
     pub run: i64,
 }
 
@@ -89,7 +89,8 @@ pub async fn residuals(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<Re
     Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
 }
 
-/// Finds where a model version fails and what it lacks, and keeps the answer; who only reads gets the last one that is kept
+/// Finds where a model version fails and which effect is missing, and stores the diagnosis; a read token gets the
+/// latest stored one
 #[utoipa::path(post, path = "/diagnoses", tag = "diagnoses", params(DetachQuery), request_body = NewDiagnosis,
     responses((status = 201, description = "The diagnosis", body = Diagnosis), Refusals))]
 pub async fn diagnose(
@@ -101,7 +102,7 @@ pub async fn diagnose(
 ) -> Created<Diagnosis> {
     match caller.access {
         Access::Read => created(lab.diagnoses(new.model).await?.pop().ok_or_else(|| {
-            Problem::forbidden("this version has no diagnosis yet, and this token only reads: a new one would be kept")
+            Problem::forbidden("this version has no diagnosis yet, and a read token cannot create one")
         })?),
         _ => created(waited_for(presence, query, async move { lab.diagnose(new.model).await }).await?),
     }

@@ -14,7 +14,7 @@ pub async fn list(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Not
     Ok(Json(lab.notes(id).await?))
 }
 
-/// Keeps a note about a run, or about a moment of it; a note is never changed
+/// Stores a note about a run or a moment of it; notes are never changed
 #[utoipa::path(post, path = "/runs/{id}/notes", operation_id = "write_note", tag = "runs", request_body = NewNote,
     params(("id" = i64, Path, description = "Run")),
     responses((status = 201, description = "The note", body = Note), Refusals))]
@@ -22,7 +22,7 @@ pub async fn write(State(lab): State<Lab>, Path(id): Path<i64>, Json(new): Json<
     created(lab.write_note(id, &new).await?)
 }
 
-/// Gives a run these tags, and no others
+/// Sets the tags of a run
 #[utoipa::path(put, path = "/runs/{id}/tags", operation_id = "set_tags", tag = "runs", request_body = Tags,
     params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "The run", body = Run), Refusals))]
@@ -30,7 +30,7 @@ pub async fn set_tags(State(lab): State<Lab>, Path(id): Path<i64>, Json(tags): J
     Ok(Json(lab.set_tags(id, &tags.tags).await?))
 }
 
-/// Every tag in use, the most used first
+/// All tags in use, most frequent first
 #[utoipa::path(get, path = "/tags", operation_id = "list_tags", tag = "runs",
     responses((status = 200, description = "Tags", body = Vec<String>), Refusals))]
 pub async fn tags(State(lab): State<Lab>) -> Answer<Vec<String>> {

@@ -9,31 +9,31 @@ use crate::view::{Effect, EffectCheck, EffectDefinition, EffectTrial, FormulaLan
 use axum::extract::State;
 use axum::http::StatusCode;
 
-/// Defines an effect by its formula, or its next version
+/// Defines an effect by its formula, or a new version of it
 #[utoipa::path(post, path = "/effects", operation_id = "define_effect", tag = "effects", request_body = EffectDefinition,
-    responses((status = 201, description = "The effect, ready for every model of its kind", body = Effect), Refusals))]
+    responses((status = 201, description = "The effect, available to all models of its kind", body = Effect), Refusals))]
 pub async fn define(State(lab): State<Lab>, Json(definition): Json<EffectDefinition>) -> Created<Effect> {
     created(lab.define_effect(&definition).await?)
 }
 
-/// Says what a formula means, or where it is wrong, and keeps nothing
+/// Checks a formula and describes it, without storing it
 #[utoipa::path(post, path = "/effects/check", operation_id = "check_effect", tag = "effects", request_body = EffectTrial,
-    responses((status = 200, description = "What the formula means", body = EffectCheck), Refusals))]
+    responses((status = 200, description = "The parsed formula", body = EffectCheck), Refusals))]
 pub async fn check(State(lab): State<Lab>, presence: Presence, Json(trial): Json<EffectTrial>) -> Answer<EffectCheck> {
     let check = async move { lab.check_effect(&trial).await };
     Ok(Json(waited_for(presence, DetachQuery::default(), check).await?))
 }
 
-/// Forgets a user's effect; refused while a model uses it
+/// Deletes a user-defined effect; rejected while a model uses it
 #[utoipa::path(delete, path = "/effects/{kind}/{id}", operation_id = "delete_effect", tag = "effects",
     params(("kind" = String, Path, description = "Kind of runs"), ("id" = String, Path, description = "The effect")),
-    responses((status = 204, description = "It is gone"), Refusals))]
+    responses((status = 204, description = "Deleted"), Refusals))]
 pub async fn delete(State(lab): State<Lab>, Path((kind, id)): Path<(String, String)>) -> Result<StatusCode, Problem> {
     lab.delete_effect(&kind, &id).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// What a formula of a kind may name
+/// Signals, functions and operators that a formula of a kind may use
 #[utoipa::path(get, path = "/formulas/{kind}", operation_id = "formula_language", tag = "effects",
     params(("kind" = String, Path, description = "Kind of runs")),
     responses((status = 200, description = "Signals, functions and operators", body = FormulaLanguage), Refusals))]

@@ -23,9 +23,9 @@ pub struct Problem {
     #[schema(value_type = String)]
     pub title: Box<str>,
     pub status: u16,
-    /// What is wrong and what to do about it.
+    /// Cause and remedy.
     pub detail: String,
-    /// The path that was asked for.
+    /// The requested path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<String>)]
     pub instance: Option<Box<str>>,
@@ -36,7 +36,7 @@ pub struct Problem {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<String>)]
     pub column: Option<Box<str>>,
-    /// Where a formula is wrong.
+    /// Position of the error in a formula.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Place>)]
     pub place: Option<Box<Place>>,
@@ -73,30 +73,30 @@ impl Problem {
     }
 
     pub fn malformed(detail: impl Into<String>) -> Self {
-        Self::new(StatusCode::BAD_REQUEST, "malformed", "The request cannot be read", detail)
+        Self::new(StatusCode::BAD_REQUEST, "malformed", "Malformed request", detail)
     }
 
     pub fn forbidden(detail: impl Into<String>) -> Self {
-        Self::new(StatusCode::FORBIDDEN, "forbidden", "Not from there", detail)
+        Self::new(StatusCode::FORBIDDEN, "forbidden", "Origin not allowed", detail)
     }
 
     pub fn unauthorized() -> Self {
-        let detail = "this daemon was started with a token: send it as `Authorization: Bearer TOKEN`";
-        Self::new(StatusCode::UNAUTHORIZED, "unauthorized", "A token is needed", detail)
+        let detail = "this daemon requires a token: send it as `Authorization: Bearer TOKEN`";
+        Self::new(StatusCode::UNAUTHORIZED, "unauthorized", "Token required", detail)
     }
 
     pub fn too_large(detail: impl Into<String>) -> Self {
-        Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "The request is too large", detail)
+        Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "Request too large", detail)
     }
 
     /// A limit that others fill at the moment.
     pub fn busy(detail: impl Into<String>) -> Self {
-        Self::new(StatusCode::SERVICE_UNAVAILABLE, BUSY, "Too much at once", detail)
+        Self::new(StatusCode::SERVICE_UNAVAILABLE, BUSY, "Too many requests", detail)
     }
 
     /// Every connection but the reserved ones is taken.
     pub fn full() -> Self {
-        Self::busy("every connection is taken; health and the software stop are still answered: try again in a second")
+        Self::busy("all connections are in use (health and software stop remain available): retry in one second")
     }
 
     /// Too many wrong tokens from one address.
@@ -105,13 +105,13 @@ impl Problem {
     }
 
     pub fn no_method(method: &str, path: &str) -> Self {
-        let detail = format!("{method} is not offered at {path}; /api/v1/openapi.json lists every operation");
-        Self::new(StatusCode::METHOD_NOT_ALLOWED, "not_allowed", "Not offered there", detail)
+        let detail = format!("{method} is not available at {path}; /api/v1/openapi.json lists all operations");
+        Self::new(StatusCode::METHOD_NOT_ALLOWED, "not_allowed", "Method not allowed", detail)
     }
 
     pub fn no_route(path: &str) -> Self {
-        let detail = format!("nothing is served at {path}; /api/v1/openapi.json lists every operation");
-        Self::new(StatusCode::NOT_FOUND, "not_found", "Not there", detail)
+        let detail = format!("{path} does not exist; /api/v1/openapi.json lists all operations");
+        Self::new(StatusCode::NOT_FOUND, "not_found", "Not found", detail)
     }
 }
 
@@ -119,35 +119,37 @@ impl From<LabError> for Problem {
     fn from(error: LabError) -> Self {
         let detail = error.to_string();
         match error {
-            LabError::NotFound(_) => Self::new(StatusCode::NOT_FOUND, "not_found", "Not there", detail),
-            LabError::Invalid(_) => {
-                Self::new(StatusCode::UNPROCESSABLE_ENTITY, "invalid", "The values do not fit", detail)
-            }
+            LabError::NotFound(_) => Self::new(StatusCode::NOT_FOUND, "not_found", "Not found", detail),
+            LabError::Invalid(_) => Self::new(StatusCode::UNPROCESSABLE_ENTITY, "invalid", "Invalid values", detail),
             LabError::File { line, column, .. } => Self {
                 line,
                 column: column.map(String::into_boxed_str),
-                ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "file_refused", "The file is refused", detail)
+                ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "file_refused", "File rejected", detail)
             },
             LabError::Formula(fault) => Self {
                 place: Some(Box::new((*fault).into())),
-                ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "formula", "The formula is wrong", detail)
+                ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "formula", "Invalid formula", detail)
             },
-            LabError::Conflict(_) => Self::new(StatusCode::CONFLICT, "conflict", "Not at this moment", detail),
-            LabError::Over(_) => Self::new(StatusCode::CONFLICT, OVER, "Not any more", detail),
-            LabError::Busy(_) => Self::new(StatusCode::SERVICE_UNAVAILABLE, BUSY, "Not at this moment", detail),
+            LabError::Conflict(_) => {
+                Self::new(StatusCode::CONFLICT, "conflict", "Not possible in the present state", detail)
+            }
+            LabError::Over(_) => Self::new(StatusCode::CONFLICT, OVER, "No longer possible", detail),
+            LabError::Busy(_) => {
+                Self::new(StatusCode::SERVICE_UNAVAILABLE, BUSY, "Not possible in the present state", detail)
+            }
             LabError::TooLarge(_) => Self::new(StatusCode::PAYLOAD_TOO_LARGE, "too_large", "Too large", detail),
             LabError::Bench(_) => {
-                Self::new(StatusCode::SERVICE_UNAVAILABLE, "bench_fault", "The bench does not answer", detail)
+                Self::new(StatusCode::SERVICE_UNAVAILABLE, "bench_fault", "Bench not responding", detail)
             }
             LabError::Setup(_) | LabError::Internal(_) => {
                 tracing::error!(%detail, "request failed inside");
-                Self::new(StatusCode::INTERNAL_SERVER_ERROR, "internal", "The daemon failed", detail)
+                Self::new(StatusCode::INTERNAL_SERVER_ERROR, "internal", "Internal error", detail)
             }
         }
     }
 }
 
-const SEE: &str = "; /api/v1/openapi.json describes every operation";
+const SEE: &str = "; /api/v1/openapi.json describes all operations";
 
 /// Without the extractor's own preface.
 fn plain(text: &str) -> &str {
@@ -159,20 +161,20 @@ impl From<JsonRejection> for Problem {
         match rejection.status() {
             StatusCode::PAYLOAD_TOO_LARGE => Self::too_large(rejection.body_text()),
             StatusCode::UNSUPPORTED_MEDIA_TYPE => Self::malformed("send JSON with `Content-Type: application/json`"),
-            _ => Self::malformed(format!("the JSON body does not fit: {}{SEE}", plain(&rejection.body_text()))),
+            _ => Self::malformed(format!("invalid JSON body: {}{SEE}", plain(&rejection.body_text()))),
         }
     }
 }
 
 impl From<QueryRejection> for Problem {
     fn from(rejection: QueryRejection) -> Self {
-        Self::malformed(format!("the query does not fit: {}{SEE}", plain(&rejection.body_text())))
+        Self::malformed(format!("invalid query: {}{SEE}", plain(&rejection.body_text())))
     }
 }
 
 impl From<PathRejection> for Problem {
     fn from(rejection: PathRejection) -> Self {
-        Self::malformed(format!("the path does not fit: {}{SEE}", plain(&rejection.body_text())))
+        Self::malformed(format!("invalid path: {}{SEE}", plain(&rejection.body_text())))
     }
 }
 
@@ -208,7 +210,7 @@ pub struct Refusals;
 impl IntoResponses for Refusals {
     fn responses() -> BTreeMap<String, RefOr<utoipa::openapi::Response>> {
         let response = ResponseBuilder::new()
-            .description("Refused: a problem document (RFC 9457) that says what is wrong and what to do")
+            .description("Error: a problem document (RFC 9457) with cause and remedy")
             .content("application/problem+json", Content::new(Some(Ref::from_schema_name("Problem"))))
             .build();
         BTreeMap::from([("default".to_owned(), RefOr::T(response))])

@@ -12,7 +12,8 @@ use utoipa::IntoParams;
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct ProcedureQuery {
-    /// A bench: each procedure then says whether it could be made there, and its defaults are those of what was applied to it.
+    /// Name of a bench: each procedure then states whether the bench can run it, with the defaults from applied
+    /// results.
     pub bench: Option<String>,
 }
 
@@ -23,10 +24,10 @@ pub async fn list(State(lab): State<Lab>, Query(query): Query<ProcedureQuery>) -
     Ok(Json(lab.procedures(query.bench.as_deref()).await?))
 }
 
-/// Dry run: duration, steps, extremes against the limits, checks; nothing moves
+/// Dry run without motion: duration, steps, extremes against the limits, checks
 #[utoipa::path(post, path = "/procedures/{id}/preview", tag = "procedures",
     params(("id" = String, Path, description = "Procedure")), request_body = PreviewRequest,
-    responses((status = 200, description = "What the procedure would do", body = Preview), Refusals))]
+    responses((status = 200, description = "The plan of the procedure", body = Preview), Refusals))]
 pub async fn preview(
     State(lab): State<Lab>,
     Path(id): Path<String>,

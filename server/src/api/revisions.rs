@@ -18,11 +18,11 @@ use utoipa::{IntoParams, ToSchema};
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct CompareQuery {
-    /// The run that both are evaluated on; that of the first where left out.
+    /// The run that both are evaluated on; the run of the first version if omitted.
     pub run: Option<i64>,
 }
 
-/// Two model versions side by side: effects, parameters, and the error of both on one run
+/// Comparison of two model versions: effects, parameters, and the error of both on one run
 #[utoipa::path(get, path = "/models/{id}/compare/{other}", operation_id = "compare_models", tag = "models",
     params(("id" = i64, Path, description = "First version"), ("other" = i64, Path, description = "Second version"), CompareQuery),
     responses((status = 200, description = "The comparison", body = Comparison), Refusals))]
@@ -34,17 +34,17 @@ pub async fn compare(
     Ok(Json(lab.compare(id, other, query.run).await?))
 }
 
-/// What each effect of a model version is worth: the error outside the fit without it, the others fitted again
+/// Contribution of each effect of a model version: validation error without it, the others refitted
 #[utoipa::path(get, path = "/models/{id}/worth", operation_id = "effects_worth", tag = "models",
     params(("id" = i64, Path, description = "Model version")),
-    responses((status = 200, description = "One entry for each effect; nothing is kept", body = Vec<Worth>), Refusals))]
+    responses((status = 200, description = "One entry for each effect; nothing is stored", body = Vec<Worth>), Refusals))]
 pub async fn worth(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<Worth>> {
     Ok(Json(lab.worth(id).await?))
 }
 
-/// What an effect more would add to the prediction of a model version, at each point of its residuals
+/// Change of the prediction by an additional effect, at each point of the residuals
 #[utoipa::path(get, path = "/models/{id}/with/{effect}", operation_id = "predict_with", tag = "models",
-    params(("id" = i64, Path, description = "Model version"), ("effect" = String, Path, description = "An effect that it lacks")),
+    params(("id" = i64, Path, description = "Model version"), ("effect" = String, Path, description = "A missing effect")),
     responses((status = 200, description = "In the unit of the residuals", body = Vec<f64>), Refusals))]
 pub async fn with_effect(State(lab): State<Lab>, Path((id, effect)): Path<(i64, String)>) -> Answer<Vec<f64>> {
     Ok(Json(lab.with_effect(id, effect).await?))
@@ -53,7 +53,7 @@ pub async fn with_effect(State(lab): State<Lab>, Path((id, effect)): Path<(i64, 
 /// The error of a model version on any run of its kind
 #[utoipa::path(post, path = "/models/{id}/evaluate", operation_id = "evaluate_model", tag = "models",
     params(("id" = i64, Path, description = "Model version")), request_body = NewEvaluation,
-    responses((status = 200, description = "The error there", body = Evaluation), Refusals))]
+    responses((status = 200, description = "The error on that run", body = Evaluation), Refusals))]
 pub async fn evaluate(
     State(lab): State<Lab>,
     presence: Presence,
@@ -64,7 +64,7 @@ pub async fn evaluate(
     Ok(Json(waited_for(presence, DetachQuery::default(), evaluation).await?))
 }
 
-/// `json` comes in again; `c` is a C99 header, `lut` a CSV table, `mujoco` and `urdf` the attributes of a joint.
+/// `json` can be imported again; `c` is a C99 header, `lut` a CSV table, `mujoco` and `urdf` the attributes of a joint.
 #[derive(Debug, Clone, Copy, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ExportFormat {
@@ -117,7 +117,7 @@ pub async fn export(
     Ok(([(header::CONTENT_TYPE, media_type.to_owned()), (header::CONTENT_DISPOSITION, name)], text).into_response())
 }
 
-/// Keeps an exported model as a version of a run
+/// Stores an exported model as a version of a run
 #[utoipa::path(post, path = "/models/import", operation_id = "import_model", tag = "models", request_body = ModelImport,
     responses((status = 201, description = "The version", body = ImportedModel), Refusals))]
 pub async fn import(

@@ -14,21 +14,22 @@ use utoipa::IntoParams;
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct RunQuery {
-    /// At most so many; 50 where left out, 500 at most.
+    /// Maximum number of runs; 50 if omitted, at most 500.
     #[param(maximum = 500)]
     pub limit: Option<u32>,
-    /// Leave out so many of the newest.
+    /// Number of newest runs to skip.
     pub offset: Option<u32>,
-    /// Words, and terms such as `kind:friction`, `tag:oil`, `-state:failed`, `duration>2min`, `after:2026-01-31`; all must hold.
+    /// Words, and terms such as `kind:friction`, `tag:oil`, `-state:failed`, `duration>2min`, `after:2026-01-31`; all
+    /// must match.
     pub search: Option<String>,
-    /// By what they are ordered: `started`, `state`, `procedure`, `bench`, `duration`, `rows`, `safe`, `error` (held out, of the
-    /// last version of the model that is not idle) or `coulomb`; with a minus sign the largest first. Newest first where left out.
+    /// Sort column: `started`, `state`, `procedure`, `bench`, `duration`, `rows`, `safe`, `error` (validation error of
+    /// the latest active model version) or `coulomb`; with a minus sign largest first. Newest first if omitted.
     pub sort: Option<String>,
-    /// The search is still being typed: terms that are not understood are left out, and told, instead of refused.
+    /// The search is incomplete: unknown terms are ignored and reported instead of rejected.
     pub typing: bool,
 }
 
-/// Runs, newest first unless told otherwise
+/// Runs, by default newest first
 #[utoipa::path(get, path = "/runs", operation_id = "list_runs", tag = "runs", params(RunQuery),
     responses((status = 200, description = "A page of runs", body = RunList), Refusals))]
 pub async fn list(State(lab): State<Lab>, Query(query): Query<RunQuery>) -> Answer<RunList> {
@@ -59,45 +60,45 @@ pub async fn get(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.run(id).await?))
 }
 
-/// Brings the joint to rest between two steps and waits
+/// Pauses the run after the current step
 #[utoipa::path(post, path = "/runs/{id}/pause", tag = "runs", params(("id" = i64, Path, description = "Run")),
-    responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
+    responses((status = 200, description = "Accepted; present state of the run", body = Run), Refusals))]
 pub async fn pause(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Pause, &caller.name).await?))
 }
 
-/// What the run does, step by step, as its dry run told it; of a run that goes on with another, what was left
+/// Steps of the run, as in its dry run; of a resumed run the remaining steps
 #[utoipa::path(get, path = "/runs/{id}/plan", operation_id = "get_plan", tag = "runs", params(("id" = i64, Path, description = "Run")),
-    responses((status = 200, description = "Its steps, in the order of its progress", body = Preview), Refusals))]
+    responses((status = 200, description = "The steps of the run, in order", body = Preview), Refusals))]
 pub async fn plan(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Preview> {
     Ok(Json(lab.plan_of(id).await?))
 }
 
-/// Goes on after a pause
+/// Resumes the run after a pause
 #[utoipa::path(post, path = "/runs/{id}/resume", tag = "runs", params(("id" = i64, Path, description = "Run")),
-    responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
+    responses((status = 200, description = "Accepted; present state of the run", body = Run), Refusals))]
 pub async fn resume(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Resume, &caller.name).await?))
 }
 
-/// Makes the steps that a run has left, in a new run: the warm-up again, the brake demagnetised, then from the first step
-/// that was not finished. Both together are one measurement
-#[utoipa::path(post, path = "/runs/{id}/continue", operation_id = "continue_run", tag = "runs", params(("id" = i64, Path, description = "Run that did not come to its end")),
+/// Resumes an interrupted run in a new run: warm-up, demagnetised brake, then the first unfinished step. Both together
+/// form one measurement
+#[utoipa::path(post, path = "/runs/{id}/continue", operation_id = "continue_run", tag = "runs", params(("id" = i64, Path, description = "Interrupted run")),
     responses((status = 201, description = "The new run, queued", body = Run), Refusals))]
 pub async fn go_on(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Created<Run> {
     created(lab.continue_run(id, &caller.name).await?)
 }
 
-/// Ends the run after the step at hand; what was measured counts
+/// Finishes the run after the current step and evaluates the recorded data
 #[utoipa::path(post, path = "/runs/{id}/stop", operation_id = "stop_run", tag = "runs", params(("id" = i64, Path, description = "Run")),
-    responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
+    responses((status = 200, description = "Accepted; present state of the run", body = Run), Refusals))]
 pub async fn stop(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Stop, &caller.name).await?))
 }
 
-/// Ends the run now; the bench is secured
+/// Ends the run immediately; the bench is secured
 #[utoipa::path(post, path = "/runs/{id}/abort", tag = "runs", params(("id" = i64, Path, description = "Run")),
-    responses((status = 200, description = "Taken; the run as it is now", body = Run), Refusals))]
+    responses((status = 200, description = "Accepted; present state of the run", body = Run), Refusals))]
 pub async fn abort(State(lab): State<Lab>, Extension(caller): Extension<Caller>, Path(id): Path<i64>) -> Answer<Run> {
     Ok(Json(lab.control(id, Control::Abort, &caller.name).await?))
 }
@@ -110,7 +111,7 @@ pub struct EventQuery {
     pub after: Option<u64>,
 }
 
-/// The run's journal
+/// The journal of the run
 #[utoipa::path(get, path = "/runs/{id}/events", tag = "runs",
     params(("id" = i64, Path, description = "Run"), EventQuery),
     responses((status = 200, description = "Events in order", body = Vec<RunEvent>), Refusals))]
@@ -126,13 +127,13 @@ pub async fn events(
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct SampleQuery {
-    /// Names with commas between; all where left out.
+    /// Channel names, comma-separated; all if omitted.
     pub channels: Option<String>,
-    /// Begin of the window on the run's clock; its first row where left out.
+    /// Start of the window, in run time; first row if omitted.
     pub from_s: Option<f64>,
-    /// End of the window; the last row where left out.
+    /// End of the window, in run time; last row if omitted.
     pub to_s: Option<f64>,
-    /// Width of the view in pixels; 2000 where left out.
+    /// Width of the view in pixels; 2000 if omitted.
     #[param(minimum = 1, maximum = 20_000)]
     pub px: Option<u32>,
 }
@@ -150,15 +151,15 @@ pub async fn samples(State(lab): State<Lab>, Path(id): Path<i64>, Query(query): 
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct StatisticsQuery {
-    /// Names with commas between; all where left out.
+    /// Channel names, comma-separated; all if omitted.
     pub channels: Option<String>,
-    /// Begin of the window on the run's clock; its first row where left out.
+    /// Start of the window, in run time; first row if omitted.
     pub from_s: Option<f64>,
-    /// End of the window; the last row where left out.
+    /// End of the window, in run time; last row if omitted.
     pub to_s: Option<f64>,
 }
 
-/// Mean, deviation, RMS, smallest and largest value of each channel over every row of a window
+/// Mean, standard deviation, RMS, minimum and maximum of each channel over all rows of a window
 #[utoipa::path(get, path = "/runs/{id}/statistics", tag = "samples",
     params(("id" = i64, Path, description = "Run"), StatisticsQuery),
     responses((status = 200, description = "One entry for each channel", body = Vec<ChannelStatistics>), Refusals))]
@@ -174,29 +175,28 @@ pub async fn statistics(
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct DifferenceQuery {
-    /// The others, one to five, with commas between.
+    /// The other runs, one to five, comma-separated.
     pub others: String,
-    /// The channel that is held against that of the first run.
+    /// The channel to compare.
     pub channel: String,
-    /// The channel by which the runs are aligned; the time where left out.
+    /// The channel for the alignment; time if omitted.
     pub by: Option<String>,
-    /// The event, by its text, from which on the time is told.
+    /// Text of the event that defines time zero.
     pub from: Option<String>,
 }
 
-/// How far a channel of other runs is from that of a first one, over time or another channel, with two standard errors
+/// Difference of a channel between runs and a reference run, over time or another channel, with two standard errors
 #[utoipa::path(get, path = "/runs/{id}/differences", operation_id = "run_differences", tag = "samples",
-    params(("id" = i64, Path, description = "The run that the others are held against"), DifferenceQuery),
-    responses((status = 200, description = "Figures; the means first where the runs are not aligned by time", body = Vec<Figure>), Refusals))]
+    params(("id" = i64, Path, description = "Reference run of the comparison"), DifferenceQuery),
+    responses((status = 200, description = "Figures; the means first if the runs are not aligned by time", body = Vec<Figure>), Refusals))]
 pub async fn differences(
     State(lab): State<Lab>,
     Path(id): Path<i64>,
     Query(query): Query<DifferenceQuery>,
 ) -> Answer<Vec<Figure>> {
     let others: Result<Vec<i64>, _> = query.others.split(',').map(|run| run.trim().parse()).collect();
-    let others = others.map_err(|_| {
-        Problem::malformed(format!("others = {}: write numbers of runs with commas between", query.others))
-    })?;
+    let others = others
+        .map_err(|_| Problem::malformed(format!("others = {}: write run numbers, comma-separated", query.others)))?;
     let by = query.by.unwrap_or_else(|| "time_s".to_owned());
     let how = Alignment { channel: query.channel, by, from: query.from };
     Ok(Json(lab.differences(&[vec![id], others].concat(), &how).await?))

@@ -30,7 +30,7 @@ const HEARD_OUT: Duration = Duration::from_secs(5);
 pub async fn guard(limit: usize, request: Request, next: Next) -> Response {
     match announced(&request) {
         Some(bytes) if bytes > limit => {
-            let detail = format!("a request of {bytes} bytes is refused; at most {limit} bytes are read");
+            let detail = format!("the request of {bytes} bytes exceeds the limit of {limit} bytes");
             Problem::too_large(detail).into_response()
         }
         _ => next.run(request).await,
@@ -41,9 +41,7 @@ pub async fn guard(limit: usize, request: Request, next: Next) -> Response {
 pub async fn queue(uploads: Arc<Semaphore>, request: Request, next: Next) -> Response {
     match uploads.try_acquire() {
         Ok(_turn) => next.run(request).await,
-        Err(_) => {
-            Problem::busy(format!("{UPLOADS} files are coming in already: send this one again later")).into_response()
-        }
+        Err(_) => Problem::busy(format!("{UPLOADS} uploads are in progress: retry later")).into_response(),
     }
 }
 

@@ -17,12 +17,13 @@ pub struct TableQuery {
     /// Kind of file.
     #[param(inline)]
     pub format: TableFormat,
-    /// Begin texts of a CSV that a spreadsheet would take for a formula (= + - @) with an apostrophe.
+    /// Prefix texts of a CSV that start with = + - @ with an apostrophe, so that a spreadsheet does not interpret them
+    /// as formulas.
     #[serde(default)]
     pub spreadsheet_safe: bool,
 }
 
-/// Any table as a file: what a picture shows, with the digits that it has. Nothing is kept
+/// Converts a table, such as the data of a plot, to a file, without storing it
 #[utoipa::path(post, path = "/tables", operation_id = "write_table", tag = "daemon", params(TableQuery),
     responses(
         (status = 200, description = "The file", body = Vec<u8>, content_type = "application/octet-stream"),

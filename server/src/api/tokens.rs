@@ -8,14 +8,14 @@ use axum::Extension;
 use axum::extract::State;
 use axum::http::StatusCode;
 
-/// Every token that opens the door, without its secret
+/// All valid tokens, without their secrets
 #[utoipa::path(get, path = "/tokens", operation_id = "list_tokens", tag = "daemon",
     responses((status = 200, description = "The tokens", body = Vec<Token>), Refusals))]
 pub async fn list(State(lab): State<Lab>, Extension(caller): Extension<Caller>) -> Json<Vec<Token>> {
     Json(lab.list_tokens(&caller))
 }
 
-/// Makes a token; its secret is told this once
+/// Creates a token; its secret is returned only once
 #[utoipa::path(post, path = "/tokens", operation_id = "make_token", tag = "daemon", request_body = NewToken,
     responses((status = 201, description = "The token with its secret", body = MadeToken), Refusals))]
 pub async fn make(
@@ -26,10 +26,10 @@ pub async fn make(
     created(lab.make_token(&new, &caller).await?)
 }
 
-/// Revokes a token; refused for the one that the request came with, and for those that the daemon was started with
+/// Revokes a token; rejected for the token of the request and for the tokens of the command line
 #[utoipa::path(delete, path = "/tokens/{id}", operation_id = "revoke_token", tag = "daemon",
     params(("id" = i64, Path, description = "Token")),
-    responses((status = 204, description = "It opens nothing any more"), Refusals))]
+    responses((status = 204, description = "The token is revoked"), Refusals))]
 pub async fn revoke(
     State(lab): State<Lab>,
     Extension(caller): Extension<Caller>,

@@ -25,17 +25,17 @@ pub struct ExportQuery {
     /// Kind of file.
     #[param(inline)]
     pub format: FileFormat,
-    /// Begin of the stretch on the run's clock; its first row where left out.
+    /// Start of the part, in run time; first row if omitted.
     pub from_s: Option<f64>,
-    /// End of the stretch; the last row where left out.
+    /// End of the part, in run time; last row if omitted.
     pub to_s: Option<f64>,
-    /// Begin names of a CSV that a spreadsheet would take for a formula (= + - @) with an apostrophe; such a name comes
-    /// back as another one.
+    /// Prefix column names of a CSV that start with = + - @ with an apostrophe, so that a spreadsheet does not
+    /// interpret them as formulas. The names change by this.
     #[serde(default)]
     pub spreadsheet_safe: bool,
 }
 
-/// The run, or a stretch of it, as one file in full resolution, which `import` takes back unchanged
+/// A run or a part of it as one file in full resolution, which `import` reads unchanged
 #[utoipa::path(get, path = "/runs/{id}/export", tag = "runs",
     params(("id" = i64, Path, description = "Run"), ExportQuery),
     responses(
@@ -54,7 +54,7 @@ pub async fn export(
     Ok((headers, Body::new(pieces)).into_response())
 }
 
-/// The run's facts as `meta.json`: what an exported CSV needs beside it
+/// Metadata of the run as `meta.json`, required for the import of an exported CSV
 #[utoipa::path(get, path = "/runs/{id}/meta", operation_id = "export_meta", tag = "runs",
     params(("id" = i64, Path, description = "Run")),
     responses((status = 200, description = "The facts", body = serde_json::Value), Refusals))]
@@ -67,7 +67,7 @@ pub async fn export_meta(State(lab): State<Lab>, Path(id): Path<i64>) -> Result<
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImportQuery {
-    /// Name to keep the run under; the file's name where left out.
+    /// Name of the run; the file name if omitted.
     pub name: Option<String>,
 }
 
@@ -80,17 +80,17 @@ pub struct ImportForm {
     file: Vec<u8>,
     /// `meta.json`; a Parquet file may carry it itself.
     meta: Option<String>,
-    /// `column=name in the file`; may be repeated.
+    /// `column=name in the file`; repeatable.
     map: Option<Vec<String>>,
-    /// `column=factor`; may be repeated.
+    /// `column=factor`; repeatable.
     scale: Option<Vec<String>>,
-    /// Name in the file of a column that stays out, whatever it holds; may be repeated.
+    /// File name of a column to omit; repeatable.
     leave: Option<Vec<String>>,
-    /// Whether rows with an empty cell stay out; refused otherwise. How many did is told with the run.
+    /// Whether to omit rows with an empty cell (rejected otherwise). The run states their number.
     leave_empty_rows: Option<bool>,
 }
 
-/// Takes a measured file in as a run; a refused file leaves nothing behind
+/// Imports a measured file as a run; a rejected file stores no data
 #[utoipa::path(post, path = "/runs/import", tag = "runs", params(ImportQuery),
     request_body(content = ImportForm, content_type = "multipart/form-data"),
     responses((status = 201, description = "The run", body = Run), Refusals))]
@@ -117,7 +117,7 @@ async fn read_form(lab: &Lab, mut form: Multipart, name: Option<String>) -> Resu
         let part_name = part.name().unwrap_or_default().to_owned();
         match part_name.as_str() {
             "file" if !request.file_name.is_empty() => {
-                return Err(Problem::malformed("the part `file` is there twice: send one file in each request"));
+                return Err(Problem::malformed("the part `file` occurs twice: send one file per request"));
             }
             "file" => {
                 request.file_name = part.file_name().unwrap_or("run.csv").to_owned();
@@ -141,7 +141,7 @@ async fn read_form(lab: &Lab, mut form: Multipart, name: Option<String>) -> Resu
 }
 
 async fn write(mut part: Field<'_>, file: &mut tokio::fs::File) -> Result<(), Problem> {
-    let unkept = |fault: std::io::Error| LabError::Internal(format!("the file cannot be taken in: {fault}"));
+    let unkept = |fault: std::io::Error| LabError::Internal(format!("the file cannot be imported: {fault}"));
     while let Some(piece) = part.chunk().await.map_err(unreadable)? {
         file.write_all(&piece).await.map_err(unkept)?;
     }
@@ -161,12 +161,12 @@ impl Words {
         while let Some(piece) = part.chunk().await.map_err(unreadable)? {
             self.bytes += piece.len();
             if self.bytes > MOST_WORDS_BYTES {
-                let detail = format!("the parts beside the file have more than {MOST_WORDS_BYTES} bytes together");
+                let detail = format!("the form fields have more than {MOST_WORDS_BYTES} bytes in total");
                 return Err(Problem::too_large(detail));
             }
             text.extend_from_slice(&piece);
         }
-        String::from_utf8(text).map_err(|_| Problem::malformed("a part beside the file is no text in UTF-8"))
+        String::from_utf8(text).map_err(|_| Problem::malformed("a form field is not UTF-8 text"))
     }
 }
 

@@ -65,7 +65,7 @@ pub async fn weigh(State(scales): State<Scales>, request: Request, next: Next) -
 }
 
 fn busy() -> Response {
-    let detail = "too many large answers are being made or read at once: ask again in a few seconds";
+    let detail = "too many large responses at once: retry in a few seconds";
     Problem::from(LabError::Busy(detail.into())).into_response()
 }
 

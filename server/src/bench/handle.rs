@@ -24,7 +24,7 @@ use tokio::time::timeout;
 const ANSWERS: Duration = Duration::from_secs(1);
 /// Whoever presses the stop hears within this time whether it is stored.
 const STORES: Duration = Duration::from_millis(500);
-const STOPPED: &str = "the software stop was pressed";
+const STOPPED: &str = "software stop pressed";
 
 #[derive(Clone)]
 pub struct BenchHandle {
@@ -90,9 +90,10 @@ impl BenchHandle {
                 self.shared.claimed.store(false, Ordering::Release);
             }
             return Err(LabError::Conflict(match status.unstored.fault {
-                Some(fault) if !on => format!("bench {name}: its last run is over, but not yet stored: {fault}"),
+                Some(fault) if !on => format!("bench {name}: its last run has ended, but is not yet stored: {fault}"),
                 _ => format!(
-                    "bench {name} has a run on: stop it (`jointbench stop`, or in the dashboard), or wait for its end"
+                    "a run is in progress on bench {name}: stop it (`jointbench stop`, or in the dashboard), or wait \
+                     until it finishes"
                 ),
             }));
         }
@@ -170,7 +171,10 @@ impl BenchHandle {
     }
 
     fn gone(&self) -> LabError {
-        LabError::Bench(format!("the worker of bench {} has ended: it is started again, try in a moment", self.name()))
+        LabError::Bench(format!(
+            "the worker of bench {} terminated and is being restarted: try again in a moment",
+            self.name()
+        ))
     }
 }
 
@@ -208,7 +212,7 @@ impl Claim {
         bench.shared.order(&Order::Run { run, plan: Box::new(plan) }).map_err(|_| {
             let item = Item::Interrupted { run, safe: Safe::SafeCommanded, reason: NEVER_BEGAN };
             if bench.shared.to_keep.send(item).is_err() {
-                tracing::error!(run.id = run, "nobody stores any more");
+                tracing::error!(run.id = run, "the storage thread has ended");
             }
             bench.gone()
         })

@@ -20,7 +20,7 @@ use tokio::time::{sleep, timeout};
 const AGAIN_EVERY: Duration = Duration::from_millis(500);
 /// A disk that has not answered for so long is said to be slow.
 const SLOW: Duration = Duration::from_millis(500);
-pub(super) const NEVER_BEGAN: &str = "the bench went away before the run began";
+pub(super) const NEVER_BEGAN: &str = "the bench became unavailable before the run started";
 /// So many commits become durable together.
 const MOST_TOGETHER: usize = 64;
 
@@ -131,7 +131,7 @@ impl Keeper {
                     }
                 }
                 Err(fault) => {
-                    tracing::error!(bench = self.shared.name(), %fault, "this can never be stored, and is lost");
+                    tracing::error!(bench = self.shared.name(), %fault, "this cannot be stored and is lost");
                     return false;
                 }
             }

@@ -101,8 +101,10 @@ fn joint_state(joint: &mut dyn JointController) -> State {
     let bus = health.bus_voltage.map(|bus| format!(", bus {:.1} V", bus.0)).unwrap_or_default();
     let told = format!("{armed}{bus}{heat}, motor at {:.3} rad", reading.motor_position.0);
     let against = match (health.errors.is_empty(), health.armed) {
-        (false, _) => Some(format!("it reports {}; clear it with the drive's own tool", health.errors.join(", "))),
-        (true, true) => Some("it holds torque already; end the program that drives it".to_owned()),
+        (false, _) => {
+            Some(format!("it reports {}; clear the error with the tool of the drive", health.errors.join(", ")))
+        }
+        (true, true) => Some("it is already armed; end the program that controls it".to_owned()),
         (true, false) => None,
     };
     Ok((told, against))
@@ -122,7 +124,7 @@ fn brake_state(brake: &mut dyn CurrentSource) -> State {
     };
     let told = format!("{regulation}, {:.3} A, {:.2} V", reading.current.0, reading.voltage.0);
     let flows = reading.regulation != Regulation::Off && reading.current.0.abs() > NO_CURRENT_A;
-    Ok((told, flows.then(|| "current flows already; ramp it down while the shaft turns".to_owned())))
+    Ok((told, flows.then(|| "current is already flowing; reduce it to zero while the shaft turns".to_owned())))
 }
 
 fn counter_state(counter: &mut dyn PositionCounter) -> State {
@@ -132,12 +134,12 @@ fn counter_state(counter: &mut dyn PositionCounter) -> State {
     if status.periods_are_consistent()? {
         return Ok((format!("{told}, periods consistent"), None));
     }
-    Ok((told, Some("its periods are not consistent; bring the sensor nearer to its place".to_owned())))
+    Ok((told, Some("its periods are not consistent; move the sensor closer to its nominal position".to_owned())))
 }
 
 fn stage_state(stage: &mut dyn AlignmentStage) -> State {
     if !stage.is_referenced()? {
-        return Ok(("not referenced yet; the first run that moves it does so".to_owned(), None));
+        return Ok(("not referenced; the first run that uses it references it".to_owned(), None));
     }
     let pose = stage.pose()?;
     let [x, y, z] = pose.shift_m.map(|m| 1e3 * m);

@@ -131,7 +131,7 @@ impl Shared {
     pub fn new_block(&self, stopped: bool, reason: &str, run: Option<RunId>, by: Option<&str>) -> SafetyRecord {
         let before = self.status.borrow().blocked.clone();
         let reason = match &before {
-            Some(before) if before.stopped != stopped => format!("{reason}; before that: {}", before.reason),
+            Some(before) if before.stopped != stopped => format!("{reason}; previously: {}", before.reason),
             Some(before) if stopped => before.reason.clone(),
             _ => reason.to_owned(),
         };

@@ -17,8 +17,8 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
-const DAEMON_ENDED: &str = "the daemon ended before the run did; all committed samples are kept";
-const WORKER_ENDED: &str = "the bench worker ended before the run did; all committed samples are kept";
+const DAEMON_ENDED: &str = "the daemon terminated during the run; all recorded samples were kept";
+const WORKER_ENDED: &str = "the bench worker terminated during the run; all recorded samples were kept";
 /// At its end a daemon waits so long for a store that does not take what is left.
 const DRAINED: Duration = Duration::from_secs(5);
 /// And so long for a worker that has secured its bench.
@@ -59,7 +59,7 @@ impl Supervisor {
                     let how = wait(&mut child);
                     self.worker_is_gone(finished, &how);
                 }
-                Err(fault) => self.tell_unreached(format!("the bench worker does not start: {fault}")),
+                Err(fault) => self.tell_unreached(format!("the bench worker cannot be started: {fault}")),
             }
             pause = if started.elapsed() > LIVED { SOONEST } else { (2 * pause).min(LATEST) };
             if !self.rest(pause) {
@@ -165,7 +165,7 @@ impl Supervisor {
             self.block_as_unsafe("a run was interrupted and the instruments do not answer", None);
         }
         for (run, reason) in std::mem::take(&mut self.orphans) {
-            tracing::warn!(run.id = run, bench = self.shared.name(), %safe, "run was interrupted, the bench is secured now");
+            tracing::warn!(run.id = run, bench = self.shared.name(), %safe, "run was interrupted, the bench is now in its safe state");
             self.keep(Item::Interrupted { run, safe, reason });
         }
         self.shared.change(|status| {
@@ -216,8 +216,8 @@ impl Supervisor {
     }
 
     fn block_as_unsafe(&self, reason: &str, run: Option<RunId>) {
-        let reason = if reason.is_empty() { "no cause is known" } else { reason };
-        let reason = format!("the bench is not known to be safe: {reason}");
+        let reason = if reason.is_empty() { "cause unknown" } else { reason };
+        let reason = format!("safe state not confirmed: {reason}");
         self.shared.enter(self.shared.new_block(false, &reason, run, None));
     }
 
@@ -235,7 +235,7 @@ impl Supervisor {
 
     fn keep(&self, item: Item) {
         if self.shared.to_keep.send(item).is_err() {
-            tracing::error!(bench = self.shared.name(), "nobody stores any more");
+            tracing::error!(bench = self.shared.name(), "the storage thread has ended");
         }
     }
 
@@ -245,7 +245,11 @@ impl Supervisor {
         self.keep(Item::Flush(done));
         let stored = self.shared.runtime.block_on(async { tokio::time::timeout(DRAINED, stored).await });
         if stored.is_err() {
-            tracing::warn!(bench = self.shared.name(), "the store does not take what is left: the worker leaves it");
+            tracing::warn!(
+                bench = self.shared.name(),
+                "the store does not accept the remaining records: the worker \
+                                                        writes them to the data folder"
+            );
         }
     }
 
@@ -255,7 +259,7 @@ impl Supervisor {
         if finished && ending {
             return;
         }
-        tracing::error!(bench = self.shared.name(), how, "the bench worker is gone");
+        tracing::error!(bench = self.shared.name(), how, "the bench worker has terminated");
         let open: Vec<RunId> = {
             let status = self.shared.status.borrow();
             let lost = status.runs.iter().filter(|(_, run)| !run.ended);
@@ -270,7 +274,7 @@ impl Supervisor {
                 self.orphans.push((run, WORKER_ENDED));
             }
         }
-        self.tell_unreached(format!("the bench worker ended ({how}); it is started again and secures the bench"));
+        self.tell_unreached(format!("the bench worker terminated ({how}); it is restarted and secures the bench"));
     }
 
     fn tell_unreached(&self, why: String) {

@@ -81,7 +81,7 @@ fn conclude(client: &Client, autopilot: &Autopilot) -> Done {
         let model: Model = client.get(&format!("/models/{id}"))?;
         println!("model {id}: {}", model.effects.join(" + "));
     }
-    println!("{} run(s), {:.0} s of the bench", autopilot.runs.len(), autopilot.bench_time_s);
+    println!("{} runs, {:.0} s of bench time", autopilot.runs.len(), autopilot.bench_time_s);
     // What it was cut short by is told with the exit code.
     let by_itself = matches!(autopilot.state, AutopilotState::Finished | AutopilotState::BudgetSpent);
     if let Some(reason) = autopilot.reason.as_ref().filter(|_| by_itself) {
@@ -99,7 +99,7 @@ fn ending(client: &Client, autopilot: &Autopilot) -> Done {
             None => Ok(()),
             Some(id) => decided(client.get::<Diagnosis>(&format!("/diagnoses/{id}"))?.finding.undecided.as_ref()),
         },
-        AutopilotState::BudgetSpent => Err(Exit::undecided("the budget is spent and something is still open")),
+        AutopilotState::BudgetSpent => Err(Exit::undecided("the budget is used up before the model was decided")),
         AutopilotState::Stopped | AutopilotState::Failed | AutopilotState::Interrupted => Err(Exit::failed(said())),
     }
 }

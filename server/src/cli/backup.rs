@@ -15,7 +15,7 @@ pub fn backup(arguments: &Backup) -> Done {
             Ok(())
         }
         Some(first) => Err(Exit::failed(format!(
-            "{} was written, but is damaged as the store is ({}: {}): `jointbench verify` lists all",
+            "{} was written, but contains the damage of the store ({}: {}): `jointbench verify` lists all",
             file.display(),
             first.table,
             first.what
@@ -26,9 +26,9 @@ pub fn backup(arguments: &Backup) -> Done {
 pub fn restore(arguments: &Backup) -> Done {
     let (file, data) = (&arguments.file, &arguments.data);
     let aside = runtime()?.block_on(store::restore(data, file)).map_err(LabError::from)?;
-    println!("{} holds {} now", data.display(), file.display());
+    println!("{} now contains {}", data.display(), file.display());
     if let Some(aside) = aside {
-        println!("what it held is in {}", aside.display());
+        println!("the previous store is in {}", aside.display());
     }
     Ok(())
 }

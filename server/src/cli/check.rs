@@ -27,14 +27,14 @@ pub fn check(arguments: &Check) -> Done {
     let not_ready: usize = benches.iter().map(check_bench).sum();
     match not_ready {
         0 => Ok(()),
-        _ => Err(Exit::failed("not ready: see above")),
+        _ => Err(Exit::failed("not ready, see the failed instruments above")),
     }
 }
 
 /// The number of instruments that are not ready.
 fn check_bench(description: &BenchDescription) -> usize {
     let kind = if description.is_simulated() { "simulated" } else { "hardware" };
-    println!("bench {} ({kind}): description is right", description.name);
+    println!("bench {} ({kind}): description is valid", description.name);
     let mut reached = match reach(description) {
         Ok(reached) => reached,
         Err(fault) => {
@@ -82,7 +82,7 @@ fn calibrations(description: &BenchDescription) {
     let today = Zoned::now().date();
     for (role, day) in &description.calibrated {
         let days = (today - *day).get_days();
-        let cure = if days > LONG_AGO_DAYS { ": long ago, have it looked at" } else { "" };
+        let cure = if days > LONG_AGO_DAYS { ": calibration overdue" } else { "" };
         println!("  note  {role:<18} calibrated {day}, {days} days ago{cure}");
     }
 }

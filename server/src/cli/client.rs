@@ -71,7 +71,8 @@ impl Client {
         let mut response = answer.map_err(|fault| {
             let base = self.base.trim_end_matches("/api/v1");
             Exit::bad_input(format!(
-                "no daemon answers at {base} ({fault}): start one with `jointbench serve`, or give its address with --daemon"
+                "no daemon answers at {base} ({fault}): start it with `jointbench serve`, or give its address with \
+                 --daemon"
             ))
         })?;
         let status = response.status();
@@ -80,19 +81,22 @@ impl Client {
             .with_config()
             .limit(u64::MAX)
             .read_to_vec()
-            .map_err(|fault| Exit::failed(format!("the daemon's answer broke off: {fault}")))?;
+            .map_err(|fault| Exit::failed(format!("the answer of the daemon was interrupted: {fault}")))?;
         if status.is_success() {
             return Ok(bytes);
         }
         Err(match serde_json::from_slice::<Problem>(&bytes) {
             Ok(problem) => Exit { code: problem.exit_code(), said: problem.detail },
-            Err(_) => Exit::failed(format!("{} answered {status}: is a jointbench daemon there?", self.base)),
+            Err(_) => Exit::failed(format!(
+                "{} answered {status}: check that a jointbench daemon runs at this address",
+                self.base
+            )),
         })
     }
 
     fn json<T: DeserializeOwned>(&self, bytes: &[u8]) -> Result<T, Exit> {
         serde_json::from_slice(bytes)
-            .map_err(|fault| Exit::failed(format!("the daemon speaks another version of the API: {fault}")))
+            .map_err(|fault| Exit::failed(format!("the daemon uses another version of the API: {fault}")))
     }
 }
 
@@ -107,7 +111,9 @@ fn trusted(file: Option<&Path>) -> Result<RootCerts, Exit> {
         })
         .collect();
     match certificates.is_empty() {
-        true => Err(Exit::bad_input(format!("{}: no PEM certificate in it: give another --ca-file", file.display()))),
+        true => {
+            Err(Exit::bad_input(format!("{}: contains no PEM certificate: give another --ca-file", file.display())))
+        }
         false => Ok(RootCerts::Specific(Arc::new(certificates))),
     }
 }

@@ -38,7 +38,7 @@ pub fn demo(arguments: Demo) -> Done {
                     if stays {
                         println!();
                         println!("dashboard: {address}/  (model workbench of this run: {address}/workbench/{run})");
-                        println!("Ctrl-C ends.");
+                        println!("Press Ctrl-C to exit.");
                         asked_to_end().await;
                     }
                     Ok(())
@@ -46,8 +46,8 @@ pub fn demo(arguments: Demo) -> Done {
                 Err(error) => Err(error),
             },
             () = asked_to_end() => {
-                eprintln!("asked to end: securing the bench");
-                Err(Exit::failed("ended before the demo was through; the bench is secured"))
+                eprintln!("Stop requested: moving the bench to its safe state");
+                Err(Exit::failed("stopped before the demo was complete; the bench is in its safe state"))
             }
         };
         daemon.stop().await;
@@ -82,12 +82,19 @@ impl Hidden {
 /// The whole loop. Returns the run.
 async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
     let began = Instant::now();
-    println!("A simulated joint (strain-wave gear 177.8:1) on simulated instruments, driven and read like a real one.");
+    println!("Simulated joint (strain-wave gear 177.8:1) with simulated instruments on the real protocols.");
     match hidden.is_secret {
         true => {
-            println!("It hides one effect beside plain friction; which one is told at the end (seed {}).", hidden.seed)
+            println!(
+                "One hidden effect in addition to Coulomb and viscous friction, revealed at the end (seed {}).",
+                hidden.seed
+            )
         }
-        false => println!("It hides {} beside plain friction; the model starts without it.", hidden.effect),
+        false => println!(
+            "Hidden effect: {}, in addition to Coulomb and viscous friction. The initial model does not \
+                           contain it.",
+            hidden.effect
+        ),
     }
     println!();
     println!("1  Measure: procedure {PROCEDURE} on {BENCH}");
@@ -95,11 +102,11 @@ async fn show(lab: &Lab, hidden: &Hidden) -> Result<i64, Exit> {
     println!("   {}", ending(&run));
 
     println!();
-    println!("2  Fit the baseline, see where it fails, add what is missing");
+    println!("2  Fit the baseline, diagnose it, add missing effects");
     let improved = improve(lab, &run).await?;
 
     println!();
-    println!("3  Error on data that took no part in the fit");
+    println!("3  Validation error");
     println!();
     report(&improved.versions);
     println!();
@@ -152,7 +159,7 @@ async fn improve(lab: &Lab, run: &Run) -> Result<Improved, Exit> {
             return Ok(Improved { versions, without_weight });
         };
         println!();
-        println!("   → add {} and fit again", best.effect);
+        println!("   → add {} and refit", best.effect);
         let effects: Vec<String> = model.effects.iter().cloned().chain([best.effect.clone()]).collect();
         let next = lab.create_model(&[run.summary.id], &effects, Some(model.id), None, false, LOCAL).await?;
         versions.push(next);
@@ -182,12 +189,12 @@ fn conclude(improved: &Improved, hidden: &Hidden) {
     let added: Vec<&str> =
         improved.versions.iter().skip(1).flat_map(|model| &model.added).map(String::as_str).collect();
     let found = match added.as_slice() {
-        [] => "Nothing was found missing".to_owned(),
-        added => format!("Found missing: {}", added.join(", ")),
+        [] => "No missing effect found".to_owned(),
+        added => format!("Missing effect found: {}", added.join(", ")),
     };
-    println!("{found}. Hidden was: {}.", hidden.effect);
+    println!("{found}. Hidden effect: {}.", hidden.effect);
     if !improved.without_weight.is_empty() {
         let seen = improved.without_weight.join(", ");
-        println!("Also seen: {seen}, which does not change the error of settled motion.");
+        println!("Also detected: {seen}, without influence on the steady-state error.");
     }
 }

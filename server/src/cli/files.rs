@@ -17,15 +17,13 @@ pub fn table(named: &Path) -> Result<PathBuf, Exit> {
     match there.collect::<Vec<_>>().as_slice() {
         [table] => Ok(table.clone()),
         [] => Err(Exit::bad_input(format!(
-            "{} is a folder without {}: name the file of the run",
+            "{} is a folder without {}: give the file of the run",
             named.display(),
             TABLES.join(", ")
         ))),
-        [first, second, ..] => Err(Exit::bad_input(format!(
-            "{} and {} are both there: name the one that is meant",
-            first.display(),
-            second.display()
-        ))),
+        [first, second, ..] => {
+            Err(Exit::bad_input(format!("{} and {} both exist: give one of them", first.display(), second.display())))
+        }
     }
 }
 
@@ -33,11 +31,11 @@ pub fn table(named: &Path) -> Result<PathBuf, Exit> {
 pub fn writable(path: &Path) -> Done {
     if path.is_dir() {
         let folder = path.display();
-        return Err(Exit::bad_input(format!("{folder} is a folder: name the file in it that is to be written")));
+        return Err(Exit::bad_input(format!("{folder} is a folder: give the file to write")));
     }
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
         let (path, folder) = (path.display(), folder.display());
-        return Err(Exit::bad_input(format!("{path} cannot be written: there is no folder {folder}")));
+        return Err(Exit::bad_input(format!("{path} cannot be written: folder {folder} does not exist")));
     }
     Ok(())
 }

@@ -57,11 +57,11 @@ pub(super) fn print(found: &Identification) {
     println!("{}", verdict(found));
     result.warnings.iter().for_each(|warning| println!("warning: {warning}"));
     if let Some(advice) = &result.advice {
-        println!("next: {advice}");
+        println!("advice: {advice}");
     }
     quantities(result);
     if let Some(next) = &found.follow_up {
-        println!("\nto {}:\n  {}", next.why, command(&next.procedure, &next.parameters));
+        println!("\nNext: {}\n  {}", next.why, command(&next.procedure, &next.parameters));
     }
 }
 

@@ -11,7 +11,7 @@ use jointbench_procedure::catalogue;
 pub fn procedures(asked: Option<&str>) -> Done {
     let Some(asked) = asked else {
         catalogue().iter().for_each(|one| println!("{:<24} {}", one.id(), one.title()));
-        println!("\nWhat one does and what can be set: jointbench procedures ID; to make it: jointbench run ID");
+        println!("\nDescription and parameters: jointbench procedures ID. Start: jointbench run ID");
         return Ok(());
     };
     let known: Vec<&str> = catalogue().iter().map(|one| one.id()).collect();
@@ -33,13 +33,9 @@ pub fn effects(asked: Option<&str>) -> Done {
             println!("{kind}");
             all.iter().filter(|one| one.kind == kind).for_each(|one| println!("  {:<24} {}", one.id, one.title));
         }
-        println!(
-            "\nWhat one means: jointbench effects ID. For practice a mock bench of joint a or b hides any of these:"
-        );
+        println!("\nDescription: jointbench effects ID. A mock bench of joint a or b can hide these effects:");
         println!("  {}", HIDDEN_EFFECTS.join(", "));
-        println!(
-            "as `effects = [\"gravity\"]` below [bench.mock], or for one demo with jointbench demo --effect gravity"
-        );
+        println!("with `effects = [\"gravity\"]` in [bench.mock], or for a demo with jointbench demo --effect gravity");
         return Ok(());
     };
     let named: Vec<_> = library().filter(|effect| effect.info().id == asked).collect();
@@ -52,7 +48,7 @@ pub fn effects(asked: Option<&str>) -> Done {
         println!("{} ({}): {}\n{}\n  {}", one.id, one.kind, one.title, one.sentence, one.formula);
         let weighed = effect.formula_of(WITH_WEIGHT);
         if weighed != one.formula {
-            println!("  where the run shows a weight that the torque sensor does not feel:\n  {weighed}");
+            println!("  with a gravity load that the torque sensor does not measure:\n  {weighed}");
         }
         for parameter in one.parameters {
             println!("  {} [{}], {} to {}", parameter.name, parameter.unit, parameter.min, parameter.max);
@@ -60,14 +56,14 @@ pub fn effects(asked: Option<&str>) -> Done {
         let every = one.kind.required_columns().join(", ");
         let needs = match one.needs {
             [] => String::new(),
-            needs => format!("{}, beside ", needs.join(", ")),
+            needs => format!("{} in addition to ", needs.join(", ")),
         };
-        println!("  needs {needs}what every {} run has ({every})", one.kind);
-        println!("  missing, it looks like this: {}\n  source: {}", one.looks, one.source);
+        println!("  requires {needs}the columns of every {} run ({every})", one.kind);
+        println!("  residual if missing: {}\n  source: {}", one.looks, one.source);
     }
     Ok(())
 }
 
 fn unknown(what: &str, asked: &str, known: &[&str]) -> Exit {
-    Exit::bad_input(format!("there is no {what} {asked}: {}", instead(asked, known)))
+    Exit::bad_input(format!("unknown {what} {asked}: {}", instead(asked, known)))
 }

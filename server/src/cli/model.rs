@@ -47,7 +47,7 @@ pub fn model(arguments: &Model) -> Done {
             let version = &imported.model;
             let figure = |rms: f64| words::figure(rms, &fit.unit);
             println!("model {} of run {run}: {}", version.id, version.effects.join(" + "));
-            println!("error {} on this run; {} where it was fitted", figure(version.rms), figure(fit.validation_rms));
+            println!("error {} on this run, {} on the fitted run", figure(version.rms), figure(fit.validation_rms));
             imported.notes.iter().for_each(|note| println!("note      {note}"));
             if let Some(page) = page {
                 println!("{page}");
@@ -89,8 +89,8 @@ fn open(path: &Path) -> Result<Fit, Exit> {
     // Headers, tables and attributes of joints go out only.
     if !text.trim_start().starts_with('{') {
         return Err(refuse(
-            &"this is no model that can be read again (the model is named first, then the run); only JSON is: what \
-              `jointbench fit --out` or `jointbench model export --format json` has written",
+            &"not a model file (arguments: first the model, then the run): give a JSON file written by `jointbench fit \
+              --out` or `jointbench model export --format json`",
         ));
     }
     ModelFile::read(&text).map_err(|fault| refuse(&fault))

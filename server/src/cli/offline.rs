@@ -60,9 +60,7 @@ pub fn fit(arguments: &Fit) -> Done {
     let (run, spec, options) = open(&arguments.run)?;
     if let Some(idle) = spec.own.iter().find(|effect| !spec.contains(effect.id())) {
         let (all, id) = (spec.effects.join(","), idle.id());
-        return Err(Exit::bad_input(format!(
-            "effect {id} takes no part in the fit: name it, as in --model {all},{id}"
-        )));
+        return Err(Exit::bad_input(format!("effect {id} is not part of the model: add it, as in --model {all},{id}")));
     }
     let fit = jointbench_model::fit(&run, &spec, &options).map_err(|fault| Exit::of(&arguments.run.files, fault))?;
     if let Some(path) = &arguments.out {
@@ -97,7 +95,7 @@ fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
     for (i, file) in files.iter().enumerate() {
         let same = |other: &PathBuf| matches!((other.canonicalize(), file.canonicalize()), (Ok(a), Ok(b)) if a == b);
         if files[..i].iter().any(same) {
-            return Err(Exit::bad_input(format!("{} is named twice: one run is no repeat of itself", file.display())));
+            return Err(Exit::bad_input(format!("{} is named twice: name each run once", file.display())));
         }
         runs.push(read(file, measured.meta.as_deref(), &measured.columns)?);
     }
@@ -128,12 +126,12 @@ pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Resul
     if !table.exists() && file.to_str().is_some_and(|name| name.parse::<u64>().is_ok()) {
         let run = file.display();
         return Err(Exit::bad_input(format!(
-            "there is no file {run}; run {run} of the store becomes one with: jointbench export {run}"
+            "file {run} does not exist; to write the stored run {run} to a file: jointbench export {run}"
         )));
     }
     let run = jointbench_files::read(&table, &options)?;
     if let Some(rows) = run.meta().other.get(LEFT_OUT_ROWS) {
-        eprintln!("{}: rows left out for an empty cell: {rows}", table.display());
+        eprintln!("{}: {rows} rows with an empty cell omitted", table.display());
     }
     Ok(run)
 }

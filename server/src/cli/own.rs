@@ -9,18 +9,17 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 #[command(
-    next_help_heading = "Effects of your own (used like those of the library; name them in --model, or let diagnose suggest them)"
+    next_help_heading = "User-defined effects (used like library effects, in --model or as suggestions of diagnose)"
 )]
 pub struct OwnEffects {
-    /// An effect in one line: "ID: tau = FORMULA; PARAMETER [UNIT] MIN..MAX; …". Unit and range may be left out, and
-    /// `start LOW..HIGH` and `whole` may follow. A name that is not known is answered with the signals that are;
-    /// column(NAME) is any other column of the run, and wrap(angle) folds an angle into one turn. Units that
-    /// contradict each other are told. May be given again. Example: "rub: tau = a * tanh(velocity / w0) * abs(load);
-    /// a [1] 0..1; w0 [rad/s] 0.1..10"
+    /// An effect in one line: "ID: tau = FORMULA; PARAMETER [UNIT] MIN..MAX; …". Unit and range are optional; `start
+    /// LOW..HIGH` and `whole` may follow. column(NAME) is any other column of the run, and wrap(angle) wraps an angle
+    /// into one turn. An unknown name lists the available signals, and inconsistent units are reported. Repeatable.
+    /// Example: "rub: tau = a * tanh(velocity / w0) * abs(load); a [1] 0..1; w0 [rad/s] 0.1..10"
     #[arg(long, value_name = "EFFECT")]
     pub own: Vec<String>,
-    /// TOML file with effects: [[effect]] with id, formula, parameters = [{ name, unit, min, max, start, whole }],
-    /// and if wanted kind, title and sentence; may be given again
+    /// TOML file with effects: [[effect]] with id, formula, parameters = [{ name, unit, min, max, start, whole }], and
+    /// optionally kind, title and sentence; repeatable
     #[arg(long, value_name = "EFFECTS.TOML")]
     pub effect_file: Vec<PathBuf>,
 }
@@ -48,7 +47,7 @@ fn read_file(file: &Path, kind: Kind) -> Result<Vec<OwnEffect>, Exit> {
     let mut table: toml::Table = toml::from_str(&text).map_err(|fault| refuse(&fault))?;
     let effects = match table.remove("effect") {
         Some(toml::Value::Array(effects)) if table.is_empty() => effects,
-        _ => return Err(refuse(&"expected [[effect]] tables and nothing else")),
+        _ => return Err(refuse(&"expected only [[effect]] tables")),
     };
     let mut all = Vec::new();
     for mut effect in effects {

@@ -17,7 +17,7 @@ pub fn ports(arguments: &Ports) -> Done {
         let text = serde_json::to_string_pretty(&found).map_err(|fault| Exit::failed(fault.to_string()))?;
         println!("{text}");
     } else if found.is_empty() {
-        println!("no serial port: plug an instrument in; instruments on the network are tcp://host:port in bench.toml");
+        println!("no serial port found: connect an instrument; network instruments are tcp://host:port in bench.toml");
     } else {
         found.iter().for_each(|port| println!("{}", line(port)));
     }
@@ -33,10 +33,10 @@ fn line(port: &FoundPort) -> String {
     });
     let mut line = format!("{mark}  {:<16} {}", port.address.to_string(), usb.as_deref().unwrap_or("not a USB device"));
     if let Some(likely) = port.likely {
-        line.push_str(&format!("\n        likely a {likely}"));
+        line.push_str(&format!("\n        probably a {likely}"));
     }
     if let Some(lasting) = &port.lasting_address {
-        line.push_str(&format!("\n        in bench.toml: port = \"{lasting}\", wherever it is plugged in"));
+        line.push_str(&format!("\n        in bench.toml, independent of the USB socket: port = \"{lasting}\""));
     }
     if let Some(why) = &port.closed {
         line.push_str(&format!("\n        {why}"));

@@ -15,25 +15,28 @@ const BAR_WIDTH: f64 = 40.0;
 
 pub fn fit(fit: &Fit) {
     println!("model     {}", fit.effects.join(" + "));
-    println!("prepared  {}", prepared(fit));
+    println!("data      {}", prepared(fit));
     if let Some(scope) = fit.scope.as_ref().filter(|scope| scope.load_scale != 1.0) {
-        println!("side      motor: its torques, speeds and angles (gear ratio {})", figure(scope.load_scale));
+        println!("side      motor (gear ratio {})", figure(scope.load_scale));
     }
     println!();
     parameters(&fit.parameters);
     println!();
     println!(
-        "error     {} on data that took no part in the fit ({})",
+        "error     validation {} (cross-validated RMS of {})",
         words::figure(fit.validation_rms, &fit.unit),
         of(fit.residual)
     );
     println!(
-        "          {} on the fitted data, {:.2} % of what was measured",
+        "          training   {}, {:.2} % of the measured RMS",
         words::figure(fit.rms, &fit.unit),
         100.0 * fit.relative_error
     );
     for pair in &fit.trade_offs {
-        println!("note      {} and {} trade off (correlation {:.2})", pair.first, pair.second, pair.correlation);
+        println!(
+            "note      parameter trade-off: {} and {} (correlation {:.2})",
+            pair.first, pair.second, pair.correlation
+        );
     }
     for note in &fit.notes {
         println!("note      {note}");
@@ -42,12 +45,12 @@ pub fn fit(fit: &Fit) {
 
 pub fn evaluation(file: &Path, evaluation: &Evaluation) {
     println!(
-        "on {}: error {}, {:.2} % of what was measured",
+        "on {}: error {}, {:.2} % of the measured RMS",
         file.display(),
         words::figure(evaluation.rms, &evaluation.unit),
         100.0 * evaluation.relative_error,
     );
-    println!("judged    {}", judged(evaluation));
+    println!("basis     {}", judged(evaluation));
     for note in &evaluation.notes {
         println!("note      {note}");
     }
@@ -58,7 +61,7 @@ fn judged(evaluation: &Evaluation) -> String {
     let Evaluation { rows, samples, .. } = evaluation;
     match evaluation.settled_share {
         Some(share) => format!(
-            "{rows} means of settled motion, which is {} of this run ({samples} samples); of the rest it says nothing",
+            "{rows} steady-state means, {} of this run ({samples} samples); transients are not evaluated",
             words::percent(share)
         ),
         None => format!("{rows} filtered points of {samples} samples"),
@@ -67,8 +70,8 @@ fn judged(evaluation: &Evaluation) -> String {
 
 pub fn comparison(file: &Path, comparison: &Comparison) {
     let list = |ids: &[String]| if ids.is_empty() { "nothing".to_owned() } else { ids.join(", ") };
-    println!("the second has  {}", list(&comparison.added));
-    println!("the first had   {}", list(&comparison.removed));
+    println!("only in second  {}", list(&comparison.added));
+    println!("only in first   {}", list(&comparison.removed));
     println!();
     let wide = |of: fn(&ParameterPair) -> &str| comparison.parameters.iter().map(|p| of(p).chars().count()).max();
     let (effect, name) = (wide(|p| &p.effect).unwrap_or(0), wide(|p| &p.name).unwrap_or(0));
@@ -119,7 +122,7 @@ pub fn discovery(discovery: &Discovery) {
             let name = match (&step.added, &step.removed) {
                 (Some(added), Some(removed)) => format!("+ {added} − {removed}"),
                 // What acts around reversals or on ramps is judged there.
-                (Some(added), None) if step.validation_rms == last_rms => format!("+ {added} (not in settled motion)"),
+                (Some(added), None) if step.validation_rms == last_rms => format!("+ {added} (transients only)"),
                 (Some(added), None) => format!("+ {added}"),
                 (None, Some(removed)) => format!("− {removed}"),
                 (None, None) => "start".to_owned(),
@@ -137,7 +140,7 @@ pub fn discovery(discovery: &Discovery) {
     for (added, rivals) in discovery.steps.iter().filter_map(|step| Some((step.added.as_ref()?, &step.confounded_with)))
     {
         if !rivals.is_empty() {
-            println!("tie: this run cannot tell {added} from {}, in its place", words::list(rivals));
+            println!("confounded: this run cannot distinguish {added} from {}", words::list(rivals));
         }
     }
     regions(&discovery.regions, &discovery.fit.unit);
@@ -172,8 +175,8 @@ fn state(parameter: &Parameter) -> String {
     match (parameter.state, &parameter.note) {
         (ParameterState::Ok, _) => String::new(),
         (_, Some(note)) => format!("  {note}"),
-        (ParameterState::AtBound, None) => "  at its bound".to_owned(),
-        (ParameterState::Unidentified, None) => "  not decided by this data".to_owned(),
+        (ParameterState::AtBound, None) => "  at bound".to_owned(),
+        (ParameterState::Unidentified, None) => "  not identified".to_owned(),
     }
 }
 
@@ -182,7 +185,7 @@ pub fn regions(regions: &[Region], unit: &str) {
         return;
     }
     println!();
-    println!("where the model fails (intervals over all regions at once):");
+    println!("regions with significant residual (simultaneous 95 % intervals):");
     for region in regions {
         let [low, high] = region.ci95.map(f64::abs);
         let (low, high) = (words::figure(low.min(high), unit), words::figure(low.max(high), unit));
@@ -197,26 +200,31 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     }
     println!();
     let several = suggestions.len() > 1;
-    let beside = if several { " (parameters beside all of these, as discover ends with them)" } else { "" };
-    println!("what is missing, the most important first{beside}:");
+    let beside = if several { " (parameters with all of these in the model)" } else { "" };
+    println!("missing effects, most important first{beside}:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
         // Effects of reversals and ramps are judged there, and leave the settled motion as it was.
         let elsewhere = (1.0 - rms / present_rms - share).abs() > 0.01;
         let gain = match elsewhere {
-            true => format!("error {:+.1} % where it acts, settled motion stays as it is", -100.0 * share),
+            true => format!("validation error {:+.1} % in transients, unchanged in steady state", -100.0 * share),
             false => {
                 let ci95 = suggestion.error_reduction_ci95;
                 let ci95 = ci95.map(|[low, high]| format!(" [{:+.1} … {:+.1}]", -100.0 * high, -100.0 * low));
-                format!("error {:+.1} %{} to {}", -100.0 * share, ci95.unwrap_or_default(), words::figure(rms, unit))
+                format!(
+                    "validation error {:+.1} %{}, to {}",
+                    -100.0 * share,
+                    ci95.unwrap_or_default(),
+                    words::figure(rms, unit)
+                )
             }
         };
         let together = suggestion.error_reduction_together;
-        let beside = format!("{:+.1} % beside the others", -100.0 * together);
+        let beside = format!("{:+.1} % together with the others", -100.0 * together);
         // What others mask shows only beside them.
         let gain = match several {
-            true if together > share => format!("error {beside}; alone {gain}"),
-            true => format!("{gain} alone, {beside}"),
+            true if together > share => format!("{beside}; alone: {gain}"),
+            true => format!("{gain} alone; {beside}"),
             false => gain,
         };
         println!("  {}. {}: {gain}, {}", i + 1, suggestion.effect, chance(suggestion));
@@ -262,9 +270,9 @@ fn floor(floor: &NoiseFloor, unit: &str) {
         Some(rms) => {
             let interval = match floor.ci95.map(|ends| ends.map(|edge| words::figure(edge, unit))) {
                 Some([low, high]) => format!("[{low} … {high}]"),
-                None => "(too few pieces to say how well this is known)".into(),
+                None => "(no interval: too few blocks)".into(),
             };
-            println!("noise     {} {interval}: {}", words::figure(rms, unit), floor.source);
+            println!("noise     floor {} {interval}: {}", words::figure(rms, unit), floor.source);
         }
         None => println!("noise     {}", floor.source),
     }
@@ -296,21 +304,21 @@ fn prepared(fit: &Fit) -> String {
         said += &format!(", low-pass {cutoff_hz:.1} Hz");
     }
     if let Some(lag_s) = prepared.velocity_lag_s.filter(|lag_s| lag_s.abs() * prepared.sample_rate_hz > 0.01) {
-        said += &format!(", velocity {:.1} ms late and moved back", 1e3 * lag_s);
+        said += &format!(", velocity delay of {:.1} ms corrected", 1e3 * lag_s);
     }
     if prepared.decimation > 1 {
-        said += &format!(", one of {}", prepared.decimation);
+        said += &format!(", decimated by {}", prepared.decimation);
     }
     if let Some(chunk_s) = prepared.chunk_s {
-        said += &format!(", means over {chunk_s:.3} s of settled motion");
+        said += &format!(", steady-state means over {chunk_s:.3} s");
     }
-    said + &format!(": {} points in {} independent pieces", prepared.rows, prepared.blocks)
+    said + &format!("; {} points in {} independent blocks", prepared.rows, prepared.blocks)
 }
 
 fn of(residual: ResidualKind) -> &'static str {
     match residual {
         ResidualKind::Raw => "filtered samples",
-        ResidualKind::PlateauMean => "means of settled motion",
+        ResidualKind::PlateauMean => "steady-state means",
     }
 }
 

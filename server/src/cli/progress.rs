@@ -25,7 +25,7 @@ impl RunProgress {
 
     /// Told once, until it goes on.
     pub fn paused(&mut self, run: i64) {
-        let said = format!("paused: `jointbench resume {run}` lets it go on");
+        let said = format!("paused: resume it with `jointbench resume {run}`");
         if let Some(bar) = &self.bar {
             bar.set_message(said);
         } else if !self.paused {

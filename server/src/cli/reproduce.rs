@@ -28,18 +28,14 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
         let folder = page.with_extension("");
         if folder == *page {
             return Err(Exit::bad_input(format!(
-                "{}: a page ends in .md; its figures go into a folder of its name",
+                "{}: the page must end in .md; its figures are written to a folder with the same name",
                 page.display()
             )));
         }
         fs::create_dir_all(&folder).map_err(|fault| unwritable(&folder, &fault))?;
     }
     let mut page = format!(
-        "# The documents' tables, measured again\n\n\
-         Written by `jointbench reproduce --seed {} --out …`, version {}. The bench is simulated: *given* is the constant that it was \
-         built with, read only for this comparison; *inside* tells whether the 95 % interval holds it. *Asked* is how far \
-         the interval may reach, or what the figure has to keep, and *kept* whether it does. A joint of the mock bench is one of the document's kind, not that one: its friction lies within 8 % of \
-         the document's, by the seed, and its velocity loop follows a trajectory more closely.\n",
+        "# Tables of the source documents, reproduced\n\nWritten by `jointbench reproduce --seed {} --out …`, version {}. The bench is simulated. *True value* is the constant of the simulation, used only for this comparison; *inside* states whether the 95 % interval contains it. *Required* is the maximum width of the interval or the limit of the figure, and *met* states whether it is met. A joint of the mock bench is similar to the joint of the document, not identical: its friction is within 8 % of the document, depending on the seed, and its velocity loop follows a trajectory more closely.\n",
         arguments.seed,
         env!("CARGO_PKG_VERSION")
     );
@@ -70,8 +66,8 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
     let broken = where_not(&Comparison::is_as_asked);
     let besides = |names: &[&str]| if names.is_empty() { String::new() } else { format!(", not {}", names.join(", ")) };
     let said = format!(
-        "{} of {compared} intervals hold what the bench was given{}: one in twenty may miss, by chance. To hold all together in 95 \
-         of 100 campaigns they have to be {:.2} times as wide: so {} do{}.",
+        "{} of {compared} intervals contain the true value{}; one in twenty may miss by chance. For simultaneous 95 % \
+         coverage the intervals must be {:.2} times as wide; then {} contain it{}.",
         compared - missed.len() as u64,
         besides(&missed),
         wider_for(compared),
@@ -79,18 +75,18 @@ pub fn reproduce(arguments: &Reproduce) -> Done {
         besides(&beyond),
     );
     println!("{said}");
-    page += &format!("\n## In all\n\n{said}\n");
+    page += &format!("\n## Summary\n\n{said}\n");
     if let Some(path) = &arguments.out {
         fs::write(path, page).map_err(|fault| unwritable(path, &fault))?;
         println!("{}", path.display());
     }
     if !broken.is_empty() {
-        return Err(Exit::failed(format!("not as asked for: {}", broken.join(", "))));
+        return Err(Exit::failed(format!("requirement not met: {}", broken.join(", "))));
     }
     if beyond.is_empty() {
         return Ok(());
     }
-    Err(Exit::failed(format!("further from what the bench was given than chance allows: {}", beyond.join(", "))))
+    Err(Exit::failed(format!("deviation from the true value beyond chance: {}", beyond.join(", "))))
 }
 
 fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<Chapter>, Exit> {
@@ -105,7 +101,7 @@ fn measure(joint: Joint, subject: Subject, seed: u64) -> Result<Vec<Chapter>, Ex
     let mut bench = mock.open_bench("mock").map_err(|fault| Exit::failed(fault.to_string()))?;
     let truth = mock.truth();
     campaign(&mut bench, subject, &|name| given(truth, name), &mut |chapter| {
-        println!("  {} ({:.0} s of the bench): {}", chapter.title, chapter.duration_s, chapter.identification.summary);
+        println!("  {} ({:.0} s of bench time): {}", chapter.title, chapter.duration_s, chapter.identification.summary);
         for one in &chapter.comparisons {
             let (value, interval) = with_interval(one.found.value, one.found.ci95, &one.found.unit);
             let interval = interval.map(|ends| format!(" [{ends}]")).unwrap_or_default();
@@ -165,7 +161,7 @@ fn unwritable(path: &Path, fault: &io::Error) -> Exit {
 fn mark(one: &Comparison) -> &'static str {
     match (one.is_inside(), one.is_as_asked()) {
         (Some(false), _) => "  MISSED",
-        (_, Some(false)) => "  NOT AS ASKED",
+        (_, Some(false)) => "  REQUIREMENT NOT MET",
         _ => "",
     }
 }
@@ -191,7 +187,7 @@ fn asked(demand: Demand, unit: &str) -> String {
 fn told(chapter: &Chapter, title: &str, page: Option<&Path>) -> Result<String, Exit> {
     let mut text = format!("\n### {}\n\n{}\n", chapter.title, chapter.identification.summary);
     if !chapter.comparisons.is_empty() {
-        text += "\n| table | quantity | document | measured | 95 % interval | given | inside | asked | kept |\n|---|---|---|---|---|---|---|---|---|\n";
+        text += "\n| table | quantity | document | measured | 95 % interval | true value | inside | required | met |\n|---|---|---|---|---|---|---|---|---|\n";
     }
     for one in &chapter.comparisons {
         let (value, interval) = with_interval(one.found.value, one.found.ci95, &one.found.unit);

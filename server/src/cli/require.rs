@@ -63,7 +63,7 @@ impl Requirement {
             Some(findable) => factor(&self.unit, findable.unit).map(drop).ok_or_else(|| self.in_unit(findable.unit)),
             None => {
                 let names: Vec<&str> = finds.iter().map(|findable| findable.name.as_str()).collect();
-                Err(format!("{procedure} finds no {}; {}", self.name, self.instead(&names)))
+                Err(format!("{procedure} does not determine {}; {}", self.name, self.instead(&names)))
             }
         }
     }
@@ -72,7 +72,7 @@ impl Requirement {
     fn instead(&self, names: &[&str]) -> String {
         let meant = nearest(&self.name, names.iter().copied());
         let meant = meant.map(|near| format!("did you mean {near}? ")).unwrap_or_default();
-        format!("{meant}there are {}", names.join(", "))
+        format!("{meant}available: {}", names.join(", "))
     }
 
     fn in_unit(&self, unit: &str) -> String {
@@ -84,8 +84,11 @@ impl Requirement {
         let quantities = &found.result.quantities;
         let Some(quantity) = quantities.iter().find(|quantity| quantity.name == self.name) else {
             let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name.as_str()).collect();
-            let there = if names.is_empty() { "it is without any figure".to_owned() } else { self.instead(&names) };
-            return Kept::Unknown(format!("--require '{}': the result has no {}; {there}", self.text, self.name));
+            let there = if names.is_empty() { "it contains no quantities".to_owned() } else { self.instead(&names) };
+            return Kept::Unknown(format!(
+                "--require '{}': the result does not contain {}; {there}",
+                self.text, self.name
+            ));
         };
         let Some(factor) = factor(&self.unit, &quantity.unit) else {
             return Kept::Unknown(self.in_unit(&quantity.unit));
@@ -106,7 +109,7 @@ impl Requirement {
         if !keeps(quantity.value) {
             Kept::No(said)
         } else if quantity.ci95.is_some_and(|ends| !ends.into_iter().all(keeps)) {
-            Kept::Unsure(format!("{said}: the interval reaches over the limit"))
+            Kept::Unsure(format!("{said}: the interval exceeds the limit"))
         } else {
             Kept::Yes(said)
         }
@@ -165,7 +168,7 @@ pub(super) mod tests {
     #[test]
     fn what_cannot_be_checked_says_why() {
         let check = |text: &str| text.parse::<Requirement>().unwrap().check(&found());
-        let why = "--require 'tau_x < 1 Nm': the result has no tau_x; did you mean tau_c? there are tau_c";
+        let why = "--require 'tau_x < 1 Nm': the result does not contain tau_x; did you mean tau_c? available: tau_c";
         assert_eq!(check("tau_x < 1 Nm"), Kept::Unknown(why.to_owned()));
         assert_eq!(check("tau_c < 1 A"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));
         assert_eq!(check("tau_c < 1"), Kept::Unknown("tau_c is in Nm: write the limit so".to_owned()));

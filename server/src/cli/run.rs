@@ -119,7 +119,7 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
             let run: Run = client.get(&format!("/runs/{before}"))?;
             if run.summary.state == RunState::Paused {
                 return Err(Exit::bad_input(format!(
-                    "run {before} is paused: `jointbench resume {before}` goes on with it"
+                    "run {before} is paused: resume it with `jointbench resume {before}`"
                 )));
             }
             client.post(&format!("/runs/{before}/continue"), &())?
@@ -128,7 +128,7 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     };
     let (id, procedure, bench) = (run.summary.id, &run.summary.procedure, &run.summary.bench);
     if !arguments.json {
-        let goes_on = arguments.continues.map(|before| format!(", going on with run {before}")).unwrap_or_default();
+        let goes_on = arguments.continues.map(|before| format!(", continues run {before}")).unwrap_or_default();
         println!("run {id}: {procedure} on {bench}{goes_on}  {}", client.page(&format!("/runs/{id}")));
     }
     match arguments.wait || arguments.junit.is_some() || !arguments.require.is_empty() {
@@ -141,11 +141,11 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
 /// What is known of a run whose daemon has gone, and of one that cannot be asked for any more.
 fn lost(id: i64, is_answered: bool, said: &str) -> Exit {
     Exit::failed(match is_answered {
-        true => format!("run {id} is lost from sight: {said}"),
+        true => format!("run {id}: its state is unknown ({said})"),
         false => format!(
-            "run {id}: the daemon has ended or does not answer any more, so that nothing more is known of the run here. The daemon \
-             brings the bench into its safe state, not this command: as it ends, or, where it was killed, when it is started again \
-             (jointbench serve). Then see how the run ended: `jointbench runs id:{id}`"
+            "run {id}: the daemon does not answer, so the state of the run is unknown. The bench worker moves the \
+             bench to its safe state; if it was killed too, the daemon does so at its next start (jointbench serve). \
+             To see how the run ended: `jointbench runs id:{id}`"
         ),
     })
 }
@@ -165,7 +165,7 @@ pub(super) fn choose_bench(client: &Client, named: Option<&str>) -> Result<Strin
     let benches: Vec<Bench> = client.get("/bench")?;
     match benches.as_slice() {
         [bench] => Ok(bench.name.clone()),
-        [] => Err(Exit::bad_input("the daemon has no bench: start it with --config BENCH.TOML")),
+        [] => Err(Exit::bad_input("the daemon has no bench: restart it with --config BENCH.TOML")),
         several => {
             let names: Vec<&str> = several.iter().map(|bench| bench.name.as_str()).collect();
             Err(Exit::bad_input(format!("choose one with --bench: {}", names.join(", "))))
@@ -214,7 +214,7 @@ pub(super) fn ending(run: &Run) -> String {
     let summary = &run.summary;
     let mut said = format!("run {} {}: {} rows", summary.id, word(summary.state), summary.rows);
     if let Some(duration_s) = summary.duration_s {
-        said += &format!(" in {duration_s:.1} s of the bench");
+        said += &format!(" in {duration_s:.1} s of bench time");
     }
     if let Some(safe) = summary.safe {
         said += &format!(", bench {}", word(safe));
@@ -306,7 +306,7 @@ mod tests {
     fn of_a_run_whose_daemon_has_gone_it_is_said_what_is_known() {
         let (gone, refused) = (lost(7, false, "no daemon answers"), lost(7, true, "a token is needed"));
         assert!(gone.code == 1 && gone.said.contains("safe state") && gone.said.contains("jointbench runs id:7"));
-        assert_eq!((refused.code, refused.said.as_str()), (1, "run 7 is lost from sight: a token is needed"));
+        assert_eq!((refused.code, refused.said.as_str()), (1, "run 7: its state is unknown (a token is needed)"));
     }
 
     #[test]

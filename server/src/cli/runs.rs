@@ -16,7 +16,7 @@ const BENCH: usize = 16;
 
 /// Of a run that is not over, in a folder that no daemon has.
 const NO_DAEMON: &str =
-    "its daemon is gone: `jointbench serve` with this folder secures the bench and calls it interrupted";
+    "its daemon has terminated: `jointbench serve` with this folder secures the bench and marks the run as interrupted";
 
 pub fn runs(arguments: &Runs) -> Done {
     let runtime = runtime()?;

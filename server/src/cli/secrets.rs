@@ -47,10 +47,13 @@ fn read(file: &Path) -> Result<String, Exit> {
     let opened = std::fs::File::open(file).map_err(|fault| refused(format!("cannot be read ({fault})")))?;
     warn_if_shared(file, &opened);
     let mut text = String::new();
-    opened.take(LONGEST_BYTES).read_to_string(&mut text).map_err(|fault| refused(format!("is no text ({fault})")))?;
+    opened
+        .take(LONGEST_BYTES)
+        .read_to_string(&mut text)
+        .map_err(|fault| refused(format!("is not a text file ({fault})")))?;
     match text.trim() {
-        "" => Err(refused("is empty: make one with `openssl rand -hex 24`".into())),
-        token if token.contains('\n') => Err(refused("has more than one line: write the token alone".into())),
+        "" => Err(refused("is empty: generate a token with `openssl rand -hex 24`".into())),
+        token if token.contains('\n') => Err(refused("has more than one line: write only the token".into())),
         token => Ok(token.to_owned()),
     }
 }
@@ -61,7 +64,7 @@ fn warn_if_shared(file: &Path, opened: &std::fs::File) {
     const OTHERS: u32 = 0o007;
     if opened.metadata().is_ok_and(|opened| opened.permissions().mode() & OTHERS != 0) {
         let file = file.display();
-        eprintln!("jointbench: token file {file} is open to every user of this computer: chmod 600 {file}");
+        eprintln!("jointbench: token file {file} is readable by all users of this computer: chmod 600 {file}");
     }
 }
 
@@ -109,26 +112,29 @@ fn parted(given: &[OsString]) -> (Vec<OsString>, Secrets) {
 #[cfg(unix)]
 fn start_again(rest: &[OsString], secrets: &Secrets) -> Result<(), Exit> {
     use std::os::unix::process::CommandExt;
-    warn("and it is taken out of that list now");
+    warn("it has been removed from the process list");
     let name = std::env::args_os().next().unwrap_or_else(|| OsStr::new("jointbench").to_owned());
     // By its path, so that lists of processes go on to call it by its name.
     let program = std::env::current_exe().unwrap_or_else(|_| crate::program::own());
     let mut command = std::process::Command::new(program);
     command.arg0(name).args(rest).envs(secrets.iter().map(|(variable, value)| (variable, value)));
     // It returns only where it has failed.
-    Err(Exit::failed(format!("the token cannot be taken out of sight ({}): give --token-file", command.exec())))
+    Err(Exit::failed(format!(
+        "the token cannot be removed from the process list ({}): use --token-file",
+        command.exec()
+    )))
 }
 
 #[cfg(not(unix))]
 fn start_again(_: &[OsString], _: &Secrets) -> Result<(), Exit> {
-    warn("and stays there");
+    warn("it remains there");
     Ok(())
 }
 
 fn warn(what_becomes_of_it: &str) {
     eprintln!(
-        "jointbench: a token among the arguments is seen by every user of this computer and kept by shells, {what_becomes_of_it}: \
-         use --token-file or JOINTBENCH_TOKEN"
+        "jointbench: a token in the arguments is visible to all users of this computer and stored in the shell \
+         history; {what_becomes_of_it}. Use --token-file or JOINTBENCH_TOKEN"
     );
 }
 

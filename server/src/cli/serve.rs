@@ -15,7 +15,7 @@ pub fn serve(arguments: Serve) -> Done {
     let runtime = runtime()?;
     let done = runtime.block_on(async {
         let daemon = Daemon::start(settings(arguments.place, "jointbench-data", benches)?).await?;
-        println!("dashboard and API on {}://{}  (Ctrl-C ends)", daemon.scheme, daemon.address);
+        println!("dashboard and API on {}://{}  (Ctrl-C to exit)", daemon.scheme, daemon.address);
         asked_to_end().await;
         daemon.stop().await;
         Ok(())
@@ -62,5 +62,5 @@ const LAST_MOMENT: Duration = Duration::from_millis(500);
 pub(super) fn runtime() -> Result<tokio::runtime::Runtime, Exit> {
     let mut runtime = tokio::runtime::Builder::new_multi_thread();
     let runtime = runtime.enable_all().max_blocking_threads(BLOCKING_THREADS).build();
-    runtime.map_err(|fault| Exit::failed(format!("the system gives no threads: {fault}")))
+    runtime.map_err(|fault| Exit::failed(format!("no threads available from the system: {fault}")))
 }

@@ -60,8 +60,8 @@ fn named_or_on(client: &Client, named: Option<i64>) -> Result<i64, Exit> {
     let list: RunList = client.get("/runs?limit=100")?;
     let on: Vec<String> = list.runs.iter().filter(|run| !is_over(run.state)).map(|run| run.id.to_string()).collect();
     match on.as_slice() {
-        [one] => one.parse().map_err(|_| Exit::failed(format!("run {one} is no number"))),
-        [] => Err(Exit::bad_input("no run is on: there is nothing to steer")),
-        several => Err(Exit::bad_input(format!("runs {} are on: name one", several.join(" and ")))),
+        [one] => one.parse().map_err(|_| Exit::failed(format!("run {one}: expected a number"))),
+        [] => Err(Exit::bad_input("no run is active")),
+        several => Err(Exit::bad_input(format!("runs {} are active: name one", several.join(" and ")))),
     }
 }

@@ -25,10 +25,10 @@ pub fn import(arguments: &Import) -> Done {
         let summary = &run.summary;
         println!("run {}: {} ({}, {} rows)", summary.id, file.display(), summary.kind, summary.rows);
         if let Some(original) = run.provenance["imported"][COPY_OF].as_i64() {
-            println!("  its samples are those of run {original}: a copy, and no repeat of it");
+            println!("  its samples are identical to those of run {original} (a copy, not a repeat)");
         }
         for sentence in run.provenance["imported"][ATTENTION].as_array().into_iter().flatten() {
-            println!("  attention: {}", sentence.as_str().unwrap_or_default());
+            println!("  warning: {}", sentence.as_str().unwrap_or_default());
         }
     }
     Ok(())
@@ -39,9 +39,7 @@ pub fn export(arguments: &Export) -> Done {
     let (run, format) = (arguments.run, format(arguments)?);
     let safe = arguments.spreadsheet_safe;
     if safe && format != FileFormat::Csv {
-        return Err(Exit::bad_input(
-            "--spreadsheet-safe is for --format csv: only a CSV has cells that become formulas",
-        ));
+        return Err(Exit::bad_input("--spreadsheet-safe requires --format csv"));
     }
     let (bytes, meta) = match open(&runtime, &arguments.store, false)? {
         Way::Folder(lab) => runtime.block_on(async {
@@ -74,12 +72,12 @@ fn format(arguments: &Export) -> Result<FileFormat, Exit> {
         .find(|format| Some(format.extension()) == ending);
     match (arguments.format, said) {
         (Some(asked), Some(said)) if asked != said => Err(Exit::bad_input(format!(
-            "--format {} and a file that ends in .{}: leave one of them out",
+            "--format {} contradicts the file extension .{}: omit one of them",
             asked.extension(),
             said.extension()
         ))),
         (None, None) if ending.is_some() => Err(Exit::bad_input(format!(
-            "no run is written as .{}: end the file in .csv, .parquet or .mat, or choose one of them with --format",
+            "unknown file extension .{}: use .csv, .parquet or .mat, or choose the format with --format",
             ending.unwrap_or_default()
         ))),
         (asked, said) => Ok(asked.or(said).unwrap_or(FileFormat::Csv)),
@@ -101,7 +99,7 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
     if !makes_it && !crate::store::Store::is_in(data) {
         let folder = data.display();
         return Err(Exit::bad_input(format!(
-            "no store is in {folder}: name its folder with --data, or a daemon with --daemon"
+            "no store in {folder}: give its folder with --data, or a daemon with --daemon"
         )));
     }
     match runtime.block_on(crate::store::Store::open(data)) {
@@ -113,9 +111,7 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
                 Ok(health) if in_use.to_string().contains(&format!("(process {})", health.process)) => {
                     Ok(Way::Daemon(client))
                 }
-                _ => Err(Exit::bad_input(format!(
-                    "{in_use}, or give the address of the daemon that has it with --daemon"
-                ))),
+                _ => Err(Exit::bad_input(format!("{in_use}, or give the address of its daemon with --daemon"))),
             }
         }
         Err(fault) => Err(LabError::from(fault).into()),

@@ -33,11 +33,11 @@ fn print(report: &VerifyReport) {
         println!("readable: {run}{}: {} of {} records", part.table, part.readable, part.of);
     }
     for loss in report.lost.iter().filter(|loss| loss.noticed_at.is_some()) {
-        println!("noticed at {}: {loss}", loss.noticed_at.as_deref().unwrap_or_default());
+        println!("detected at {}: {loss}", loss.noticed_at.as_deref().unwrap_or_default());
     }
     if report.without_checksum > 0 {
         println!(
-            "{} records of an older release have no checksum: the daemon gives them one within a day",
+            "{} records of an older release have no checksum: the daemon adds them within one day",
             report.without_checksum
         );
     }

@@ -25,13 +25,13 @@ pub(super) fn check(file: &str, text: &str) -> Result<Vec<BenchDescription>, Mis
         }
     };
     if raw.bench.is_empty() {
-        wrong.add(0..0, "no bench is described: begin one with [[bench]] and its name");
+        wrong.add(0..0, "no bench described: add [[bench]] with its name");
     }
     for (i, bench) in raw.bench.iter().enumerate() {
         if raw.bench[..i].iter().any(|earlier| earlier.name.get_ref() == bench.name.get_ref()) {
             wrong.add(
                 bench.name.span(),
-                format!("bench {:?} is there twice: give each its own name", bench.name.get_ref()),
+                format!("bench {:?} exists twice: give each bench its own name", bench.name.get_ref()),
             );
         }
     }
@@ -44,13 +44,13 @@ fn check_bench(raw: &RawBench, text: &str, wrong: &mut Collector) -> Option<Benc
     let name = raw.name.get_ref();
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
-        let message = "use 1 to 64 letters, digits, -, _ and . (it is part of addresses)";
+        let message = "use 1 to 64 letters, digits, -, _ and . (the name is part of addresses)";
         wrong.add(raw.name.span(), format!("name {name:?}: {message}"));
     }
     let source = match (&raw.mock, &raw.joint) {
         (Some(mock), None) if !raw.has_instruments() => check_mock(mock, wrong).map(Source::Mock),
         (Some(_), _) => {
-            wrong.add(raw.name.span(), format!("bench {name:?} is a mock and has instruments too: keep one of them"));
+            wrong.add(raw.name.span(), format!("bench {name:?} has [bench.mock] and instruments: remove one of them"));
             None
         }
         (None, Some(joint)) => instruments(raw, joint, wrong).map(|settings| Source::Hardware(Box::new(settings))),
@@ -108,16 +108,13 @@ fn troubles(given: &[Spanned<PlannedTrouble>], bench: &MockSettings, wrong: &mut
             );
         } else if !trouble.can_strike(instrument) {
             let what =
-                format!("{} never has the trouble {}: name an instrument that can", word(instrument), word(trouble));
+                format!("{} cannot have the trouble {}: choose another instrument", word(instrument), word(trouble));
             wrong.add(planned.span(), what);
         } else if instrument != MockInstrument::Disk && !bench.has(instrument) {
-            wrong.add(planned.span(), format!("this bench has no {}: leave its trouble out", word(instrument)));
+            wrong.add(planned.span(), format!("this bench has no {}: remove its trouble", word(instrument)));
         }
         if let Some(until_s) = until_s.filter(|until_s| *until_s <= from_s) {
-            wrong.add(
-                planned.span(),
-                format!("until_s = {until_s} is not after from_s = {from_s}: this trouble never comes"),
-            );
+            wrong.add(planned.span(), format!("until_s = {until_s} must be later than from_s = {from_s}"));
         }
     }
     given.iter().map(|planned| *planned.get_ref()).collect()
@@ -139,7 +136,7 @@ fn check_mock(raw: &RawMock, wrong: &mut Collector) -> Option<MockSettings> {
     let loads = [("brake_a", Load::BrakeA), ("gear_and_brake_b", Load::GearAndBrakeB)];
     let load = raw.load.as_ref().map(|load| choice(load, "load", &loads, wrong));
     if let (Some(given), Some(Joint::EncoderShaft | Joint::Puma)) = (&raw.load, joint) {
-        wrong.add(given.span(), "this joint has no load: leave load out");
+        wrong.add(given.span(), "this joint has no load: remove load");
     }
     let supplies = [("dp821a", Supply::Dp821a), ("hmp4040", Supply::Hmp4040)];
     let supply =

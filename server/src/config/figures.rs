@@ -108,7 +108,7 @@ fn either(
         Some(given) => positive(given, name, wrong),
         None if sheet.is_some() => sheet,
         None => {
-            let cure = "a bench with real instruments has to give it";
+            let cure = "required for a bench with real instruments";
             wrong.add(raw.name.span(), format!("{name} is missing: {cure}"));
             None
         }
@@ -121,9 +121,11 @@ pub fn check_reach(raw: &RawBench, limits: &Limits, constants: &JointConstants, 
     if let (Some(place), Some(sensor)) = (&given.link_torque_nm, &raw.torque_sensor) {
         let nominal_nm = *sensor.nominal_nm.get_ref();
         if limits.link_torque_nm > nominal_nm {
-            let told =
-                format!("limits.link_torque_nm = {}: the torque sensor ends at {nominal_nm} Nm", limits.link_torque_nm);
-            wrong.add(place.span(), format!("{told}; give at most that"));
+            let told = format!(
+                "limits.link_torque_nm = {}: the range of the torque sensor is {nominal_nm} Nm",
+                limits.link_torque_nm
+            );
+            wrong.add(place.span(), format!("{told}; reduce the limit to this value"));
         }
     }
     if let (Some(place), Some(_)) = (&given.brake_current_a, &raw.brake)
@@ -131,6 +133,6 @@ pub fn check_reach(raw: &RawBench, limits: &Limits, constants: &JointConstants, 
     {
         let rated_a = constants.brake_rated_current_a;
         let told = format!("limits.brake_current_a = {}: the brake is rated for {rated_a} A", limits.brake_current_a);
-        wrong.add(place.span(), format!("{told}; give at most a tenth more"));
+        wrong.add(place.span(), format!("{told}; reduce the limit to at most 110 % of the rating"));
     }
 }

@@ -68,7 +68,7 @@ fn check_ports(raw: &RawBench, wrong: &mut Collector) {
     let mut ports: Vec<&Spanned<String>> = Vec::new();
     for port in all.into_iter().flatten() {
         if ports.iter().any(|earlier| earlier.get_ref() == port.get_ref()) {
-            wrong.add(port.span(), format!("port {:?} has an instrument already: each needs its own", port.get_ref()));
+            wrong.add(port.span(), format!("port {:?} is already used by another instrument", port.get_ref()));
         }
         ports.push(port);
     }
@@ -114,7 +114,7 @@ fn check_puma(
     misplaced("link_encoder", "puma", raw.link_encoder.as_ref().map(Spanned::span), wrong);
     misplaced("thermistor", "puma", raw.thermistor.as_ref().map(Spanned::span), wrong);
     if raw.counts_per_turn.is_none() || raw.amperes_per_volt.is_none() {
-        let cure = "a puma has to give counts_per_turn of its encoder and amperes_per_volt of its shunt";
+        let cure = "a puma requires counts_per_turn of its encoder and amperes_per_volt of its shunt";
         wrong.add(raw.driver.span(), cure);
     }
     let counts =
@@ -133,7 +133,7 @@ fn check_puma(
 
 fn misplaced(what: &str, driver: &str, place: Option<Range<usize>>, wrong: &mut Collector) {
     if let Some(place) = place {
-        wrong.add(place, format!("{what} is not for driver {driver:?}: leave it out"));
+        wrong.add(place, format!("{what} does not apply to driver {driver:?}: remove it"));
     }
 }
 
@@ -157,7 +157,7 @@ fn check_sensor(raw: &RawTorqueSensor, wrong: &mut Collector) -> Option<TorqueSe
         if let Some(range) = &raw.range {
             wrong.add(
                 range.span(),
-                "range is not for a multimeter: leave it out, and give the torque at 10 V as nominal_nm",
+                "range does not apply to a multimeter: remove it, and enter the torque at 10 V as nominal_nm",
             );
         }
         let (port, deadline_ms, nominal_nm) = (port?, deadline_ms?, nominal_nm?);
@@ -205,7 +205,7 @@ fn check_thermometer(raw: &RawThermometer, wrong: &mut Collector) -> Option<Adam
     let slave = raw.slave.as_ref().map_or(Some(1), |slave| within(slave, "slave", 1..=247, wrong));
     let channels: Vec<_> = raw.channels.iter().map(|channel| within(channel, "channel", 0..=5, wrong)).collect();
     if channels.is_empty() {
-        wrong.add(raw.driver.span(), "channels is empty: name those in use, such as channels = [0, 1]");
+        wrong.add(raw.driver.span(), "channels is empty: list the channels in use, such as channels = [0, 1]");
         return None;
     }
     driver?;

@@ -147,10 +147,10 @@ pub fn unread(name: &str, fault: &std::io::Error) -> String {
     let ready_made = READY_MADE.map(|(name, _)| name);
     let meant = nearest(name, ready_made).map(|near| format!("did you mean {near}? ")).unwrap_or_default();
     let why = match fault.kind() {
-        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        std::io::ErrorKind::NotFound => "file not found".to_owned(),
         _ => format!("cannot be read ({fault})"),
     };
-    format!("{why}: {meant}give the path of a bench description, or one of {}", ready_made.join(", "))
+    format!("{why}: {meant}give the path of a bench description, or a built-in one: {}", ready_made.join(", "))
 }
 
 /// `file` stands in messages.

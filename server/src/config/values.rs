@@ -22,10 +22,10 @@ pub fn flip<T>(slot: Option<Option<T>>) -> Option<Option<T>> {
 pub fn port(given: &Spanned<String>, baud: u32, wrong: &mut Collector) -> Option<PortSettings> {
     let text = given.get_ref().trim();
     let cure = match text {
-        "" => Some("port is empty: name a serial port (/dev/ttyUSB0, COM3), usb://serial-number or tcp://host:port"),
-        "usb://" => Some("port has no serial number: write usb:// and the one that `jointbench ports` shows"),
+        "" => Some("port is empty: enter a serial port (/dev/ttyUSB0, COM3), usb://serial-number or tcp://host:port"),
+        "usb://" => Some("port has no serial number: write usb:// with the serial number from `jointbench ports`"),
         _ if text.strip_prefix("tcp://").is_some_and(|host| !has_port(host)) => {
-            Some("port names no host and port number: write tcp://host:port, such as tcp://192.168.0.7:5555")
+            Some("port has no host or port number: write tcp://host:port, such as tcp://192.168.0.7:5555")
         }
         _ => None,
     };
@@ -62,7 +62,7 @@ pub fn choice<T: Copy>(given: &Spanned<String>, what: &str, known: &[(&str, T)],
     let found = known.iter().find(|(name, _)| name == given.get_ref());
     if found.is_none() {
         let names: Vec<String> = known.iter().map(|(name, _)| format!("{name:?}")).collect();
-        wrong.add(given.span(), format!("{what} {:?} is not known: write {}", given.get_ref(), names.join(" or ")));
+        wrong.add(given.span(), format!("unknown {what} {:?}: write {}", given.get_ref(), names.join(" or ")));
     }
     found.map(|(_, value)| *value)
 }
@@ -72,7 +72,7 @@ pub fn positive(given: &Spanned<f64>, what: &str, wrong: &mut Collector) -> Opti
     if value.is_finite() && value > 0.0 {
         return Some(value);
     }
-    wrong.add(given.span(), format!("{what} = {value}: give a number above 0"));
+    wrong.add(given.span(), format!("{what} = {value}: expected a number above 0"));
     None
 }
 
@@ -85,9 +85,9 @@ pub fn calibrated(given: &Spanned<Datetime>, wrong: &mut Collector) -> Option<Da
         Date::new(year, month, day).ok()
     });
     match day {
-        None => wrong.add(given.span(), format!("calibrated = {written}: write the day, such as 2026-03-31")),
+        None => wrong.add(given.span(), format!("calibrated = {written}: write a date, such as 2026-03-31")),
         Some(day) if day > Zoned::now().date() => {
-            wrong.add(given.span(), format!("calibrated = {day} is yet to come: write the day on the certificate"));
+            wrong.add(given.span(), format!("calibrated = {day} is in the future: write the date of the certificate"));
         }
         Some(_) => return day,
     }

@@ -20,7 +20,7 @@ pub fn main() -> ExitCode {
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
     let Ok(request) = read.map_err(drop).and_then(|_| serde_json::from_str::<Request<Job>>(&line).map_err(drop)) else {
-        eprintln!("jointbench job: the daemon starts this by itself, with a request on standard input");
+        eprintln!("jointbench job: internal command of the daemon, with a request on standard input");
         return ExitCode::from(2);
     };
     stay_small(request.memory_bytes);

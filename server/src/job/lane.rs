@@ -32,7 +32,10 @@ impl Lane {
     /// Waits for its turn. [`LabError::Busy`] where too many wait already, or where the daemon ends.
     pub async fn enter(&self) -> Result<Turn, LabError> {
         let busy = || {
-            LabError::Busy(format!("{AT_ONCE} computations are running and {WAITING} wait: ask again in a few seconds"))
+            LabError::Busy(format!(
+                "{AT_ONCE} computations are running and {WAITING} are queued: retry in a few \
+                                    seconds"
+            ))
         };
         let place = self.places.clone().try_acquire_owned().map_err(|_| busy())?;
         let slot = self.slots.clone().acquire_owned().await.map_err(|_| ending())?;
@@ -46,7 +49,7 @@ impl Lane {
 }
 
 pub(super) fn ending() -> LabError {
-    LabError::Busy("the daemon ends: ask again when it has started anew".into())
+    LabError::Busy("the daemon is shutting down: retry after its restart".into())
 }
 
 #[cfg(test)]

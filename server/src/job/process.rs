@@ -65,7 +65,7 @@ impl Jobs {
         while let Some(piece) = process.piece().await? {
             if answer.len() as u64 + piece.len() as u64 > MOST_ANSWERED_BYTES {
                 return Err(LabError::TooLarge(format!(
-                    "the answer is larger than {} MiB: choose a shorter run, or exclude stretches of it",
+                    "the result exceeds {} MiB: choose a shorter run, or exclude intervals",
                     MOST_ANSWERED_BYTES >> 20
                 )));
             }
@@ -138,7 +138,7 @@ impl Process {
         // Tokens stand in the environment.
         let spawned = piped.env_clear().kill_on_drop(true).spawn();
         let mut child =
-            spawned.map_err(|fault| LabError::Internal(format!("no computation can be started: {fault}")))?;
+            spawned.map_err(|fault| LabError::Internal(format!("the computation cannot be started: {fault}")))?;
         let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         let (Some(asked), Some(said), Some(complaint)) = pipes else { unreachable!("all three are piped") };
         Ok(Process {
@@ -252,21 +252,22 @@ fn says_memory(words: &str) -> bool {
 }
 
 fn last_line(words: &str) -> &str {
-    words.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it said nothing")
+    words.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no message")
 }
 
 impl Limits {
     fn too_much_memory(self) -> LabError {
         LabError::TooLarge(format!(
-            "this needs more than {} GiB of memory: choose fewer rows (exclude stretches, or import every n-th row), or start \
-             the daemon with a larger --analysis-memory",
+            "the computation needs more than {} GiB of memory: use fewer rows (exclude intervals, or import every n-th \
+             row), or start the daemon with a larger --analysis-memory",
             self.memory_bytes as f64 / GIB as f64
         ))
     }
 
     fn too_long(self) -> LabError {
         LabError::TooLarge(format!(
-            "this takes longer than {} s: choose fewer rows (exclude stretches, or import every n-th row), or fewer effects",
+            "the computation takes longer than {} s: use fewer rows (exclude intervals, or import every n-th row), or \
+             fewer effects",
             self.time.as_secs()
         ))
     }

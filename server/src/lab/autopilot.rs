@@ -34,7 +34,7 @@ impl Flights {
     }
 }
 
-pub(super) const INTERRUPTED: &str = "the daemon ended before the autopilot did; its runs and models are kept";
+pub(super) const INTERRUPTED: &str = "the daemon terminated during the autopilot; its runs and models were kept";
 
 impl Lab {
     pub async fn start_autopilot(&self, new: &NewAutopilot, by: &str) -> Answer<Autopilot> {
@@ -61,11 +61,11 @@ impl Lab {
         let (_, plan) = self.plan(&new.bench, &new.procedure, &new.parameters).await?;
         let planned_s = plan.duration_s();
         if let Some(failed) = plan.preview(&handle.facts()).checks.into_iter().find(|check| !check.ok) {
-            return Err(LabError::Invalid(format!("the first run is refused: {}", failed.detail)));
+            return Err(LabError::Invalid(format!("the first run was rejected: {}", failed.detail)));
         }
         if new.bench_time_s.is_some_and(|budget_s| planned_s > budget_s) {
             return Err(LabError::Invalid(format!(
-                "the first run alone may take {planned_s:.0} s: raise bench_time_s, or choose a shorter one"
+                "the first run alone takes up to {planned_s:.0} s: increase bench_time_s, or choose a shorter run"
             )));
         }
         Ok(plan.kind)
@@ -75,10 +75,7 @@ impl Lab {
     pub async fn start_experiment(&self, diagnosis: i64, new: &NewExperiment, by: &str) -> Answer<Autopilot> {
         let (model, experiment) = self.asked_for(diagnosis, &new.bench).await?;
         let experiment = experiment.ok_or_else(|| {
-            LabError::Invalid(format!(
-                "diagnosis {diagnosis} leaves nothing open that a run on {} would decide",
-                new.bench
-            ))
+            LabError::Invalid(format!("diagnosis {diagnosis} recommends no further run on {}", new.bench))
         })?;
         let mut request: Map<String, Value> = reread(new)?;
         request.insert("diagnosis".into(), diagnosis.into());
@@ -114,12 +111,13 @@ impl Lab {
     fn check_is_free(&self, bench: &str) -> Answer<()> {
         let on = self.inner.flights.lock().iter().find(|(_, f)| f.bench == bench).map(|(id, _)| *id);
         match on {
-            Some(id) => {
-                Err(LabError::Conflict(format!("autopilot {id} has bench {bench}: stop it, or wait for its end")))
-            }
-            None if self.handle(bench)?.is_busy() => {
-                Err(LabError::Conflict(format!("bench {bench} has a run on: stop it, or wait for its end")))
-            }
+            Some(id) => Err(LabError::Conflict(format!(
+                "autopilot {id} uses bench {bench}: stop it, or wait until it finishes"
+            ))),
+            None if self.handle(bench)?.is_busy() => Err(LabError::Conflict(format!(
+                "a run is in progress on bench {bench}: stop it, or wait until it \
+                                                finishes"
+            ))),
             None => Ok(()),
         }
     }
@@ -138,7 +136,7 @@ impl Lab {
         let told = self.inner.flights.lock().get(&id).is_some_and(|flight| flight.stop.send(by).is_ok());
         let now = self.autopilot(id).await?;
         if !told {
-            return Err(LabError::Over(format!("autopilot {id} is over: there is nothing to stop")));
+            return Err(LabError::Over(format!("autopilot {id} has already ended")));
         }
         Ok(now)
     }

@@ -32,7 +32,7 @@ impl Lab {
     pub fn handle(&self, name: &str) -> Answer<&BenchHandle> {
         self.inner.benches.iter().find(|bench| bench.name() == name).ok_or_else(|| {
             let names: Vec<&str> = self.inner.benches.iter().map(BenchHandle::name).collect();
-            LabError::NotFound(format!("there is no bench {name}; this daemon has {}", names.join(", ")))
+            LabError::NotFound(format!("bench {name} does not exist; this daemon has {}", names.join(", ")))
         })
     }
 
@@ -43,7 +43,7 @@ impl Lab {
         self.bench(name)
     }
 
-    /// Tries the instruments again that are not ready.
+    /// Reconnects the instruments that are not ready.
     pub async fn retry(&self, name: &str) -> Answer<Bench> {
         let bench = self.handle(name)?;
         drop(bench.claim()?);
@@ -60,20 +60,20 @@ impl Lab {
     pub async fn acknowledge(&self, name: &str, reason: &str, by: &str) -> Answer<Bench> {
         let bench = self.handle(name)?;
         if reason.trim().is_empty() {
-            return Err(LabError::Invalid("give a reason: what was found and done at the bench".into()));
+            return Err(LabError::Invalid("enter a reason: findings and action taken at the bench".into()));
         }
         let Some(block) = bench.status().blocked else {
-            return Err(LabError::Conflict(format!("bench {name} is not blocked: there is nothing to acknowledge")));
+            return Err(LabError::Conflict(format!("bench {name} is not blocked, so no reset is needed")));
         };
         if !block.stored {
             return Err(LabError::Busy(format!(
-                "bench {name} is blocked, but that is not yet stored: see that the disk has room and answers, then reset again"
+                "bench {name} is blocked, but the block is not yet stored: check the disk, then reset again"
             )));
         }
         let lifted = self.inner.store.acknowledge_bench(name, &block.since, reason.trim(), by).await?;
         if !(lifted && bench.lift(&block.since)) {
             return Err(LabError::Conflict(format!(
-                "bench {name} was blocked again in the meantime: look at it again, then reset it"
+                "bench {name} was blocked again in the meantime: inspect the bench, then reset it"
             )));
         }
         tracing::warn!(bench = name, reason, by, "block lifted by a person");
@@ -111,7 +111,7 @@ impl Lab {
         let bench = self.handle(bench)?;
         let procedure = procedure(id).ok_or_else(|| {
             let known: Vec<&str> = catalogue().iter().map(|procedure| procedure.id()).collect();
-            LabError::NotFound(format!("there is no procedure {id}; there are {}", known.join(", ")))
+            LabError::NotFound(format!("procedure {id} does not exist; available: {}", known.join(", ")))
         })?;
         let mut facts = bench.facts();
         let (friction, given) = self.applied_choices(bench.name(), id).await?.unzip();
@@ -159,14 +159,19 @@ impl Lab {
         let id = record.id;
         if record.bench != bench || record.procedure != BRAKE_MODEL {
             return Err(LabError::Invalid(format!(
-                "run {id} is no {BRAKE_MODEL} of bench {bench}: name one, or 0 for the last"
+                "run {id} is not a {BRAKE_MODEL} run of bench {bench}: enter such a run, or 0 for the latest"
             )));
         }
         let table = self.measurement(id).await?;
         let model = tokio::task::spawn_blocking(move || brake_model(&table))
             .await
             .map_err(|fault| LabError::Internal(format!("the brake model of run {id} failed: {fault}")))?;
-        let missing = || LabError::Invalid(format!("run {id} ended before it had a model: make {BRAKE_MODEL} again"));
+        let missing = || {
+            LabError::Invalid(format!(
+                "run {id} ended before its model was identified: repeat \
+                                                    {BRAKE_MODEL}"
+            ))
+        };
         model.map(|model| Some((id, model))).ok_or_else(missing)
     }
 
@@ -198,20 +203,20 @@ fn readiness(bench: &BenchHandle) -> Vec<view::Check> {
         view::Check {
             name: "instruments".into(),
             ok: faults.is_none(),
-            detail: faults.clone().unwrap_or_else(|| "all answer".into()),
-            cure: faults.map(|_| "check power, cables and ports, then try the instruments again".into()),
+            detail: faults.clone().unwrap_or_else(|| "all instruments respond".into()),
+            cure: faults.map(|_| "check power, cables and ports, then reconnect the instruments".into()),
         },
         view::Check {
             name: "acknowledged".into(),
             ok: status.blocked.is_none(),
-            detail: status.blocked.as_ref().map_or_else(|| "nothing open".into(), |blocked| blocked.reason.clone()),
-            cure: status.blocked.map(|_| "look at the bench, then reset it with a reason".into()),
+            detail: status.blocked.as_ref().map_or_else(|| "none active".into(), |blocked| blocked.reason.clone()),
+            cure: status.blocked.map(|_| "inspect the bench, then reset it with a reason".into()),
         },
         view::Check {
             name: "free".into(),
             ok: !busy,
-            detail: status.run.map_or_else(|| "no run is on".into(), |run| format!("run {run} is on")),
-            cure: busy.then(|| "wait for its end, or stop it".into()),
+            detail: status.run.map_or_else(|| "bench idle".into(), |run| format!("run {run} is in progress")),
+            cure: busy.then(|| "wait for it to finish, or stop it".into()),
         },
     ]
 }

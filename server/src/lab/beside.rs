@@ -83,7 +83,7 @@ fn show(beside: &mut Beside, left: &ResidualSet) {
             format!("Measured and {name}"),
             vec![points("measured", &left.measured), points(&name, &left.predicted)],
         ),
-        figure("residual", format!("What {name} leaves"), vec![points("measured − model", &left.error), noise]),
+        figure("residual", format!("Residual of {name}"), vec![points("measured − model", &left.error), noise]),
     ];
 }
 

@@ -12,9 +12,13 @@ const SENSOR_ZERO: &str = "torque_sensor_zero";
 const FRICTION: &str = "friction";
 /// What can be applied, and what becomes of it.
 const USES: [(&str, &str); 3] = [
-    (BRAKE_MODEL, "the bench's next runs command the brake with it"),
-    (SENSOR_ZERO, "the zero is taken off the torque of the bench's next runs; their rows stay as felt"),
-    (FRICTION, "it is what friction compensation on this bench is planned with, unless told otherwise"),
+    (BRAKE_MODEL, "subsequent runs of this bench use this brake model"),
+    (
+        SENSOR_ZERO,
+        "subsequent runs of this bench subtract this zero from the torque; the stored samples remain \
+                   uncorrected",
+    ),
+    (FRICTION, "friction compensation on this bench uses these values by default"),
 ];
 /// More entries than a bench has in years.
 const MOST: u32 = 500;
@@ -30,11 +34,14 @@ pub(super) fn applies(procedure: &str) -> Applies {
 fn why_not(procedure: &str) -> &'static str {
     match procedure {
         "encoder_linearity" => {
-            "Not applied to the bench: the table belongs into the controller that reads this encoder, and a bench that took it off \
-             would no longer measure the encoder as it is."
+            "Load the table into the controller that reads this encoder. The bench itself keeps measuring \
+             uncompensated."
         }
-        "identify_joint" => "Not applied as a whole: run friction or torque_sensor_zero by itself, and apply that.",
-        _ => "Not applied to the bench: no procedure uses what this one finds.",
+        "identify_joint" => {
+            "Cannot be applied as a whole: run friction or torque_sensor_zero separately and apply its \
+                             result."
+        }
+        _ => "No procedure uses this result.",
     }
 }
 
@@ -58,23 +65,23 @@ impl Lab {
         if !applies(wanted).can {
             let can = USES.map(|(id, _)| id).join(", ");
             return Err(LabError::Invalid(format!(
-                "no run uses what {wanted} finds: what can be applied to a bench is {can}"
+                "results of {wanted} cannot be applied to a bench; applicable: {can}"
             )));
         }
         if let Some(id) = new.run {
             let record = self.inner.store.run(id).await?;
             if (record.bench.as_str(), record.procedure.as_str()) != (bench, wanted) {
-                return Err(LabError::Invalid(format!("run {id} is no {wanted} of bench {bench}")));
+                return Err(LabError::Invalid(format!("run {id} is not a {wanted} run of bench {bench}")));
             }
             if record.simulated != is_simulated {
                 return Err(LabError::Invalid(format!(
-                    "run {id} was not made on this {bench}: one of them is simulated"
+                    "run {id} does not belong to this {bench}: one of them is simulated"
                 )));
             }
             let found = self.identification(id).await?.result.verdict;
             if record.state != RunState::Completed || !found.is_identified() {
                 return Err(LabError::Invalid(format!(
-                    "run {id} has not identified what it was made for: apply one that has"
+                    "run {id} has no identified result: apply a run with an identified result"
                 )));
             }
         }

@@ -16,30 +16,28 @@ impl Lab {
         let name = &record.procedure;
         match record.state {
             RunState::Completed => {
-                return Err(LabError::Over(format!("run {id} is complete: nothing is left of it")));
+                return Err(LabError::Over(format!("run {id} is complete: there is nothing to resume")));
             }
             state if !state.is_final() => {
-                return Err(LabError::Conflict(format!("run {id} is {state}: resume it, or wait for its end")));
+                return Err(LabError::Conflict(format!("run {id} is {state}: resume it, or wait until it finishes")));
             }
             _ => {}
         }
         if let Some(later) = self.inner.store.continued_by(id).await? {
             return Err(LabError::Over(format!(
-                "run {id} was gone on with already, by run {later}: go on with that one, or look at it"
+                "run {id} was already continued by run {later}: continue that run instead"
             )));
         }
         let again = format!("start {name} again instead");
         let procedure = jointbench_procedure::procedure(name).ok_or_else(|| {
-            LabError::Invalid(format!("run {id} is of {name}, which no procedure here can go on with"))
+            LabError::Invalid(format!("run {id} used procedure {name}, which does not exist in this version"))
         })?;
-        procedure
-            .goes_on()
-            .map_err(|why| LabError::Invalid(format!("run {id} cannot be gone on with: {why}; {again}")))?;
+        procedure.goes_on().map_err(|why| LabError::Invalid(format!("run {id} cannot be resumed: {why}; {again}")))?;
         let (bench, plan) = self.plan(&record.bench, name, &record.parameters).await?;
         let done = self.done(&record, Some(&plan)).await?;
-        let rest = plan.rest(id, done.steps, done.next_segment, &bench.facts()).ok_or_else(|| {
-            LabError::Invalid(format!("run {id} has finished no step that could be gone on from: {again}"))
-        })?;
+        let rest = plan
+            .rest(id, done.steps, done.next_segment, &bench.facts())
+            .ok_or_else(|| LabError::Invalid(format!("run {id} has no finished step to resume from: {again}")))?;
         // Read only where something is to be learnt from it: it may be long.
         let rest = match rest.lesson {
             Some(_) => {
@@ -56,11 +54,9 @@ impl Lab {
         let record = self.inner.store.run(id).await?;
         let (bench, plan) = self.plan(&record.bench, &record.procedure, &record.parameters).await?;
         let plan = match continues(&record)? {
-            Some(before) => {
-                plan.rest(before.run, before.from_step, before.restored_from, &bench.facts()).ok_or_else(|| {
-                    LabError::Invalid(format!("run {id} was planned otherwise than this version plans it"))
-                })?
-            }
+            Some(before) => plan
+                .rest(before.run, before.from_step, before.restored_from, &bench.facts())
+                .ok_or_else(|| LabError::Invalid(format!("run {id} was planned by an incompatible version")))?,
             None => plan,
         };
         previewed(bench, &plan)
@@ -102,7 +98,7 @@ impl Lab {
     /// The same, with what was finished of it.
     async fn measured(&self, id: i64) -> Answer<(RunTable, Done)> {
         let mut parts = self.parts(id).await?;
-        let (Some(first), later) = (parts.pop(), parts.into_iter().rev()) else { unreachable!("one part at least") };
+        let (Some(first), later) = (parts.pop(), parts.into_iter().rev()) else { unreachable!("at least one part") };
         let mut whole = self.table(first.id).await?;
         let mut done = self.done(&first, None).await?;
         for part in later {
@@ -134,7 +130,7 @@ impl Lab {
                 && planned != Some(label)
             {
                 return Err(LabError::Invalid(format!(
-                    "run {} was planned otherwise than this version plans it (step {step}, {label}): start {} again instead",
+                    "run {} was planned by an incompatible version (step {step}, {label}): start {} again instead",
                     record.id, record.procedure
                 )));
             }

@@ -155,6 +155,8 @@ pub fn run_event(record: EventRecord) -> view::RunEvent {
 
 fn sentence(kind: &EventKind) -> String {
     match kind {
+        EventKind::State { state: RunState::Securing, .. } => "moving to safe state".to_owned(),
+        EventKind::State { state, .. } if !state.is_final() => state.to_string(),
         EventKind::State { state, .. } => format!("run {state}"),
         EventKind::Identified { instrument, port, identity } => {
             let firmware = match identity.firmware.as_str() {
@@ -165,14 +167,14 @@ fn sentence(kind: &EventKind) -> String {
         }
         EventKind::StepStarted { label, repeat, .. } => format!("{label} (repeat {})", repeat + 1),
         EventKind::StepFinished { step, rows, .. } => format!("step {} done, {rows} rows", step + 1),
-        EventKind::Control { control: Control::Quit, .. } => "the daemon was told to end".to_owned(),
+        EventKind::Control { control: Control::Quit, .. } => "daemon shutdown requested".to_owned(),
         EventKind::Control { control: Control::StorageLost, .. } => {
-            "the part of the daemon that stores runs ended".to_owned()
+            "the storage process of the daemon terminated".to_owned()
         }
         EventKind::Control { control, by } => {
             let asked = match control {
-                Control::EStop => "the software stop was pressed".to_owned(),
-                _ => format!("a person asked: {}", view::word(control)),
+                Control::EStop => "software stop pressed".to_owned(),
+                _ => format!("operator command: {}", view::word(control)),
             };
             by.iter().fold(asked, |asked, by| format!("{asked} ({by})"))
         }

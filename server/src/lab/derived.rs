@@ -22,7 +22,13 @@ pub enum Most {
 
 impl Lab {
     /// A channel for each formula, over the window `[from_s, to_s]`.
-    pub async fn derived(&self, run: i64, formulas: Vec<String>, window: [Option<f64>; 2], most: Most) -> Answer<Samples> {
+    pub async fn derived(
+        &self,
+        run: i64,
+        formulas: Vec<String>,
+        window: [Option<f64>; 2],
+        most: Most,
+    ) -> Answer<Samples> {
         let (Most::Pixels(points) | Most::Rows(points)) = most;
         if points == 0 || points > POINTS {
             return Err(LabError::Invalid(format!("{points} points: choose 1 to {POINTS}")));
@@ -64,7 +70,12 @@ impl Lab {
         self.work_out(Job::Spectrum { run, formula, window }).await
     }
 
-    pub(super) async fn spectrum_here(&self, run: i64, formula: &str, window: [Option<f64>; 2]) -> Answer<SpectrumView> {
+    pub(super) async fn spectrum_here(
+        &self,
+        run: i64,
+        formula: &str,
+        window: [Option<f64>; 2],
+    ) -> Answer<SpectrumView> {
         let (time_s, mut channels) = self.computed(run, &[formula.to_owned()], window).await?;
         let Some((formula, values)) = channels.pop() else { return Err(LabError::Internal("no channel".into())) };
         let found = spectrum(&time_s, &values).ok_or_else(|| {

@@ -53,7 +53,7 @@ impl Lab {
         let low = spans.iter().map(|span| span[0]).fold(f64::INFINITY, f64::min);
         let high = spans.iter().map(|span| span[1]).fold(f64::NEG_INFINITY, f64::max);
         if !(high - low).is_finite() || high <= low {
-            return Err(LabError::Invalid(format!("{} stays where it is in these runs", spoken(&how.by))));
+            return Err(LabError::Invalid(format!("{} does not change in these runs", spoken(&how.by))));
         }
         let axis = Axis { low, step: (high - low) / PLACES as f64, places: PLACES };
         let loads = self.loads(runs, how).await?;
@@ -339,7 +339,7 @@ fn figures(base: i64, how: &Alignment, unit: &str, shown: Vec<FigureSeries>, apa
         y: FigureAxis { label: spoken(&how.channel), unit: unit.to_owned(), names: Vec::new() },
         series,
     };
-    let mean = figure("mean", format!("Mean of the {}, ± 2 σ", spoken(&how.channel)), shown);
+    let mean = figure("mean", format!("Mean {}, ± 2 σ", spoken(&how.channel)), shown);
     let difference = figure("difference", format!("Difference from #{base}, ± 2 σ"), apart);
     let both = [mean, difference].into_iter();
     both.filter(|figure| figure.series.iter().any(|series| !series.x.is_empty())).collect()

@@ -43,11 +43,14 @@ pub enum LabError {
 
 impl LabError {
     pub fn no_run(id: i64) -> Self {
-        LabError::NotFound(format!("there is no run {id}: jointbench runs lists those that are there"))
+        LabError::NotFound(format!("run {id} does not exist"))
     }
 
     pub fn no_model(id: i64) -> Self {
-        LabError::NotFound(format!("there is no model version {id}; GET /api/v1/models?run= lists those of a run"))
+        LabError::NotFound(format!(
+            "model version {id} does not exist; GET /api/v1/models?run= lists the versions of a \
+                                    run"
+        ))
     }
 
     /// 0 done, 1 the run failed or a limit was broken, 2 bad arguments or bad input, 3 could not be decided.

@@ -10,20 +10,21 @@ const MOST: usize = 5_000;
 /// Refuses what cannot be meant.
 pub fn check(stretches: &[Exclusion]) -> Answer<()> {
     if stretches.len() > MOST {
-        return Err(LabError::Invalid(format!("{} stretches to exclude: {MOST} is the most", stretches.len())));
+        return Err(LabError::Invalid(format!("{} excluded intervals: the maximum is {MOST}", stretches.len())));
     }
     for Exclusion { from_s, to_s, reason } in stretches {
         if !(from_s.is_finite() && to_s.is_finite() && from_s <= to_s) {
             return Err(LabError::Invalid(format!(
-                "exclude from_s = {from_s}, to_s = {to_s}: write seconds since the first sample, the earlier one first"
+                "excluded interval from_s = {from_s}, to_s = {to_s}: from_s must be below to_s, in seconds since the \
+                 first sample"
             )));
         }
         if reason.trim().is_empty() {
             return Err(LabError::Invalid(format!(
-                "the stretch from {from_s} s to {to_s} s is excluded without a reason: write one"
+                "the excluded interval from {from_s} s to {to_s} s has no reason: enter one"
             )));
         }
-        names::checked_text("the reason of an excluded stretch", reason, names::LONGEST_SENTENCE)?;
+        names::checked_text("the reason of an excluded interval", reason, names::LONGEST_SENTENCE)?;
     }
     Ok(())
 }
@@ -59,7 +60,7 @@ pub fn without(table: RunTable, stretches: &[Exclusion]) -> Answer<RunTable> {
     let since: Vec<f64> = time_s.iter().map(|at_s| at_s - begin_s).collect();
     let out = marked(&since, stretches);
     if out.iter().all(|out| *out) {
-        return Err(LabError::Invalid("every sample is excluded: leave some to fit to".into()));
+        return Err(LabError::Invalid("all samples are excluded: keep some for the fit".into()));
     }
     let kept = |column: &Vec<f64>| column.iter().zip(&out).filter(|(_, out)| !**out).map(|(value, _)| *value).collect();
     let columns = trace.columns().iter().map(kept).collect();

@@ -28,7 +28,7 @@ impl Offer {
 pub fn next_run(run: &RunTable, open: &Open, offer: &Offer, options: &Options) -> Next {
     let menu = menu(&offer.bench, run, &offer.parameters);
     jointbench_model::next_run(run, open, &menu, options).unwrap_or_else(|fault| {
-        tracing::warn!(%fault, "no next run was worked out");
+        tracing::warn!(%fault, "no recommended run is available");
         Next::default()
     })
 }
@@ -90,7 +90,7 @@ fn check_same_joint(run: &RunTable, bench: &BenchFacts) -> Answer<()> {
     ];
     match facts.into_iter().find(|(_, of_run, of_bench)| of_run.is_some_and(|value| value != *of_bench)) {
         Some((fact, Some(of_run), of_bench)) => Err(LabError::Invalid(format!(
-            "{} carries another joint than this run was made with: its {fact} is {of_bench}, that of the run {of_run}",
+            "{} has a different joint than this run: {fact} = {of_bench}, in the run {of_run}",
             bench.name
         ))),
         _ => Ok(()),

@@ -48,7 +48,9 @@ impl Lab {
     /// The same where they were worked out before.
     pub(super) async fn quantities_known(&self, run: i64) -> Answer<Option<Vec<Quantity>>> {
         let kept = self.inner.store.kept(Subject::Run(run), QUANTITIES).await?;
-        kept.map(|kept| serde_json::from_slice(&kept)).transpose().map_err(|fault| LabError::Internal(fault.to_string()))
+        kept.map(|kept| serde_json::from_slice(&kept))
+            .transpose()
+            .map_err(|fault| LabError::Internal(fault.to_string()))
     }
 
     /// The run for which a complete one has found the parameters.
@@ -157,7 +159,7 @@ impl Lab {
                         lab.judge(run).await;
                     }
                 }
-                Err(fault) => tracing::warn!(%fault, "runs that nobody has judged are not found"),
+                Err(fault) => tracing::warn!(%fault, "runs without a computed result cannot be listed"),
             }
         });
     }

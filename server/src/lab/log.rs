@@ -59,7 +59,7 @@ impl Lab {
             ..LogEntry::default()
         };
         let (kind, text) = match run.procedure.as_str() {
-            "import" => ("imported", "brought in as a file"),
+            "import" => ("imported", "imported from a file"),
             _ => ("started", "started"),
         };
         let by = run.provenance.get("by").and_then(|by| by.as_str()).map(str::to_owned);
@@ -91,7 +91,7 @@ impl Lab {
             }
             let what = match (version.parent, changes.as_slice()) {
                 (None, _) => format!("fitted: {}", titles(&version.added)),
-                (Some(_), []) => "fitted again".to_owned(),
+                (Some(_), []) => "refitted".to_owned(),
                 _ => changes.join("; "),
             };
             log.push(LogEntry {
@@ -137,7 +137,7 @@ fn of_bench(bench: &str, entry: SafetyRecord) -> LogEntry {
 }
 
 fn applied_to(bench: &str, entry: CalibrationRecord) -> LogEntry {
-    let whose = entry.run.map_or("the last complete run".to_owned(), |run| format!("run {run}"));
+    let whose = entry.run.map_or("the latest complete run".to_owned(), |run| format!("run {run}"));
     LogEntry {
         at: entry.at,
         kind: "calibration".into(),

@@ -110,8 +110,7 @@ impl Lab {
             benches.push(bench);
         }
         for (bench, runs) in interrupted {
-            let reason =
-                "a run was interrupted, and the bench is not in the description that the daemon was started with";
+            let reason = "a run was interrupted, and its bench is missing in the bench description of this daemon";
             store.block_bench(&bench, runs.last().copied(), reason).await?;
             for run in runs {
                 store.end_run(run, RunState::Interrupted, Safe::UnsafeUnknown, Some(reason)).await?;
@@ -157,7 +156,7 @@ impl Lab {
         &self.inner.program
     }
 
-    /// Whether all that is stored could be read, when that was looked at last.
+    /// Result of the latest integrity check of the store.
     pub fn store_health(&self) -> StoreHealth {
         self.inner.store.health()
     }

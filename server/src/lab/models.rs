@@ -41,7 +41,7 @@ impl Lab {
         by: &str,
     ) -> Answer<Model> {
         let Some((&run, more_runs)) = runs.split_first() else {
-            return Err(LabError::Invalid("name the run that the model is fitted to".into()));
+            return Err(LabError::Invalid("give the run to fit the model to".into()));
         };
         let mut excluded = exclude;
         if let Some(parent) = parent {
@@ -57,7 +57,7 @@ impl Lab {
         for run in runs {
             let record = self.inner.store.run(*run).await?;
             if !record.state.is_final() {
-                return Err(LabError::Conflict(format!("run {run} is still on: fit a model when it has ended")));
+                return Err(LabError::Conflict(format!("run {run} is still in progress: fit a model after its end")));
             }
             kind.get_or_insert(record.kind);
         }

@@ -125,9 +125,9 @@ impl Lab {
                     let (id, there, here) = (own.id(), &own.definition().formula, &here.definition().formula);
                     let why = if there.trim() == here.trim() { ", with other parameters" } else { "" };
                     return Err(LabError::Invalid(format!(
-                        "the model brings its own effect {id} ({there}), and here {id} is another ({here}{why}): give one of them \
-                         another id, or define the model's as the next version of {id} first (POST /effects), which new models \
-                         then have"
+                        "effect {id} of the model ({there}) differs from effect {id} of this daemon ({here}{why}): \
+                         rename one of them, or first define the effect of the model as the next version of {id} \
+                         (POST /effects)"
                     )));
                 }
             }
@@ -194,7 +194,7 @@ fn parse(definition: &EffectDefinition) -> Answer<OwnEffect> {
 }
 
 fn read(record: &OwnEffectRecord) -> Answer<OwnEffect> {
-    let unread = |fault| LabError::Internal(format!("effect {} cannot be read any more: {fault}", record.effect));
+    let unread = |fault| LabError::Internal(format!("effect {} cannot be read: {fault}", record.effect));
     serde_json::from_value(record.definition.clone()).map_err(unread)
 }
 

@@ -98,7 +98,7 @@ impl Pilot {
         let mut next = Experiment {
             procedure: request.procedure.clone(),
             parameters: request.parameters.clone(),
-            why: "the first run".into(),
+            why: "initial run".into(),
             expected_z: None,
             expected_duration_s: None,
             separates: Vec::new(),
@@ -121,7 +121,7 @@ impl Pilot {
                 Some(experiment) if self.can_afford(request, &experiment) => next = experiment,
                 Some(experiment) => {
                     let reason = format!(
-                        "{} Not measured any more: {} ({})",
+                        "{} Recommended run not performed (budget): {} ({})",
                         found.summary, experiment.procedure, experiment.why
                     );
                     return Ok(End::new(AutopilotState::BudgetSpent, reason));
@@ -199,7 +199,7 @@ impl Pilot {
         let duration_s = summary.duration_s.unwrap_or(0.0);
         self.bench_time_s += duration_s;
         let state: String = reread(&summary.state)?;
-        let text = format!("run {id} {state}: {} rows in {duration_s:.0} s of the bench", summary.rows);
+        let text = format!("run {id} {state}: {} rows in {duration_s:.0} s of bench time", summary.rows);
         let step = AutopilotStep::new(AutopilotAction::Measured, text.clone());
         self.keep(AutopilotStep { run: Some(id), bench_time_s: Some(duration_s), ..step }).await?;
         if let Some(end) = self.is_stopped() {
@@ -211,7 +211,7 @@ impl Pilot {
                 Ok(Through::Done(run))
             }
             RunState::Stopped | RunState::Aborted => {
-                Ok(Through::Cut(End::new(AutopilotState::Stopped, format!("run {id} was {state} by a person"))))
+                Ok(Through::Cut(End::new(AutopilotState::Stopped, format!("run {id} was {state} by the operator"))))
             }
             _ => Err(LabError::Bench(match &summary.reason {
                 Some(reason) => format!("{text}: {reason}"),
@@ -239,7 +239,7 @@ impl Pilot {
         let model = patiently(fit).await?;
         let tied = match best.confounded_with.as_slice() {
             [] => String::new(),
-            rivals => format!(" (these runs cannot tell it from {})", rivals.join(", ")),
+            rivals => format!(" (confounded with {})", rivals.join(", ")),
         };
         let step = AutopilotStep::new(AutopilotAction::Add, format!("added {}{tied}. ", best.effect));
         let step = AutopilotStep { effect: Some(best.effect.clone()), before_rms: Some(before.validation_rms), ..step };
@@ -265,7 +265,7 @@ impl Pilot {
 
     fn is_stopped(&self) -> Option<End> {
         let by = self.stop.borrow().clone()?;
-        Some(End::new(AutopilotState::Stopped, format!("a person has ended it ({by})")))
+        Some(End::new(AutopilotState::Stopped, format!("stopped by the operator ({by})")))
     }
 
     async fn keep(&self, step: AutopilotStep) -> Answer<()> {

@@ -119,14 +119,15 @@ impl Lab {
         Ok((record.run, export(&reread(&record.fit)?, format)?))
     }
 
-    /// Keeps an exported model as a version of a run. Its numbers stay as they are; its errors are those on the run.
+    /// Stores an exported model as a version of a run. Its numbers stay as they are; its errors are those on the run.
     pub async fn import_model(&self, import: ModelImport, by: &str) -> Answer<ImportedModel> {
         let file: serde_json::Value = import.model.into();
         let kept = exported(file.clone())?;
         let (run, kind) = (import.run, self.inner.store.run(import.run).await?.kind);
         if kept.kind.name() != kind.as_str() {
             return Err(LabError::Invalid(format!(
-                "this is a {} model, and run {run} is of the kind {kind}: choose a run of the model's kind (jointbench runs kind:{})",
+                "the model is of kind {}, run {run} of kind {kind}: choose a run of the same kind as the model \
+                 (jointbench runs kind:{})",
                 kept.kind, kept.kind
             )));
         }
@@ -159,7 +160,7 @@ impl Lab {
         let table = self.measurement(run).await?;
         let held = blocking(move || jointbench_model::evaluate(&fit, &table)).await?;
         if !held.rms.is_finite() {
-            let why = "this model predicts numbers on the run that are not finite: check its parameters";
+            let why = "predictions of this model on the run are not finite: check its parameters";
             return Err(LabError::Invalid(why.to_owned()));
         }
         reread(&held)
@@ -171,7 +172,7 @@ impl Lab {
 }
 
 fn exported(file: serde_json::Value) -> Answer<Fit> {
-    let file: ModelFile = serde_json::from_value(file)
-        .map_err(|fault| LabError::Invalid(format!("this is no exported model: {fault}")))?;
+    let file: ModelFile =
+        serde_json::from_value(file).map_err(|fault| LabError::Invalid(format!("not an exported model: {fault}")))?;
     Ok(file.check()?)
 }

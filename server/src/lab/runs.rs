@@ -38,13 +38,13 @@ impl Lab {
             })
             .collect();
         if !failed.is_empty() {
-            return Err(LabError::Invalid(format!("the plan is refused: {}", failed.join("; "))));
+            return Err(LabError::Invalid(format!("the plan was rejected: {}", failed.join("; "))));
         }
         if let Some(block) = bench.status().blocked {
             let (name, word) = (bench.name(), if block.stopped { "stopped" } else { "blocked" });
             return Err(LabError::Conflict(format!(
-                "bench {name} is {word}: {}. Look at it, then reset it with a reason: in the dashboard, or \
-                 with jointbench reset {name} --reason '…'",
+                "bench {name} is {word}: {}. Inspect the bench, then reset it with a reason in the dashboard or with \
+                 jointbench reset {name} --reason '…'",
                 block.reason
             )));
         }
@@ -109,7 +109,7 @@ impl Lab {
         if !self.inner.benches.iter().any(|bench| bench.control(id, demand.clone())) {
             let state = self.run(id).await?.summary.state;
             let state: String = super::reread(&state)?;
-            return Err(LabError::Over(format!("run {id} is over ({state}): there is nothing to steer")));
+            return Err(LabError::Over(format!("run {id} has already ended ({state})")));
         }
         self.run(id).await
     }
@@ -146,7 +146,7 @@ impl Lab {
     pub async fn table(&self, id: i64) -> Answer<RunTable> {
         let (meta, record) = self.facts(id).await?;
         if record.rows == 0 {
-            return Err(LabError::Invalid(format!("run {id} has no samples: choose a run that was measured")));
+            return Err(LabError::Invalid(format!("run {id} has no samples: choose a run with samples")));
         }
         let trace = self.inner.store.trace(id, None, 0..record.rows).await?;
         Ok(RunTable::new(meta, trace)?)
@@ -162,7 +162,7 @@ impl Lab {
             tables.push(self.measurement(*run).await?);
         }
         if tables.is_empty() {
-            return Err(LabError::Invalid("name at least one run".into()));
+            return Err(LabError::Invalid("give at least one run".into()));
         }
         let first = tables.remove(0);
         first.join(tables).map_err(|fault| LabError::Invalid(fault.to_string()))
@@ -171,7 +171,7 @@ impl Lab {
     pub(super) async fn facts(&self, id: i64) -> Answer<(Meta, RunRecord)> {
         let record = self.inner.store.run(id).await?;
         let meta = serde_json::from_value(Value::Object(record.meta.clone()))
-            .map_err(|fault| LabError::Internal(format!("the facts of run {id} cannot be read: {fault}")))?;
+            .map_err(|fault| LabError::Internal(format!("the metadata of run {id} cannot be read: {fault}")))?;
         Ok((meta, record))
     }
 }

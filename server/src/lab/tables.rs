@@ -51,7 +51,7 @@ fn columns(Table { head, rows }: Table) -> Answer<Vec<(String, TableColumn)>> {
     }
     if let Some(row) = rows.iter().position(|row| row.len() != head.len()) {
         let (found, wanted) = (rows[row].len(), head.len());
-        return Err(LabError::Invalid(format!("row {} has {found} values, and there are {wanted} columns", row + 1)));
+        return Err(LabError::Invalid(format!("row {} has {found} values, expected {wanted}", row + 1)));
     }
     let mut taken = HashSet::new();
     let free = |name: String| {

@@ -168,7 +168,7 @@ impl Lab {
         let is_taken = [LOCAL, OPERATOR, OBSERVER].into_iter().any(alike)
             || self.tokens().read().iter().any(|known| alike(&known.caller.name));
         if is_taken {
-            return Err(LabError::Invalid(format!("name: {name} is taken, and who did what would not be clear")));
+            return Err(LabError::Invalid(format!("name: {name} already exists, choose another name")));
         }
         let secret = format!("jb_{:032x}{:08x}", rand::random::<u128>(), rand::random::<u32>());
         let record = self.inner.store.save_token(name, &word(new.access), &hash(&secret), &by.name).await?;
@@ -176,16 +176,16 @@ impl Lab {
         self.tokens().add(record)?;
         tracing::warn!(token = name, access = ?new.access, by = &*by.name, "token made");
         let made = self.list_tokens(by).into_iter().find(|token| token.id == Some(id));
-        let token = made.ok_or_else(|| LabError::Conflict(format!("token {name} was revoked at once")))?;
+        let token = made.ok_or_else(|| LabError::Conflict(format!("token {name} was revoked immediately")))?;
         Ok(MadeToken { token, secret })
     }
 
     /// It opens nothing from now on; what listens with it is cut off.
     pub async fn revoke_token(&self, id: i64, by: &Caller) -> Answer<()> {
-        let missing = || LabError::NotFound(format!("there is no token {id} that could be revoked"));
+        let missing = || LabError::NotFound(format!("token {id} does not exist or is already revoked"));
         let token = self.list_tokens(by).into_iter().find(|token| token.id == Some(id)).ok_or_else(missing)?;
         if token.yours {
-            let why = "you came in with this token: revoke it with another one, so that nobody is locked out";
+            let why = "this token is used by the current session: revoke it with another token";
             return Err(LabError::Conflict(why.into()));
         }
         self.inner.store.revoke_token(id, &by.name).await?;
@@ -216,12 +216,10 @@ pub fn weakness(token: &str) -> Option<String> {
         _ if different < FEWEST_CHARACTERS => {
             format!("has {different} different characters, fewer than {FEWEST_CHARACTERS}")
         }
-        _ if token.chars().any(|c| !(c.is_ascii_graphic() || c == ' ')) => {
-            "has a character that is not ASCII, which no request can carry".to_owned()
-        }
+        _ if token.chars().any(|c| !(c.is_ascii_graphic() || c == ' ')) => "contains a non-ASCII character".to_owned(),
         _ => return None,
     };
-    Some(format!("{why}: make one with `openssl rand -hex 24`"))
+    Some(format!("{why}: generate one with `openssl rand -hex 24`"))
 }
 
 /// What is made here is long and random: nobody finds it by trying, and a plain hash keeps it.

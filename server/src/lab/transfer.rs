@@ -60,7 +60,7 @@ impl Lab {
             Some(jobs) => NamedTempFile::new_in(jobs.data().join(UPLOADS)),
             None => NamedTempFile::new(),
         };
-        let unwritable = |fault| LabError::Internal(format!("no file for what comes in: {fault}"));
+        let unwritable = |fault| LabError::Internal(format!("the upload cannot be stored: {fault}"));
         Ok(made.map_err(unwritable)?.into_parts())
     }
 
@@ -122,7 +122,7 @@ impl Lab {
             .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))??;
         let mut attention = jointbench_model::preprocess::attention(&table);
         if let Some(rows) = table.meta().other.get(LEFT_OUT_ROWS) {
-            attention.push(format!("rows left out for an empty cell: {rows}"));
+            attention.push(format!("rows omitted because of an empty cell: {rows}"));
         }
         let kind = table.kind().to_string();
         let (meta, trace) = table.into_parts();
@@ -178,7 +178,7 @@ fn read(request: &ImportRequest, bounds: Bounds) -> Answer<RunTable> {
 }
 
 fn unkept(fault: io::Error) -> LabError {
-    LabError::Internal(format!("the rows of the file cannot be laid down: {fault}"))
+    LabError::Internal(format!("the rows of the file cannot be stored: {fault}"))
 }
 
 /// Block by block, column by column, each value as eight bytes, the lowest first.

@@ -17,7 +17,12 @@ impl Lab {
     /// `pending` are left for the next question.
     pub async fn trends(&self, search: &str) -> Answer<Trends> {
         let (understood, _) = Search::understood(search);
-        let filter = RunFilter { limit: MOST, offset: 0, search: Some(format!("{understood} state:completed")), ..RunFilter::default() };
+        let filter = RunFilter {
+            limit: MOST,
+            offset: 0,
+            search: Some(format!("{understood} state:completed")),
+            ..RunFilter::default()
+        };
         let (total, records) = self.inner.store.runs(&filter).await?;
         let (mut runs, mut pending, mut worked_out) = (Vec::new(), 0, 0);
         for record in records.iter().rev().filter(|record| has_result(record)) {
@@ -56,7 +61,8 @@ impl Lab {
         };
         let view = self.inner.store.view(record.id, Some(&[channel.name.clone()]), None, None, STRETCHES).await?;
         let middles = view.columns.iter().flat_map(|column| column.min.iter().zip(&column.max));
-        let middles: Vec<f64> = middles.map(|(low, high)| (low + high) / 2.0).filter(|middle| middle.is_finite()).collect();
+        let middles: Vec<f64> =
+            middles.map(|(low, high)| (low + high) / 2.0).filter(|middle| middle.is_finite()).collect();
         Ok((!middles.is_empty()).then(|| middles.iter().sum::<f64>() / middles.len() as f64))
     }
 }

@@ -102,6 +102,6 @@ impl Begun {
 
 fn failed(fault: &JoinError) -> Response {
     tracing::error!(%fault, "a request has panicked");
-    let detail = "the request failed inside the daemon; its log says where";
+    let detail = "internal error of the daemon; see its log";
     Problem::new(StatusCode::INTERNAL_SERVER_ERROR, "internal", "The daemon failed", detail).into_response()
 }

@@ -41,10 +41,10 @@ impl Arriving {
         self.progress.enter(Stage::Body);
         let pause = self.pause.get_or_insert_with(|| Box::pin(sleep(self.limits.body_pause)));
         if pause.as_mut().poll(context).is_ready() {
-            return Some("the body came to a halt");
+            return Some("the request body stopped arriving");
         }
         let total = self.total.as_mut()?;
-        total.as_mut().poll(context).is_ready().then_some("the body took too long")
+        total.as_mut().poll(context).is_ready().then_some("the request body took too long")
     }
 }
 

@@ -73,7 +73,8 @@ impl Tls {
 
 fn load(files: &TlsFiles) -> Result<Loaded, String> {
     let written = written(files);
-    let unreadable = |path: &Path, what: &str, fault: String| format!("{}: no {what} in it ({fault})", path.display());
+    let unreadable =
+        |path: &Path, what: &str, fault: String| format!("{}: contains no {what} ({fault})", path.display());
     let chain: Result<Vec<_>, _> =
         CertificateDer::pem_file_iter(&files.certificate).and_then(|certificates| certificates.collect());
     let chain = chain.map_err(|fault| unreadable(&files.certificate, "PEM certificate", fault.to_string()))?;

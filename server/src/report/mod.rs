@@ -9,6 +9,7 @@ use crate::view::{Diagnosis, Identification, Identified, Model, ParameterState, 
 pub use figure::svg;
 use jointbench_instrument::units::{quantity_of, unit_of};
 use jointbench_model::words;
+use jointbench_procedure::procedure;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use number::with_interval;
 use serde_json::{Map, Value};
@@ -78,13 +79,13 @@ impl Report {
                 p {
                     "Data of the file " b { (file) }
                     @if let Some(source) = self.run.meta.get("source") { ", source: " (plain(source)) }
-                    @if summary.simulated { "; its facts say that a simulated bench made it." }
-                    @else { ", measured elsewhere: what bench made it is known from its facts alone." }
+                    @if summary.simulated { "; according to its metadata from a simulated bench." }
+                    @else { ", measured elsewhere; the bench is known from its metadata only." }
                 }
             }
             p.quiet {
                 (summary.created_at) " · " (word(summary.state).replace('_', " ")) " · " (summary.rows) " samples"
-                @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of the bench")) }
+                @if let Some(duration_s) = summary.duration_s { (format!(" in {duration_s:.1} s of bench time")) }
                 @if let Some(safe) = summary.safe { " · bench " (word(safe).replace('_', " ")) }
             }
             @if let Some(reason) = &summary.reason { p { (reason) } }
@@ -99,7 +100,7 @@ impl Report {
             h2 { "Model" }
             p { (model.effects.iter().map(|id| self.titled(id)).collect::<Vec<_>>().join(" + ")) }
             table {
-                tr { th { "Version" } th { "Change" } th.figure { "Held-out error" } td { } }
+                tr { th { "Version" } th { "Change" } th.figure { "Validation error" } td { } }
                 @for version in &self.versions {
                     tr {
                         td { (version.id) }
@@ -110,7 +111,7 @@ impl Report {
                 }
                 @if let Some(floor) = model.noise_floor_rms {
                     tr {
-                        td { } td { "noise floor, from repeats" } td.figure { (words::figure(floor, unit)) }
+                        td { } td { "noise floor (repeatability)" } td.figure { (words::figure(floor, unit)) }
                         td { span.bar style=(format!("width: {:.1}%", 100.0 * floor / most)) {} }
                     }
                 }
@@ -128,7 +129,7 @@ impl Report {
                 }
             }
             @for pair in &model.fit.trade_offs {
-                p.quiet { (format!("{} and {} trade off (correlation {:.2}).", pair.first, pair.second, pair.correlation)) }
+                p.quiet { (format!("Parameter trade-off: {} and {} (correlation {:.2}).", pair.first, pair.second, pair.correlation)) }
             }
             @for note in &model.fit.notes { p.quiet { (note) } }
             @if let Some(diagnosis) = &self.diagnosis { (self.diagnosed(diagnosis)) }
@@ -139,14 +140,25 @@ impl Report {
         let text = self.run.provenance.get("bench_description").and_then(Value::as_str);
         html! {
             h2 { "Parameters" }
-            (pairs(&self.run.parameters))
-            h2 { "Set-up" }
+            (pairs(&self.settings()))
+            h2 { "Test conditions" }
             (pairs(&self.run.meta))
             h2 { "Provenance" }
             (pairs(&self.run.provenance.iter().filter(|(name, _)| *name != "bench_description")
                 .map(|(name, value)| (name.clone(), value.clone())).collect()))
             @if let Some(text) = text { p { "Bench description" } pre { (text) } }
         }
+    }
+
+    /// By the labels of the form that they were chosen in.
+    fn settings(&self) -> Map<String, Value> {
+        let schema = procedure(&self.run.summary.procedure).map_or(&[][..], |procedure| procedure.schema());
+        let label = |name: &String| match schema.iter().find(|parameter| parameter.name == name) {
+            Some(parameter) if parameter.unit.is_empty() => parameter.title.to_owned(),
+            Some(parameter) => format!("{} [{}]", parameter.title, parameter.unit),
+            None => title(name),
+        };
+        self.run.parameters.iter().map(|(name, value)| (label(name), value.clone())).collect()
     }
 
     fn titled<'s>(&'s self, effect: &'s str) -> &'s str {
@@ -169,8 +181,8 @@ impl Report {
     fn diagnosed(&self, diagnosis: &Diagnosis) -> Markup {
         let found = &diagnosis.finding;
         let verdict = match (found.verdict, &found.undecided) {
-            (Verdict::Adequate, Some(_)) => "Cannot be decided",
-            (_, Some(_)) => "The columns contradict each other",
+            (Verdict::Adequate, Some(_)) => "Undecided",
+            (_, Some(_)) => "Data problem",
             (Verdict::Adequate, None) => "Adequate",
             (Verdict::MissingEffect, None) => "An effect is missing",
             (Verdict::UnexplainedStructure, None) => "Unexplained structure",
@@ -181,14 +193,14 @@ impl Report {
             h2 { "Diagnosis" }
             p.verdict { strong { (verdict) ". " } (found.summary) }
             @if !found.regions.is_empty() {
-                p { "Where the model fails:" }
+                p { "Regions with significant residual:" }
                 ul { @for region in found.regions.iter().take(5) { li { (region.sentence) } } }
             }
             @if is_advice && !found.suggestions.is_empty() {
-                p { "What is missing:" }
+                p { "Missing effects:" }
                 ul { @for suggestion in found.suggestions.iter().take(5) { li { strong { (self.titled(&suggestion.effect)) } ": " (suggestion.why) } } }
             }
-            @if let Some(experiment) = found.experiment.as_ref().filter(|_| is_advice) { p { "What to measure next: " (experiment.why) } }
+            @if let Some(experiment) = found.experiment.as_ref().filter(|_| is_advice) { p { "Recommended next run: " (experiment.why) } }
         }
     }
 }
@@ -221,7 +233,7 @@ fn result(found: &Identification) -> Markup {
         }
         @if let Some(next) = &found.follow_up {
             p {
-                "To " (next.why) ": " code { (command(&next.procedure, &next.parameters)) }
+                "Next: " (next.why) ": " code { (command(&next.procedure, &next.parameters)) }
             }
         }
         @for one in &result.figures {
@@ -229,7 +241,7 @@ fn result(found: &Identification) -> Markup {
                 figure { figcaption { (one.title) } (PreEscaped(svg)) }
             }
         }
-        p.quiet { "Worked out from the samples by " (found.software) "." }
+        p.quiet { "Computed by " (found.software) "." }
     }
 }
 
@@ -257,7 +269,9 @@ fn plain(value: &Value) -> String {
         // A part of a campaign.
         Value::Object(items) if items.contains_key("procedure") => {
             let of = |name: &str| items.get(name).map(plain).unwrap_or_default();
-            format!("{} (from segment {})", of("procedure").replace('_', " "), of("first_segment"))
+            let id = of("procedure");
+            let name = procedure(&id).map_or(id, |procedure| procedure.title().to_owned());
+            format!("{name} (from segment {})", of("first_segment"))
         }
         Value::Object(items) => {
             let said = |(name, value): (&String, &Value)| match plain(value) {

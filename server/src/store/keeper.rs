@@ -165,13 +165,13 @@ async fn state(database: &mut SqliteConnection) -> Result<(String, i64, i64), St
     Ok(sqlx::query_as("SELECT store, changes, ended FROM store_log").fetch_one(database).await?)
 }
 
-/// Changes that were acknowledged and are not there any more.
+/// Acknowledged changes that were lost.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Loss {
-    /// Number of the first one, counted from the beginning of the store.
+    /// Number of the first lost change, counted from the creation of the store.
     pub first: i64,
     pub last: i64,
-    /// When that was noticed; `null` where no daemon has been started since.
+    /// Time of detection; `null` before the next start of the daemon.
     #[schema(format = DateTime)]
     pub noticed_at: Option<String>,
 }

@@ -57,7 +57,7 @@ impl Store {
         Ok(writer.commit().await?)
     }
 
-    /// Every tag in use, the most used first.
+    /// All tags in use, most frequent first.
     pub async fn tags(&self) -> Result<Vec<String>, StoreError> {
         Ok(sqlx::query_scalar("SELECT tag FROM tags GROUP BY tag ORDER BY COUNT(*) DESC, tag")
             .fetch_all(&self.readers)

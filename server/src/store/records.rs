@@ -17,7 +17,7 @@ pub struct NewRun {
     pub parameters: Map<String, Value>,
     /// Bench description, calibration, software version, mock or hardware, seed.
     pub provenance: Map<String, Value>,
-    /// Facts about the set-up, as in `meta.json`.
+    /// Metadata of the test conditions, as in `meta.json`.
     pub meta: Map<String, Value>,
 }
 
@@ -111,7 +111,7 @@ pub struct EventRecord {
     pub sequence: u64,
     pub at_s: f64,
     pub kind: String,
-    /// The event's own fields.
+    /// Fields of the event.
     pub data: Map<String, Value>,
 }
 

@@ -5,35 +5,35 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-/// Measure, diagnose, add what is missing or make the run that would tell, again, until nothing is missing or the budget
-/// is spent.
+/// Measure, diagnose, add missing effects or perform the recommended run, until no effect is missing or the budget is
+/// used up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewAutopilot {
     pub bench: String,
-    /// At most so many runs, one that it makes first included.
+    /// Maximum number of runs, including the first.
     #[serde(default = "three")]
     #[schema(default = 3, minimum = 1, maximum = 50)]
     pub runs: u32,
-    /// At most so much time of the bench; no bound where left out.
+    /// Maximum bench time; unlimited if omitted.
     #[serde(default)]
     pub bench_time_s: Option<f64>,
-    /// The first run, where it makes that.
+    /// Procedure of the first run.
     #[serde(default = "friction")]
     #[schema(default = "friction")]
     pub procedure: String,
-    /// Of the first run. Parameters left out take their defaults.
+    /// Of the first run. Omitted parameters take their defaults.
     #[serde(default)]
     #[schema(value_type = Object)]
     pub parameters: Map<String, Value>,
-    /// The model to start from; the baseline of the procedure where left out.
+    /// The initial model; the baseline of the procedure if omitted.
     #[serde(default)]
     pub effects: Option<Vec<String>>,
-    /// At most so many effects are added.
+    /// Maximum number of effects to add.
     #[serde(default = "six")]
     #[schema(default = 6, maximum = 20)]
     pub max_effects: u32,
-    /// A run that is there: it begins with this one, and makes none before it has looked at it.
+    /// An existing run to start from, instead of a new one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_run: Option<i64>,
 }
@@ -50,7 +50,7 @@ fn friction() -> String {
     "friction".into()
 }
 
-/// The run that a diagnosis asks for, and the same model diagnosed again with it.
+/// The run that a diagnosis recommends, followed by a diagnosis of the same model with it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewExperiment {
@@ -83,12 +83,12 @@ pub struct Autopilot {
     pub id: i64,
     pub bench: String,
     pub state: AutopilotState,
-    /// Why it ended as it did, in one sentence.
+    /// Reason of its end, in one sentence.
     pub reason: Option<String>,
-    /// What was asked for: the body of the call, and the diagnosis where it makes an experiment of one.
+    /// The request: body of the call, and the diagnosis if it performs the recommended run of one.
     #[schema(value_type = Object)]
     pub request: Map<String, Value>,
-    /// Runs made so far, in order.
+    /// Runs performed so far, in order.
     pub runs: Vec<i64>,
     pub bench_time_s: f64,
     /// The newest model version.
@@ -122,17 +122,17 @@ pub struct AutopilotStep {
     #[schema(format = DateTime)]
     pub at: String,
     pub action: AutopilotAction,
-    /// One plain sentence.
+    /// =One sentence.
     pub text: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub run: Option<i64>,
-    /// Time of the bench that the run took.
+    /// Bench time of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bench_time_s: Option<f64>,
-    /// Why the run was made, and what was expected of it.
+    /// Purpose and expected benefit of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub experiment: Option<Experiment>,
-    /// The model version that was made, and its diagnosis.
+    /// The created model version and its diagnosis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<i64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -141,7 +141,7 @@ pub struct AutopilotStep {
     pub verdict: Option<Verdict>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effect: Option<String>,
-    /// Error on data that took no part in the fit, of the model before and of this one.
+    /// Validation error of the previous model and of this one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub before_rms: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

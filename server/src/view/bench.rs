@@ -25,17 +25,17 @@ pub struct Bench {
     /// True where the instruments are simulated.
     pub simulated: bool,
     pub state: BenchState,
-    /// Why no run may start until a person acknowledges.
+    /// Why no run may start until a person resets the bench.
     pub blocked: Option<Blocked>,
     /// The run in progress.
     pub run: Option<i64>,
     pub instruments: Vec<Instrument>,
     pub limits: Vec<Limit>,
-    /// As they come in during the run that is on, or came in during the last one since the daemon began; before it, what the
-    /// instruments tell in every run.
+    /// Channels of the active run, or of the latest run since the start of the daemon; before the first run the
+    /// channels of the instruments.
     pub channels: Vec<ChannelHealth>,
     pub constants: Constants,
-    /// What was measured and is not yet durable.
+    /// Recorded samples that are not yet stored.
     pub unstored: Option<Unstored>,
 }
 
@@ -45,33 +45,33 @@ pub struct Unstored {
     /// Since when none of them was stored.
     #[schema(format = DateTime)]
     pub since: Option<String>,
-    /// Why nothing can be stored, or so slowly. It is tried again until it is stored.
+    /// Why storage fails or is slow. Storage is retried until it succeeds.
     pub fault: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Blocked {
-    /// By the software stop; otherwise it is not known whether the bench is safe.
+    /// By the software stop; otherwise the safe state is not confirmed.
     pub stopped: bool,
     pub reason: String,
     /// Who pressed the stop: name of the token, or `local`.
     pub by: Option<String>,
     #[schema(format = DateTime)]
     pub since: String,
-    /// Otherwise it holds all the same, and is stored as soon as the disk takes it.
+    /// If false, the block is active and is stored as soon as possible.
     pub stored: bool,
 }
 
-/// An entry of a bench's safety record, which is only appended to.
+/// An entry of the safety record of a bench, which is append-only.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct SafetyEntry {
-    /// The bench must not move from here on; otherwise a person has released it.
+    /// The bench is blocked from now on; otherwise a person has released it.
     pub blocked: bool,
     /// By the software stop.
     pub stopped: bool,
     pub reason: String,
     pub run: Option<i64>,
-    /// Name of the token, or `local`; `null` where no person did it, or it was kept by an older version.
+    /// Name of the token, or `local`; `null` for an automatic entry, or one of an older version.
     pub by: Option<String>,
     #[schema(format = DateTime)]
     pub at: String,
@@ -87,16 +87,16 @@ pub struct Instrument {
     pub port: String,
     pub ready: bool,
     pub identity: Option<InstrumentIdentity>,
-    /// What is wrong and what to do about it.
+    /// Cause and remedy.
     pub fault: Option<String>,
     /// Since when it is not ready.
     #[schema(format = DateTime)]
     pub since: Option<String>,
-    /// The last of what was wrong, newest first, what came back by itself too.
+    /// Latest faults, newest first, including recovered ones.
     pub faults: Vec<InstrumentFault>,
 }
 
-/// What was wrong with an instrument.
+/// A fault of an instrument.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct InstrumentFault {
     #[schema(format = DateTime)]
@@ -117,23 +117,23 @@ pub struct Limit {
     pub quantity: String,
     pub unit: String,
     pub limit: f64,
-    /// The newest reading, where a run is on.
+    /// The latest reading during a run.
     pub value: Option<f64>,
 }
 
-/// How a channel comes in.
+/// State of an incoming channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ChannelHealth {
     pub name: String,
     pub unit: Option<String>,
-    /// New readings in a second of the bench's clock; one that is held counts once. `null` before the second.
+    /// New readings per second of bench time; a repeated value counts once. `null` before the second reading.
     pub rate_hz: Option<f64>,
-    /// When the last value was felt, by the daemon's clock.
+    /// Time of the last value, by the clock of the daemon.
     #[schema(format = DateTime)]
     pub at: Option<String>,
-    /// How long ago that was when the bench was told of.
+    /// Age of the last value at the time of this message.
     pub age_s: Option<f64>,
-    /// Samples of the run that did not come.
+    /// Missing samples of the run.
     pub dropped: u64,
 }
 
@@ -146,15 +146,15 @@ pub struct Constants {
     pub brake_compliance_v: f64,
     pub brake_rated_current_a: f64,
     pub brake_rated_torque_nm: f64,
-    /// The link may turn this far to either side; `null` where it is not limited.
+    /// Range of the link to either side; `null` if unlimited.
     pub link_range_rad: Option<f64>,
 }
 
-/// A person's word that the bench was looked at and is safe.
+/// Confirmation by a person that the bench was inspected and is safe.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Acknowledgement {
-    /// What was found and done; kept with the bench.
+    /// Findings and action taken; stored with the bench.
     #[schema(min_length = 1)]
     pub reason: String,
 }

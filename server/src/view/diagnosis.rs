@@ -15,23 +15,23 @@ pub struct NewDiagnosis {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Nothing left that this data can show.
+    /// No further effect is detectable in this data.
     Adequate,
-    /// An effect of the library explains the rest.
+    /// An effect of the library explains the residual structure.
     MissingEffect,
-    /// There is structure, but no effect of the library explains it.
+    /// Residual structure that no effect of the library explains.
     UnexplainedStructure,
 }
 
-/// How sure it is that an effect is missing, and whether it matters.
+/// Evidence that an effect is missing, and its significance.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
     #[default]
     Strong,
-    /// Sure, and less than 5 % of the held-out error.
+    /// Significant, but less than 5 % of the validation error.
     Small,
-    /// It may be missing: chance would name one in more than 1 % of such runs, or its interval reaches to nothing.
+    /// Weak: p-value above 1 %, or an interval that includes zero.
     Weak,
 }
 
@@ -52,7 +52,7 @@ pub struct Diagnosis {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Finding {
     pub kind: String,
-    /// Effects of the model at hand.
+    /// =Effects of the diagnosed model.
     pub model: Vec<String>,
     pub fit: Fit,
     pub residual: ResidualKind,
@@ -60,39 +60,39 @@ pub struct Finding {
     pub noise_floor_rms: Option<f64>,
     pub noise_floor: NoiseFloor,
     pub verdict: Verdict,
-    /// One plain sentence.
+    /// =One sentence.
     pub summary: String,
-    /// Why the verdict is no assurance: the data could not have shown what is missing, or the columns contradict each other.
+    /// Why no verdict is possible: the data cannot show a missing effect, or the columns contradict each other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
-    /// Regions where the model is wrong, the worst first.
+    /// Regions with significant residual, largest first.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
-    /// Whether structure remains even beside all suggestions: then no run is proposed for effects that nothing points to.
+    /// Whether unexplained structure remains with all suggestions; no run is then recommended for untestable effects.
     #[serde(default)]
     pub structure_remains: bool,
     /// Ranked; empty unless the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
-    /// The run that would tell more.
+    /// =Recommended next run.
     pub experiment: Option<Experiment>,
-    /// Effects that were looked for and not found.
+    /// =Effects that were tested and are not significant.
     pub silent: Vec<Silent>,
-    /// Effects that this data cannot show.
+    /// =Effects that are not testable with this data.
     pub not_visible: Vec<Invisible>,
-    /// Effects that were tried and left out.
+    /// =Rejected effects.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
 }
 
-/// How well the measurement repeats itself.
+/// Repeatability of the measurement (noise floor).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct NoiseFloor {
     pub rms: Option<f64>,
     #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub ci95: Option<[f64; 2]>,
-    /// Where the figure comes from, in words.
+    /// Origin of the figure.
     pub source: String,
-    /// Share of the remaining squared error that is the same in every repeat.
+    /// Fraction of the remaining squared error that is equal in all repeats.
     pub repeatable_share: Option<f64>,
 }
 
@@ -109,7 +109,7 @@ pub struct Region {
     /// `positive` or `negative` motion; absent for both.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<String>,
-    /// The same in one sentence with figures.
+    /// The same as one sentence.
     pub sentence: String,
 }
 
@@ -118,30 +118,30 @@ pub struct Suggestion {
     pub effect: String,
     /// With the effect added.
     pub validation_rms: f64,
-    /// Share of the validation error that goes away with this effect alone.
+    /// Relative reduction of the validation error by this effect alone.
     pub error_reduction: f64,
-    /// From the scatter over what was held out; absent for an effect that is judged elsewhere than where the RMS looks.
+    /// From the scatter over the validation data; absent for an effect that acts outside the data of the RMS.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub error_reduction_ci95: Option<[f64; 2]>,
-    /// Change of the Bayesian information criterion over independent pieces; below 0 it speaks for the effect.
+    /// Change of the Bayesian information criterion over independent blocks; negative values favour the effect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bic_change: Option<f64>,
-    /// Share of the validation error that it takes away beside all other suggestions.
+    /// Relative reduction of the validation error together with all other suggestions.
     #[serde(default)]
     pub error_reduction_together: f64,
-    /// Family-wise, from sign flips of whole blocks.
+    /// Family-wise p-value from sign flips of blocks.
     pub p_value: f64,
     #[serde(default)]
     #[schema(required = true)]
     pub evidence: Evidence,
-    /// No flip scored as high: the chance is `p_value` at most.
+    /// No sign flip scored as high: the p-value is at most `p_value`.
     #[serde(default)]
     pub p_at_most: bool,
     pub parameters: Vec<FittedParameter>,
-    /// Effects that this data cannot tell from this one.
+    /// Effects that this data cannot distinguish from it.
     pub confounded_with: Vec<String>,
-    /// One plain sentence.
+    /// =One sentence.
     pub why: String,
 }
 
@@ -151,13 +151,13 @@ pub struct Experiment {
     #[schema(value_type = Object)]
     pub parameters: Map<String, Value>,
     pub why: String,
-    /// Expected separation of the rivals in standard deviations.
+    /// Expected separation of the candidate effects, in standard deviations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_z: Option<f64>,
-    /// Longest duration on the bench.
+    /// Maximum bench time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_duration_s: Option<f64>,
-    /// Effects that it tells apart, or shows for the first time.
+    /// Effects that the run distinguishes or makes testable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub separates: Vec<String>,
 }
@@ -165,14 +165,14 @@ pub struct Experiment {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Silent {
     pub effect: String,
-    /// RMS of the smallest effect that would have been found with 80 % probability.
+    /// Detection limit: RMS of the smallest effect that is found with 80 % power.
     pub minimum_detectable_rms: f64,
-    /// Within what it was looked for, where that has ends: `1 to 60 waves a turn`.
+    /// Search range, if limited.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sought: Option<String>,
 }
 
-/// An effect that was tried and is not in the model, though it might be there.
+/// A rejected effect: tested, but not added to the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LeftOut {
     pub effect: String,

@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 #[serde(rename_all = "snake_case")]
 pub enum Identified {
     Identified,
-    /// Identified, although the run found a precondition broken; `warnings` tells which.
+    /// Identified, although the run found a precondition broken; `warnings` lists them.
     IdentifiedWithWarning,
     /// The run says too little; `advice` tells what to measure.
     Inconclusive,
@@ -23,48 +23,48 @@ impl Identified {
     }
 }
 
-/// Worked out from the stored samples each time it is asked for, by the version that answers.
+/// Computed from the stored samples at each request, by the running version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Identification {
     pub run: i64,
     pub procedure: String,
-    /// The version of jointbench that worked it out.
+    /// The version of jointbench that computed it.
     pub software: String,
     #[serde(flatten)]
     pub result: Shown,
-    /// The run that uses what was found.
+    /// =The run that uses the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub follow_up: Option<FollowUp>,
     pub applies: Applies,
 }
 
-/// Whether the next runs of the bench can be made to use the result (`POST /bench/{bench}/calibrations`).
+/// Whether the result can be applied to the bench (`POST /bench/{bench}/calibrations`).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Applies {
     pub can: bool,
-    /// What becomes of it then, or why it cannot be.
+    /// Effect of applying it, or the reason why it cannot be applied.
     pub what: String,
 }
 
-/// A run for which this one has found the parameters.
+/// A run with parameters from the result of this one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FollowUp {
     pub procedure: String,
     #[schema(value_type = Object)]
     pub parameters: Map<String, Value>,
-    /// What it is good for, in a few words.
+    /// Purpose, in a few words.
     pub why: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Shown {
     pub verdict: Identified,
-    /// One plain sentence, or a line for each part of a campaign.
+    /// One sentence, or one line per part of a campaign.
     pub summary: String,
     /// Preconditions that the run itself found broken, such as a joint that was not warmed up.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// What to measure or mend next.
+    /// Advice for the next step.
     pub advice: Option<String>,
     pub quantities: Vec<Quantity>,
     pub figures: Vec<Figure>,
@@ -82,12 +82,12 @@ impl Shown {
     }
 }
 
-/// What an earlier run of the same bench and procedure has found.
+/// Results of an earlier run of the same bench and procedure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Earlier {
     pub run: i64,
     pub created_at: String,
-    /// It is applied to the bench: changes are told against it.
+    /// Applied to the bench: reference for changes.
     pub holds: bool,
     pub quantities: Vec<Quantity>,
 }
@@ -115,38 +115,38 @@ pub struct TrendRun {
     pub quantities: Vec<Quantity>,
 }
 
-/// A run beside the last model of its kind that its bench has from another run.
+/// A run compared with the latest model of its kind from another run of the bench.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Beside {
     pub model: i64,
     /// The run that the model was fitted to first.
     pub model_run: i64,
-    /// How far the model's own run scatters about it, in the unit of the figures.
+    /// RMS scatter of the run of the model, in the unit of the figures.
     pub noise_rms: f64,
-    /// Whether that is the noise floor of its run, or the model's held-out error where no floor is known.
+    /// Whether this is the noise floor of its run, or the validation error of the model if no floor is known.
     pub has_noise_floor: bool,
-    /// Points of this run that the model speaks of.
+    /// Points of this run within the scope of the model.
     pub points: usize,
-    /// Share of them further from the model than two of its standard deviations; 0.05 where the model explains the run.
+    /// Fraction of the points beyond two standard deviations from the model; 0.05 if the model explains the run.
     pub outside: Option<f64>,
-    /// Why there is nothing to show yet.
+    /// Reason why no comparison is available yet.
     pub why_not: Option<String>,
-    /// Measured and model over time, and what it leaves with the band of the noise.
+    /// Measured signal and model over time, and the residual with the noise band.
     pub figures: Vec<Figure>,
 }
 
 /// One figure of a result, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Quantity {
-    /// Stable and unique in its result: what scripts and limits hold on to.
+    /// Stable and unique in its result, for scripts and limits.
     pub name: String,
     /// As in the literature: `τ_c⁺`.
     pub symbol: String,
     pub title: String,
-    /// SI symbol; empty for a share or a count.
+    /// SI symbol; empty for a fraction or a count.
     pub unit: String,
     pub value: f64,
-    /// 95 % interval, where one can be had from the run.
+    /// 95 % interval, if determined by the run.
     #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub ci95: Option<[f64; 2]>,
 }
@@ -172,9 +172,9 @@ pub enum FigureForm {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FigureAxis {
     pub label: String,
-    /// SI symbol; empty for a share or a count.
+    /// SI symbol; empty for a fraction or a count.
     pub unit: String,
-    /// Where the axis counts things that have names, instead of a quantity: 0 is the first.
+    /// Names of the categories, if the axis is not a quantity; 0 is the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub names: Vec<String>,
 }
@@ -193,7 +193,7 @@ pub struct FigureSeries {
     pub mark: Mark,
     pub x: Vec<f64>,
     pub y: Vec<f64>,
-    /// Lower and upper end of the 95 % band at each point; empty where there is none.
+    /// Lower and upper end of the 95 % band at each point; empty without a band.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<Vec<f64>>)]
     pub band: Vec<[f64; 2]>,

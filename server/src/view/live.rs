@@ -31,7 +31,7 @@ pub enum LiveMessage {
         run: i64,
         event: RunEvent,
     },
-    /// The columns of the binary frames that follow, `time_s` among them.
+    /// =The columns of the following binary frames, including `time_s`.
     Channels {
         bench: String,
         run: i64,
@@ -42,17 +42,17 @@ pub enum LiveMessage {
         run: i64,
         model: i64,
     },
-    /// What came of a run has been worked out.
+    /// The result of a run has been computed.
     Verdict {
         run: i64,
         verdict: Identified,
     },
-    /// Users' effects of a kind have come, changed or gone: what a diagnosis may suggest is not what it was.
+    /// User-defined effects of a kind were added, changed or deleted.
     Effects {
         kind: String,
         effect: String,
     },
-    /// An autopilot has made a step or has ended.
+    /// An autopilot has completed a step or has ended.
     Autopilot {
         autopilot: i64,
         bench: String,

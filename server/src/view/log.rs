@@ -6,13 +6,14 @@ use utoipa::ToSchema;
 /// One line of the log.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
 pub struct LogEntry {
-    /// A mock bench without a pace is ahead of the clock on the wall: what it does is told at the end of its run at the latest.
+    /// Wall-clock time. A mock bench without a pace runs ahead of it; its events are dated at the end of the run at the
+    /// latest.
     #[schema(format = DateTime)]
     pub at: String,
     /// `stopped`, `blocked`, `reset` or `calibration` of a bench; `started`, `imported` or `model` of a run; the kind of an entry of the run's
     /// journal; `token`.
     pub kind: String,
-    /// One plain sentence.
+    /// =One sentence.
     pub text: String,
     /// Who did it: name of the token, or `local`.
     pub by: Option<String>,
@@ -20,12 +21,12 @@ pub struct LogEntry {
     pub run: Option<i64>,
     /// Of the run.
     pub procedure: Option<String>,
-    /// The version that was made.
+    /// The created version.
     pub model: Option<i64>,
-    /// Number in the run's journal.
+    /// Number in the journal of the run.
     pub sequence: Option<u64>,
     /// Since the start of the run, on the bench's clock.
     pub at_s: Option<f64>,
-    /// A stop, a fault or a broken limit.
+    /// A stop, a fault or an exceeded limit.
     pub grave: bool,
 }

@@ -5,28 +5,28 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-/// One physical cause that a model can hold.
+/// One physical effect that a model can contain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Effect {
     pub id: String,
     pub kind: String,
     pub title: String,
-    /// One sentence a technician understands.
+    /// One sentence for a technician.
     pub sentence: String,
     pub formula: String,
-    /// Document and equation, or paper.
+    /// Published source.
     #[serde(default)]
     pub source: String,
-    /// How the residual looks when the effect is missing.
+    /// Shape of the residual if the effect is missing.
     #[serde(default)]
     pub looks: String,
     pub parameters: Vec<EffectParameter>,
-    /// Columns without which the effect cannot be computed.
+    /// Columns required for the effect.
     pub needs: Vec<String>,
-    /// What a user wrote; `null` for an effect of the library.
+    /// User definition; `null` for a library effect.
     #[serde(default)]
     pub definition: Option<EffectDefinition>,
-    /// Version of a user's definition, from 1.
+    /// Version of the user definition, from 1.
     #[serde(default)]
     pub version: Option<i64>,
 }
@@ -39,34 +39,34 @@ pub struct EffectParameter {
     pub max: Option<f64>,
 }
 
-/// A model to be fitted: a run and a set of effects.
+/// A model to fit: a run and a set of effects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewModel {
     pub run: i64,
-    /// Further runs of the same kind and joint to look at together with the first, in the order in which they were made.
+    /// Further runs of the same kind and joint for a combined fit, in chronological order.
     #[serde(default)]
     pub more_runs: Vec<i64>,
     pub effects: Vec<String>,
-    /// The version that this one grew from.
+    /// Parent version.
     #[serde(default)]
     pub parent: Option<i64>,
-    /// Stretches that the fit must not look at; those of the parent where left out.
+    /// Intervals to exclude from the fit; those of the parent if omitted.
     #[serde(default)]
     pub exclude: Option<Vec<Exclusion>>,
-    /// Only to see what it would do: the version is nobody's model until it is kept.
+    /// Trial: the version is not listed as a model until it is kept.
     #[serde(default)]
     pub tried: bool,
 }
 
-/// A stretch of a measurement that a model version was not fitted to.
+/// An interval of a measurement that is excluded from the fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Exclusion {
-    /// Since the first sample of the runs that are looked at together, both ends included.
+    /// Time since the first sample of the combined runs, both ends included.
     pub from_s: f64,
     pub to_s: f64,
-    /// What a person knows of it.
+    /// Reason given by the user.
     pub reason: String,
 }
 
@@ -82,25 +82,25 @@ impl NewModel {
 pub struct Model {
     pub id: i64,
     pub run: i64,
-    /// Further runs that the fit looked at together with the first.
+    /// Further runs of the fit.
     pub more_runs: Vec<i64>,
-    /// What the fit did not look at.
+    /// Intervals excluded from the fit.
     pub excluded: Vec<Exclusion>,
     pub kind: String,
     pub parent: Option<i64>,
-    /// Effects that the parent did not have; all of them where there is no parent.
+    /// Effects that the parent does not have; all of them without a parent.
     pub added: Vec<String>,
     pub removed: Vec<String>,
     pub effects: Vec<String>,
     pub fit: Fit,
     pub residual: ResidualKind,
-    /// On data that took no part in the fit.
+    /// =Validation error (cross-validated RMS).
     pub validation_rms: f64,
     pub rms: f64,
     pub noise_floor_rms: Option<f64>,
-    /// It has added effects to its parent and takes less than half a percent off the error held out, and nobody has kept it.
+    /// Not significant: reduces the validation error of its parent by less than 0.5 % and was not kept by a user.
     pub idle: bool,
-    /// It was made to see what it would do, and nobody has kept it.
+    /// Trial version that was not kept.
     #[serde(default)]
     #[schema(required = true)]
     pub tried: bool,
@@ -113,45 +113,45 @@ pub struct Model {
     pub options: Map<String, Value>,
 }
 
-/// What an effect of a version is worth now, whatever the order in which the effects came.
+/// Contribution of an effect to a version, independent of the order of the effects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Worth {
     pub effect: String,
-    /// The error outside the fit that is left when the others are fitted again without it; `null` where they cannot be.
+    /// Validation error without the effect, the others refitted; `null` if they cannot be fitted.
     pub without_rms: Option<f64>,
     /// Why there is no figure.
     pub reason: Option<String>,
 }
 
-/// A model with the parameters that fit one run best.
+/// A model with fitted parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Fit {
     pub kind: String,
     pub effects: Vec<String>,
-    /// Users' effects as they were when the model was fitted.
+    /// User-defined effects at the time of the fit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<EffectDefinition>,
-    /// On the data that was fitted.
+    /// =Training error (RMS).
     pub rms: f64,
-    /// On data that took no part in the fit.
+    /// =Validation error (cross-validated RMS).
     pub validation_rms: f64,
     pub unit: String,
     pub residual: ResidualKind,
     /// ‖residual‖ / ‖measured‖.
     pub relative_error: f64,
     pub parameters: Vec<FittedParameter>,
-    /// Pairs of parameters that trade off against each other.
+    /// Parameter trade-offs (correlated pairs).
     pub trade_offs: Vec<TradeOff>,
     /// Condition number of the scaled columns.
     pub condition: Option<f64>,
-    /// What a user should know, in plain sentences.
+    /// Notes for the user.
     pub notes: Vec<String>,
     pub preparation: Preparation,
-    /// The same parameters as the effects hold them, to compute the model again.
+    /// Internal parameters of the effects, to evaluate the model.
     pub terms: Vec<Term>,
 }
 
-/// What RMS figures and residuals are made of.
+/// Basis of RMS figures and residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ResidualKind {
@@ -167,11 +167,11 @@ pub struct FittedParameter {
     pub name: String,
     pub value: f64,
     pub unit: String,
-    /// 95 % confidence interval over segments or repeats; `null` where this data sets no bound.
+    /// 95 % confidence interval over segments or repeats; `null` without a bound.
     #[schema(value_type = Vec<Option<f64>>, min_items = 2, max_items = 2)]
     pub ci95: [Option<f64>; 2],
     pub state: ParameterState,
-    /// The state in words, where it is not `ok`; in a diagnosis also what it would be with an effect that the run leaves open.
+    /// Explanation of a state other than `ok`; in a diagnosis also the value with a confounded effect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }
@@ -186,7 +186,7 @@ pub enum ParameterState {
     Unidentified,
 }
 
-/// Two parameters of which the data decides only a combination.
+/// Two parameters of which the data determines only a combination.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TradeOff {
     /// `effect.parameter`.
@@ -195,13 +195,13 @@ pub struct TradeOff {
     pub correlation: f64,
 }
 
-/// How the run was prepared for the fit.
+/// Preprocessing of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Preparation {
     pub residual: ResidualKind,
     pub sample_rate_hz: f64,
     pub cutoff_hz: Option<f64>,
-    /// By how much the measured velocity came after its position, and was moved back.
+    /// Corrected delay of the measured velocity against position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_lag_s: Option<f64>,
     pub decimation: u64,
@@ -209,7 +209,7 @@ pub struct Preparation {
     pub samples: u64,
     /// Rows of the fit: chunks or decimated samples.
     pub rows: u64,
-    /// Independent pieces for validation, intervals and tests.
+    /// Independent blocks for validation, intervals and tests.
     pub blocks: u64,
     /// `column` or `found`.
     pub segments_from: String,
@@ -224,12 +224,12 @@ pub struct Term {
     pub form: String,
     pub shape: Vec<f64>,
     pub linear: Vec<f64>,
-    /// Names of the factors, then of the shape parameters.
+    /// Names of the coefficients, then of the nonlinear parameters.
     #[serde(default)]
     pub names: Vec<String>,
 }
 
-/// What is left of a run once a model version is taken away. All lists have the same length.
+/// Residuals of a run for a model version. All lists have the same length.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ResidualSet {
     pub residual: ResidualKind,
@@ -240,15 +240,15 @@ pub struct ResidualSet {
     pub predicted: Vec<f64>,
     /// measured − predicted.
     pub error: Vec<f64>,
-    /// Points that are not part of the fit (ramps, reversals): shown, not judged.
+    /// Points outside the fit (ramps, reversals): shown, not evaluated.
     pub held_out: Vec<bool>,
-    /// Points that a person took out of the fit; empty where there are none.
+    /// Points that a user excluded from the fit; empty without exclusions.
     #[serde(default)]
     #[schema(required)]
     pub excluded: Vec<bool>,
     pub segment: Vec<i64>,
     pub repeat: Vec<i64>,
-    /// Pieces of the run that may be called independent of each other, numbered in their order: what bands count.
+    /// Number of the independent block of each point, used for the bands.
     pub piece: Vec<usize>,
 }
 

@@ -5,40 +5,41 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-/// An effect that a user writes.
+/// A user-defined effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectDefinition {
-    /// Lower case letters, digits and underscores; not an id of the library.
+    /// Lower-case letters, digits and underscores; must differ from library ids.
     pub id: String,
     pub kind: String,
-    /// `tau = …` for friction and brake, `error = …` for encoder, `torsion = …` for stiffness; what stands right of it is enough.
+    /// `tau = …` for friction and brake, `error = …` for encoder, `torsion = …` for stiffness; the right-hand side is
+    /// sufficient.
     pub formula: String,
     pub parameters: Vec<DefinedParameter>,
     #[serde(default)]
     pub title: String,
-    /// One sentence that a technician understands.
+    /// One sentence for a technician.
     #[serde(default)]
     pub sentence: String,
 }
 
-/// A parameter that enters linearly is solved for; the others are searched for in their range.
+/// A linear parameter is solved for; a nonlinear parameter is searched in its range.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DefinedParameter {
     pub name: String,
-    /// `1` where left out.
+    /// =`1` if omitted.
     #[serde(default = "one")]
     pub unit: String,
     #[serde(default)]
     pub min: Option<f64>,
     #[serde(default)]
     pub max: Option<f64>,
-    /// Where the search begins, inside the bounds.
+    /// Start values of the search, inside the bounds.
     #[serde(default)]
     #[schema(value_type = Option<Vec<f64>>, min_items = 2, max_items = 2)]
     pub start: Option<[f64; 2]>,
-    /// A whole number: every one of the range is tried.
+    /// A whole number: all values of the range are tested.
     #[serde(default)]
     pub whole: bool,
 }
@@ -47,39 +48,39 @@ fn one() -> String {
     "1".to_owned()
 }
 
-/// A definition to be checked, and the run to try it on.
+/// A definition to check, and optionally the run to fit it on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectTrial {
     pub effect: EffectDefinition,
-    /// The formula must be finite on this run; the effect is fitted beside `effects`.
+    /// The formula must be finite on this run; the effect is fitted together with `effects`.
     #[serde(default)]
     pub run: Option<i64>,
-    /// Effects of the model that it is tried in; else the run's baseline.
+    /// Effects of the model for the trial; the baseline of the run if omitted.
     #[serde(default)]
     pub effects: Option<Vec<String>>,
-    /// The run whose columns the formula may name; nothing is fitted to it.
+    /// The run whose columns the formula may use, without a fit.
     #[serde(default)]
     pub columns_of: Option<i64>,
-    /// Further runs of the same joint, looked at together with the first.
+    /// Further runs of the same joint, analysed together with the first.
     #[serde(default)]
     pub more_runs: Vec<i64>,
-    /// The formula is still being typed: a mistake in it is told in the answer, instead of refused.
+    /// The formula is incomplete: errors are part of the response instead of a rejection.
     #[serde(default)]
     pub typing: bool,
 }
 
-/// A mistake in a text that a user wrote.
+/// An error in a formula.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Place {
     /// `formula`, `parameters` or `id`.
     pub field: String,
     pub text: String,
-    /// Characters before the mistake.
+    /// Number of characters before the error.
     pub position: u64,
-    /// Characters of the mistake; 0 where something is missing.
+    /// Number of wrong characters; 0 if something is missing.
     pub length: u64,
-    /// What is wrong there, without the rest of the sentence.
+    /// Short description of the error.
     pub message: String,
 }
 
@@ -95,31 +96,31 @@ impl From<jointbench_model::FormulaFault> for Place {
     }
 }
 
-/// What a formula means.
+/// A parsed formula.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct EffectCheck {
-    /// `null` where there is a mistake.
+    /// `null` if the formula is invalid.
     pub effect: Option<Effect>,
-    /// Of a formula that is still being typed.
+    /// Error in an incomplete formula.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mistake: Option<Place>,
-    /// Units that contradict each other, or a formula of the very thing that is modelled: neither changes a figure.
+    /// Warnings: inconsistent units, or a formula that uses the modelled signal. They do not change results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
-    /// Parameters that enter linearly.
+    /// Linear parameters (coefficients).
     pub linear: Vec<String>,
-    /// Parameters that are searched for.
+    /// Nonlinear parameters.
     pub shape: Vec<String>,
-    /// Signals that the formula names.
+    /// Signals used by the formula.
     pub signals: Vec<String>,
-    /// The effect's parameters on the run; empty where none was named.
+    /// Fitted parameters on the run; empty without a run.
     pub parameters: Vec<FittedParameter>,
-    /// Effects beside which it was tried and from which the run cannot tell it: of the two it decides only a combination.
+    /// Effects that are confounded with it on this run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub like: Vec<String>,
 }
 
-/// A signal that a formula may name.
+/// A signal that a formula may use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FormulaSignal {
     pub name: String,
@@ -127,11 +128,11 @@ pub struct FormulaSignal {
     pub meaning: String,
 }
 
-/// What formulas of a kind are made of.
+/// Elements of the formulas of a kind.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FormulaLanguage {
     pub kind: String,
-    /// What stands before the equals sign.
+    /// Left-hand side of the formula.
     pub left_hand_side: String,
     pub signals: Vec<FormulaSignal>,
     pub functions: Vec<String>,
@@ -155,25 +156,25 @@ pub struct Evaluation {
     pub relative_error: f64,
     pub rows: u64,
     pub samples: u64,
-    /// Share of the samples that is settled motion, where only that is judged.
+    /// Fraction of the samples in steady state, if only steady state is evaluated.
     pub settled_share: Option<f64>,
-    /// What the error does not say by itself, in plain sentences: columns that are missing, facts that differ from those
-    /// of the fit, signals that leave its ranges.
+    /// Limitations of the evaluation: missing columns, metadata that differ from the fit, signals outside the range of
+    /// the fit.
     pub notes: Vec<String>,
 }
 
-/// Two model versions side by side.
+/// =Comparison of two model versions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Comparison {
     pub kind: String,
-    /// Effects of the second that the first has not.
+    /// Effects of the second that are not in the first.
     pub added: Vec<String>,
     pub removed: Vec<String>,
     pub parameters: Vec<ParameterPair>,
     /// Both on the same run.
     pub first: Evaluation,
     pub second: Evaluation,
-    /// Each on what was held out of its own run.
+    /// Each on the validation data of its own run.
     pub first_validation_rms: f64,
     pub second_validation_rms: f64,
 }
@@ -185,13 +186,13 @@ pub struct ParameterPair {
     pub unit: String,
     pub first: Option<FittedParameter>,
     pub second: Option<FittedParameter>,
-    /// The values are further apart than their intervals allow; `null` where one is missing or has no interval.
+    /// The intervals of the values do not overlap; `null` if a value or an interval is missing.
     pub differ: Option<bool>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wider: Option<Wider>,
 }
 
-/// Why a parameter's interval is much wider in one of two versions.
+/// Why the interval of a parameter is much wider in one of two versions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Wider {
     /// In the second, or in the first.
@@ -200,23 +201,23 @@ pub struct Wider {
     pub why: String,
 }
 
-/// A version that came in, and what its errors on the run do not say by themselves.
+/// An imported version, with the limitations of its evaluation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ImportedModel {
     #[serde(flatten)]
     pub model: Model,
-    /// As an evaluation tells it: columns that are missing, facts that differ from those of the fit, signals that leave its
-    /// ranges.
+    /// Limitations, as in an evaluation: missing columns, metadata that differ from the fit, signals outside the range
+    /// of the fit.
     pub notes: Vec<String>,
 }
 
-/// An exported model that comes in as a version of a run.
+/// An exported model to import as a version of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModelImport {
-    /// The run that the model is held against; its errors become those of the version.
+    /// The run to evaluate the model on; its errors become those of the version.
     pub run: i64,
-    /// What `GET /models/{id}/export?format=json` gave.
+    /// Response of `GET /models/{id}/export?format=json`.
     #[schema(value_type = Object)]
     pub model: Map<String, Value>,
 }

@@ -9,10 +9,10 @@ pub struct Procedure {
     pub id: String,
     pub title: String,
     pub summary: String,
-    /// The kind of run table that comes out.
+    /// The kind of the run table.
     pub kind: String,
     pub parameters: Vec<ProcedureParameter>,
-    /// Why the bench that was asked about could not make it with its defaults; absent where it could, or none was named.
+    /// Why the requested bench cannot run it with its defaults; absent if it can, or without a bench.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refused: Option<String>,
 }
@@ -21,7 +21,7 @@ pub struct Procedure {
 pub struct ProcedureParameter {
     pub name: String,
     pub title: String,
-    /// SI symbol; empty for a share or a count.
+    /// SI symbol; empty for a fraction or a count.
     pub unit: String,
     pub default: f64,
     pub min: f64,
@@ -37,7 +37,7 @@ pub enum ParameterType {
     Integer,
 }
 
-/// A procedure on a bench, to be looked at first or to be run. Parameters left out take their defaults.
+/// A procedure on a bench, to preview or to run. Omitted parameters take their defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PreviewRequest {
@@ -47,19 +47,19 @@ pub struct PreviewRequest {
     pub parameters: Map<String, Value>,
 }
 
-/// A dry run: nothing moves.
+/// A dry run without motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Preview {
     /// On the bench's clock.
     pub duration_s: f64,
-    /// On the clock of the person who waits; absent for a mock bench that runs as fast as it can.
+    /// In wall-clock time; absent for a mock bench without pace.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wait_s: Option<f64>,
     pub steps: Vec<PlannedStep>,
-    /// The most that the plan will ask of the bench, against its limits.
+    /// Maximum values of the plan against the limits of the bench.
     pub extremes: Vec<Extreme>,
     pub setpoints: Setpoints,
-    /// What must be true before a start; a failed one names its cure.
+    /// A condition for the start; a failed one states its remedy.
     pub checks: Vec<Check>,
 }
 
@@ -74,7 +74,7 @@ pub struct Extreme {
     pub quantity: String,
     pub unit: String,
     pub value: f64,
-    /// `null` where the bench sets none.
+    /// =`null` without a limit.
     pub limit: Option<f64>,
     pub ok: bool,
 }

@@ -21,7 +21,7 @@ pub enum RunState {
     Interrupted,
 }
 
-/// What securing has reached.
+/// Safe state reached at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Safe {
@@ -36,14 +36,14 @@ pub enum Safe {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RunSummary {
     pub id: i64,
-    /// The bench, or where the run was imported from.
+    /// The bench, or the source of an imported run.
     pub bench: String,
-    /// The procedure's id; `import` for a run that came in as a file.
+    /// Id of the procedure; `import` for an imported run.
     pub procedure: String,
     pub kind: String,
     pub state: RunState,
     pub safe: Option<Safe>,
-    /// Why the run ended as it did, where it did not complete.
+    /// Reason of the end, if the run did not complete.
     pub reason: Option<String>,
     #[schema(format = DateTime)]
     pub created_at: String,
@@ -52,46 +52,47 @@ pub struct RunSummary {
     pub rows: u64,
     pub duration_s: Option<f64>,
     pub simulated: bool,
-    /// Who started it or brought it in: name of the token, or `local`.
+    /// User who started or imported it: name of the token, or `local`.
     pub by: Option<String>,
     pub tags: Vec<String>,
     /// The last note.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
-    /// What the procedure makes of it, as soon as that is worked out after its end.
+    /// Verdict of the procedure, available shortly after the end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Identified>,
     /// Whether the models of its kind describe it: a run for the zero of a sensor, a compensation or a warm-up has no model.
     pub is_modelled: bool,
-    /// The last version of the run's model that is neither idle nor only tried.
+    /// The latest active model version of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<LastModel>,
-    /// Why the end of the run is not yet stored: the rest is as the bench has told. It is stored as soon as that can be.
+    /// Why the end of the run is not yet stored; the other fields are reported by the bench. It is stored as soon as
+    /// possible.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub not_stored: Option<String>,
-    /// What is wrong with its record, in a list: the other fields are what can be read, or empty.
+    /// Damage of its record, in a list; the other fields contain the readable data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damaged: Option<String>,
 }
 
-/// What a model version comes to, in short.
+/// Summary of a model version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LastModel {
     pub id: i64,
-    /// On data that took no part in the fit.
+    /// =Validation error (cross-validated RMS).
     pub validation_rms: f64,
     pub noise_floor_rms: Option<f64>,
     /// Of the RMS figures.
     pub unit: String,
-    /// Coulomb friction, where the model has it.
+    /// Coulomb friction, if in the model.
     pub coulomb: Option<FittedParameter>,
 }
 
-/// What somebody said about a run; only ever appended to.
+/// A note about a run; notes are never changed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Note {
     pub id: i64,
-    /// The moment that it is about, as `time_s` of the samples; `null` for the whole run.
+    /// The moment of the note, as `time_s` of the samples; `null` for the whole run.
     pub at_s: Option<f64>,
     pub text: String,
     #[schema(format = DateTime)]
@@ -117,10 +118,10 @@ pub struct Tags {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RunList {
-    /// Runs that match, whatever the page.
+    /// Total number of matching runs.
     pub total: u64,
     pub runs: Vec<RunSummary>,
-    /// Of a search that is still being typed: what is not understood, and left out.
+    /// Ignored terms of an incomplete search.
     pub unclear: Option<String>,
 }
 
@@ -130,14 +131,14 @@ pub struct Run {
     pub summary: RunSummary,
     #[schema(value_type = Object)]
     pub parameters: Map<String, Value>,
-    /// Bench description, software version, mock or hardware, seed: what is needed to trust and to repeat the run.
+    /// Bench description, software version, mock or hardware, seed: data needed to repeat the run.
     #[schema(value_type = Object)]
     pub provenance: Map<String, Value>,
-    /// Facts about the set-up, as in `meta.json`.
+    /// Metadata of the test conditions, as in `meta.json`.
     #[schema(value_type = Object)]
     pub meta: Map<String, Value>,
     pub channels: Vec<ChannelInfo>,
-    /// While the run is on.
+    /// While the run is active.
     pub progress: Option<Progress>,
 }
 
@@ -145,7 +146,7 @@ pub struct Run {
 pub struct ChannelInfo {
     pub name: String,
     pub unit: Option<String>,
-    /// One count of the instrument, in the channel's unit.
+    /// Resolution (LSB) of the instrument, in the unit of the channel.
     pub resolution: Option<f64>,
 }
 
@@ -154,14 +155,14 @@ pub struct Progress {
     /// Steps done.
     pub step: usize,
     pub steps: usize,
-    /// What is done now.
+    /// Current step.
     pub label: String,
-    /// On the clock of the person who waits, like what remains.
+    /// In wall-clock time, like the remaining time.
     pub elapsed_s: f64,
     pub remaining_s: f64,
 }
 
-/// A run to be started. Parameters left out take the procedure's defaults.
+/// A run to start. Omitted parameters take the defaults of the procedure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewRun {
@@ -172,7 +173,7 @@ pub struct NewRun {
     pub parameters: Map<String, Value>,
 }
 
-/// One line of a run's journal, which is only ever appended to.
+/// One entry of the journal of a run, which is append-only.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RunEvent {
     pub sequence: u64,
@@ -180,15 +181,15 @@ pub struct RunEvent {
     pub at_s: f64,
     /// `state`, `step_started`, `step_finished`, `fault`, `breach`, `safe`, `note`, …
     pub kind: String,
-    /// One plain sentence.
+    /// =One sentence.
     pub text: String,
-    /// The event's own fields.
+    /// Fields of the event.
     #[schema(value_type = Object)]
     pub data: Map<String, Value>,
 }
 
-/// Samples of a window. Where there are more rows than pixels: smallest and largest value of each pixel, so that a spike
-/// of one sample is still seen. Where not (`exact`), `min` equals `max`.
+/// Samples of a window. With more rows than pixels: minimum and maximum of each pixel, so that single-sample spikes
+/// remain visible. Otherwise (`exact`) `min` equals `max`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Samples {
     pub time_s: Vec<f64>,
@@ -206,12 +207,12 @@ pub struct SampleColumn {
     pub max: Vec<Option<f64>>,
 }
 
-/// One channel over every row of a window, nothing left out but what was not measured.
+/// One channel over all rows of a window, without missing values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ChannelStatistics {
     pub name: String,
     pub unit: Option<String>,
-    /// Values that there are. The figures are `null` where there is none.
+    /// Number of values. The figures are `null` without values.
     pub n: u64,
     pub mean: Option<f64>,
     /// Standard deviation about the mean (n − 1); `null` for fewer than two values.

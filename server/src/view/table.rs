@@ -4,13 +4,13 @@ use serde::Deserialize;
 use std::fmt;
 use utoipa::ToSchema;
 
-/// What a page shows, row by row.
+/// A table, row by row.
 #[derive(Debug, Clone, PartialEq, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
     /// Names of the columns, with their units.
     pub head: Vec<String>,
-    /// As many values in each row; `null` for a missing one.
+    /// Equal number of values in each row; `null` for a missing value.
     pub rows: Vec<Vec<Option<Cell>>>,
 }
 

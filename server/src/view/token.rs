@@ -15,29 +15,29 @@ pub enum Access {
     Read,
 }
 
-/// A token that opens the door of the daemon. Its secret is told once, when it is made.
+/// An access token of the daemon. Its secret is returned once, at its creation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Token {
-    /// `null` for one that the daemon was started with: it is not revoked here.
+    /// `null` for a token of the command line, which cannot be revoked here.
     pub id: Option<i64>,
-    /// What is done with it is kept under this name.
+    /// Actions are logged under this name.
     pub name: String,
     /// `full` or `read`.
     pub access: Access,
     #[schema(format = DateTime)]
     pub made_at: Option<String>,
     pub made_by: Option<String>,
-    /// To the minute; of one that the daemon was started with, since then.
+    /// To the minute; for a token of the command line since the start of the daemon.
     #[schema(format = DateTime)]
     pub used_at: Option<String>,
-    /// The question came with it.
+    /// It is the token of the request.
     pub yours: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewToken {
-    /// Who or what will use it: 1 to 40 characters, and no other token's.
+    /// User or script, 1 to 40 characters, unique.
     pub name: String,
     /// `full` or `read`.
     pub access: Access,
@@ -47,6 +47,6 @@ pub struct NewToken {
 pub struct MadeToken {
     #[serde(flatten)]
     pub token: Token,
-    /// Told this once, and kept nowhere.
+    /// Returned only once and not stored.
     pub secret: String,
 }

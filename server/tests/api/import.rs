@@ -55,7 +55,7 @@ fn rows_with_empty_cells_stay_out_where_that_is_asked_for() {
     assert!(status == 422 && problem["detail"].as_str().unwrap().contains("can be left out"), "{problem}");
     let (status, run) = upload(&daemon, &gap, &[("meta", META), ("leave_empty_rows", "true")]);
     assert_eq!((status, &run["rows"]), (201, &2.into()), "{run}");
-    assert!(run["provenance"]["imported"]["attention"].to_string().contains("for an empty cell: 1"), "{run}");
+    assert!(run["provenance"]["imported"]["attention"].to_string().contains("because of an empty cell: 1"), "{run}");
 }
 
 #[test]

@@ -38,14 +38,14 @@ fn the_log_tells_who_did_what() {
     let (_, log) = daemon.get("/api/v1/log");
     let said = |text: &str, by: &str| (text.to_owned(), Some(by.to_owned()));
     assert_eq!(told(&log, "started"), [said("started", "Anna")], "{log}");
-    assert_eq!(told(&log, "stopped"), [said("stopped: the software stop was pressed", "Anna")]);
+    assert_eq!(told(&log, "stopped"), [said("stopped: software stop pressed", "Anna")]);
     assert_eq!(told(&log, "reset"), [said("reset: looked at it", "local")]);
     assert_eq!(told(&log, "token"), [said("token Anna made", "local")]);
     let models = told(&log, "model");
     assert!(models[0].0.ends_with(" removed") && models[0].1.as_deref() == Some("local"), "{models:?}");
     assert!(models[1].0.contains("fitted: Coulomb") && models[1].1.as_deref() == Some("Anna"), "{models:?}");
     let asked: Vec<String> = told(&log, "control").into_iter().map(|(text, _)| text).collect();
-    assert_eq!(asked, ["a person asked: resume (Anna)", "a person asked: pause (local)"]);
+    assert_eq!(asked, ["operator command: resume (Anna)", "operator command: pause (local)"]);
     let moments: Vec<&str> = log.as_array().unwrap().iter().map(|entry| entry["at"].as_str().unwrap()).collect();
     assert!(moments.is_sorted_by(|a, b| a >= b), "newest first: {moments:?}");
 

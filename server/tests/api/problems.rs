@@ -13,7 +13,7 @@ fn every_refusal_is_a_problem_document() {
     for (answer, status, kind, said) in [
         (daemon.get("/api/v1/runs/99"), 404, "not_found", "there is no run 99"),
         (daemon.get("/api/v1/models/99"), 404, "not_found", "there is no model version 99"),
-        (daemon.get("/api/v1/bench/attic"), 404, "not_found", "there is no bench attic"),
+        (daemon.get("/api/v1/bench/attic"), 404, "not_found", "bench attic does not exist"),
         (daemon.get("/api/v1/nothing"), 404, "not_found", "openapi.json"),
         (daemon.get("/api"), 404, "not_found", "openapi.json"),
         (daemon.get("/api/v1/runs/one"), 400, "malformed", "one"),
@@ -41,7 +41,7 @@ fn every_refusal_is_a_problem_document() {
             "conflict",
             "not blocked",
         ),
-        (daemon.post("/api/v1/runs/1", "{}"), 405, "not_allowed", "POST is not offered"),
+        (daemon.post("/api/v1/runs/1", "{}"), 405, "not_allowed", "POST is not available"),
         (daemon.post("/api/v1/runs", &"x".repeat(2 << 20)), 413, "too_large", "at most 1048576 bytes"),
     ] {
         let (found, problem) = answer;

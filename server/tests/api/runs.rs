@@ -153,10 +153,10 @@ fn how_late_an_instrument_tells_is_in_the_journal_and_in_the_report() {
     let id = run["id"].as_i64().unwrap();
     assert_eq!(daemon.wait_for_end(id)["state"], "completed");
     let (_, events) = daemon.get(&format!("/api/v1/runs/{id}/events"));
-    let told = "clock and values agree";
+    let told = "Time stamps and signals agree";
     assert!(events.as_array().unwrap().iter().any(|event| event["text"].as_str().unwrap().contains(told)), "{events}");
     let page = daemon.get_raw(&format!("/api/v1/runs/{id}/report")).body_mut().read_to_string().unwrap();
-    assert!(page.contains(told) && page.contains("the encoder under test was read"), "{page}");
+    assert!(page.contains(told) && page.contains("Skew of the encoder under test"), "{page}");
 }
 
 #[test]
@@ -272,7 +272,7 @@ fn an_interrupted_run_is_ended_secured_and_not_started_again() {
     });
     let run: Value = serde_json::to_value(run).unwrap();
     assert_eq!((&run["state"], &run["safe"]), (&"interrupted".into(), &"safe_verified".into()), "{run}");
-    assert!(run["reason"].as_str().unwrap().contains("the daemon ended before the run did"));
+    assert!(run["reason"].as_str().unwrap().contains("the daemon terminated during the run"));
 }
 
 #[test]

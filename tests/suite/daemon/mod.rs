@@ -87,11 +87,11 @@ fn runs_are_listed_and_ended_from_the_command_line() {
     let said = |arguments: &[&str]| run(&[arguments, &["--daemon", daemon.base.as_str()]].concat());
     let idle = said(&["stop"]);
     assert_eq!(idle.status.code(), Some(2));
-    assert!(stderr(&idle).contains("no run is on"), "{}", stderr(&idle));
+    assert!(stderr(&idle).contains("no run is active"), "{}", stderr(&idle));
     for (option, value, why) in [
-        ("--require", "tau_x < 1 Nm", "finds no tau_x; did you mean tau_c? there are tau_c, tau_h"),
+        ("--require", "tau_x < 1 Nm", "does not determine tau_x; did you mean tau_c? available: tau_c, tau_h"),
         ("--require", "tau_c < 35 kg", "tau_c is in Nm"),
-        ("--junit", "/nowhere/out.xml", "there is no folder /nowhere"),
+        ("--junit", "/nowhere/out.xml", "folder /nowhere does not exist"),
     ] {
         let vain = said(&["run", "friction", option, value]);
         assert_eq!(vain.status.code(), Some(2));
@@ -109,7 +109,9 @@ fn runs_are_listed_and_ended_from_the_command_line() {
     let stopped = said(&["stop"]);
     assert!(stopped.status.success(), "{}", stderr(&stopped));
     assert!(stdout(&stopped).contains(&format!("run {id} stopped")), "{}", stdout(&stopped));
-    for (late, why) in [(&["stop", "1"][..], "run 1 is over (stopped)"), (&["stop", "9"], "there is no run 9")] {
+    for (late, why) in
+        [(&["stop", "1"][..], "run 1 has already ended (stopped)"), (&["stop", "9"], "run 9 does not exist")]
+    {
         let late = said(late);
         assert_eq!(late.status.code(), Some(2), "{}", stderr(&late));
         assert!(stderr(&late).contains(why), "{}", stderr(&late));
@@ -157,7 +159,7 @@ fn a_run_that_decides_nothing_is_no_success() {
     assert!(stderr(&late).contains("tau_c is in Nm"), "{}", stderr(&late));
     let complete = run(&["run", "--continue", "1", "--daemon", daemon.base.as_str()]);
     assert_eq!(complete.status.code(), Some(2));
-    assert!(stderr(&complete).contains("run 1 is complete: nothing is left of it"), "{}", stderr(&complete));
+    assert!(stderr(&complete).contains("run 1 is complete: there is nothing to resume"), "{}", stderr(&complete));
     let again = run(&["identify", "1", "--daemon", daemon.base.as_str()]);
     assert_eq!(again.status.code(), Some(3), "{}", stdout(&again));
 }

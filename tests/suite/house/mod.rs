@@ -1,9 +1,10 @@
-//! The house keeps its shape: which crate may lean on which, what is absent where, licences, file sizes.
+//! The house keeps its shape: which crate may lean on which, what is absent where, licences, file sizes, and the English of its texts.
 
 mod arrows;
 mod licences;
 mod modules;
 mod sizes;
+mod texts;
 
 pub use jointbench_tests::root;
 use serde_json::Value;

@@ -26,7 +26,7 @@ fn what_another_run_lacks_is_said() {
     fitted(folder);
     let told = done(folder, &["model", "evaluate", "model.json", "run.csv"]);
     assert!(told.starts_with("on run.csv: error ") && !told.contains("note"), "{told}");
-    assert!(told.contains("means of settled motion, which is 80 %") && told.contains("(7200 samples)"), "{told}");
+    assert!(told.contains("steady-state means, 80 %") && told.contains("(7200 samples)"), "{told}");
 
     // The fifth column is the link's torque.
     let table = std::fs::read_to_string(folder.join("run.csv")).expect("a table");
@@ -58,18 +58,18 @@ fn a_file_that_will_not_do_is_named() {
     done(folder, &["model", "export", "model.json", "--format", "c", "-o", "joint.h"]);
     let header = std::fs::read_to_string(folder.join("joint.h")).expect("a header");
     assert!(!header.contains("acceleration") && header.contains("Fitted where velocity is -64"), "{header}");
-    refused(folder, &["model", "evaluate", "joint.h", "run.csv"], &["joint.h", "only JSON is", "--format json"]);
-    refused(folder, &["model", "evaluate", "run.csv", "model.json"], &["run.csv", "the model is named first"]);
+    refused(folder, &["model", "evaluate", "joint.h", "run.csv"], &["joint.h", "give a JSON file", "--format json"]);
+    refused(folder, &["model", "evaluate", "run.csv", "model.json"], &["run.csv", "first the model, then the run"]);
     refused(
         folder,
         &["model", "compare", "model.json", "nope.json", "run.csv"],
         &["nope.json: there is no such file: check the name"],
     );
     refused(folder, &["fit", "run.csv", "--effect-file", "nope.toml"], &["nope.toml: there is no such file"]);
-    refused(folder, &["diagnose", "1"], &["there is no file 1", "jointbench export 1"]);
-    refused(folder, &["model", "export", "model.json", "--format", "c", "-o", "."], &[". is a folder: name the file"]);
-    refused(folder, &["fit", "run.csv", "--out", "."], &[". is a folder: name the file"]);
-    refused(folder, &["fit", "run.csv", "--out", "no/model.json"], &["no/model.json", "there is no folder no"]);
+    refused(folder, &["diagnose", "1"], &["file 1 does not exist", "jointbench export 1"]);
+    refused(folder, &["model", "export", "model.json", "--format", "c", "-o", "."], &[". is a folder: give the file"]);
+    refused(folder, &["fit", "run.csv", "--out", "."], &[". is a folder: give the file"]);
+    refused(folder, &["fit", "run.csv", "--out", "no/model.json"], &["no/model.json", "folder no does not exist"]);
 
     std::fs::create_dir(folder.join("short")).expect("a folder");
     refused(folder, &["fit", "short"], &["short is a folder without run.csv"]);
@@ -80,7 +80,7 @@ fn a_file_that_will_not_do_is_named() {
     refused(folder, &["diagnose", "short"], &["short: too few samples: 8 usable samples"]);
     refused(folder, &["fit", "short", "short/run.csv"], &["named twice"]);
     std::fs::write(folder.join("short/run.csv"), &table).expect("a table");
-    refused(folder, &["diagnose", "run.csv", "short"], &["numbers 1 and 2 hold the same samples: a copy is no repeat"]);
+    refused(folder, &["diagnose", "run.csv", "short"], &["runs number 1 and 2 of the list contain the same samples"]);
     let facts = std::fs::read_to_string(folder.join("meta.json")).expect("facts");
     std::fs::write(folder.join("short/meta.json"), facts.replace("gear_ratio", "gear_ratoi")).expect("facts");
     refused(
@@ -92,11 +92,15 @@ fn a_file_that_will_not_do_is_named() {
     refused(folder, &["import", "short/run.csv", "--data", &data], &["did you mean gear_ratio?"]);
     done(folder, &["import", "run.csv", "--data", &data]);
     let told = done(folder, &["import", "run.csv", "--data", &data]);
-    assert!(told.contains("its samples are those of run 1: a copy, and no repeat of it"), "{told}");
+    assert!(told.contains("its samples are identical to those of run 1"), "{told}");
     assert!(!told.contains("attention"), "{told}");
     let told = done(folder, &["import", "run.csv", "--scale", "motor_current_a=1000", "--data", &data]);
     assert!(told.contains("attention: motor_current_a with the torque constant and the gear ratio is "), "{told}");
-    refused(folder, &["export", "1", "-o", "x.foo", "--data", &data], &["no run is written as .foo", ".csv, .parquet"]);
+    refused(
+        folder,
+        &["export", "1", "-o", "x.foo", "--data", &data],
+        &["unknown file extension .foo", ".csv, .parquet"],
+    );
     assert!(!folder.join("x.foo").exists(), "nothing is written");
     refused(folder, &["check", "joint-a-mok", "--print"], &["did you mean joint-a-mock?", "puma-mock"]);
     refused(folder, &["check", "nosuch"], &["there is no such file", "joint-a-mock"]);
@@ -112,10 +116,10 @@ fn nothing_is_advised_before_contradicting_columns_are_mended() {
             (output.status.code(), stdout(&output))
         };
         let (code, whole) = told(&[]);
-        assert!(code == Some(0) && whole.contains("what to measure next"), "{whole}");
+        assert!(code == Some(0) && whole.contains("recommended next run"), "{whole}");
         let (code, broken) = told(&["--scale", "motor_current_a=1000"]);
         assert!(code == Some(3) && broken.contains("Attention: motor_current_a with the torque constant"), "{broken}");
-        for advice in ["what to measure next", "what you can do", "what is missing, the most"] {
+        for advice in ["recommended next run", "define your own effect", "missing effects, most important"] {
             assert!(!broken.contains(advice), "{broken}");
         }
         let json = stdout(&run_in(folder.path(), &[verb, "run.csv", "--scale", "motor_current_a=1000", "--json"]));
@@ -131,14 +135,15 @@ fn the_library_is_listed() {
     let told = done(folder, &["procedures"]);
     assert!(told.lines().any(|line| line.starts_with("friction ")), "{told}");
     assert!(done(folder, &["procedures", "friction"]).contains("--set load_levels=3"), "what can be set");
-    refused(folder, &["procedures", "frction"], &["there is no procedure frction: did you mean friction?"]);
+    refused(folder, &["procedures", "frction"], &["unknown procedure frction: did you mean friction?"]);
     let told = done(folder, &["effects"]);
     assert!(told.contains("  stribeck ") && told.contains("jointbench demo --effect"), "{told}");
-    assert!(done(folder, &["effects", "stribeck"]).contains("missing, it looks like this: "), "what it means");
+    assert!(done(folder, &["effects", "stribeck"]).contains("residual if missing: "), "what it means");
     let told = done(folder, &["effects", "load_linear"]);
-    let (plain, weighed) = told.split_once("a weight that the torque sensor does not feel:").expect("both formulas");
+    let (plain, weighed) =
+        told.split_once("a gravity load that the torque sensor does not measure:").expect("both formulas");
     assert!(plain.contains("\n  μ·|τ_link/N|·sign ω\n") && weighed.contains("|τ_link/N + g_c·cos θ_link"), "{told}");
-    refused(folder, &["effects", "stribek"], &["there is no effect stribek: did you mean stribeck?"]);
+    refused(folder, &["effects", "stribek"], &["unknown effect stribek: did you mean stribeck?"]);
 }
 
 #[test]

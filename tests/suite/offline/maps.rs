@@ -11,12 +11,9 @@ fn the_error_is_drawn_over_each_quantity_and_only_where_it_is_asked_for() {
     let Some(case) = shared("hidden-effects/friction-stribeck") else { return };
     let case = case.to_str().expect("a path");
     let drawn = String::from_utf8(run(&["diagnose", case, "--maps"]).stdout).expect("UTF-8");
-    let (_, maps) = drawn.split_once("where the model fails: ").expect("maps");
-    assert!(
-        maps.contains("motor_velocity_rad_s [rad/s]: a function of it would take ") && maps.contains('●'),
-        "{maps}"
-    );
-    assert!(maps.contains("\nflat over ") && maps.contains("temperature_c"), "{maps}");
+    let (_, maps) = drawn.split_once("residual maps: ").expect("maps");
+    assert!(maps.contains("motor_velocity_rad_s [rad/s]: explains ") && maps.contains('●'), "{maps}");
+    assert!(maps.contains("\nno structure over ") && maps.contains("temperature_c"), "{maps}");
     let told = |more: &[&str]| json("diagnose", Path::new(case), more);
     assert!(told(&["--maps"])["maps"]["pairs"].as_array().is_some_and(|pairs| !pairs.is_empty()));
     assert!(told(&[]).get("maps").is_none());
@@ -53,11 +50,11 @@ fn an_axis_that_the_verdict_names_by_direction_is_not_called_flat() {
     let model = "load_transmission,coulomb,viscous,rub";
     let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv", "--own", rub, "--model", model, "--maps"]));
     assert!(told.contains("it shows most over oil pressure and direction, a function of which"), "{told}");
-    let (_, maps) = told.split_once("mean of what it leaves").expect("maps");
-    let (drawn, flat) = maps.split_once("\nflat over ").unwrap_or((maps, ""));
+    let (_, maps) = told.split_once("mean residual (measured − model)").expect("maps");
+    let (drawn, flat) = maps.split_once("\nno structure over ").unwrap_or((maps, ""));
     assert!(!flat.contains("oil_pressure_pa"), "{told}");
-    let (_, drawn) = drawn.split_once("oil_pressure_pa [Pa]: a function of it would take ").expect("the pressure");
-    assert!(drawn.contains(", and one of its own in each direction "), "{told}");
+    let (_, drawn) = drawn.split_once("oil_pressure_pa [Pa]: explains ").expect("the pressure");
+    assert!(drawn.contains(" % by direction"), "{told}");
     let (negative, positive) = drawn.split_once("in positive motion:").expect("both directions");
     assert!(negative.contains("in negative motion:") && positive.contains('●'), "{told}");
 }

@@ -119,7 +119,7 @@ fn a_model_goes_out_and_is_held_against_runs() {
     let held: Value = serde_json::from_str(&held).expect("JSON");
     assert!(held["rms"].as_f64().is_some_and(|rms| rms < 1e-3), "{held}");
     let told = done(folder.path(), &["model", "compare", "old.json", "new.json", "run.csv"]);
-    assert!(told.contains("the second has  rub"), "{told}");
+    assert!(told.contains("only in second  rub"), "{told}");
     for (format, words) in
         [("c", "joint_friction_fitted"), ("lut", "load_nm"), ("mujoco", "<joint "), ("urdf", "<dynamics ")]
     {
@@ -146,10 +146,10 @@ fn a_model_that_went_out_comes_into_the_store_again() {
         stderr(&output)
     };
     let said = refused(&["model", "import", "new.json", "--run", "1"]);
-    assert!(said.contains("no store is in jointbench-data: name its folder with --data"), "{said}");
+    assert!(said.contains("no store in jointbench-data: give its folder with --data"), "{said}");
     done(folder.path(), &["import", "run.csv"]);
     let said = refused(&["model", "import", "new.json", "--run", "7"]);
-    assert!(said.contains("new.json: there is no run 7: jointbench runs lists"), "{said}");
+    assert!(said.contains("new.json: run 7 does not exist"), "{said}");
     let told = done(folder.path(), &["model", "import", "new.json", "--run", "1"]);
     assert!(told.starts_with("model 1 of run 1: load_transmission + coulomb + viscous + rub\nerror "), "{told}");
     let kept: Value =
@@ -173,10 +173,10 @@ fn a_model_that_went_out_comes_into_the_store_again() {
     std::fs::write(folder.path().join("brake/meta.json"), r#"{"kind": "brake"}"#).expect("facts");
     done(folder.path(), &["import", "brake/run.csv"]);
     let said = refused(&["model", "import", "new.json", "--run", "3"]);
-    assert!(said.contains("this is a friction model, and run 3 is of the kind brake: choose a run"), "{said}");
+    assert!(said.contains("the model is of kind friction, run 3 of kind brake: choose a run"), "{said}");
     std::fs::write(folder.path().join("joint.h"), "#ifndef JOINT_H").expect("a header");
     let said = refused(&["model", "import", "joint.h", "--run", "1"]);
-    assert!(said.contains("only JSON is: what `jointbench fit --out`"), "{said}");
+    assert!(said.contains("give a JSON file written by `jointbench fit --out`"), "{said}");
 
     let daemon = Daemon::serve(&folder.path().join("jointbench-data"), Path::new("joint-b-mock"));
     let told = done(folder.path(), &["model", "import", "new.json", "--run", "1", "--daemon", &daemon.base]);
@@ -190,12 +190,12 @@ fn an_effect_tells_all_of_itself() {
     let said = done(Path::new("."), &["effects", "load_linear"]);
     for words in [
         "τ",
-        "  needs link_torque_nm, beside what every friction run has (time_s, ",
+        "  requires link_torque_nm in addition to the columns of every friction run (time_s, ",
         "source: ",
-        "it looks like this: ",
+        "residual if missing: ",
     ] {
         assert!(said.contains(words), "{words}: {said}");
     }
     let said = done(Path::new("."), &["effects", "coulomb"]);
-    assert!(said.contains("  needs what every friction run has (time_s, "), "{said}");
+    assert!(said.contains("  requires the columns of every friction run (time_s, "), "{said}");
 }

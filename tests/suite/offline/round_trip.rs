@@ -22,7 +22,7 @@ fn nothing_is_made_where_nothing_is() {
     let output =
         jointbench().args(["export", "1", "--format", "csv", "--data"]).arg(&data).output().expect("it starts");
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("no store is in") && !data.exists(), "{}", stderr(&output));
+    assert!(stderr(&output).contains("no store in") && !data.exists(), "{}", stderr(&output));
     // An address that is given is where it goes, whatever the folder holds.
     let nowhere = ["export", "1", "--format", "csv", "--daemon", "127.0.0.1:9", "--data"];
     let output = jointbench().args(nowhere).arg(&data).output().expect("it starts");
@@ -31,7 +31,7 @@ fn nothing_is_made_where_nothing_is() {
     let mut command = jointbench();
     command.env("JOINTBENCH_URL", "http://127.0.0.1:9").args(["export", "1", "--format", "csv", "--data"]).arg(&data);
     let output = command.output().expect("it starts");
-    assert!(stderr(&output).contains("no store is in"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("no store in"), "{}", stderr(&output));
 }
 
 #[test]

@@ -91,8 +91,10 @@ impl TorqueSensor for DmmTorqueSensor {
             Some(volts) if volts.abs() < NOMINAL_V => Ok(NewtonMetres(volts / NOMINAL_V * self.settings.nominal_nm)),
             beyond => {
                 let shown = beyond.map_or("overload".into(), |volts| format!("{volts} V"));
-                let what =
-                    format!("{shown}: the sensor's output ends at ±{NOMINAL_V} V, ±{} Nm", self.settings.nominal_nm);
+                let what = format!(
+                    "{shown}: the output range of the sensor is ±{NOMINAL_V} V, ±{} Nm",
+                    self.settings.nominal_nm
+                );
                 Err(self.link.fault(FaultKind::Saturated { what }))
             }
         }

@@ -68,7 +68,7 @@ impl Recovers for GcsStage {
         let referenced = self.link.probe(&QueryAxes("FRF?"))?.iter().all(|flag| *flag == 1.0);
         if std::mem::replace(&mut self.referenced, referenced) && !referenced {
             let what =
-                "the axes are not referenced any more: the controller was switched off; reference it again".into();
+                "the axes lost their reference because the controller was switched off; reference them again".into();
             return Err(self.link.fault(FaultKind::Reported { what }));
         }
         Ok(identity)

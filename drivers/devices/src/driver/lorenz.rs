@@ -76,12 +76,12 @@ impl LorenzSensor {
     /// Counts of the coarse and the fine range, of one moment.
     fn counts(&mut self) -> Result<[i16; 2], Fault> {
         if self.stream.is_some() {
-            let what = "a single reading while the stream runs, which it would end: collect, or stop the stream";
+            let what = "a single reading is not possible while the stream runs: collect samples, or stop the stream";
             return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
         }
         let reading = self.ready()?.request(&ReadRaw)?;
         if reading.check_signal {
-            let what = "the 100 % check signal is switched in: unload the shaft and switch it off";
+            let what = "the 100 % check signal is active: unload the shaft and switch it off";
             return Err(self.link.fault(FaultKind::Reported { what: what.into() }));
         }
         Ok(reading.calibrated)

@@ -58,7 +58,7 @@ impl Stream {
                     let known = self.number + u64::from(count) + self.frames.waiting();
                     let due = self.placed.due(now_s);
                     if known > due + INDICES / 2 {
-                        let what = "the stream repeats samples that have come before".into();
+                        let what = "the stream repeats earlier samples".into();
                         return Err(FaultKind::Garbled { what });
                     }
                     let behind = due.saturating_sub(known);
@@ -127,8 +127,8 @@ impl LorenzSensor {
         };
         if found_nm != described_nm {
             let what = format!(
-                "the rotor's header says ±{found_nm} Nm for the range in use, the bench description ±{described_nm} Nm: \
-                 correct nominal_nm"
+                "the rotor header states ±{found_nm} Nm for the active range, the bench description ±{described_nm} \
+                 Nm: correct nominal_nm"
             );
             return Err(self.link.fault(FaultKind::Refused { what }));
         }
@@ -169,7 +169,7 @@ impl TorqueStream for LorenzSensor {
 
     fn collect(&mut self) -> Result<Vec<TorqueSample>, Fault> {
         let Some(stream) = &mut self.stream else {
-            let what = "samples of a stream that was not started, or that has broken off: start it";
+            let what = "the stream was not started or was interrupted: start it";
             return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
         };
         if let Some(count) = stream.gap.take() {
@@ -180,7 +180,7 @@ impl TorqueStream for LorenzSensor {
             if !samples.is_empty() || stream.gap.is_some() {
                 stream.found_s = now_s;
             } else if now_s - stream.found_s > self.link.deadline().as_secs_f64() {
-                let what = "what comes holds no samples that follow each other".into();
+                let what = "no consecutive samples received".into();
                 return Err(self.link.fault(FaultKind::Garbled { what }));
             }
             Ok((now_s, samples))

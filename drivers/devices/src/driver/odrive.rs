@@ -126,7 +126,7 @@ impl OdriveJoint {
             let refused = if !errors.is_empty() && state != IDLE {
                 format!("{request}: {}", errors.join(", "))
             } else if self.clock.now_s() >= deadline_s {
-                format!("{request}: not done after {ARMING_S} s")
+                format!("{request}: not completed after {ARMING_S} s")
             } else {
                 self.clock.sleep_until_s(self.clock.now_s() + 1e-3);
                 continue;
@@ -151,7 +151,7 @@ impl Recovers for OdriveJoint {
         // Positions after a power-up count from elsewhere: no reading may follow one from before.
         if self.armed && self.link.probe(&ReadNumber { path: "axis0.current_state" })? != CLOSED_LOOP {
             self.armed = false;
-            let what = "the drive was armed and is not any more: its supply or its watchdog has interrupted it".into();
+            let what = "the drive disarmed: interrupted by its supply or its watchdog".into();
             return Err(self.link.fault(FaultKind::Reported { what }));
         }
         Ok(identity)

@@ -126,7 +126,7 @@ impl PumaAxis {
 
     fn lost_power(&mut self) -> Fault {
         (self.armed, self.told, self.seen) = (false, Told::Nothing, None);
-        let what = "its power was interrupted: it is not armed any more, and positions before and after do not fit";
+        let what = "its power was interrupted: it is disarmed, and its position reference is lost";
         self.link.fault(FaultKind::Reported { what: what.into() })
     }
 
@@ -159,7 +159,7 @@ impl PumaAxis {
             return Ok(counts as i16);
         }
         let most_a = f64::from(MOST_COUNTS) * VOLTS_PER_COUNT * self.settings.amperes_per_volt;
-        let what = format!("{current}: the servo's converter ends at {most_a:.1} A");
+        let what = format!("{current}: the range of the servo's converter is {most_a:.1} A");
         Err(self.link.fault(FaultKind::Refused { what }))
     }
 }
@@ -184,7 +184,7 @@ impl Recovers for PumaAxis {
         }
         if self.armed && !self.probe(ReadStatus)?.value.is_armed() {
             (self.armed, self.told) = (false, Told::Nothing);
-            let what = "the servo was armed and is not any more: it has taken arm power away".into();
+            let what = "the servo disarmed and switched arm power off".into();
             return Err(self.link.fault(FaultKind::Reported { what }));
         }
         Ok(identity)
@@ -226,7 +226,10 @@ impl JointController for PumaAxis {
         self.ask(SetInterval(ninter))?;
         let held = self.ask(DiagRead(memory::INTERVAL))?;
         if held != ninter {
-            let what = format!("ninter = {ninter}, and its memory holds {held}: write a whole number that it takes");
+            let what = format!(
+                "ninter = {ninter}, but its memory contains {held}: write a whole number that it \
+                                accepts"
+            );
             return Err(self.link.fault(FaultKind::Refused { what }));
         }
         self.ask(Limit(limit))?;

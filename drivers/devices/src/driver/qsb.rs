@@ -97,7 +97,7 @@ impl QsbCounter {
         let had_counted = std::mem::take(&mut self.configured);
         self.configure()?;
         if had_counted {
-            let what = "its power was interrupted, and it counts from 0 again: positions before and after do not fit";
+            let what = "its power was interrupted: it counts from 0, and its position reference is lost";
             return Err(self.link.fault(FaultKind::Reported { what: what.into() }));
         }
         Ok(identity)
@@ -196,7 +196,8 @@ impl PositionCounter for QsbCounter {
 impl EncoderStatus for QsbCounter {
     fn periods_are_consistent(&mut self) -> Result<bool, Fault> {
         let Some(input) = self.settings.status_input else {
-            let what = "no status_input is given: which digital input is the encoder's status output wired to?";
+            let what = "status_input is missing: enter the digital input that is wired to the status output of the \
+                        encoder";
             return Err(self.link.fault(FaultKind::Refused { what: what.into() }));
         };
         let inputs = self.read_register(Register::DigitalInputs)?.value;

@@ -68,7 +68,7 @@ impl ScpiSource {
         self.set(format!("{header} {value:.4}"))?;
         let held = self.link.request(&QueryNumber(self.line_end, query))?;
         if (held - value).abs() > 0.51 * step + 1e-9 {
-            let what = format!("{query} {held} after {value} was set: the command was not taken");
+            let what = format!("{query} reads {held} after {value} was set: the command was not accepted");
             return Err(self.link.fault(FaultKind::Reported { what }));
         }
         Ok(())
@@ -79,7 +79,7 @@ impl ScpiSource {
         if std::mem::replace(&mut self.on, on) && !on {
             let found = self.link.probe(&Identify(self.line_end))?;
             same(&mut self.link, &mut self.identity, found)?;
-            let what = "the output is off although nobody switched it off: the supply's mains were interrupted".into();
+            let what = "the output is off without a command: mains power of the supply was interrupted".into();
             return Err(self.link.fault(FaultKind::Reported { what }));
         }
         Ok(())

@@ -78,7 +78,7 @@ impl Request for ReadRegisters {
             {
                 Ok(words.chunks_exact(2).map(|word| u16::from_be_bytes([word[0], word[1]])).collect())
             }
-            _ => Err(garbled("not as many registers as were asked for")),
+            _ => Err(garbled("fewer registers than requested")),
         }
     }
 }

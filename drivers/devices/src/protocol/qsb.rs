@@ -117,7 +117,7 @@ impl Request for WriteRegister {
             return Ok(());
         }
         Err(FaultKind::Reported {
-            what: format!("register {:02X} holds {value:X} after {}", self.0 as u8, self.name()),
+            what: format!("register {:02X} reads {value:X} after {}", self.0 as u8, self.name()),
         })
     }
 }
@@ -136,7 +136,7 @@ fn held(packet: &[u8], kind: char, register: Register) -> Result<Held, FaultKind
         return Err(garbled());
     }
     match said {
-        'e' => Err(FaultKind::Refused { what: format!("register {of:02X} does not take {value:X}") }),
+        'e' => Err(FaultKind::Refused { what: format!("register {of:02X} rejects {value:X}") }),
         'x' => Err(FaultKind::Refused { what: format!("register {of:02X} does not know this command") }),
         _ if said == kind => Ok(Held { value, stamp }),
         _ => Err(garbled()),

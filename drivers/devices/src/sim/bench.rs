@@ -126,11 +126,11 @@ impl MockSettings {
 
 #[derive(Debug, thiserror::Error)]
 pub enum MockError {
-    #[error("effect {0} is not known to the mock bench: expected one of {known}", known = HIDDEN_EFFECTS.join(", "))]
+    #[error("unknown effect {0}: the mock bench can hide {known}", known = HIDDEN_EFFECTS.join(", "))]
     UnknownEffect(String),
     #[error("pace {0} of the mock bench: expected a number above 0")]
     Pace(f64),
-    #[error("the mock bench gets no port from the system: {0}")]
+    #[error("the system provides no port for the mock bench: {0}")]
     Port(#[from] io::Error),
 }
 

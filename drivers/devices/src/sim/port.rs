@@ -186,7 +186,7 @@ impl Socket for Connector {
 
     fn plug(&self) -> io::Result<Box<dyn Cord>> {
         if self.taken.swap(true, Ordering::AcqRel) {
-            return Err(io::Error::new(ErrorKind::ResourceBusy, "in use; a port has one owner"));
+            return Err(io::Error::new(ErrorKind::ResourceBusy, "in use by another instrument"));
         }
         let mut cord = Plugged { connector: self.clone(), talk: Talk::default() };
         cord.write(&[])?;

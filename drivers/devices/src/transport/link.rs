@@ -66,7 +66,7 @@ impl Link {
     pub fn record(&mut self, file: Option<&Path>) -> Result<(), Fault> {
         let recorder = file.map(|path| {
             Recorder::create(path, &self.instrument, &self.address).map_err(|error| {
-                let what = format!("its traffic cannot be recorded in {}: {error}", path.display());
+                let what = format!("traffic cannot be recorded in {}: {error}", path.display());
                 self.fault(FaultKind::NotOpened { what })
             })
         });
@@ -222,7 +222,7 @@ impl Link {
             self.received.clear();
             wait = QUIET;
         }
-        Err(FaultKind::Garbled { what: "the line does not fall silent".into() })
+        Err(FaultKind::Garbled { what: "the line does not become idle".into() })
     }
 
     fn write(&mut self, deadline: Instant) -> Result<(), FaultKind> {
@@ -269,7 +269,7 @@ impl Link {
 
 fn lost(error: io::Error) -> FaultKind {
     if error.kind() == io::ErrorKind::TimedOut {
-        return FaultKind::Garbled { what: "the line takes no more bytes".into() };
+        return FaultKind::Garbled { what: "the line accepts no more bytes".into() };
     }
     FaultKind::Disconnected { what: error.to_string() }
 }

@@ -81,7 +81,9 @@ pub(super) fn path_of(serial_number: &str) -> Result<String, FaultKind> {
     };
     match ports.iter().filter(wanted).collect::<Vec<_>>()[..] {
         [info] => Ok(info.port_name.clone()),
-        [] => Err(not_opened(format!("no USB device with the serial number {serial_number}; is it plugged in?"))),
+        [] => {
+            Err(not_opened(format!("no USB device with the serial number {serial_number}; check that it is connected")))
+        }
         [..] => Err(not_opened(format!("several USB ports with the serial number {serial_number}: name the port"))),
     }
 }
@@ -100,10 +102,10 @@ pub fn why_closed(path: &str) -> Option<String> {
                 "permission denied; add the user to the group that owns the port{group}, and log in again"
             ));
         }
-        Err(Errno::NOENT) => return Some("it is not there; is it plugged in?".into()),
+        Err(Errno::NOENT) => return Some("not found; check that it is connected".into()),
         Err(error) => return Some(error.to_string()),
     }
-    user_of(path).map(|user| format!("in use by {user}; end it first"))
+    user_of(path).map(|user| format!("in use by {user}; end that program first"))
 }
 
 #[cfg(not(unix))]

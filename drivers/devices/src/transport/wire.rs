@@ -139,7 +139,7 @@ fn open_serial(path: &str, baud: u32) -> Result<Wire, FaultKind> {
     opened.map(Wire::Serial).map_err(|error| {
         let cure = match error.kind() {
             serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => "; add the user to the group that owns the port",
-            serialport::ErrorKind::NoDevice => "; is it plugged in, and not in use by another program?",
+            serialport::ErrorKind::NoDevice => "; check that it is connected and not in use by another program",
             _ => "",
         };
         FaultKind::NotOpened { what: format!("{error}{cure}") }

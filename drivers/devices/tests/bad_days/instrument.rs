@@ -41,7 +41,7 @@ fn a_drive_that_lost_its_state_gives_no_reading_before_that_is_told() {
     mock.trouble(MockInstrument::Joint, Trouble::None);
     // The drive boots for a second, and stays silent meanwhile.
     wait(&bench, 1.5);
-    check_reported(bench.joint.read().map(drop), "armed and is not any more");
+    check_reported(bench.joint.read().map(drop), "disarmed");
     assert!(!bench.joint.health().unwrap().armed);
     assert!(bench.joint.read().unwrap().motor_position.0.abs() < 0.5, "counts from where it was at power-up");
     bench.joint.arm(RadPerSec(100.0), Amperes(5.0)).unwrap();
@@ -57,7 +57,7 @@ fn a_supply_that_lost_its_state_is_told() {
     let fault = brake.read().unwrap_err();
     assert!(matches!(fault.kind, FaultKind::Silent { .. }), "{fault}");
     mock.trouble(MockInstrument::Brake, Trouble::None);
-    check_reported(ask(&mut bench, MockInstrument::Brake), "nobody switched it off");
+    check_reported(ask(&mut bench, MockInstrument::Brake), "without a command");
     let reading = bench.brake.as_mut().unwrap().read().unwrap();
     assert_eq!(reading.regulation, Regulation::Off, "{reading:?}");
 
@@ -65,7 +65,7 @@ fn a_supply_that_lost_its_state_is_told() {
     let (mock, mut bench) = start(Transport::Terminal);
     mock.trouble(MockInstrument::Brake, Trouble::PowerCycled);
     mock.trouble(MockInstrument::Brake, Trouble::None);
-    check_reported(ask(&mut bench, MockInstrument::Brake), "nobody switched it off");
+    check_reported(ask(&mut bench, MockInstrument::Brake), "without a command");
 }
 
 #[test]

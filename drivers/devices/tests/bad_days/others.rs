@@ -258,7 +258,7 @@ fn a_stage_stops_at_once_and_says_when_it_lost_its_reference() {
     assert!(stage.pose().is_err());
     mock.trouble(MockInstrument::Stage, Trouble::None);
     let fault = stage.pose().unwrap_err();
-    assert!(fault.to_string().contains("not referenced any more"), "{fault}");
+    assert!(fault.to_string().contains("lost their reference"), "{fault}");
 }
 
 #[test]

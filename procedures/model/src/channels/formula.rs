@@ -4,7 +4,7 @@
 
 use super::over_time;
 use crate::formula::syntax::{self, Node, Syntax};
-use crate::formula::{Function, FormulaFault, Mistake, Operator, Value};
+use crate::formula::{FormulaFault, Function, Mistake, Operator, Value};
 use jointbench_instrument::spelling::instead;
 use jointbench_instrument::units::unit_of;
 use std::ops::Range;
@@ -194,10 +194,10 @@ impl Names<'_> {
         let mut parts: Vec<Part> = arguments.iter().map(|node| self.part(node)).collect();
         match (over, function) {
             (Some(OverTime::Smooth), _) => match parts.remove(1) {
-                Part::Number(seconds) if seconds > 0.0 => {
-                    Part::Over(OverTime::Smooth, parts.remove(0).into(), seconds)
+                Part::Number(seconds) if seconds > 0.0 => Part::Over(OverTime::Smooth, parts.remove(0).into(), seconds),
+                _ => {
+                    self.refuse(&arguments[1].at, "write the seconds to average over as a number, such as 0.02".into())
                 }
-                _ => self.refuse(&arguments[1].at, "write the seconds to average over as a number, such as 0.02".into()),
             },
             (Some(over), _) => Part::Over(over, parts.remove(0).into(), 0.0),
             (None, Some(function)) => Part::Call(function, parts),

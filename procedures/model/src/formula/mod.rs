@@ -12,8 +12,8 @@ pub(crate) mod signals;
 pub(crate) mod syntax;
 pub(crate) mod units;
 
-pub use crate::formula::expression::{Expression, What};
 pub(crate) use crate::formula::expression::Value;
+pub use crate::formula::expression::{Expression, What};
 pub(crate) use crate::formula::fault::Mistake;
 pub use crate::formula::fault::{Also, FormulaFault};
 pub use crate::formula::function::Function;

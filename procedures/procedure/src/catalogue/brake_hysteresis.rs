@@ -28,15 +28,15 @@ use rand_chacha::ChaCha8Rng;
 pub(super) struct BrakeHysteresis;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::count("levels", "Currents of the grid", 20, [4, 40]),
+    Parameter::count("levels", "Current levels", 20, [4, 40]),
     Parameter::count("loops", "Major loops", 2, [1, 20]),
-    Parameter::count("random_turns", "Turns of the random history", 16, [4, 100]),
-    Parameter::number("top_current", "Highest current, share of rated", "", 1.0, [0.2, 1.0]),
-    Parameter::number("dwell_s", "Time at each current", "s", 0.9, [0.5, 20.0]),
+    Parameter::count("random_turns", "Reversals of the random history", 16, [4, 100]),
+    Parameter::number("top_current", "Maximum current, fraction of rated", "", 1.0, [0.2, 1.0]),
+    Parameter::number("dwell_s", "Dwell time at each current", "s", 0.9, [0.5, 20.0]),
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
     ACCELERATION,
     sample_rate(100.0),
-    Parameter::count("order_seed", "Seed of the random history", 1, [0, 1_000_000]),
+    Parameter::count("order_seed", "Random seed (history)", 1, [0, 1_000_000]),
 ];
 
 /// What a sweep is for: kept in the column `repeat`.
@@ -59,7 +59,8 @@ impl Procedure for BrakeHysteresis {
     }
 
     fn summary(&self) -> &'static str {
-        "Takes the brake through its major loop, minor loops and reversal curves, and finds the current that gives a torque after any history."
+        "Measures the major loop, minor loops and reversal curves of the brake. Identifies a hysteresis model and its \
+         inverse, which gives the current for a torque after any history."
     }
 
     fn kind(&self) -> Kind {
@@ -97,7 +98,11 @@ impl Procedure for BrakeHysteresis {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("Nm", "torque_top width drag"), ("", "model_currents error_max error_rms error_line"), ("A", "current_error")])
+        findable(&[
+            ("Nm", "torque_top width drag"),
+            ("", "model_currents error_max error_rms error_line"),
+            ("A", "current_error"),
+        ])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -7,7 +7,7 @@ use jointbench_instrument::{Kind, Meta};
 const RANGE_SHARE: f64 = 0.9;
 
 pub(super) fn check(bench: &BenchFacts) -> Result<(), PlanFault> {
-    let cure = "connect it: the brake is measured by the torque sensor";
+    let cure = "connect it, because the brake is measured with the torque sensor";
     for (there, role) in [(bench.has_brake, "brake"), (bench.has_torque_sensor, "torque sensor")] {
         if !there {
             return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure });

@@ -15,16 +15,16 @@ use rand_chacha::ChaCha8Rng;
 pub(super) struct BrakeSpeedIndependence;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("low_speed_rad_s", "Lowest speed (link)", "rad/s", 0.15, [0.11, 10.0]),
-    Parameter::number("top_speed_rad_s", "Highest speed (link)", "rad/s", 1.5, [0.2, 20.0]),
-    Parameter::count("speeds", "Speeds, evenly spaced in their logarithm", 6, [3, 30]),
-    Parameter::count("currents", "Constant currents", 3, [1, 10]),
-    Parameter::number("top_current", "Highest current, share of rated", "", 0.9, [0.05, 1.0]),
-    Parameter::number("dwell_s", "Constant speed at each point", "s", 1.5, [0.5, 60.0]),
-    Parameter::number("bound", "Independent where the torque changes less, share", "", 0.02, [0.001, 0.5]),
+    Parameter::number("low_speed_rad_s", "Minimum speed (link)", "rad/s", 0.15, [0.11, 10.0]),
+    Parameter::number("top_speed_rad_s", "Maximum speed (link)", "rad/s", 1.5, [0.2, 20.0]),
+    Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 6, [3, 30]),
+    Parameter::count("currents", "Number of currents", 3, [1, 10]),
+    Parameter::number("top_current", "Maximum current, fraction of rated", "", 0.9, [0.05, 1.0]),
+    Parameter::number("dwell_s", "Dwell time at each speed", "s", 1.5, [0.5, 60.0]),
+    Parameter::number("bound", "Speed-independent if torque changes by less than, fraction", "", 0.02, [0.001, 0.5]),
     ACCELERATION,
     sample_rate(250.0),
-    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
 /// The last part of a hold, behind the wind-up of the brake's rotor.
@@ -40,7 +40,8 @@ impl Procedure for BrakeSpeedIndependence {
     }
 
     fn summary(&self) -> &'static str {
-        "Holds the brake at constant currents over a range of speeds in both directions, and tells whether its torque depends on speed."
+        "Measures the braking torque at constant currents over a range of speeds in both directions. Decides whether \
+         the torque depends on speed."
     }
 
     fn kind(&self) -> Kind {
@@ -57,8 +58,8 @@ impl Procedure for BrakeSpeedIndependence {
         let (low, top) = (values.number("low_speed_rad_s"), values.number("top_speed_rad_s"));
         if low >= top {
             return Err(PlanFault::Contradiction {
-                what: format!("low_speed_rad_s = {low} is not below top_speed_rad_s = {top}"),
-                cure: "exchange them",
+                what: format!("low_speed_rad_s = {low} must be below top_speed_rad_s = {top}"),
+                cure: "swap the two values",
             });
         }
         let rate_hz = values.number("sample_rate_hz");
@@ -120,7 +121,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         quantities.extend([
             named("torque", "T", "Mean torque", "Nm", mean_nm, None),
             named("slope", "dT/dω", "Slope over speed", "Nm·s/rad", line.slope, Some(line.slope_ci95)),
-            named("change", "ΔT/T", "Change over the speeds, share", "", change, None),
+            named("change", "ΔT/T", "Relative change over speed", "", change, None),
         ]);
         let top = points.iter().map(|p| p.0).fold(0.0, f64::max);
         absolute.push(scatter(&format!("{current_a:.2} A"), points.iter().copied()));
@@ -128,21 +129,27 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         relative.push(scatter(&format!("{current_a:.2} A"), points.iter().map(|p| (p.0, p.1 / mean_nm))));
     }
     if absolute.is_empty() {
-        return Err(Unusable::TooLittle("no current was held over three speeds: make the run again"));
+        return Err(Unusable::TooLittle("No current was measured at three speeds.", "Repeat the run."));
     }
-    let title = "Largest change over the speeds of any current, share";
+    let title = "Maximum relative change over speed, all currents";
     quantities.push(quantity(["change_max", "ΔT/T", title, ""], worst, None));
     let bound = values.number("bound");
-    let words = if worst <= bound { "does not depend on speed" } else { "depends on speed" };
+    let words = if worst <= bound { "is independent of speed" } else { "depends on speed" };
     let share = 100.0 * worst;
     Ok(Identification {
         verdict: Verdict::Identified,
-        summary: format!("The torque {words}: it changes by {share:.2} % at most (bound {:.1} %).", 100.0 * bound),
-        advice: (worst > bound).then(|| "Set the current anew at every speed where a load has to be held.".into()),
+        summary: format!("The torque {words}: maximum change {share:.2} % (limit {:.1} %).", 100.0 * bound),
+        advice: (worst > bound).then(|| "Adjust the current at each speed when a constant load is required.".into()),
         quantities,
         figures: vec![
             over_speed("torque_over_speed", "Braking torque over speed", "braking torque", "Nm", absolute),
-            over_speed("torque_share_over_speed", "Braking torque over its mean", "share of the mean", "", relative),
+            over_speed(
+                "torque_share_over_speed",
+                "Braking torque relative to its mean",
+                "fraction of the mean",
+                "",
+                relative,
+            ),
         ],
     })
 }

@@ -23,17 +23,17 @@ pub(super) struct BrakeTorque;
 const SCHEMA: &[Parameter] = &[
     Parameter::count(
         "model_run",
-        "Run of brake_hysteresis with the model, 0: the applied one, or the last",
+        "Run of brake_hysteresis with the model (0: the applied model, else the latest)",
         0,
         [0, 2_000_000_000],
     ),
     Parameter::count("histories", "Random histories", 12, [1, 100]),
-    Parameter::count("torques", "Torques of each", 20, [2, 200]),
-    Parameter::number("dwell_s", "Time at each torque", "s", 0.9, [0.5, 20.0]),
+    Parameter::count("torques", "Torques in each history", 20, [2, 200]),
+    Parameter::number("dwell_s", "Dwell time at each torque", "s", 0.9, [0.5, 20.0]),
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
     ACCELERATION,
     sample_rate(100.0),
-    Parameter::count("order_seed", "Seed of the histories", 1, [0, 1_000_000]),
+    Parameter::count("order_seed", "Random seed (histories)", 1, [0, 1_000_000]),
 ];
 
 /// Name of the fact that tells which torque each current was meant to give: a list for each history, of pairs.
@@ -47,11 +47,12 @@ impl Procedure for BrakeTorque {
     }
 
     fn title(&self) -> &'static str {
-        "Brake torque by its model"
+        "Verify the brake model"
     }
 
     fn summary(&self) -> &'static str {
-        "Commands random torques through the inverse of the brake's hysteresis model, after random histories, and tells how far the sensor's reading is off. Needs a run of brake_hysteresis."
+        "Commands random torques through the inverse of the brake's hysteresis model after random histories. Reports \
+         the error against the torque sensor. Needs a run of brake_hysteresis."
     }
 
     fn kind(&self) -> Kind {
@@ -67,13 +68,13 @@ impl Procedure for BrakeTorque {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("the model may be another one by now")
+        Err("the model may have changed since then")
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         brake_run::check(bench)?;
         let model = bench.brake_model.as_ref().ok_or_else(|| PlanFault::Contradiction {
-            what: "the brake of this bench has no model yet".into(),
+            what: "the brake of this bench has no model".into(),
             cure: "run brake_hysteresis first",
         })?;
         let rate_hz = values.number("sample_rate_hz");
@@ -136,7 +137,8 @@ struct Point {
 }
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
-    const FOREIGN: Unusable = Unusable::TooLittle("the run does not say which torques it commanded: make it again");
+    const FOREIGN: Unusable =
+        Unusable::TooLittle("The commanded torques are not stored with the run.", "Repeat the run.");
     let commanded = run.meta().other.get(COMMANDED).cloned().ok_or(FOREIGN)?;
     let commanded: Vec<Vec<(f64, f64)>> = serde_json::from_value(commanded).map_err(|_| FOREIGN)?;
     let rated_nm = rated_nm(run).ok_or(FOREIGN)?;
@@ -153,7 +155,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         }
     }
     if points.len() < 2 {
-        return Err(Unusable::TooLittle("no history was gone through: make the run again"));
+        return Err(Unusable::TooLittle("No random history was completed.", "Repeat the run."));
     }
     let errors: Vec<f64> = points.iter().map(|point| (point.felt_nm - point.asked_nm) / rated_nm).collect();
     let worst = errors.iter().map(|error| error.abs()).fold(0.0, f64::max);
@@ -164,19 +166,19 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     Ok(Identification {
         verdict: if good { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Of {count} torques commanded through the model after {} random histories none is off by more than {:.2} % of \
-             the rated torque.",
+            "{count} torques commanded through the model after {} random histories: maximum error {:.2} % of the rated \
+             torque.",
             commanded.len(),
             100.0 * worst
         ),
         advice: (!good).then(|| {
-            "Make brake_hysteresis again with more levels or a longer dwell_s, at this brake's temperature.".into()
+            "Repeat brake_hysteresis with more levels or a longer dwell_s at the present brake temperature.".into()
         }),
         quantities: vec![
-            quantity(["error_max", "e_max", "Largest error against the sensor, share of rated", ""], worst, None),
-            quantity(["error_rms", "e_rms", "The same, root mean square", ""], rms, None),
-            quantity(["error_mean", "ē", "The same, mean with its sign", ""], mean, None),
-            quantity(["torques", "n", "Torques", ""], count as f64, None),
+            quantity(["error_max", "e_max", "Maximum error against the sensor, fraction of rated", ""], worst, None),
+            quantity(["error_rms", "e_rms", "RMS error against the sensor, fraction of rated", ""], rms, None),
+            quantity(["error_mean", "ē", "Mean error against the sensor, fraction of rated", ""], mean, None),
+            quantity(["torques", "n", "Number of torques", ""], count as f64, None),
         ],
         figures: figures(&points),
     })
@@ -187,13 +189,13 @@ fn figures(points: &[Point]) -> Vec<Figure> {
         name: name.into(),
         title: title.into(),
         form: Form::Cartesian,
-        x: Axis::of("torque asked for", "Nm"),
+        x: Axis::of("commanded torque", "Nm"),
         y: Axis::of(label, "Nm"),
         series: vec![scatter("sensor", points.iter().map(|point| (point.asked_nm, y(point))))],
     };
     vec![
-        figure("felt_over_asked", "Torque felt over torque asked for", "torque felt", |point| point.felt_nm),
-        figure("error_over_asked", "Error of the torque asked for", "torque felt less asked for", |point| {
+        figure("felt_over_asked", "Measured torque over commanded torque", "measured torque", |point| point.felt_nm),
+        figure("error_over_asked", "Error of the commanded torque", "measured − commanded torque", |point| {
             point.felt_nm - point.asked_nm
         }),
     ]

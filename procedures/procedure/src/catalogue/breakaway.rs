@@ -19,11 +19,11 @@ use std::f64::consts::TAU;
 pub(super) struct Breakaway;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::count("positions", "Positions on a link turn", 12, [2, 200]),
-    Parameter::number("top_torque_nm", "Torque at which the ramp ends (motor)", "Nm", 0.08, [1e-3, 100.0]),
-    Parameter::number("ramp_nm_s", "Rise of the torque (motor)", "Nm/s", 0.005, [1e-4, 10.0]),
-    Parameter::count("increases", "Encoder increases in a row", 5, [2, 50]),
-    Parameter::number("speed_rad_s", "Speed of the approach (motor)", "rad/s", 60.0, [1.0, 1000.0]),
+    Parameter::count("positions", "Positions per link turn", 12, [2, 200]),
+    Parameter::number("top_torque_nm", "Maximum torque of the ramp (motor)", "Nm", 0.08, [1e-3, 100.0]),
+    Parameter::number("ramp_nm_s", "Torque ramp rate (motor)", "Nm/s", 0.005, [1e-4, 10.0]),
+    Parameter::count("increases", "Consecutive encoder increments", 5, [2, 50]),
+    Parameter::number("speed_rad_s", "Approach speed (motor)", "rad/s", 60.0, [1.0, 1000.0]),
     ACCELERATION,
     sample_rate(250.0),
 ];
@@ -43,7 +43,8 @@ impl Procedure for Breakaway {
     }
 
     fn summary(&self) -> &'static str {
-        "Raises the motor current until the joint breaks away, at many positions and in both directions. The velocity loop catches it at once."
+        "Ramps the motor current until the joint breaks away, at many positions and in both directions. The velocity \
+         loop takes over as soon as the joint moves."
     }
 
     fn kind(&self) -> Kind {
@@ -128,7 +129,10 @@ fn onward(position_rad: &[f64], current_a: f64) -> usize {
 
 fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let Some(setpoint) = run.column("motor_current_setpoint_a") else {
-        return Err(Unusable::TooLittle("the run holds no motor current set-point: it is of another procedure"));
+        return Err(Unusable::TooLittle(
+            "The run has no motor current set-point, so it belongs to another procedure.",
+            "Run breakaway.",
+        ));
     };
     let km = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
     let link = run.column("link_position_rad");
@@ -146,7 +150,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let of = |sign: f64| -> Vec<f64> { broke.iter().filter(|b| b.sign == sign).map(|b| b.torque_nm).collect() };
     let all: Vec<f64> = broke.iter().map(|b| b.torque_nm).collect();
     let (Some(mean), Some(forward), Some(backward)) = (Mean::of(&all), Mean::of(&of(1.0)), Mean::of(&of(-1.0))) else {
-        return Err(Unusable::TooLittle("the joint broke away too seldom: raise top_torque_nm"));
+        return Err(Unusable::TooLittle("Too few breakaway events.", "Increase top_torque_nm."));
     };
     // From row to row the torque rises by a step: equal readings tell it no closer.
     let step_nm = values.number("ramp_nm_s") / values.number("sample_rate_hz");
@@ -158,13 +162,18 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     Ok(Identification {
         verdict: if held == 0 { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "The joint breaks away at {} (motor) on the mean of {} positions, with a standard deviation of {}; the directions {}.",
+            "Breakaway torque {} (motor side, mean of {} positions), standard deviation {}. {}.",
             words::figure(mean.value, "Nm"),
             all.len(),
             words::figure(deviation, "Nm"),
-            if differ { "differ at 95 %" } else { "do not differ at 95 %" }
+            if differ {
+                "The directions differ significantly (95 %)"
+            } else {
+                "No significant difference between directions (95 %)"
+            }
         ),
-        advice: (held > 0).then(|| format!("At {held} positions it did not break away: raise top_torque_nm.")),
+        advice: (held > 0)
+            .then(|| format!("The joint did not break away at {held} positions. Increase top_torque_nm.")),
         quantities: vec![
             quantity(words("tau_b", "τ_b", "Breakaway torque, mean"), mean.value, Some(mean.ci95)),
             quantity(
@@ -177,7 +186,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
                 backward.value,
                 Some(backward.ci95),
             ),
-            quantity(words("deviation", "s", "Standard deviation over the positions"), deviation, None),
+            quantity(words("deviation", "s", "Standard deviation over positions"), deviation, None),
         ],
         figures: vec![over_angle(&broke), distribution(&all)],
     })
@@ -189,7 +198,7 @@ fn over_angle(broke: &[Broke]) -> Figure {
     };
     Figure {
         name: "breakaway_over_angle".into(),
-        title: "Breakaway torque over the link's angle".into(),
+        title: "Breakaway torque over link angle".into(),
         form: Form::Polar,
         x: Axis::of("link angle", "rad"),
         y: Axis::of("breakaway torque (motor)", "Nm"),

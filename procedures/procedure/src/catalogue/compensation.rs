@@ -22,14 +22,14 @@ pub(super) struct Compensation;
 const SCHEMA: &[Parameter] = &[
     Parameter::number("tau_c_nm", "Coulomb friction (motor)", "Nm", 0.030, [0.0, 100.0]),
     Parameter::number("c_v_nm_s", "Viscous friction (motor)", "Nm·s/rad", 1.512e-4, [0.0, 10.0]),
-    Parameter::number("tau_h_nm", "Friction towards standstill (motor)", "Nm", 0.039, [0.0, 100.0]),
+    Parameter::number("tau_h_nm", "Friction at zero speed (motor)", "Nm", 0.039, [0.0, 100.0]),
     Parameter::number("stribeck_speed_rad_s", "Stribeck velocity (link)", "rad/s", 0.06, [0.001, 10.0]),
     Parameter::number("stribeck_exponent", "Stribeck exponent", "", 0.8, [0.1, 4.0]),
-    Parameter::number("share", "Share of the friction that is compensated", "", 0.95, [0.1, 1.0]),
+    Parameter::number("share", "Fraction of the friction that is compensated", "", 0.95, [0.1, 1.0]),
     Parameter::number("amplitude_rad_s", "Amplitude of the reference (link)", "rad/s", 0.15, [0.01, 20.0]),
     Parameter::number("period_s", "Period of the reference", "s", 6.0, [0.5, 120.0]),
-    Parameter::count("periods", "Periods with each way of compensating", 3, [2, 100]),
-    Parameter::number("acceleration_rad_s2", "Acceleration between them (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
+    Parameter::count("periods", "Periods with each method", 3, [2, 100]),
+    Parameter::number("acceleration_rad_s2", "Acceleration between methods (motor)", "rad/s²", 400.0, [10.0, 5000.0]),
     sample_rate(250.0),
 ];
 
@@ -59,7 +59,7 @@ impl Way {
     fn words(self) -> [&'static str; 2] {
         match self {
             Way::None => ["none", "no compensation"],
-            Way::ZeroArea => ["zero_area", "Coulomb with zero area"],
+            Way::ZeroArea => ["zero_area", "Coulomb with dead band"],
             Way::Interpolated => ["interpolated", "Coulomb, interpolated"],
             Way::CoulombViscous => ["coulomb_viscous", "Coulomb and viscous"],
             Way::Full => ["full", "full model"],
@@ -122,7 +122,8 @@ impl Procedure for Compensation {
     }
 
     fn summary(&self) -> &'static str {
-        "Follows a reference with six ways of compensating friction, from none to the full model and an observer, and tells what each of them gains."
+        "Follows a reference with six methods of friction compensation, from none to the full model and an observer. \
+         Compares their tracking errors."
     }
 
     fn kind(&self) -> Kind {
@@ -140,8 +141,8 @@ impl Procedure for Compensation {
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         if values.number("tau_h_nm") < values.number("tau_c_nm") {
             return Err(PlanFault::Contradiction {
-                what: "tau_h_nm is below tau_c_nm: friction would fall towards standstill".into(),
-                cure: "exchange them, or make them equal",
+                what: "tau_h_nm must not be below tau_c_nm".into(),
+                cure: "swap the two values, or make them equal",
             });
         }
         let constants = &bench.constants;
@@ -216,7 +217,7 @@ pub(super) fn of_friction(found: &Identification) -> Option<FollowUp> {
     let parameters: Map<String, Value> =
         given.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?.into()))).collect();
     Values::parse(SCHEMA, &parameters).ok()?;
-    let why = "feed this friction forward and see what each way of compensating it gains";
+    let why = "compare the compensation methods with these values";
     Some(FollowUp { procedure: Compensation.id(), parameters, why })
 }
 
@@ -234,7 +235,7 @@ fn over_compensates(stated: &Stated, way: Way, share: f64, top_rad_s: f64) -> Re
         None => Ok(()),
         Some(v) => Err(PlanFault::Contradiction {
             what: format!("{} would over-compensate at {v:.3} rad/s (link)", way.words()[1]),
-            cure: "lower share",
+            cure: "reduce share",
         }),
     }
 }

@@ -15,8 +15,8 @@ pub(super) struct Demagnetise;
 
 const SCHEMA: &[Parameter] = &[
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 1.5, [0.2, 20.0]),
-    Parameter::number("turns", "Turns of the link while the current falls", "", 3.0, [1.0, 20.0]),
-    Parameter::number("top_current", "Current to begin with, share of rated", "", 1.0, [0.05, 1.0]),
+    Parameter::number("turns", "Link turns while the current decreases", "", 3.0, [1.0, 20.0]),
+    Parameter::number("top_current", "Initial current, fraction of rated", "", 1.0, [0.05, 1.0]),
     ACCELERATION,
     sample_rate(250.0),
 ];
@@ -38,7 +38,8 @@ impl Procedure for Demagnetise {
     }
 
     fn summary(&self) -> &'static str {
-        "Magnetises the brake fully and takes the current away while the shaft turns; then one turn without current shows what is left."
+        "Magnetises the brake fully, then reduces the current to zero while the shaft turns. One turn without current \
+         measures the remanent torque."
     }
 
     fn kind(&self) -> Kind {
@@ -77,7 +78,7 @@ impl Procedure for Demagnetise {
 }
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
-    const LITTLE: Unusable = Unusable::TooLittle("the run did not reach its last turn: make it again");
+    const LITTLE: Unusable = Unusable::TooLittle("The run ended before the last turn.", "Repeat the run.");
     let (Some(torque), Some(angle), Some(rated_nm)) =
         (run.column("brake_torque_nm"), run.column("position_rad"), rated_nm(run))
     else {
@@ -116,16 +117,16 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     Ok(Identification {
         verdict: if clean { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Over one turn without current the torque varies by {}, {} the {} that noise and 0.5 % of the rating make up.",
+            "Torque variation over one turn without current: {}, {} the limit of {} (noise + 0.5 % of rated).",
             words::figure(left_nm, "Nm"),
-            if clean { "within" } else { "more than" },
+            if clean { "below" } else { "above" },
             words::figure(allowed_nm, "Nm"),
         ),
         advice: (!clean)
-            .then(|| "Poles are left in the rotor: make more turns, or begin with a higher current.".into()),
+            .then(|| "The rotor is still magnetised. Increase the number of turns or the initial current.".into()),
         quantities: vec![
-            quantity(["left", "ΔT", "Torque left over one turn, peak to peak", "Nm"], left_nm, None),
-            quantity(["noise", "σ", "Of it, what noise makes up", "Nm"], noise_nm, None),
+            quantity(["left", "ΔT", "Remanent torque over one turn, peak to peak", "Nm"], left_nm, None),
+            quantity(["noise", "σ", "Noise contribution, peak to peak", "Nm"], noise_nm, None),
         ],
         figures: vec![Figure {
             name: "torque_over_angle".into(),

@@ -28,17 +28,17 @@ mod left_open;
 pub(super) struct Friction;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Highest speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
+    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
     Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
-    Parameter::count("fast_speeds", "Speeds above the Stribeck velocity", 5, [2, 20]),
-    Parameter::count("load_levels", "Load levels, no load included", 3, [1, 10]),
-    Parameter::number("top_load", "Highest brake current, share of rated", "", 0.65, [0.05, 1.0]),
-    Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
-    Parameter::number("dwell_s", "Constant speed at each point", "s", 1.1, [0.3, 60.0]),
-    Parameter::number("warm_up_s", "Longest warm-up", "s", 20.0, [1.0, 3600.0]),
+    Parameter::count("fast_speeds", "Number of speeds above the Stribeck velocity", 5, [2, 20]),
+    Parameter::count("load_levels", "Load levels, including no load", 3, [1, 10]),
+    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.65, [0.05, 1.0]),
+    Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
+    Parameter::number("dwell_s", "Dwell time at each speed", "s", 1.1, [0.3, 60.0]),
+    Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),
     ACCELERATION,
     sample_rate(250.0),
-    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
 /// Speeds below the expected Stribeck velocity, as shares of it: at least four, or its exponent stays open
@@ -59,7 +59,8 @@ impl Procedure for Friction {
     }
 
     fn summary(&self) -> &'static str {
-        "Measures the torque at constant speeds, dense near zero, in both directions and under several loads. What the model misses shows in speed, load, angle or temperature."
+        "Measures the torque at constant speeds, with more speeds near zero, in both directions and under several \
+         loads. Speed, load, angle and temperature vary independently, so that missing effects can be identified."
     }
 
     fn kind(&self) -> Kind {
@@ -145,9 +146,10 @@ impl Speeds {
         if top_rad_s < 2.0 * from_rad_s {
             return Err(PlanFault::Contradiction {
                 what: format!(
-                    "top_speed_rad_s = {top_rad_s} is not well above the Stribeck velocity, {stribeck_rad_s:.1} rad/s on the motor"
+                    "top_speed_rad_s = {top_rad_s} is too close to the Stribeck velocity, {stribeck_rad_s:.1} rad/s \
+                     (motor)"
                 ),
-                cure: "raise top_speed_rad_s or lower stribeck_speed_rad_s",
+                cure: "increase top_speed_rad_s or reduce stribeck_speed_rad_s",
             });
         }
         let count = values.count("fast_speeds");
@@ -178,8 +180,8 @@ fn loads(values: &Values, bench: &BenchFacts) -> Result<Vec<f64>, PlanFault> {
     let levels = values.count("load_levels");
     if levels > 1 {
         let cure = match bench.amperes_per_volt {
-            Some(_) => "puma_friction is the procedure for an arm's axis",
-            None => "choose load_levels = 1, or connect it",
+            Some(_) => "use puma_friction for the axis of an arm",
+            None => "set load_levels = 1, or connect it",
         };
         let missing = |role| PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure };
         if !bench.has_brake {

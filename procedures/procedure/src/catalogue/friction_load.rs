@@ -6,7 +6,9 @@
 use super::friction::Friction;
 use super::legs::sample_rate;
 use super::{Findable, Procedure, findable};
-use crate::findings::{Unusable, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter, settled, verdict};
+use crate::findings::{
+    Unusable, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter, settled, verdict,
+};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
@@ -17,15 +19,15 @@ use jointbench_model::{Fit, ModelError, ModelSpec, Options, fit};
 pub(super) struct FrictionLoad;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Highest speed (motor)", "rad/s", 120.0, [5.0, 1000.0]),
+    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 120.0, [5.0, 1000.0]),
     Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
-    Parameter::count("speeds", "Speeds above the Stribeck velocity", 3, [2, 20]),
-    Parameter::count("load_levels", "Load levels, no load included", 6, [3, 20]),
-    Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
-    Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
-    Parameter::number("warm_up_s", "Longest warm-up", "s", 20.0, [1.0, 3600.0]),
+    Parameter::count("speeds", "Number of speeds above the Stribeck velocity", 3, [2, 20]),
+    Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
+    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
+    Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
+    Parameter::number("warm_up_s", "Maximum warm-up time", "s", 20.0, [1.0, 3600.0]),
     sample_rate(250.0),
-    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
 impl Procedure for FrictionLoad {
@@ -38,7 +40,8 @@ impl Procedure for FrictionLoad {
     }
 
     fn summary(&self) -> &'static str {
-        "Measures friction on a grid of loads and speeds, and tells whether it grows with the load, in proportion or with its square."
+        "Measures friction on a grid of loads and speeds. Decides whether friction grows with the load, in proportion \
+         or with its square."
     }
 
     fn kind(&self) -> Kind {
@@ -81,8 +84,8 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     for (effect, name, words) in [
         ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction", "Nm"]),
         ("viscous", "c_v", ["c_v", "c_v", "Viscous friction", "Nm·s/rad"]),
-        ("load_linear", "mu", ["mu", "μ", "Friction for each Nm of load, motor side", ""]),
-        ("load_quadratic", "mu_2", ["mu_2", "μ₂", "Friction for each Nm² of load, motor side", "1/Nm"]),
+        ("load_linear", "mu", ["mu", "μ", "Friction per Nm of load, motor side", ""]),
+        ("load_quadratic", "mu_2", ["mu_2", "μ₂", "Friction per Nm² of load, motor side", "1/Nm"]),
     ] {
         if let Some(found) = parameter(&fit, effect, name) {
             let (value, ci95) = interval_of(found, 1.0);
@@ -92,13 +95,13 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let laws = Law::of(&fit);
     let heaviest = held().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
     let added_nm = laws.added_nm(heaviest / gear);
-    quantities.push(quantity(["added", "Δτ", "Friction that the highest load adds, motor side", "Nm"], added_nm, None));
-    let more = format!("{} more at {heaviest:.1} Nm (commanded)", words::figure(added_nm, "Nm"));
+    quantities.push(quantity(["added", "Δτ", "Additional friction at maximum load, motor side", "Nm"], added_nm, None));
+    let more = format!("+{} at {heaviest:.1} Nm (commanded)", words::figure(added_nm, "Nm"));
     let summary = match law {
         [] => "Friction does not depend on the load.".to_owned(),
         ["load_linear"] => format!("Friction grows in proportion to the load: {more}."),
         ["load_quadratic"] => format!("Friction grows with the square of the load: {more}."),
-        _ => format!("Friction grows with the load, in proportion and with its square: {more}."),
+        _ => format!("Friction grows with the load, with a linear and a quadratic part: {more}."),
     };
     Ok(Identification {
         verdict: Verdict::Identified,
@@ -175,9 +178,11 @@ fn over_load(table: &RunTable, gear: f64, law: Law) -> Result<Figure, Unusable> 
         let point = |p: &crate::findings::Plateau| ((p.load_nm * gear).abs(), (p.target - p.load_nm).abs());
         let seen: Vec<(f64, f64)> = same.iter().map(point).collect();
         // What is left without the load is that of the speed.
-        let bare_nm = seen.iter().map(|(link_nm, nm)| nm - law.added_nm(link_nm / gear)).sum::<f64>() / seen.len() as f64;
+        let bare_nm =
+            seen.iter().map(|(link_nm, nm)| nm - law.added_nm(link_nm / gear)).sum::<f64>() / seen.len() as f64;
         let top_nm = seen.iter().map(|p| p.0).fold(0.0, f64::max);
-        let line = curve(&format!("fit, {label}"), [0.0, top_nm], STEPS, |link_nm| bare_nm + law.added_nm(link_nm / gear));
+        let line =
+            curve(&format!("fit, {label}"), [0.0, top_nm], STEPS, |link_nm| bare_nm + law.added_nm(link_nm / gear));
         [scatter(&label, seen), line]
     });
     Ok(Figure {

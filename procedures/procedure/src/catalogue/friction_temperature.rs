@@ -18,9 +18,9 @@ pub(super) struct FrictionTemperature;
 
 const SCHEMA: &[Parameter] = &[
     Parameter::number("top_speed_rad_s", "Speed (motor)", "rad/s", 180.0, [1.0, 1000.0]),
-    Parameter::number("heat_s", "Warm-up", "s", 420.0, [20.0, 14400.0]),
-    Parameter::number("cool_s", "Cool-down", "s", 420.0, [0.0, 14400.0]),
-    Parameter::number("rest_s", "Rest between the bouts of the cool-down", "s", 45.0, [1.0, 3600.0]),
+    Parameter::number("heat_s", "Warm-up time", "s", 420.0, [20.0, 14400.0]),
+    Parameter::number("cool_s", "Cool-down time", "s", 420.0, [0.0, 14400.0]),
+    Parameter::number("rest_s", "Pause between measurements during cool-down", "s", 45.0, [1.0, 3600.0]),
     ACCELERATION,
     sample_rate(100.0),
 ];
@@ -42,7 +42,8 @@ impl Procedure for FrictionTemperature {
     }
 
     fn summary(&self) -> &'static str {
-        "Works the joint until it is warm and watches it cool down: how Coulomb and viscous friction change with temperature."
+        "Runs the joint until warm, then records the cool-down. Identifies how Coulomb and viscous friction change \
+         with temperature."
     }
 
     fn kind(&self) -> Kind {
@@ -54,7 +55,7 @@ impl Procedure for FrictionTemperature {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("the warm-up and the cool-down that it measures are one history")
+        Err("warm-up and cool-down form one temperature history")
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -98,7 +99,7 @@ impl Procedure for FrictionTemperature {
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     if run.column("temperature_c").is_none() {
-        return Err(Unusable::TooLittle("the joint reports no temperature: connect a thermistor or a thermometer"));
+        return Err(Unusable::TooLittle("The joint reports no temperature.", "Connect a thermistor or a thermometer."));
     }
     let prepared = settled(run)?;
     let points = plateaus(&prepared);
@@ -110,8 +111,8 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let spec = ModelSpec::new(run.kind(), given.into_iter().chain(effects))?;
     let fit = fit_prepared(&prepared, &spec, &Options::default())?;
     let mut quantities = vec![
-        quantity(["temperature_low", "T₁", "Lowest temperature", "°C"], low_c, None),
-        quantity(["temperature_high", "T₂", "Highest temperature", "°C"], high_c, None),
+        quantity(["temperature_low", "T₁", "Minimum temperature", "°C"], low_c, None),
+        quantity(["temperature_high", "T₂", "Maximum temperature", "°C"], high_c, None),
     ];
     for (effect, name, words) in [
         ("coulomb", "tau_c", ["tau_c", "τ_c", "Coulomb friction at 25 °C", "Nm"]),
@@ -136,14 +137,14 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     };
     let (dry, wet) = (moves("temperature_coulomb", "tau_t", 1.0), moves("temperature_viscous", "c_t", top_rad_s));
     let what = match (dry, wet) {
-        (false, false) => format!("neither Coulomb nor viscous friction changes by {:.0} %", 100.0 * NOTHING),
-        (true, false) => "Coulomb friction changes and viscous friction does not".to_owned(),
+        (false, false) => format!("Coulomb and viscous friction change by less than {:.0} %", 100.0 * NOTHING),
+        (true, false) => "only Coulomb friction changes".to_owned(),
         (_, true) => {
             let share = parameter(&fit, "temperature_viscous", "c_t").map_or(0.0, |p| p.value)
                 / parameter(&fit, "viscous", "c_v").map_or(f64::NAN, |p| p.value);
-            let coulomb = if dry { "too" } else { "not" };
+            let coulomb = if dry { "changes too" } else { "does not change significantly" };
             format!(
-                "viscous friction changes by {:.2} % for each K around {REFERENCE_C} °C, Coulomb friction {coulomb}",
+                "viscous friction changes by {:.2} %/K at {REFERENCE_C} °C; Coulomb friction {coulomb}",
                 100.0 * share
             )
         }
@@ -151,8 +152,8 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let enough = high_c - low_c >= LEAST_SPAN_K;
     Ok(Identification {
         verdict: if enough { Verdict::Identified } else { Verdict::Inconclusive },
-        summary: format!("From {low_c:.1} to {high_c:.1} °C {what}."),
-        advice: (!enough).then(|| "The joint hardly warmed up: raise heat_s or top_speed_rad_s.".into()),
+        summary: format!("{low_c:.1} to {high_c:.1} °C: {what}."),
+        advice: (!enough).then(|| "The temperature range is too small. Increase heat_s or top_speed_rad_s.".into()),
         quantities,
         figures,
     })

@@ -30,18 +30,18 @@ use serde_json::{Map, Value, json};
 pub(super) struct IdentifyJoint;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_speed_rad_s", "Highest speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
+    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 180.0, [5.0, 1000.0]),
     Parameter::number("stribeck_speed_rad_s", "Expected Stribeck velocity (link)", "rad/s", 0.07, [0.001, 10.0]),
-    Parameter::number("heat_s", "Warm-up and cool-down that are watched, each; 0: neither", "s", 420.0, [0.0, 14400.0]),
-    Parameter::number("warm_up_s", "Longest warm-up before all others", "s", 20.0, [1.0, 3600.0]),
-    Parameter::number("swing_nm", "Largest swing before sliding, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
-    Parameter::count("load_levels", "Load levels, no load included", 6, [3, 20]),
-    Parameter::number("top_load", "Highest brake current, share of rated", "", 0.8, [0.05, 1.0]),
-    Parameter::number("bearing_stiffness_nm_rad", "Stiffness of the bearing, 0: none known", "Nm/rad", 0.0, [0.0, 1e9]),
+    Parameter::number("heat_s", "Recorded warm-up and cool-down time, each (0: skip)", "s", 420.0, [0.0, 14400.0]),
+    Parameter::number("warm_up_s", "Maximum warm-up time before the other parts", "s", 20.0, [1.0, 3600.0]),
+    Parameter::number("swing_nm", "Maximum presliding amplitude, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
+    Parameter::count("load_levels", "Load levels, including no load", 6, [3, 20]),
+    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 0.8, [0.05, 1.0]),
+    Parameter::number("bearing_stiffness_nm_rad", "Bearing stiffness (0: unknown)", "Nm/rad", 0.0, [0.0, 1e9]),
     Parameter::count("repeats", "Repeats of the profiles", 2, [2, 50]),
     Parameter::count(
         "periods",
-        "Periods with each way of compensating, two at least, where the drive can; 0: none",
+        "Periods with each compensation method, at least 2, if the drive supports it (0: skip)",
         3,
         [0, 100],
     ),
@@ -120,7 +120,9 @@ impl Procedure for IdentifyJoint {
     }
 
     fn summary(&self) -> &'static str {
-        "The whole campaign of a joint and its brake in one run and one report: friction over temperature, friction, breakaway, presliding, friction under load, brake over speed and with its hysteresis, stiffness, and what compensating the friction found gains."
+        "Complete identification of a joint and its brake in one run and one report. Parts: friction over temperature, \
+         friction, breakaway, presliding, friction under load, brake over speed, brake hysteresis, stiffness, and \
+         compensation of the identified friction."
     }
 
     fn kind(&self) -> Kind {
@@ -205,7 +207,7 @@ fn waits(procedure: &dyn Procedure) -> bool {
 }
 
 const FOREIGN: Unusable =
-    Unusable::TooLittle("the run does not say which of its rows are whose: it is of another procedure");
+    Unusable::TooLittle("The parts of the campaign are not stored with the run.", "Run identify_joint.");
 
 fn parts_of(run: &RunTable) -> Result<&[Value], Unusable> {
     Ok(run.meta().other.get(PARTS).and_then(Value::as_array).ok_or(FOREIGN)?)
@@ -268,10 +270,13 @@ fn none_of(part: &dyn Procedure, before: &Identification) -> Identification {
     match before.verdict {
         Verdict::Inconclusive if waits(part) => Identification {
             verdict: Verdict::Inconclusive,
-            advice: Some("Do what friction advises, and make the run again.".into()),
-            ..Identification::failed("Left out: friction is not known well enough to feed it forward.", "")
+            advice: Some("Follow the advice of the friction part, then repeat the run.".into()),
+            ..Identification::failed(
+                "Not performed, because friction is not determined well enough for feed-forward.",
+                "",
+            )
         },
-        _ => Identification::failed("The run ended before this part.", "Make the run again."),
+        _ => Identification::failed("The run ended before this part.", "Repeat the run."),
     }
 }
 

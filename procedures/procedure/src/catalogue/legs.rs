@@ -63,8 +63,8 @@ impl Legs {
         let (out, back) = (velocity(1.0), velocity(-1.0));
         let turning_s = speed_rad_s / self.acceleration_rad_s2;
         let brake = Profile::from(from_a).hold(turning_s).to(to_a, RAISE_S);
-        self.push(format!("brake to {to_a:.2} A"), out, brake);
-        self.push(format!("back at {to_a:.2} A"), back, Profile::constant(to_a));
+        self.push(format!("brake to {to_a:.2} A, forward"), out, brake);
+        self.push(format!("brake at {to_a:.2} A, return"), back, Profile::constant(to_a));
     }
 
     /// One step at constant speed in which the current goes from 0 through a history of its own and back to 0: an unbroken

@@ -67,7 +67,7 @@ pub trait Procedure: Sync {
     /// The steps that wait for what the run finds ([`Plan::lesson`]), planned from what it has measured so far. `Err` says
     /// why they are left out.
     fn learn(&self, _run: &RunTable, _bench: &BenchFacts) -> Result<Learnt, String> {
-        Err(format!("{} plans nothing while it runs", self.title()))
+        Err(format!("{} has no steps that are planned during the run", self.title()))
     }
 
     /// The run that uses what was found.

@@ -19,11 +19,11 @@ mod loops;
 pub(super) struct Presliding;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("top_torque_nm", "Largest swing, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
-    Parameter::count("amplitudes", "Amplitudes, evenly spaced up to the largest swing", 4, [2, 20]),
-    Parameter::count("swings", "Swings at each of them", 3, [1, 50]),
-    Parameter::number("period_s", "Time of a swing", "s", 8.0, [0.2, 600.0]),
-    Parameter::count("repeats", "Repeats of the whole profile, each at other places", 4, [2, 50]),
+    Parameter::number("top_torque_nm", "Maximum amplitude, below breakaway (motor)", "Nm", 0.028, [1e-4, 100.0]),
+    Parameter::count("amplitudes", "Number of amplitudes, evenly spaced up to the maximum", 4, [2, 20]),
+    Parameter::count("swings", "Cycles at each amplitude", 3, [1, 50]),
+    Parameter::number("period_s", "Period of a cycle", "s", 8.0, [0.2, 600.0]),
+    Parameter::count("repeats", "Repeats of the profile, each at different positions", 4, [2, 50]),
     ACCELERATION,
     sample_rate(250.0),
 ];
@@ -47,7 +47,8 @@ impl Procedure for Presliding {
     }
 
     fn summary(&self) -> &'static str {
-        "Swings the motor current to and fro below breakaway at several amplitudes. The loops show how stiff the contacts are before they slide."
+        "Oscillates the motor current below breakaway at several amplitudes. The hysteresis loops give the presliding \
+         stiffness."
     }
 
     fn kind(&self) -> Kind {
@@ -80,7 +81,11 @@ impl Procedure for Presliding {
                 let back = Profile::plateau(STROKE_RAD_S, legs.acceleration_rad_s2, dwell_s * further);
                 legs.push("stroke".into(), out, Profile::constant(0.0));
                 let from_s = back.duration_s() + REST_S;
-                legs.push(format!("swings of {:.0} % of top torque", 100.0 * share), back, Profile::constant(0.0));
+                legs.push(
+                    format!("cycles at {:.0} % of the maximum torque", 100.0 * share),
+                    back,
+                    Profile::constant(0.0),
+                );
                 legs.drive_of_last(Drive::Current { from_s, current_a, until: UNTIL });
             }
         }

@@ -26,19 +26,19 @@ mod identify;
 pub(super) struct PumaFriction;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("lowest_speed_rad_s", "Lowest speed (link)", "rad/s", 0.0873, [0.001, 10.0]),
-    Parameter::number("top_speed_rad_s", "Highest speed (link)", "rad/s", 0.698, [0.01, 20.0]),
-    Parameter::count("speeds", "Speeds in each direction", 8, [3, 40]),
+    Parameter::number("lowest_speed_rad_s", "Minimum speed (link)", "rad/s", 0.0873, [0.001, 10.0]),
+    Parameter::number("top_speed_rad_s", "Maximum speed (link)", "rad/s", 0.698, [0.01, 20.0]),
+    Parameter::count("speeds", "Number of speeds in each direction", 8, [3, 40]),
     Parameter::number("arc_rad", "Arc to either side of the upright pose (link)", "rad", 0.45, [0.02, 3.0]),
-    Parameter::count("repeats", "Repeats of the whole profile", 3, [1, 50]),
-    Parameter::number("warm_up_s", "Longest work-out", "s", 60.0, [1.0, 3600.0]),
-    Parameter::count("breakaways", "Measurements of stiction in each direction", 4, [2, 50]),
-    Parameter::number("top_torque_nm", "Torque at which the rise ends (motor)", "Nm", 0.3, [1e-3, 100.0]),
-    Parameter::number("ramp_nm_s", "Rise of the torque (motor)", "Nm/s", 0.02, [1e-4, 10.0]),
-    Parameter::count("increases", "Encoder increases in a row", 5, [2, 50]),
+    Parameter::count("repeats", "Repeats of the profile", 3, [1, 50]),
+    Parameter::number("warm_up_s", "Maximum warm-up time", "s", 60.0, [1.0, 3600.0]),
+    Parameter::count("breakaways", "Breakaway measurements in each direction", 4, [2, 50]),
+    Parameter::number("top_torque_nm", "Maximum torque of the ramp (motor)", "Nm", 0.3, [1e-3, 100.0]),
+    Parameter::number("ramp_nm_s", "Torque ramp rate (motor)", "Nm/s", 0.02, [1e-4, 10.0]),
+    Parameter::count("increases", "Consecutive encoder increments", 5, [2, 50]),
     ACCELERATION,
     Parameter::number("sample_rate_hz", "Control and sample rate", "Hz", 100.0, [40.0, 500.0]),
-    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
 /// Strokes of one cycle of the work-out whose currents are compared: two out, two back.
@@ -56,11 +56,12 @@ impl Procedure for PumaFriction {
     }
 
     fn title(&self) -> &'static str {
-        "Friction of an arm"
+        "Robot-arm friction (Puma)"
     }
 
     fn summary(&self) -> &'static str {
-        "Works an arm's axis warm, then takes the mean shunt voltage at constant speeds over a short arc about the upright pose, a line for each direction, and the stiction. Stand the link upright first."
+        "Warms up the axis, then measures the mean shunt voltage at constant speeds over a short arc about the upright \
+         pose. Fits a line for each direction and measures breakaway friction. Set the link upright first."
     }
 
     fn kind(&self) -> Kind {
@@ -68,7 +69,7 @@ impl Procedure for PumaFriction {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("its arc lies about the pose in which it began: stand the link upright and make it again")
+        Err("its arc is centred on the initial pose: set the link upright and repeat the run")
     }
 
     fn schema(&self) -> &'static [Parameter] {
@@ -78,7 +79,7 @@ impl Procedure for PumaFriction {
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         let Some(amperes_per_volt) = bench.amperes_per_volt else {
             return Err(PlanFault::Contradiction {
-                what: format!("bench {} does not read motor current as volts of a shunt", bench.name),
+                what: format!("bench {} does not measure the motor current as shunt voltage", bench.name),
                 cure: "run friction and breakaway instead",
             });
         };
@@ -92,8 +93,8 @@ impl Procedure for PumaFriction {
         let reached_rad_s = (2.0 * arc_rad * acceleration_rad_s2).sqrt();
         if top_rad_s > 0.7 * reached_rad_s {
             return Err(PlanFault::Contradiction {
-                what: format!("top_speed_rad_s = {} is not held on this arc", values.number("top_speed_rad_s")),
-                cure: "lower it, or raise arc_rad or acceleration_rad_s2",
+                what: format!("top_speed_rad_s = {} cannot be held on this arc", values.number("top_speed_rad_s")),
+                cure: "reduce it, or increase arc_rad or acceleration_rad_s2",
             });
         }
         let mut legs = Legs::new(acceleration_rad_s2);
@@ -156,8 +157,8 @@ fn speeds(values: &Values) -> Result<impl Iterator<Item = f64> + use<>, PlanFaul
     let (low, top) = (values.number("lowest_speed_rad_s"), values.number("top_speed_rad_s"));
     if top < 2.0 * low {
         return Err(PlanFault::Contradiction {
-            what: format!("top_speed_rad_s = {top} is not well above lowest_speed_rad_s = {low}"),
-            cure: "no line is seen on a short range of speeds: raise one or lower the other",
+            what: format!("top_speed_rad_s = {top} is too close to lowest_speed_rad_s = {low}"),
+            cure: "the speed range is too small for a line, increase the one or reduce the other",
         });
     }
     let count = values.count("speeds");

@@ -17,12 +17,12 @@ use jointbench_instrument::{Kind, Meta, RunTable};
 pub(super) struct Stiffness;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::count("load_levels", "Load levels, no load included", 8, [3, 40]),
-    Parameter::number("top_load", "Highest brake current, share of rated", "", 1.0, [0.05, 1.0]),
-    Parameter::number("bearing_stiffness_nm_rad", "Stiffness of the bearing, 0: none known", "Nm/rad", 0.0, [0.0, 1e9]),
+    Parameter::count("load_levels", "Load levels, including no load", 8, [3, 40]),
+    Parameter::number("top_load", "Maximum brake current, fraction of rated", "", 1.0, [0.05, 1.0]),
+    Parameter::number("bearing_stiffness_nm_rad", "Bearing stiffness (0: unknown)", "Nm/rad", 0.0, [0.0, 1e9]),
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.5, [0.11, 20.0]),
-    Parameter::number("dwell_s", "Constant speed each way", "s", 1.5, [0.5, 60.0]),
-    Parameter::count("repeats", "Repeats of the whole profile", 2, [2, 50]),
+    Parameter::number("dwell_s", "Dwell time in each direction", "s", 1.5, [0.5, 60.0]),
+    Parameter::count("repeats", "Repeats of the profile", 2, [2, 50]),
     ACCELERATION,
     sample_rate(250.0),
 ];
@@ -37,7 +37,8 @@ impl Procedure for Stiffness {
     }
 
     fn summary(&self) -> &'static str {
-        "Loads the joint step by step in both directions and compares its two encoders: stiffness, directional offset, and whether a line is enough."
+        "Loads the joint step by step in both directions and compares its two encoders. Identifies stiffness, \
+         directional offset and nonlinearity."
     }
 
     fn kind(&self) -> Kind {
@@ -49,13 +50,13 @@ impl Procedure for Stiffness {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("its positions share one zero of the encoders, which an instrument that was off has lost")
+        Err("the zero of the encoders is lost when an instrument is switched off")
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         for (there, role) in [(bench.has_brake, "brake"), (bench.has_torque_sensor, "torque sensor")] {
             if !there {
-                let cure = "connect it: stiffness is torsion over torque";
+                let cure = "connect it, because stiffness is torque per torsion";
                 return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure });
             }
         }
@@ -92,7 +93,12 @@ impl Procedure for Stiffness {
     }
 
     fn finds(&self) -> Vec<Findable> {
-        findable(&[("rad/Nm", "inverse_k"), ("Nm/rad", "k k_1 k_2 k_3"), ("rad", "beta_0 xi hysteresis_width lost_motion line_rms rms"), ("J", "loop_area")])
+        findable(&[
+            ("rad/Nm", "inverse_k"),
+            ("Nm/rad", "k k_1 k_2 k_3"),
+            ("rad", "beta_0 xi hysteresis_width lost_motion line_rms rms"),
+            ("J", "loop_area"),
+        ])
     }
 
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {

@@ -10,6 +10,7 @@ use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::words;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -17,16 +18,16 @@ use rand_chacha::ChaCha8Rng;
 pub(super) struct Strokes;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("low_speed_rad_s", "Lowest speed (motor)", "rad/s", 15.0, [1e-3, 1000.0]),
-    Parameter::number("top_speed_rad_s", "Highest speed (motor)", "rad/s", 150.0, [1e-3, 1000.0]),
-    Parameter::count("speeds", "Speeds, evenly spaced in their logarithm", 4, [1, 20]),
-    Parameter::number("load", "Brake current, share of rated", "", 0.0, [0.0, 1.0]),
-    Parameter::count("repeats", "Repeats of the whole profile", 2, [1, 50]),
-    Parameter::number("dwell_s", "Longest time at each speed", "s", 3.0, [0.3, 60.0]),
-    Parameter::number("travel_rad", "Longest way of each stroke (link)", "rad", 0.6, [1e-3, 100.0]),
+    Parameter::number("low_speed_rad_s", "Minimum speed (motor)", "rad/s", 15.0, [1e-3, 1000.0]),
+    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 150.0, [1e-3, 1000.0]),
+    Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 4, [1, 20]),
+    Parameter::number("load", "Brake current, fraction of rated", "", 0.0, [0.0, 1.0]),
+    Parameter::count("repeats", "Repeats of the profile", 2, [1, 50]),
+    Parameter::number("dwell_s", "Maximum dwell time at each speed", "s", 3.0, [0.3, 60.0]),
+    Parameter::number("travel_rad", "Maximum stroke length (link)", "rad", 0.6, [1e-3, 100.0]),
     Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [1e-2, 5000.0]),
     sample_rate(250.0),
-    Parameter::count("order_seed", "Seed of the order", 1, [0, 1_000_000]),
+    Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
 ];
 
 /// The brake is magnetised and demagnetised at this share of the highest speed at least, however slow the strokes are.
@@ -41,11 +42,12 @@ impl Procedure for Strokes {
     }
 
     fn title(&self) -> &'static str {
-        "Strokes"
+        "Constant-speed strokes"
     }
 
     fn summary(&self) -> &'static str {
-        "Goes out and back at a few constant speeds under one load. Short: it settles one question that a longer run has left open."
+        "Strokes in both directions at a few constant speeds under one load. A short run that answers one open \
+         question of a longer run."
     }
 
     fn kind(&self) -> Kind {
@@ -59,7 +61,7 @@ impl Procedure for Strokes {
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
         let brake_a = values.number("load") * bench.constants.brake_rated_current_a;
         if brake_a > 0.0 && !bench.has_brake {
-            let cure = "choose load = 0, or connect it";
+            let cure = "set load = 0, or connect it";
             return Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role: "brake", cure });
         }
         let speeds = speeds(values, bench)?;
@@ -104,7 +106,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let heaviest = legs.iter().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
     let points = plateaus(&settled(&keep(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?);
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
-    let (mut quantities, mut series, mut flat) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut quantities, mut series, mut flat, mut said) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (suffix, mark, sign) in [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)] {
         let side = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0);
         let side: Vec<(f64, f64)> = side.map(|p| (p.velocity_rad_s, p.target - p.load_nm)).collect();
@@ -116,26 +118,28 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         if line.slope_ci95[0] <= 0.0 && line.slope_ci95[1] >= 0.0 {
             flat.push(format!("{suffix} motion (r² {:.2})", line.r2));
         }
+        let [offset, slope] = [(line.offset, "Nm"), (line.slope, "Nm·s/rad")].map(|(v, unit)| words::figure(v, unit));
+        said.push(format!("Line in {suffix} direction: {offset} at zero speed, slope {slope}."));
         let named = |name: &str, symbol: &str, title: &str, unit: &str, value: f64, ci95: Option<[f64; 2]>| {
             let title = format!("{title}, {suffix} direction");
             let words = [&format!("{name}_{suffix}"), &format!("{symbol}{mark}"), &title, unit];
             quantity(words, value, ci95)
         };
         quantities.extend([
-            named("offset", "τ₀", "Friction at speed 0 by the line", "Nm", line.offset, Some(line.offset_ci95)),
+            named("offset", "τ₀", "Friction at zero speed (fitted line)", "Nm", line.offset, Some(line.offset_ci95)),
             named("slope", "c", "Slope over motor speed", "Nm·s/rad", line.slope, Some(line.slope_ci95)),
-            named("r2", "r²", "Share of the scatter explained", "", line.r2, None),
+            named("r2", "r²", "Coefficient of determination", "", line.r2, None),
         ]);
     }
     let advice = if quantities.len() < 6 {
-        Some("A line needs two speeds or more: raise speeds.".to_owned())
+        Some("A line requires at least two speeds. Increase speeds.".to_owned())
     } else {
-        let other = "what differs between the strokes is something else: diagnose the run, or raise top_speed_rad_s.";
-        (!flat.is_empty()).then(|| format!("Friction follows no line over speed in {}; {other}", flat.join(" and ")))
+        let other = "Diagnose the run to find the cause of the differences, or increase top_speed_rad_s.";
+        (!flat.is_empty()).then(|| format!("Speed has no significant linear effect in {}. {other}", flat.join(" and ")))
     };
     Ok(Identification {
         verdict: if advice.is_none() { Verdict::Identified } else { Verdict::Inconclusive },
-        summary: format!("{} strokes up to {top:.1} rad/s at the motor, each direction with its line.", points.len()),
+        summary: format!("{} strokes up to {top:.1} rad/s (motor). {}", points.len(), said.join(" ")),
         advice,
         quantities,
         figures: vec![Figure {
@@ -154,8 +158,8 @@ fn speeds(values: &Values, bench: &BenchFacts) -> Result<Vec<(f64, f64)>, PlanFa
     let (low_rad_s, top_rad_s) = (values.number("low_speed_rad_s"), values.number("top_speed_rad_s"));
     if low_rad_s > top_rad_s {
         return Err(PlanFault::Contradiction {
-            what: format!("low_speed_rad_s = {low_rad_s} is above top_speed_rad_s = {top_rad_s}"),
-            cure: "exchange them",
+            what: format!("low_speed_rad_s = {low_rad_s} must be below top_speed_rad_s = {top_rad_s}"),
+            cure: "swap the two values",
         });
     }
     let steps = f64::from(values.count("speeds").max(2) - 1);
@@ -166,8 +170,8 @@ fn speeds(values: &Values, bench: &BenchFacts) -> Result<Vec<(f64, f64)>, PlanFa
             let room_s = way_rad / speed_rad_s - speed_rad_s / values.number("acceleration_rad_s2");
             if room_s < SHORTEST_S {
                 return Err(PlanFault::Contradiction {
-                    what: format!("{speed_rad_s:.3} rad/s would be held for {:.2} s only", room_s.max(0.0)),
-                    cure: "raise travel_rad or acceleration_rad_s2, or lower top_speed_rad_s",
+                    what: format!("{speed_rad_s:.3} rad/s would be held for only {:.2} s", room_s.max(0.0)),
+                    cure: "increase travel_rad or acceleration_rad_s2, or reduce top_speed_rad_s",
                 });
             }
             Ok((speed_rad_s, room_s.min(values.number("dwell_s"))))

@@ -18,11 +18,11 @@ pub(super) struct TorqueSensorZero;
 const SCHEMA: &[Parameter] = &[
     Parameter::number("duration_s", "Duration", "s", 300.0, [10.0, 7200.0]),
     Parameter::number("speed_rad_s", "Speed (link)", "rad/s", 0.3, [0.05, 20.0]),
-    Parameter::number("dwell_s", "Constant speed each way", "s", 2.0, [0.5, 60.0]),
-    Parameter::number("steady_nm_per_min", "Steady below this drift", "Nm/min", 0.002, [1e-5, 1.0]),
-    Parameter::count("loads", "Loads at which the ranges are compared", 4, [1, 20]),
-    Parameter::number("top_torque_nm", "Largest of them, within the smaller range (link)", "Nm", 10.0, [0.1, 1000.0]),
-    Parameter::number("agree_nm", "The ranges agree where they differ by less (link)", "Nm", 0.12, [1e-4, 10.0]),
+    Parameter::number("dwell_s", "Dwell time in each direction", "s", 2.0, [0.5, 60.0]),
+    Parameter::number("steady_nm_per_min", "Steady when drift is below", "Nm/min", 0.002, [1e-5, 1.0]),
+    Parameter::count("loads", "Loads for the comparison of the ranges", 4, [1, 20]),
+    Parameter::number("top_torque_nm", "Maximum load, within the smaller range (link)", "Nm", 10.0, [0.1, 1000.0]),
+    Parameter::number("agree_nm", "Ranges agree if they differ by less than (link)", "Nm", 0.12, [1e-4, 10.0]),
     ACCELERATION,
     sample_rate(100.0),
 ];
@@ -42,7 +42,8 @@ impl Procedure for TorqueSensorZero {
     }
 
     fn summary(&self) -> &'static str {
-        "Goes out and back slowly without load: half the sum of both directions is the sensor's zero, which drifts as the sensor warms up. Under load its two ranges are compared."
+        "Moves slowly in both directions without load. The mean of both directions is the zero of the sensor, which \
+         drifts during warm-up. Compares the two ranges of the sensor under load."
     }
 
     fn kind(&self) -> Kind {
@@ -58,7 +59,7 @@ impl Procedure for TorqueSensorZero {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("the sensor's drift is one history")
+        Err("the drift of the sensor is one history")
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -128,7 +129,7 @@ impl Zero {
         let end = &points[points.len() - (points.len() as f64 * END).ceil() as usize..];
         let at_end: Vec<f64> = end.iter().map(|p| p.1).collect();
         let (Some(value), Some(drift), Some(drag)) = (Mean::of(&at_end), Line::through(end), Mean::of(&drags)) else {
-            return Err(Unusable::TooLittle("too few strokes: give it a longer duration_s"));
+            return Err(Unusable::TooLittle("Too few strokes.", "Increase duration_s."));
         };
         Ok(Self { points, value, drift, drag })
     }
@@ -138,7 +139,7 @@ impl Zero {
     }
 
     fn words(&self) -> String {
-        format!("{:.1} mNm at the end and drifts by {:.2} mNm/min", 1e3 * self.value.value, 1e3 * self.drift.slope)
+        format!("{:.1} mNm at the end of the run, drift {:.2} mNm/min", 1e3 * self.value.value, 1e3 * self.drift.slope)
     }
 }
 
@@ -149,12 +150,12 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let zero = Zero::of(used, time_s, &held)?;
     let mut found = Identification {
         verdict: Verdict::Identified,
-        summary: format!("The zero of the range in use is {}.", zero.words()),
+        summary: format!("Zero of the active range: {}.", zero.words()),
         advice: None,
         quantities: vec![
             quantity(["zero", "τ₀", "Zero of the torque sensor", "Nm"], zero.value.value, Some(zero.value.ci95)),
             quantity(["drift", "dτ₀/dt", "Drift of the zero", "Nm/min"], zero.drift.slope, Some(zero.drift.slope_ci95)),
-            quantity(["drag", "τ_d", "Drag of the line", "Nm"], zero.drag.value, Some(zero.drag.ci95)),
+            quantity(["drag", "τ_d", "Drag torque of the drive line", "Nm"], zero.drag.value, Some(zero.drag.ci95)),
         ],
         figures: vec![over_time(&zero, "zero_over_time", "Zero of the torque sensor")],
     };
@@ -163,14 +164,14 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     if let Some(other) = run.column(OTHER_RANGE) {
         let other_zero = Zero::of(other, time_s, &held)?;
         steady &= other_zero.is_steady(bound);
-        found.summary += &format!(" That of the other range is {}.", other_zero.words());
+        found.summary += &format!(" Zero of the other range: {}.", other_zero.words());
         found.quantities.extend(of_other(&other_zero));
         found.figures.push(over_time(&other_zero, "other_zero_over_time", "Zero of the torque sensor, other range"));
         overlap(&mut found, &held, [used, other], values.number("agree_nm"))?;
     }
     if !steady {
         found.verdict = Verdict::Inconclusive;
-        let advice = "Let the sensor warm up and measure again, or take a longer duration_s.";
+        let advice = "Let the sensor warm up and repeat the run, or increase duration_s.";
         found.advice = Some([found.advice.as_deref().unwrap_or_default(), advice].join(" ").trim().to_owned());
     }
     Ok(found)
@@ -196,32 +197,32 @@ fn overlap(
 ) -> Result<(), Unusable> {
     let pairs: Vec<(f64, f64)> =
         held.iter().map(|hold| (hold.mean(used, SETTLED), hold.mean(other, SETTLED))).collect();
-    let line = Line::through(&pairs).ok_or(Unusable::TooLittle("all torques are one: raise top_torque_nm"))?;
+    let line = Line::through(&pairs).ok_or(Unusable::TooLittle("All torques are equal.", "Increase top_torque_nm."))?;
     let apart: Vec<(f64, f64)> = pairs.iter().map(|(used, other)| (*used, other - used)).collect();
     let widest = apart.iter().map(|(_, apart)| apart.abs()).fold(0.0, f64::max);
     let (low, high) =
         pairs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (p.0.min(low), p.0.max(high)));
     let agree = widest <= agree_nm;
     found.summary += &format!(
-        " From {low:.1} to {high:.1} Nm the ranges differ by {:.1} mNm at most: they {}.",
+        " From {low:.1} to {high:.1} Nm the ranges differ by at most {:.1} mNm: they {}.",
         1e3 * widest,
         if agree { "agree" } else { "do not agree" }
     );
     if !agree {
         found.verdict = Verdict::Inconclusive;
         found.advice =
-            Some("One of the ranges is wrong: have the sensor calibrated before its torques are used.".into());
+            Some("One of the ranges is wrong. Calibrate the sensor before its torque values are used.".into());
     }
     found.quantities.extend([
-        quantity(["gain_ratio", "κ", "Other range over the range in use", "1"], line.slope, Some(line.slope_ci95)),
-        quantity(["disagreement", "Δτ", "Largest difference of the ranges", "Nm"], widest, None),
+        quantity(["gain_ratio", "κ", "Gain ratio, other range / active range", "1"], line.slope, Some(line.slope_ci95)),
+        quantity(["disagreement", "Δτ", "Maximum difference of the ranges", "Nm"], widest, None),
     ]);
     found.figures.push(Figure {
         name: "ranges_apart".into(),
         title: "Difference of the ranges".into(),
         form: Form::Cartesian,
-        x: Axis::of("torque in the range in use", "Nm"),
-        y: Axis::of("other range less range in use", "Nm"),
+        x: Axis::of("torque, active range", "Nm"),
+        y: Axis::of("other range − active range", "Nm"),
         series: vec![
             scatter("constant speed and load", apart),
             curve("line", [low, high], 1, |torque| line.at(torque) - torque),
@@ -240,7 +241,7 @@ fn over_time(zero: &Zero, name: &str, title: &str) -> Figure {
         x: Axis::of("time", "min"),
         y: Axis::of("torque", "Nm"),
         series: vec![
-            scatter("half the sum of both directions", zero.points.iter().copied()),
+            scatter("mean of both directions", zero.points.iter().copied()),
             curve("drift", [zero.points[first].0, zero.points[last].0], 1, |t| zero.drift.at(t)),
         ],
     }

@@ -13,11 +13,11 @@ pub(super) struct WarmUp;
 
 const SCHEMA: &[Parameter] = &[
     Parameter::number("top_speed_rad_s", "Speed (motor)", "rad/s", 180.0, [1.0, 1000.0]),
-    Parameter::number("longest_s", "Longest duration", "s", 900.0, [20.0, 7200.0]),
-    Parameter::number("steady_c_per_min", "Steady below this drift of temperature", "°C/min", 0.3, [0.01, 10.0]),
+    Parameter::number("longest_s", "Maximum duration", "s", 900.0, [20.0, 7200.0]),
+    Parameter::number("steady_c_per_min", "Steady when temperature drift is below", "°C/min", 0.3, [0.01, 10.0]),
     Parameter::number(
         "steady_share_per_min",
-        "Steady below this relative drift of current",
+        "Steady when relative current drift is below",
         "1/min",
         0.01,
         [1e-4, 1.0],
@@ -42,7 +42,8 @@ impl Procedure for WarmUp {
     }
 
     fn summary(&self) -> &'static str {
-        "Works the joint without load until temperature and current no longer drift. Do it before anything that is to be compared."
+        "Runs the joint without load until temperature and current are steady. Run it before measurements that are \
+         compared."
     }
 
     fn kind(&self) -> Kind {
@@ -97,11 +98,14 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     // By the very rule that ends a warm-up: one that ended by itself has just come below the bound.
     let watch = SteadyWatch::of(rule, run);
     let Some((watch, drift)) = watch.and_then(|watch| watch.drift().map(|drift| (watch, drift))) else {
-        return Err(Unusable::TooLittle("the warm-up ended before three cycles were done: give it a higher longest_s"));
+        return Err(Unusable::TooLittle(
+            "The warm-up ended before three cycles were completed.",
+            "Increase longest_s.",
+        ));
     };
     let last_nm = end.iter().map(|p| p.target.abs()).sum::<f64>() / end.len() as f64;
     let mut quantities = vec![
-        quantity(["torque", "τ_m", "Motor torque at the end, fast legs", "Nm"], last_nm, None),
+        quantity(["torque", "τ_m", "Motor torque at the end of the run, fast legs", "Nm"], last_nm, None),
         quantity(["current_drift", "i̇/i", "Drift of the motor current", "1/min"], drift.current_share_per_min, None),
     ];
     let torque = |p: &Plateau| (p.time_s / 60.0, p.target.abs());
@@ -114,8 +118,8 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     ));
     let mut drifts = vec![(
         drift.is_current_steady(&rule),
-        format!("its current drifts by {:.2} %/min", 100.0 * drift.current_share_per_min),
-        format!("{:.2} %/min (steady_share_per_min)", 100.0 * rule.current_share_per_min),
+        format!("current drift {:.2} %/min", 100.0 * drift.current_share_per_min),
+        format!("limit {:.2} %/min (steady_share_per_min)", 100.0 * rule.current_share_per_min),
     )];
     if run.column("temperature_c").is_some() {
         let words = ["temperature_drift", "Ṫ", "Drift of the temperature", "°C/min"];
@@ -130,22 +134,19 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         ));
         drifts.push((
             drift.is_temperature_steady(&rule),
-            format!("its temperature drifts by {:.3} °C/min", drift.temperature_c_per_min),
-            format!("{} °C/min (steady_c_per_min)", rule.temperature_c_per_min),
+            format!("temperature drift {:.2} K/min", drift.temperature_c_per_min),
+            format!("limit {} K/min (steady_c_per_min)", rule.temperature_c_per_min),
         ));
     }
-    let over: Vec<String> = drifts
-        .iter()
-        .filter(|(is_steady, ..)| !is_steady)
-        .map(|(_, drift, bound)| format!("{drift}, more than {bound}"))
-        .collect();
+    let said = |(_, drift, bound): &(bool, String, String)| format!("{drift} ({bound})");
+    let over: Vec<String> = drifts.iter().filter(|(is_steady, ..)| !is_steady).map(said).collect();
     Ok(if over.is_empty() {
-        let drifts: Vec<&str> = drifts.iter().map(|(_, drift, _)| drift.as_str()).collect();
-        let summary = format!("The joint is warm: {}.", drifts.join(", "));
+        let drifts: Vec<String> = drifts.iter().map(said).collect();
+        let summary = format!("Steady state reached: {}.", drifts.join(", "));
         Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures }
     } else {
-        let summary = format!("The joint is not yet warm: {}.", over.join("; "));
-        let advice = Some("Warm up again at once, while it is warm, or give it a higher longest_s.".to_owned());
+        let summary = format!("Steady state not reached: {}.", over.join("; "));
+        let advice = Some("Repeat the warm-up while the joint is warm, or increase longest_s.".to_owned());
         Identification { verdict: Verdict::Inconclusive, summary, advice, quantities, figures }
     })
 }
@@ -169,7 +170,12 @@ fn over_time(
 }
 
 /// A drift at the end of each cycle, between the bounds within which the joint is warm. `words`: name, title, label and unit.
-fn until_steady([name, title, label, unit]: [&str; 4], watch: &SteadyWatch, bound: f64, of: fn(&Drift) -> f64) -> Figure {
+fn until_steady(
+    [name, title, label, unit]: [&str; 4],
+    watch: &SteadyWatch,
+    bound: f64,
+    of: fn(&Drift) -> f64,
+) -> Figure {
     let points: Vec<(f64, f64)> = watch.drifts().map(|(time_s, drift)| (time_s / 60.0, of(&drift))).collect();
     let ends = [points.first().map_or(0.0, |p| p.0), points.last().map_or(1.0, |p| p.0)];
     Figure {

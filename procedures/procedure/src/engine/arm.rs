@@ -12,14 +12,16 @@ impl Session<'_> {
     pub(super) fn arm(&mut self) -> Result<(), Ending> {
         if let Some(reason) = self.journal.blocked()? {
             let name = &self.bench.name;
-            return Err(Ending::NotReady(format!("bench {name} is blocked ({reason}): look at it, then reset it")));
+            return Err(Ending::NotReady(format!(
+                "bench {name} is blocked ({reason}): inspect the bench, then reset it"
+            )));
         }
         self.check_plan()?;
         self.identify()?;
         self.meet_encoders()?;
         let health = self.ask_joint(|joint| joint.health())?;
         if !health.errors.is_empty() {
-            let what = format!("{}; clear it before the run", health.errors.join(", "));
+            let what = format!("{}; clear the error before the run", health.errors.join(", "));
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
         let reading = self.ask_joint(|joint| joint.read())?;
@@ -46,10 +48,10 @@ impl Session<'_> {
         self.journal.set_columns(columns.empty_trace());
         self.columns = Some(columns);
         if health.temperature.is_none() && self.felt_c.is_empty() {
-            self.note("the joint reports no temperature, and there is no thermometer: its limit is not watched");
+            self.note("No temperature signal: the temperature limit is not monitored.");
         }
         if self.bench.torque_sensor.is_none() {
-            self.note("no torque sensor: link torque and brake power are not watched");
+            self.note("No torque sensor: limits of link torque and brake power are not monitored.");
         }
         self.beat.next_s = self.bench.clock.now_s();
         Ok(())
@@ -101,8 +103,8 @@ impl Session<'_> {
             let fits = position_rad.abs() <= range_rad;
             if !fits {
                 return Err(Ending::NotReady(format!(
-                    "from here the link would turn to {position_rad:.2} rad, beyond its range of ±{range_rad:.2} rad: \
-                     turn it nearer to the middle"
+                    "the link would move to {position_rad:.2} rad, beyond its range of ±{range_rad:.2} rad: move it \
+                     towards the centre of the range"
                 )));
             }
         }

@@ -46,8 +46,8 @@ impl Stood {
     /// For people.
     pub fn told(self) -> String {
         format!(
-            "the stage was read {} times when it had settled, at moments known to ±{:.2} ms or better: at most {:.2} µm and \
-             {:.1} µrad from where it was told to stand",
+            "Stage position after settling ({} readings, time uncertainty ±{:.2} ms): within {:.2} µm and {:.1} µrad \
+             of the target.",
             self.readings,
             1e3 * self.uncertainty_s,
             1e6 * self.off_m,
@@ -78,7 +78,9 @@ impl Session<'_> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, lost, .. } = self;
         let encoder = if under_test { &mut bench.test_encoder } else { &mut bench.reference_encoder };
-        let Some(encoder) = encoder else { return Err(Ending::NotReady("the bench has not both encoders".into())) };
+        let Some(encoder) = encoder else {
+            return Err(Ending::NotReady("the bench needs a reference encoder and a test encoder".into()));
+        };
         ask(encoder.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map_err(|fault| {
             lost.sensor = true;
             Ending::OtherFault(fault)
@@ -113,10 +115,10 @@ impl Session<'_> {
         }
         self.ask_stage(|stage| stage.identify())?;
         if !self.ask_stage(|stage| stage.is_referenced())? {
-            self.note("the stage looks for the zeros of its axes");
+            self.note("Stage referencing started.");
             self.ask_stage(|stage| stage.reference())?;
             self.until_stage(
-                "find the zeros of its axes",
+                "complete its referencing",
                 |stage| stage.is_referenced(),
                 |session| {
                     session.bench.clock.sleep_until_s(session.bench.clock.now_s() + ARRIVED_EVERY_S);
@@ -140,7 +142,7 @@ impl Session<'_> {
         let brake = Profile::constant(self.commanded.brake_a);
         self.drive(&here.clone().hold(SET_OFF_S), &brake)?;
         self.until_stage(
-            "take its pose",
+            "reach its target",
             |stage| stage.is_settled(),
             |session| session.drive(&here.clone().hold(ARRIVED_EVERY_S), &brake),
         )?;

@@ -102,17 +102,17 @@ impl fmt::Display for Ending {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Ending::Completed => f.write_str("completed"),
-            Ending::Stopped => f.write_str("stopped by a person"),
-            Ending::Abandoned => f.write_str("stopped because nobody was left to control the run"),
-            Ending::Aborted => f.write_str("aborted by a person"),
-            Ending::EStopped => f.write_str("software stop by a person"),
-            Ending::Quit => f.write_str("aborted because the daemon was told to end"),
+            Ending::Stopped => f.write_str("stopped by the operator"),
+            Ending::Abandoned => f.write_str("stopped because no client controlled the run"),
+            Ending::Aborted => f.write_str("aborted by the operator"),
+            Ending::EStopped => f.write_str("software stop pressed"),
+            Ending::Quit => f.write_str("aborted because the daemon was shut down"),
             Ending::StorageLost => {
-                f.write_str("the daemon ended before the run did; the bench worker secured the bench")
+                f.write_str("the daemon terminated during the run; the bench worker secured the bench")
             }
             Ending::NotReady(why) => write!(f, "not started: {why}"),
             Ending::CommandRefused(refusal) => write!(f, "command refused: {refusal}"),
-            Ending::SampleRefused(refusal) => write!(f, "limit broken: {refusal}"),
+            Ending::SampleRefused(refusal) => write!(f, "limit exceeded: {refusal}"),
             Ending::JointFault(fault) | Ending::OtherFault(fault) => fault.fmt(f),
             Ending::Unrecorded(fault) => fault.fmt(f),
             Ending::Panicked(what) => write!(f, "internal error, please report it: {what}"),

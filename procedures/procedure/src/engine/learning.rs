@@ -54,7 +54,7 @@ impl Session<'_> {
             let learnt = begun.join().unwrap_or_else(|panic| Err(panic_text(&*panic)));
             let (said, steps) = match learnt {
                 Ok(learnt) => (learnt.said, learnt.steps),
-                Err(why) => (format!("left out: {why}"), Vec::new()),
+                Err(why) => (format!("Part not performed: {why}"), Vec::new()),
             };
             self.note(said);
             self.learning.steps = Some(steps);
@@ -68,7 +68,7 @@ impl Session<'_> {
         let (id, meta) = (self.plan.procedure, self.plan.meta.clone());
         std::thread::spawn(move || {
             let run = measured(RunTable::new(meta, rows), &lesson).map_err(|fault| fault.to_string())?;
-            procedure(id).ok_or("its procedure is not known")?.learn(&run, &bench)
+            procedure(id).ok_or("unknown procedure")?.learn(&run, &bench)
         })
     }
 }

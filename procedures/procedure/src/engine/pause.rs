@@ -75,7 +75,7 @@ impl Session<'_> {
             if now_s > give_up_s {
                 let left_rad = away_rad(self);
                 self.note(format!(
-                    "the way back after the pause ended {left_rad:.2} rad (motor) from the start of the step"
+                    "The return after the pause ended {left_rad:.2} rad (motor) from the start of the step."
                 ));
                 break;
             }

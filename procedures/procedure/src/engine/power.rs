@@ -30,7 +30,7 @@ impl Session<'_> {
             if self.meet_again()? {
                 break;
             }
-            let what = "it has kept its power: its state is not lost";
+            let what = "it was not switched off";
             match &self.bench.test_encoder {
                 Some(encoder) if !by_hand => return Err(Ending::OtherFault(reported(encoder.as_ref(), what))),
                 _ => self.note(format!("{name}: {what}")),
@@ -42,7 +42,7 @@ impl Session<'_> {
 
     /// Waits in standstill until a person says that it is done.
     fn ask_for_hand(&mut self, name: &str) -> Result<(), Ending> {
-        self.note(format!("switch {name} and its counter off and on again, then resume"));
+        self.note(format!("Switch {name} and its counter off and on, then resume the run."));
         self.enter(Transition::Pause)?;
         while self.wish.take() != Some(Wish::Resume) {
             let now_s = self.wait();
@@ -81,7 +81,7 @@ impl Session<'_> {
         while !self.ask_encoder(true, |encoder| encoder.seek_index())? {
             let now_s = self.wait();
             if let Some(encoder) = self.bench.test_encoder.as_ref().filter(|_| now_s > give_up_s) {
-                let what = format!("no index went by in {SEEK_TURNS} turns: is it wired to the counter?");
+                let what = format!("no index pulse within {SEEK_TURNS} turns: check its wiring to the counter");
                 return Err(Ending::OtherFault(reported(encoder.as_ref(), what)));
             }
             self.tick(now_s, SEEK_RAD_S, brake_a)?;

@@ -66,7 +66,7 @@ fn survive<T>(notes: &mut Vec<String>, work: impl FnOnce(&mut Vec<String>) -> T)
 fn disarm(joint: &mut dyn JointController, notes: &mut Vec<String>) -> bool {
     let disarmed = ask(joint, |joint| joint.disarm(), |_| {});
     if let Err(fault) = &disarmed {
-        notes.push(format!("drive torque could not be switched off: {fault}"));
+        notes.push(format!("Drive torque could not be switched off: {fault}"));
     }
     disarmed.is_ok()
 }
@@ -75,13 +75,17 @@ fn disarm(joint: &mut dyn JointController, notes: &mut Vec<String>) -> bool {
 fn take_current_away(brake: &mut dyn CurrentSource, clock: &dyn Clock, rated_a: f64, notes: &mut Vec<String>) -> bool {
     let before = ask(brake, |brake| brake.read(), |_| {}).map(|reading| reading.current.0);
     if before.is_err() {
-        notes.push("the brake current cannot be read and is switched off at once: demagnetise the brake later".into());
+        notes.push(
+            "The brake current could not be read and was switched off immediately. Demagnetise the brake before \
+                    the next run."
+                .into(),
+        );
     }
     if let Ok(before_a) = before
         && before_a > NO_CURRENT * rated_a
     {
         notes.push(format!(
-            "the brake current fell from {before_a:.3} A with the drive off: demagnetise the brake while turning"
+            "The brake current fell from {before_a:.3} A with the drive off. Demagnetise the brake before the next run."
         ));
         for step in (0..RAMP_STEPS).rev() {
             let current_a = before_a * f64::from(step) / f64::from(RAMP_STEPS);
@@ -93,7 +97,7 @@ fn take_current_away(brake: &mut dyn CurrentSource, clock: &dyn Clock, rated_a: 
     }
     let off = ask(brake, |brake| brake.output_off(), |_| {});
     if let Err(fault) = &off {
-        notes.push(format!("the brake supply could not be switched off: {fault}"));
+        notes.push(format!("The brake supply could not be switched off: {fault}"));
     }
     off.is_ok()
 }
@@ -105,7 +109,7 @@ fn hold_stage(stage: &mut dyn AlignmentStage, notes: &mut Vec<String>) {
         _ => ask(stage, |stage| stage.stop(), |_| {}),
     };
     if let Err(fault) = held {
-        notes.push(format!("the stage could not be stopped: {fault}"));
+        notes.push(format!("The stage could not be stopped: {fault}"));
     }
 }
 
@@ -116,13 +120,13 @@ fn verify_joint(joint: &mut dyn JointController, clock: &dyn Clock, disarmed: bo
         let speed = ask(joint, |joint| joint.read(), |_| {}).map(|reading| reading.motor_velocity.0.abs());
         let (what, reached) = match (&health, &speed) {
             (Ok(health), Ok(speed_rad_s)) if !health.armed && *speed_rad_s <= REST_RAD_S => return Safe::SafeVerified,
-            (Ok(health), _) if health.armed => ("the drive still reports torque".to_owned(), Safe::UnsafeUnknown),
+            (Ok(health), _) if health.armed => ("The drive still reports torque.".to_owned(), Safe::UnsafeUnknown),
             (Ok(_), Ok(speed_rad_s)) => {
-                (format!("the shaft still turns at {speed_rad_s:.1} rad/s (motor)"), Safe::UnsafeUnknown)
+                (format!("The shaft still turns at {speed_rad_s:.1} rad/s (motor)."), Safe::UnsafeUnknown)
             }
-            (Ok(_), Err(fault)) => (format!("the speed of the shaft cannot be read: {fault}"), Safe::SafeCommanded),
-            (Err(fault), _) if disarmed => (format!("the drive cannot be read back: {fault}"), Safe::SafeCommanded),
-            (Err(fault), _) => (format!("the drive does not answer: {fault}"), Safe::UnsafeUnknown),
+            (Ok(_), Err(fault)) => (format!("The speed of the shaft could not be read: {fault}"), Safe::SafeCommanded),
+            (Err(fault), _) if disarmed => (format!("The drive could not be read back: {fault}"), Safe::SafeCommanded),
+            (Err(fault), _) => (format!("The drive does not answer: {fault}"), Safe::UnsafeUnknown),
         };
         // A silent instrument had its second chance in `ask`.
         if health.is_err() || speed.is_err() || clock.now_s() >= deadline_s {
@@ -146,12 +150,12 @@ fn verify_brake(
             Ok(reading) if reading.current.0.abs() <= NO_CURRENT * rated_a => return Safe::SafeVerified,
             Ok(reading) if clock.now_s() >= deadline_s => {
                 let current_a = reading.current.0;
-                notes.push(format!("the brake supply still gives {current_a:.3} A ({:?})", reading.regulation));
+                notes.push(format!("The brake supply still delivers {current_a:.3} A ({:?}).", reading.regulation));
                 return Safe::UnsafeUnknown;
             }
             Ok(_) => clock.sleep_until_s(clock.now_s() + POLL_S),
             Err(fault) => {
-                notes.push(format!("the brake supply cannot be read back: {fault}"));
+                notes.push(format!("The brake supply could not be read back: {fault}"));
                 return if unloaded { Safe::SafeCommanded } else { Safe::UnsafeUnknown };
             }
         }

@@ -33,7 +33,7 @@ impl Session<'_> {
             match self.caught(Session::unload) {
                 Ok(()) => {}
                 Err(hurry) => {
-                    self.note(format!("securing goes on harder: {hurry}"));
+                    self.note(format!("Securing escalated to a faster stop: {hurry}"));
                     urgency = hurry.urgency().max(Urgency::Quick);
                 }
             }
@@ -42,12 +42,12 @@ impl Session<'_> {
         if self.lost.brake
             && let Some(Err(fault)) = self.bench.brake.as_mut().map(|brake| brake.command_off())
         {
-            tracing::warn!("the brake is not switched off before the joint comes to rest: {fault}");
+            tracing::warn!("the brake was not switched off before the joint stopped: {fault}");
         }
         if urgency == Urgency::Quick
             && let Err(hurry) = self.caught(Session::come_to_rest)
         {
-            self.note(format!("securing goes on harder: {hurry}"));
+            self.note(format!("Securing escalated to a faster stop: {hurry}"));
         }
         let secured = secure(self.bench);
         secured.notes.into_iter().for_each(|note| self.note(note));

@@ -51,18 +51,17 @@ impl Shaft {
     }
 }
 
-/// What stands behind a lag that the clock does not know.
-const UNKNOWN: &str =
-    "clock and values contradict each other, look for a delay that no clock knows: a filter, a buffer, an adapter";
-const OWN: &str = "its own delay (encoder_delay), or one that no clock knows";
+/// What causes a lag that the time stamps do not show.
+const UNKNOWN: &str = "Unrecorded latency: check filters, buffers and adapters";
+const OWN: &str = "Cause: delay of this encoder (measure it with encoder_delay) or an unrecorded latency";
 
 fn told(name: &str, skews: Skews, lag: Option<Lag>, beyond: &str) -> String {
-    let by_clock = format!("{name} was read {} the reference encoder by the clock", skews.span());
+    let by_clock = format!("Skew of {name} by time stamps: {} than the reference encoder.", skews.span());
     let Some(Lag { s, reach_s }) = lag else {
-        return format!("{by_clock}; what both tell cannot show it here: the shaft moves too little, or too evenly");
+        return format!("{by_clock} The signals do not determine it, because the motion is too small or too uniform.");
     };
-    let way = if s < 0.0 { "earlier" } else { "later" };
-    let by_values = format!("it tells {:.4} ± {:.4} ms {way} than that", 1e3 * s.abs(), 1e3 * reach_s);
-    let verdict = if s.abs() <= reach_s + skews.uncertainty_s { "clock and values agree" } else { beyond };
-    format!("{by_clock}; by what both tell {by_values}: {verdict}")
+    let side = if s < 0.0 { "leads" } else { "lags" };
+    let by_signals = format!("By the signals it {side} by a further {:.4} ± {:.4} ms", 1e3 * s.abs(), 1e3 * reach_s);
+    let verdict = if s.abs() <= reach_s + skews.uncertainty_s { "Time stamps and signals agree" } else { beyond };
+    format!("{by_clock} {by_signals}. {verdict}.")
 }

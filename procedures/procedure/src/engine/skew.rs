@@ -32,18 +32,17 @@ impl Skews {
         if (least_s, most_s) == (0.0, 0.0) {
             return None;
         }
-        let felt = if most_s > 0.0 { "read" } else { "felt" };
-        Some(format!("the torque was {felt} {} the joint; column torque_skew_s has it for every row", self.span()))
+        Some(format!("Torque samples are {} than the joint samples. See column torque_skew_s.", self.span()))
     }
 
-    /// As in "1 to 2 ms after".
+    /// As in "1 to 2 ms (±0.1 ms) later".
     pub fn span(self) -> String {
         let [least_ms, most_ms, known_ms] = [self.least_s, self.most_s, self.uncertainty_s].map(|s| 1e3 * s);
-        let known = format!("(each known to ±{known_ms:.2} ms or better)");
+        let known = format!("(±{known_ms:.2} ms)");
         if least_ms < 0.0 && most_ms <= 0.0 {
-            return format!("{:.2} to {:.2} ms {known} before", most_ms.abs(), -least_ms);
+            return format!("{:.2} to {:.2} ms {known} earlier", most_ms.abs(), -least_ms);
         }
-        format!("{least_ms:.2} to {most_ms:.2} ms {known} after")
+        format!("{least_ms:.2} to {most_ms:.2} ms {known} later")
     }
 }
 
@@ -72,6 +71,6 @@ mod tests {
         let now = Timed { value: (), at_s: 10.0, uncertainty_s: 0.0 };
         assert_eq!(Skews::add(None, of(&still, &now)).told(), None);
         let streamed = Skews::add(Some(Skews::add(None, felt(9.997, 1e-4))), felt(9.998, 1e-4));
-        assert!(streamed.told().unwrap().contains("felt 2.00 to 3.00 ms"), "{streamed:?}");
+        assert!(streamed.told().unwrap().contains("2.00 to 3.00 ms (±0.60 ms) earlier"), "{streamed:?}");
     }
 }

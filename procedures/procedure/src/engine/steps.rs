@@ -117,14 +117,14 @@ impl Session<'_> {
         watch.step_done();
         let Some(drift) = watch.drift() else { return };
         let drift = format!(
-            "temperature drifts by {:.2} °C/min, current by {:.1} %/min",
+            "temperature drift {:.2} K/min, current drift {:.1} %/min",
             drift.temperature_c_per_min,
             100.0 * drift.current_share_per_min
         );
         let last = self.plan.steps.get(index + 1).is_none_or(|next| next.phase != Phase::WarmUp);
         match (watch.is_steady(), last) {
-            (true, _) => self.note(format!("warm: {drift}")),
-            (false, true) => self.warn(format!("not warmed up: at the end of the warm-up the {drift}")),
+            (true, _) => self.note(format!("Steady state reached: {drift}")),
+            (false, true) => self.warn(format!("not warmed up: {drift} at the end of the warm-up")),
             (false, false) => {}
         }
     }

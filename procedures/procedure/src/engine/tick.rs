@@ -206,7 +206,8 @@ impl Session<'_> {
                 && since_s.is_some_and(|since_s| at_s >= since_s + UNREGULATED_S)
             {
                 let what = format!(
-                    "the supply does not hold {:.3} A ({:?} at {:.1} V): is the coil too hot or disconnected?",
+                    "the supply does not reach {:.3} A ({:?} at {:.1} V): check the coil for overheating and \
+                     disconnection",
                     self.commanded.brake_a, reading.regulation, reading.voltage.0
                 );
                 return Err(Ending::OtherFault(reported(brake.as_ref(), what)));
@@ -219,7 +220,7 @@ impl Session<'_> {
     fn check_drive(&mut self) -> Result<(), Ending> {
         let health = self.ask_joint(|joint| joint.health())?;
         if !health.armed || !health.errors.is_empty() {
-            let what = format!("the drive gave up in mid-run: {}", health.errors.join(", "));
+            let what = format!("the drive disarmed during the run: {}", health.errors.join(", "));
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
         let own_c = health.temperature.map(|temperature| temperature.0);
@@ -233,7 +234,7 @@ impl Session<'_> {
             return Ok(());
         }
         if self.recoveries > RECOVERIES_PER_STEP {
-            let what = format!("{} replies missed within one step; check cable and shield", self.recoveries);
+            let what = format!("{} replies missing within one step: check cable and shield", self.recoveries);
             return Err(Ending::JointFault(reported(self.bench.joint.as_ref(), what)));
         }
         self.check_drive()

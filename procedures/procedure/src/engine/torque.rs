@@ -50,13 +50,13 @@ impl Session<'_> {
     pub(super) fn stop_torque_stream(&mut self) -> Result<(), Ending> {
         let Some(Streaming { period, samples, missing }) = self.streaming.take() else { return Ok(()) };
         let rate_hz = 1.0 / period.0;
-        self.note(format!("{samples} torque samples at {rate_hz:.0} Hz; each row has the mean of its own samples"));
+        self.note(format!("{samples} torque samples at {rate_hz:.0} Hz, averaged per row."));
         if missing > 0 {
-            self.warn(format!("lost samples: {missing} torque samples are missing; {samples} were received"));
+            self.warn(format!("lost samples: {missing} torque samples are missing, {samples} were received"));
         }
         let sensor = self.bench.torque_sensor.as_mut();
         if let Some(Err(fault)) = sensor.and_then(|sensor| sensor.as_stream()).map(|stream| stream.stop_stream()) {
-            self.note(format!("the torque stream could not be ended: {fault}"));
+            self.note(format!("The torque stream could not be stopped: {fault}"));
         }
         Ok(())
     }

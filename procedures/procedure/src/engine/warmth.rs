@@ -26,7 +26,7 @@ impl Session<'_> {
         if plan.steps.iter().all(|step| step.phase != Phase::WarmUp) {
             return Ok(false);
         }
-        self.note(format!("the joint rested for {rested_s:.0} s: it is warmed up again"));
+        self.note(format!("The joint rested for {rested_s:.0} s. Warm-up is repeated."));
         self.unload()?;
         // Its way was planned from there.
         self.go_back(plan.top_speed_rad_s(), self.warm_from_rad, 0.0)?;

@@ -49,20 +49,48 @@ pub(crate) enum Unusable {
     Model(#[from] ModelError),
     #[error(transparent)]
     Table(#[from] TableFault),
-    #[error("{0}")]
-    TooLittle(&'static str),
-    #[error(
-        "speed leaves {} (RMS) of the torque unexplained, beside which friction is not decided: see what the rest follows in \
-         the workbench or in the exported file (jointbench export RUN, jointbench diagnose run-RUN.csv), or add repeats",
-        words::figure(*.rest_nm, "Nm")
-    )]
+    /// What is lacking, and what to do about it, each as a sentence.
+    #[error("{0} {1}")]
+    TooLittle(&'static str, &'static str),
+    #[error("{} {SCATTERED}", scattered(*.rest_nm))]
     Scattered { rest_nm: f64 },
+}
+
+const SCATTERED: &str = "To find the missing effect, open the run in the workbench or diagnose its export \
+    (jointbench export RUN, jointbench diagnose run-RUN.csv), or add repeats.";
+
+fn scattered(rest_nm: f64) -> String {
+    let rest = words::figure(rest_nm, "Nm");
+    format!("{rest} RMS of the torque is unexplained by speed, too much to determine friction.")
+}
+
+impl Unusable {
+    /// What is lacking and what to do about it, each as a sentence.
+    fn said(&self) -> [String; 2] {
+        match self {
+            Self::TooLittle(lacking, cure) => [lacking, cure].map(|said| (*said).to_owned()),
+            Self::Scattered { rest_nm } => [scattered(*rest_nm), SCATTERED.to_owned()],
+            // Faults of a model and of a table read "what; cure" or "what: cure".
+            Self::Model(_) | Self::Table(_) => {
+                let fault = self.to_string();
+                let (lacking, cure) = fault.split_once("; ").unwrap_or((&fault, "repeat the run"));
+                [lacking, cure].map(sentence)
+            }
+        }
+    }
+}
+
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| format!("{}{}.", first.to_uppercase(), letters.as_str())).unwrap_or_default()
 }
 
 /// A run that says nothing gets its verdict too.
 pub(crate) fn verdict(found: Result<Identification, Unusable>) -> Option<Identification> {
-    let failed =
-        |fault: Unusable| Identification::failed("Nothing can be identified from this run.", fault.to_string());
+    let failed = |fault: Unusable| {
+        let [lacking, cure] = fault.said();
+        Identification::failed(lacking, cure)
+    };
     Some(found.unwrap_or_else(failed))
 }
 

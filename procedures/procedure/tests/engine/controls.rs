@@ -17,7 +17,7 @@ fn stop_unloads_the_brake_while_turning() {
     for at_s in middles_s(&loaded_plan()) {
         let done = play_controlled(&[(at_s, Control::Stop)]);
         done.check_safe(RunState::Stopped).check_no_cogging();
-        assert_eq!(done.end.reason.as_deref(), Some("stopped by a person"));
+        assert_eq!(done.end.reason.as_deref(), Some("stopped by the operator"));
         assert!(!done.ledger.notes().iter().any(|note| note.contains("demagnetise")), "{:?}", done.ledger.notes());
     }
 }
@@ -54,7 +54,7 @@ fn a_daemon_that_is_told_to_end_aborts_and_says_so() {
     let [told, asked] = [Control::Quit, Control::Abort].map(|control| play_controlled(&[(at_s, control)]));
     told.check_safe(RunState::Aborted).check_no_cogging();
     assert_eq!(moved_on_s(&told, at_s), moved_on_s(&asked, at_s));
-    assert_eq!(told.end.reason.as_deref(), Some("aborted because the daemon was told to end"));
+    assert_eq!(told.end.reason.as_deref(), Some("aborted because the daemon was shut down"));
 }
 
 fn speed_of(call: &Call) -> f64 {

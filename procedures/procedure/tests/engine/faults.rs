@@ -65,7 +65,7 @@ fn a_link_that_keeps_missing_is_given_up() {
         Ok(())
     });
     done.check_safe(RunState::Failed);
-    assert!(done.end.reason.as_ref().unwrap().contains("replies missed within one step"), "{:?}", done.end.reason);
+    assert!(done.end.reason.as_ref().unwrap().contains("replies missing within one step"), "{:?}", done.end.reason);
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn a_drive_that_contradicts_is_not_safe() {
         Ok(())
     });
     assert_eq!(done.end.safe, Safe::UnsafeUnknown);
-    assert!(done.ledger.notes().contains(&"the drive still reports torque"));
+    assert!(done.ledger.notes().contains(&"The drive still reports torque."));
 }
 
 #[test]

@@ -125,7 +125,7 @@ fn a_blocked_bench_is_not_touched() {
     let done =
         play(&fakes, &mut bench, &loaded_plan(), |ledger| ledger.blocked = Some("the brake never answered".into()));
     done.check_safe(RunState::Failed);
-    assert!(done.end.reason.unwrap().contains("the brake never answered): look at it, then reset it"));
+    assert!(done.end.reason.unwrap().contains("the brake never answered): inspect the bench, then reset it"));
     assert!(done.world.commands(|call| matches!(call, crate::fakes::Call::Arm)).is_empty());
 }
 

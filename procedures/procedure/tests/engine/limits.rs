@@ -61,7 +61,7 @@ fn a_supply_that_cannot_hold_the_current_is_noticed() {
     });
     let done = play(&fakes, &mut bench, &loaded_plan(), |_| {});
     done.check_safe(RunState::Failed);
-    assert!(done.end.reason.unwrap().contains("does not hold 0.400 A"));
+    assert!(done.end.reason.unwrap().contains("does not reach 0.400 A"));
 }
 
 #[test]
@@ -71,8 +71,8 @@ fn a_plan_beyond_a_limit_never_arms() {
     let too_far = |plan: &mut Plan| plan.steps[3].velocity = Profile::plateau(150.0, 400.0, 11.0);
     let from_speed = |plan: &mut Plan| plan.steps[0].velocity = Profile::constant(10.0);
     for (spoil, said) in [
-        (&too_fast as &dyn Fn(&mut Plan), "motor velocity 201.000 rad/s over 200.000"),
-        (&too_strong, "brake current 0.610 A over 0.600"),
+        (&too_fast as &dyn Fn(&mut Plan), "motor velocity 201 rad/s exceeds the limit of 200 rad/s"),
+        (&too_strong, "brake current 0.61 A exceeds the limit of 0.6 A"),
         (&too_far, "link travel"),
         (&from_speed, "rest"),
     ] {
@@ -92,7 +92,7 @@ fn a_start_too_near_the_stop_is_refused() {
     let (fakes, mut bench) = Fakes::quiet();
     fakes.change(|world| world.position_rad = 25.0 * crate::fakes::RATIO);
     let done = play(&fakes, &mut bench, &loaded_plan(), |_| {});
-    assert!(done.end.reason.unwrap().contains("nearer to the middle"));
+    assert!(done.end.reason.unwrap().contains("towards the centre of the range"));
 }
 
 /// The plan lets the brake fall before the shaft turns: the guard refuses, and the command is never sent.

@@ -78,7 +78,7 @@ fn paused_under_load(pause_s: f64) -> (Plan, usize, Done) {
 
 #[test]
 fn a_joint_that_rested_for_long_is_warmed_up_again() {
-    let warmed = |done: &Done| done.ledger.notes().iter().any(|note| note.ends_with("it is warmed up again"));
+    let warmed = |done: &Done| done.ledger.notes().iter().any(|note| note.ends_with("Warm-up is repeated."));
     let (plan, loaded, done) = paused_under_load(100.0);
     assert!(warmed(&done), "{:?}", done.ledger.notes());
     // None of it is kept: the table has the planned steps, the interrupted one twice.

@@ -47,7 +47,7 @@ fn the_first_channel_stands_for_a_joint_that_tells_no_temperature() {
     let table = done.ledger.table();
     assert!(table.column("temperature_c").unwrap().iter().all(|c| *c == 30.0));
     assert!(table.column("thermometer_1_c").is_none() && table.column("thermometer_2_c").is_some());
-    assert!(!done.ledger.notes().iter().any(|note| note.contains("not watched")), "{:?}", done.ledger.notes());
+    assert!(!done.ledger.notes().iter().any(|note| note.contains("not monitored")), "{:?}", done.ledger.notes());
 }
 
 #[test]

@@ -129,7 +129,7 @@ fn a_stribeck_part_that_may_be_a_square_of_speed_is_not_identified() {
     };
     let open = hidden(&["stribeck", "viscous_quadratic"]);
     assert_eq!(open.verdict, Verdict::Inconclusive, "{}", open.summary);
-    assert!(open.summary.contains("the square of speed explains this run as well"), "{}", open.summary);
+    assert!(open.summary.contains("Quadratic drag explains this run equally well"), "{}", open.summary);
     let friction = procedure("friction").unwrap();
     assert!(friction.follow_up(&open).is_none(), "half of Coulomb friction is not fed forward");
     let alone = hidden(&["stribeck"]);
@@ -182,7 +182,7 @@ fn a_joint_that_breaks_away_in_the_swings_decides_nothing() {
     let given = json!({"top_torque_nm": 0.045, "repeats": 2, "amplitudes": 2, "swings": 1});
     let (_, found) = found(MockSettings::new(Joint::JointA, 1), "presliding", given);
     assert_ne!(found.verdict, Verdict::Identified, "{found:?}");
-    assert!(found.advice.as_ref().is_some_and(|advice| advice.contains("lower top_torque_nm")), "{found:?}");
+    assert!(found.advice.as_ref().is_some_and(|advice| advice.contains("Reduce top_torque_nm")), "{found:?}");
 }
 
 #[test]
@@ -275,11 +275,11 @@ fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
 fn a_soft_start_is_seen_beside_its_curve_its_table_and_its_loop() {
     let given = json!({"load_levels": 8, "repeats": 2});
     let (_, found) = found(MockSettings::new(Joint::JointB, 3), "stiffness", given);
-    assert!(found.summary.contains("softer at low torque"), "{}", found.summary);
+    assert!(found.summary.contains("Stiffness decreases at low torque"), "{}", found.summary);
     let [whole, beyond] = &found.figures[..] else { panic!("{:?}", found.figures) };
     let labels: Vec<&str> = whole.series.iter().map(|series| &series.label[..]).collect();
     let expected =
-        ["loop at the highest load", "positive", "negative", "model, positive", "model, negative", "look-up table"];
+        ["loop at maximum load", "positive", "negative", "model, positive", "model, negative", "look-up table"];
     assert_eq!(labels, expected);
     // Without the slope the model ends at β₀ and the loop stays a loop.
     let beta_rad = found.quantity("beta_0").unwrap().value;

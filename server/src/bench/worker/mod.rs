@@ -41,7 +41,7 @@ enum Command {
 pub fn serve() -> io::Result<()> {
     let mut orders = io::stdin();
     let Some(Order::Open(setup)) = wire::receive(&mut orders)? else {
-        return Err(io::Error::other("a worker is started by the daemon, and by nobody else"));
+        return Err(io::Error::other("a worker can only be started by the daemon"));
     };
     let Setup { description, data, block } = *setup;
     let name = description.name.clone();

@@ -126,7 +126,7 @@ impl Outbox {
             let Some(report) = state.unsaid.pop_front() else { return };
             drop(state);
             if let Err(fault) = wire::send(&mut to, &report) {
-                tracing::error!(%fault, "the server part of the daemon does not listen any more");
+                tracing::error!(%fault, "the server process of the daemon does not respond");
                 return;
             }
         }

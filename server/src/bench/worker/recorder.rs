@@ -47,11 +47,11 @@ impl Recorder for OutboxRecorder<'_> {
         }
         match outbox.fault() {
             Some(fault) => Err(RecorderFault(format!(
-                "{fault}; {} rows wait in memory and are stored as soon as that is possible",
+                "{fault}; {} rows are buffered in memory and stored as soon as possible",
                 outbox.backlog().rows
             ))),
             None if is_full => Err(RecorderFault(format!(
-                "the disk does not keep up: {} rows wait in memory, which is the most, and {} rows are not kept",
+                "the disk is too slow: {} rows buffered (maximum), {} rows lost",
                 backlog.rows, self.dropped
             ))),
             None => Ok(()),

@@ -29,7 +29,7 @@ pub(super) fn take(data: &Path, bench: &str) -> Result<File, String> {
             Ok(()) => return Ok(file),
             Err(TryLockError::WouldBlock) if Instant::now() < give_up => std::thread::sleep(LOOK_EVERY),
             Err(TryLockError::WouldBlock) => {
-                let why = "an earlier worker still holds this bench: look for a process `jointbench worker`, end it, and retry";
+                let why = "an earlier worker still uses this bench: end the process `jointbench worker`, then retry";
                 return Err(why.to_owned());
             }
             Err(TryLockError::Error(fault)) => return Err(unwritable(fault)),
@@ -70,7 +70,7 @@ pub(super) fn end_when_told(desk: Arc<Desk>, commands: Sender<Command>) -> io::R
         let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
         std::thread::Builder::new().name("signals".into()).spawn(move || {
             for signal in &mut signals {
-                tracing::warn!(signal, "the worker is told to end: the bench is secured");
+                tracing::warn!(signal, "worker shutdown requested: securing the bench");
                 desk.control(Control::Quit.into());
                 // An error says that the owner has ended already.
                 let _ = commands.send(Command::Quit);

@@ -7,15 +7,15 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Runs {
-    /// Words, and terms such as kind:friction, state:failed or rows>1000; all must hold. What must not, such as -tag:oil,
-    /// comes last, behind --
+    /// Words, and terms such as kind:friction, state:failed or rows>1000; all must match. Excluded terms, such as
+    /// -tag:oil, follow after --
     #[arg(value_name = "TERM")]
     pub search: Vec<String>,
-    /// At most so many
+    /// =Maximum number of runs
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     pub limit: u32,
-    /// started, state, procedure, bench, duration, rows, safe, error (held out, of the last version not idle) or coulomb; --sort=-error
-    /// begins with the largest [default: newest first]
+    /// started, state, procedure, bench, duration, rows, safe, error (validation error of the latest active model
+    /// version) or coulomb; --sort=-error lists the largest first [default: newest first]
     #[arg(long, value_name = "COLUMN", allow_hyphen_values = true)]
     pub sort: Option<String>,
     /// Print JSON
@@ -30,7 +30,8 @@ pub struct Import {
     /// Run tables: .csv, .csv.gz, .parquet or .arrow
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Facts about the set-up [default: RUN.meta.json or meta.json beside each file, or what is embedded]
+    /// Meta file of the test conditions [default: RUN.meta.json or meta.json in the folder of each file, or embedded
+    /// metadata]
     #[arg(long, value_name = "META.JSON")]
     pub meta: Option<PathBuf>,
     #[command(flatten)]
@@ -43,13 +44,15 @@ pub struct Import {
 pub struct Export {
     /// Number of the run
     pub run: i64,
-    /// Kind of file [default: what the ending of --output says, else csv]
+    /// File format [default: by the extension of --output, otherwise csv]
     #[arg(long, value_enum)]
     pub format: Option<FileFormat>,
-    /// File to write; a CSV gets its facts beside it as NAME.meta.json [default: run-N.csv, run-N.parquet or run-N.mat]
+    /// File to write; for CSV also NAME.meta.json with the test conditions [default: run-N.csv, run-N.parquet or
+    /// run-N.mat]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Begin cells of text in a CSV that a spreadsheet would take for a formula (= + - @) with an apostrophe
+    /// Prefix text cells of a CSV that start with = + - @ with an apostrophe, so that a spreadsheet does not interpret
+    /// them as formulas
     #[arg(long)]
     pub spreadsheet_safe: bool,
     #[command(flatten)]
@@ -58,7 +61,7 @@ pub struct Export {
 
 #[derive(Debug, Args)]
 pub struct Backup {
-    /// The backup
+    /// =Backup file
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Folder of the store
@@ -100,10 +103,10 @@ pub struct Report {
 
 #[derive(Debug, Args)]
 pub struct Reproduce {
-    /// What the simulated joints are drawn from
+    /// Random seed of the simulated joints
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Write tables and figures to a page, such as docs/reproduction.md, and a folder of its name
+    /// Write tables and figures to a page, such as docs/reproduction.md, and to a folder with the same name
     #[arg(short, long, visible_alias = "output", value_name = "PAGE.MD")]
     pub out: Option<PathBuf>,
 }
@@ -111,7 +114,7 @@ pub struct Reproduce {
 /// The daemon where its address is given; else the folder, or the daemon on the usual address where one has the folder.
 #[derive(Debug, Args)]
 pub struct StorePlace {
-    /// Folder of the store; outweighs JOINTBENCH_URL, not --daemon [default: jointbench-data]
+    /// Folder of the store; takes precedence over JOINTBENCH_URL, but not over --daemon [default: jointbench-data]
     #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA")]
     pub data: Option<PathBuf>,
     #[command(flatten)]

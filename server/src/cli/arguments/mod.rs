@@ -18,27 +18,27 @@ use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
-Begin here:
-  jointbench demo                              measure a simulated joint, find what its model lacks
-  jointbench diagnose RUN.csv                  where does the model fail on my data, and what is missing?
+Getting started:
+  jointbench demo                              measure a simulated joint and find the missing effect
+  jointbench diagnose RUN.csv                  where does the model fail on my data, and which effect is missing?
 
-Exit codes: 0 done, 1 the run failed or a limit was broken, 2 bad arguments or bad input, 3 could not be decided.
-A verdict is done, whatever it says: 3 is where the data do not allow one.";
+Exit codes: 0 done, 1 the run failed or a limit was exceeded, 2 bad arguments or bad input, 3 undecided.
+Any verdict ends with 0; 3 means that the data do not allow a verdict.";
 
-/// Test bench for robot joints: measure, fit a model, find where it fails and which effect it lacks.
+/// Test bench for robot joints: measure, identify a model, and find where it fails and which effect is missing.
 #[derive(Debug, Parser)]
 #[command(name = "jointbench", version, after_help = EXAMPLES, max_term_width = 100)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
-    /// Form of the log on standard error; RUST_LOG chooses what is told (such as RUST_LOG=debug).
+    /// Format of the log on standard error; RUST_LOG sets the level (such as RUST_LOG=debug).
     #[arg(long, global = true, value_enum, default_value = "text")]
     pub log: LogForm,
 }
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Show the whole loop on a simulated bench, then keep the dashboard open
+    /// Run the complete identification on a simulated bench, then keep the dashboard open
     Demo(Demo),
     /// Run the daemon: benches, store, REST API and dashboard
     Serve(Serve),
@@ -48,61 +48,61 @@ pub enum Command {
     /// One computation of a daemon, which starts it
     #[command(hide = true)]
     Job,
-    /// Check a bench description and let its instruments identify themselves; moves nothing
+    /// Check a bench description and identify its instruments, without motion
     Check(Check),
-    /// List this computer's serial ports: what is behind them, and what may not be opened and why
+    /// List the serial ports of this computer, the instruments connected to them, and why a port cannot be opened
     Ports(Ports),
-    /// List the procedures, or say what one does and what can be set (procedures friction)
+    /// List the procedures, or describe one with its parameters (procedures friction)
     Procedures(Listed),
-    /// List the effects that a model can hold and a diagnosis can name, and those a mock bench can hide
+    /// List the effects of the library and those that a mock bench can hide
     Effects(Listed),
-    /// Start a procedure on a running daemon, or make what is left of a run (--continue)
+    /// Start a procedure on a running daemon, or complete an interrupted run (--continue)
     #[command(
         override_usage = "jointbench run <PROCEDURE> [OPTIONS]\n       jointbench run --continue <RUN> [OPTIONS]",
         after_help = RUN
     )]
     Run(Run),
-    /// End a run that is on: the brake is unloaded while the shaft turns, and what was measured is kept
+    /// End the active run: the brake is unloaded while the shaft turns, and measured samples are kept
     #[command(after_help = steer::STOP)]
     Stop(Stop),
-    /// Let a run that is on come to rest between two steps, and wait there
+    /// Pause the active run after the current step
     #[command(after_help = steer::STEER)]
     Pause(Steer),
-    /// Let a paused run go on
+    /// Resume a paused run
     #[command(after_help = steer::STEER)]
     Resume(Steer),
-    /// Release a bench after a software stop, or after an end that is not known to be safe
+    /// Release a bench after a software stop or after a run whose safe state is not confirmed
     Reset(Reset),
     /// List the runs of a daemon or of a folder
     Runs(Runs),
-    /// Measure, diagnose and measure again on a running daemon, until nothing is missing
+    /// Measure, diagnose and repeat on a running daemon, until no effect is missing
     #[command(after_help = AUTOPILOT)]
     Autopilot(Autopilot),
-    /// Say where a model fails on a measured run and which effect is missing
+    /// Find where a model fails on a measured run and which effect is missing
     #[command(after_help = DECIDED)]
     Diagnose(Diagnose),
-    /// Diagnose, add the best effect and fit again, until nothing is missing
+    /// Diagnose, add the best effect and refit, until no effect is missing
     #[command(after_help = DECIDED)]
     Discover(Discover),
     /// Fit a model to a measured run
     Fit(Fit),
-    /// Evaluate, compare, export and import models that `fit --out` has written
+    /// Evaluate, compare, export and import models written by `fit --out`
     Model(Model),
-    /// Take measured files into the store
+    /// Import measured files into the store
     Import(Import),
-    /// Write a run of the store to a file
+    /// Export a stored run to a file
     Export(Export),
-    /// Say what a run of the store shows: its procedure's verdict, quantities and intervals
+    /// Print the result of a stored run: verdict, quantities and intervals
     Identify(Identify),
-    /// Write a run as one page to send and to print
+    /// Write a report of a run as one HTML page
     Report(Report),
-    /// Write the store to one file, also while a run is on, and check the copy
+    /// Back up the store to one file, also during a run, and verify the copy
     Backup(Backup),
-    /// Put a backup in the place of a store that no daemon has; what was there is kept beside it
+    /// Restore a backup into a folder that no daemon uses; the previous store is kept
     Restore(Backup),
-    /// Read all that a store holds and say what is damaged; exit code 1 where something is. Also beside a running daemon
+    /// Verify all records of a store, also while a daemon uses it; exit code 1 if a record is damaged
     Verify(Verify),
-    /// Make the source documents' campaigns again on the mock bench, each table beside the document's
+    /// Repeat the campaigns of the source documents on the mock bench and compare the tables
     Reproduce(Reproduce),
 }
 
@@ -111,10 +111,10 @@ pub struct Demo {
     /// The effect to hide in the joint, such as stribeck or gravity
     #[arg(long, value_name = "ID", conflicts_with = "seed", default_value = "load_linear")]
     pub effect: String,
-    /// Hide an effect at random, and tell it only at the end
+    /// Hide a random effect, revealed at the end
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// End after the report instead of keeping the dashboard open
+    /// Exit after the report instead of keeping the dashboard open
     #[arg(long)]
     pub exit: bool,
     #[command(flatten)]
@@ -123,8 +123,8 @@ pub struct Demo {
 
 #[derive(Debug, Args)]
 pub struct Serve {
-    /// Bench description: a file, or one of the ready-made ones (joint-a-mock, joint-b-mock,
-    /// encoder-bench-mock, puma-mock, joint-a, joint-b, encoder-bench, puma)
+    /// Bench description: a file, or a built-in one (joint-a-mock, joint-b-mock, encoder-bench-mock, puma-mock,
+    /// joint-a, joint-b, encoder-bench, puma)
     #[arg(long, value_name = "BENCH.TOML", default_value = "joint-a-mock")]
     pub config: String,
     #[command(flatten)]
@@ -133,17 +133,17 @@ pub struct Serve {
 
 #[derive(Debug, Args)]
 pub struct Check {
-    /// Bench description: a file, or the name of a ready-made one
+    /// Bench description: a file, or the name of a built-in one
     pub config: String,
-    /// Print the description itself, to start an own one from
+    /// Print the description, as a template for your own
     #[arg(long)]
     pub print: bool,
 }
 
-/// Something of the library to be told of.
+/// An item of the library to describe.
 #[derive(Debug, Args)]
 pub struct Listed {
-    /// Only this one, with all there is to say of it
+    /// Id of one item to describe in detail
     pub id: Option<String>,
 }
 
@@ -152,14 +152,14 @@ pub struct Run {
     /// Id of the procedure, such as friction or warm_up
     #[arg(required_unless_present = "continues")]
     pub procedure: Option<String>,
-    /// Make what is left of a run that did not come to its end: the warm-up again, the brake demagnetised, then from the
-    /// first step that was not finished. Both runs together are one measurement
+    /// Complete an interrupted run: warm up, demagnetise the brake, then continue with the first unfinished step. Both
+    /// runs together form one measurement
     #[arg(long = "continue", value_name = "RUN", conflicts_with_all = ["procedure", "set", "bench"])]
     pub continues: Option<i64>,
-    /// A parameter of the procedure, in SI units; may be given again
+    /// A parameter of the procedure, in SI units; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Bench to run on; not needed where the daemon has only one
+    /// Bench to run on; optional if the daemon has only one
     #[arg(long, value_name = "NAME")]
     pub bench: Option<String>,
     /// Wait for the end; Ctrl-C stops waiting, not the run
@@ -168,11 +168,11 @@ pub struct Run {
     /// Print the run as JSON
     #[arg(long)]
     pub json: bool,
-    /// Demand something of the result, such as 'tau_c < 0.035 Nm'; waits for the end; may be given again. The whole
-    /// 95 % interval must keep the limit: exit code 1 where the value breaks it, 3 where only the interval reaches over
+    /// Limit for a quantity of the result, such as 'tau_c < 0.035 Nm'; waits for the end; repeatable. The whole 95 %
+    /// interval must be within the limit: exit code 1 if the value exceeds it, 3 if only the interval exceeds it
     #[arg(long, value_name = "LIMIT")]
     pub require: Vec<Requirement>,
-    /// Write how the run ended as a JUnit report, a case for each demand; waits for the end
+    /// Write a JUnit report with one test case per limit; waits for the end
     #[arg(long, value_name = "REPORT.XML")]
     pub junit: Option<PathBuf>,
     #[command(flatten)]
@@ -180,55 +180,54 @@ pub struct Run {
 }
 
 const DECIDED: &str = "\
-Exit codes: 0 a verdict, whatever it says, 2 bad arguments or bad input, 3 the data do not allow one: too little was measured \
-to find fault with the model, or the columns contradict each other. With --json `undecided` says why, and is there with 3 \
-only; `adequate` beside it says that nothing was found, not that nothing is there.";
+Exit codes: 0 any verdict, 2 bad arguments or bad input, 3 the data do not allow a verdict: too few data to test the model, \
+or contradictory columns. With exit code 3 the JSON field `undecided` gives the reason; `adequate` then means that no \
+missing effect was found, not that none exists.";
 
 const AUTOPILOT: &str = "\
-It makes a run, fits the baseline and diagnoses it. What is missing and certain is added. Where two effects explain the
-data equally well, or an effect could not have shown, it makes the run that is expected to decide, and begins again with
-all runs together. Every step is kept with its before and after, and every run passes the bench's limits and guard.
+The autopilot performs a run, fits the baseline model and diagnoses it. It adds effects whose evidence is sufficient. If two
+effects are confounded or an effect is not testable, it performs the run that is expected to decide and repeats the diagnosis
+with all runs. Every step is stored, and every run is checked against the limits of the bench.
 
-  jointbench autopilot --runs 3 --wait                  at most three runs, told as they happen
+  jointbench autopilot --runs 3 --wait                  at most three runs, with progress
   jointbench autopilot --bench-time-s 600 --set load_levels=2 --wait
-  jointbench autopilot --after 4 --wait                 only the run that diagnosis 4 asks for
+  jointbench autopilot --after 4 --wait                 only the run that diagnosis 4 recommends
 
-Exit codes: 0 nothing is left to add (also where structure remains that no effect explains: the \
-verdict says so), 1 a run failed or somebody ended it, 2 bad arguments, 3 the data decide too little, \
-or the budget is spent and something is still open.";
+Exit codes: 0 no further effect to add (unexplained structure may remain, see the verdict), 1 a run failed or was stopped, \
+2 bad arguments, 3 the data do not decide, or the budget is used up.";
 
 const RUN: &str = "\
-Exit codes, where the end is waited for: 0 the procedure has identified what it is for and every \
-demand is kept, 1 the run or its identification failed or a limit was broken, 2 bad arguments (also \
---continue of a run of which nothing is left, and --require of a quantity that the result does not have), 3 the identification is inconclusive or a demand unsure.";
+Exit codes, when waiting for the end: 0 identified and all limits met, 1 the run or its identification failed or a limit was \
+exceeded, 2 bad arguments (also --continue of a complete run, and --require of a quantity that the result does not contain), \
+3 the identification is inconclusive, or an interval exceeds a limit.";
 
 #[derive(Debug, Args)]
 pub struct Autopilot {
-    /// At most so many runs, the first included
+    /// Maximum number of runs, including the first
     #[arg(long, value_name = "N", default_value_t = 3)]
     pub runs: u32,
-    /// At most so much time of the bench [s]
+    /// Maximum bench time [s]
     #[arg(long, value_name = "S")]
     pub bench_time_s: Option<f64>,
     /// Procedure of the first run
     #[arg(long, value_name = "ID", default_value = "friction")]
     pub procedure: String,
-    /// A parameter of the first run, in SI units; may be given again
+    /// A parameter of the first run, in SI units; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Effects of the model to start from, with commas between [default: `baseline` of the procedure]
+    /// Effects of the initial model, comma-separated [default: `baseline` of the procedure]
     #[arg(long, value_name = "EFFECTS")]
     pub model: Option<String>,
-    /// Add at most so many effects
+    /// Maximum number of effects to add
     #[arg(long, value_name = "N", default_value_t = 6)]
     pub max_effects: u32,
-    /// Make only the run that this diagnosis asks for, and diagnose its model again with it
+    /// Perform only the run that this diagnosis recommends, then diagnose its model with the new data
     #[arg(long, value_name = "DIAGNOSIS", conflicts_with_all = ["runs", "bench_time_s", "procedure", "set", "model", "max_effects"])]
     pub after: Option<i64>,
-    /// Bench to run on; not needed where the daemon has only one
+    /// Bench to run on; optional if the daemon has only one
     #[arg(long, value_name = "NAME")]
     pub bench: Option<String>,
-    /// Follow it to its end; Ctrl-C stops waiting, not the autopilot
+    /// Wait for the end; Ctrl-C stops waiting, not the autopilot
     #[arg(long)]
     pub wait: bool,
     /// Print the autopilot with all its steps as JSON
@@ -238,17 +237,18 @@ pub struct Autopilot {
     pub reach: Reach,
 }
 
-/// A measured run, or several of one joint, and how to read and prepare it.
+/// One or several measured runs of one joint, with import and preprocessing options.
 #[derive(Debug, Args)]
 pub struct Measured {
     /// Run table: .csv, .csv.gz, .parquet or .arrow, or the folder of a run.csv; further runs of the same kind and
-    /// joint are looked at together with the first, in the order in which they were made
+    /// joint are analysed together with the first, in chronological order
     #[arg(required = true, value_name = "RUN")]
     pub files: Vec<PathBuf>,
-    /// Facts about the set-up, for all files [default: RUN.meta.json or meta.json beside each file, or what is embedded]
+    /// Meta file of the test conditions, for all files [default: RUN.meta.json or meta.json in the folder of each file,
+    /// or embedded metadata]
     #[arg(long, value_name = "META.JSON")]
     pub meta: Option<PathBuf>,
-    /// Effects of the model, with commas between [default: `baseline` of the facts]
+    /// Effects of the model, comma-separated [default: `baseline` of the meta file]
     #[arg(long, value_name = "EFFECTS")]
     pub model: Option<String>,
     /// Print JSON
@@ -264,37 +264,37 @@ pub struct Measured {
 
 #[derive(Debug, Args)]
 pub struct Columns {
-    /// Take a column from one of another name, such as motor_current_a=Iq; may be given again
+    /// Map a column of the file to a column of the run table, such as motor_current_a=Iq; repeatable
     #[arg(long, value_name = "COLUMN=NAME")]
     pub map: Vec<String>,
-    /// Multiply a column, such as motor_position_rad=0.0174533; may be given again
+    /// Multiply a column by a factor, such as motor_position_rad=0.0174533; repeatable
     #[arg(long, value_name = "COLUMN=FACTOR")]
     pub scale: Vec<String>,
-    /// Leave a column of the file out, such as one of remarks; may be given again
+    /// Omit a column of the file, such as remarks; repeatable
     #[arg(long, value_name = "NAME")]
     pub leave: Vec<String>,
-    /// Leave out rows with an empty cell, which are refused otherwise; how many is told
+    /// Omit rows with an empty cell (rejected otherwise) and print their number
     #[arg(long)]
     pub leave_empty_rows: bool,
 }
 
-/// How the run is prepared. Everything left out is chosen from the data and told with the fit.
+/// Preprocessing of the run. Omitted options are chosen from the data and printed with the fit.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Preparation (chosen from the data where left out)")]
+#[command(next_help_heading = "Preprocessing (chosen from the data if omitted)")]
 pub struct Preparation {
-    /// What the residual is made of
+    /// Kind of residual
     #[arg(long, value_name = "KIND", value_parser = ["raw", "plateau_mean"])]
     pub residual: Option<String>,
-    /// Corner of the zero-phase low-pass filter [Hz]
+    /// Cut-off frequency of the zero-phase low-pass filter [Hz]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub cutoff_hz: Option<f64>,
-    /// Keep one of so many samples
+    /// Decimation factor
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub decimation: Option<usize>,
-    /// Length of the pieces that plateaus are averaged over [s]
+    /// Averaging time of the steady-state means [s]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub chunk_s: Option<f64>,
-    /// Family-wise error that is accepted for everything that is shown
+    /// Family-wise error rate of all tests, as a fraction
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     pub alpha: Option<f64>,
 }
@@ -303,7 +303,7 @@ pub struct Preparation {
 pub struct Diagnose {
     #[command(flatten)]
     pub run: Measured,
-    /// Draw what the model leaves over each quantity, too; with --json over chosen pairs as well
+    /// Also print the residual maps over each quantity; with --json also over selected pairs
     #[arg(long)]
     pub maps: bool,
 }
@@ -312,7 +312,7 @@ pub struct Diagnose {
 pub struct Discover {
     #[command(flatten)]
     pub run: Measured,
-    /// Add at most so many effects
+    /// Maximum number of effects to add
     #[arg(long, value_name = "N", default_value_t = 6)]
     pub max_effects: usize,
 }
@@ -321,7 +321,7 @@ pub struct Discover {
 pub struct Fit {
     #[command(flatten)]
     pub run: Measured,
-    /// Predict another run with the fit, and tell the error there
+    /// Evaluate the fitted model on another run
     #[arg(long, value_name = "OTHER.CSV")]
     pub evaluate: Option<PathBuf>,
     /// Write the complete fit to a file, for `jointbench model`

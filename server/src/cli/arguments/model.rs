@@ -5,11 +5,12 @@ use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
 const MODEL_EXAMPLES: &str = "\
-  jointbench fit RUN.csv --out model.json                   a model to keep
+Examples:
+  jointbench fit RUN.csv --out model.json                   store a model
   jointbench model evaluate model.json OTHER.csv            its error on another run
-  jointbench model compare old.json model.json RUN.csv      what has changed, and which is better there
+  jointbench model compare old.json model.json RUN.csv      differences, and the error of both on this run
   jointbench model export model.json --format c -o joint.h  for a controller
-  jointbench model import model.json --run 12               into the workbench, beside the models of run 12";
+  jointbench model import model.json --run 12               into the workbench, as a version of run 12";
 
 #[derive(Debug, Args)]
 #[command(after_help = MODEL_EXAMPLES)]
@@ -20,9 +21,9 @@ pub struct Model {
 
 #[derive(Debug, Subcommand)]
 pub enum ModelCommand {
-    /// Write a model for a controller or a simulator; what the format cannot hold is named in its first comment
+    /// Write a model for a controller or a simulator; the first comment names effects that the format cannot represent
     Export {
-        /// What `fit --out` or the daemon's export has written
+        /// Model file, written by `fit --out` or exported by the daemon
         #[arg(value_name = "MODEL.JSON")]
         model: PathBuf,
         #[arg(long, value_enum)]
@@ -31,15 +32,16 @@ pub enum ModelCommand {
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
-    /// Keep a model as a version of a stored run, to see, compare and export it there and to go on from it
+    /// Store a model as a version of a stored run, to view, compare, export and extend it
     ///
-    /// Its parameters stay as they are, and effects that a user wrote come with it. Its error becomes that on the run. As with
-    /// `jointbench import` it goes to the daemon whose address is given, else to the folder, or to the daemon that has the folder.
+    /// Parameters are unchanged, and user-defined effects are included. The error is evaluated on the run. The
+    /// destination is chosen as for `jointbench import`: the daemon whose address is given, otherwise the folder, or
+    /// the daemon that uses the folder.
     Import {
-        /// What `fit --out` or an export as JSON has written
+        /// Model file, written by `fit --out` or exported as JSON
         #[arg(value_name = "MODEL.JSON")]
         model: PathBuf,
-        /// Number of the run that it is held against, of the model's kind: `jointbench runs` lists them
+        /// Number of the run to evaluate the model on, of the same kind: `jointbench runs` lists them
         #[arg(long, value_name = "RUN")]
         run: i64,
         /// Print JSON
@@ -48,13 +50,13 @@ pub enum ModelCommand {
         #[command(flatten)]
         store: StorePlace,
     },
-    /// Tell the error of a model on a run that took no part in its fit
+    /// Evaluate the error of a model on a validation run
     Evaluate {
         #[arg(value_name = "MODEL.JSON")]
         model: PathBuf,
         #[arg(value_name = "RUN.CSV")]
         run: PathBuf,
-        /// Facts about the set-up [default: as for fit]
+        /// Meta file of the test conditions [default: as for fit]
         #[arg(long, value_name = "META.JSON")]
         meta: Option<PathBuf>,
         #[command(flatten)]
@@ -71,7 +73,7 @@ pub enum ModelCommand {
         second: PathBuf,
         #[arg(value_name = "RUN.CSV")]
         run: PathBuf,
-        /// Facts about the set-up [default: as for fit]
+        /// Meta file of the test conditions [default: as for fit]
         #[arg(long, value_name = "META.JSON")]
         meta: Option<PathBuf>,
         #[command(flatten)]
@@ -84,11 +86,11 @@ pub enum ModelCommand {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum ModelFormat {
-    /// The complete fit; the only one that can be read again
+    /// The complete fit; the only format that can be imported
     Json,
     /// C99 header with one function, for a controller
     C,
-    /// CSV table over velocity and load, or what the model depends on
+    /// CSV look-up table over velocity and load, or over the signals of the model
     Lut,
     /// Attributes of a MuJoCo joint
     Mujoco,

@@ -7,47 +7,48 @@ use std::path::PathBuf;
 /// Where a daemon lives.
 #[derive(Debug, Args)]
 pub struct Place {
-    /// Folder of the store; made where it is missing [default: jointbench-data, or jointbench-data/demo for the demo]
+    /// Folder of the store; created if missing [default: jointbench-data, or jointbench-data/demo for the demo]
     #[arg(long, value_name = "DIR", env = "JOINTBENCH_DATA")]
     pub data: Option<PathBuf>,
-    /// Memory that a fit, a diagnosis or an import may take, each in a process of its own [GiB]
+    /// Memory limit of a fit, a diagnosis or an import, each in its own process [GiB]
     #[arg(long, value_name = "GIB", default_value_t = 4.0, value_parser = gibibytes)]
     pub analysis_memory: f64,
-    /// Write the traffic of every instrument down in this folder, to read and to replay
+    /// Record the traffic of all instruments in this folder, for inspection and replay
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
-    /// Address and port of API and dashboard; port 0 takes a free one. Beyond loopback it needs a token, and TLS or
-    /// --behind-proxy (docs/network.md)
+    /// Address and port of API and dashboard; port 0 selects a free port. An address other than loopback requires a
+    /// token, and TLS or --behind-proxy (docs/network.md)
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080", value_parser = address)]
     pub listen: SocketAddr,
     #[command(flatten)]
     pub tokens: ServedTokens,
-    /// Certificate (PEM, with those between it and the authority): the daemon answers by HTTPS only. A new one is taken
-    /// within a minute after the files were exchanged
+    /// Certificate (PEM, including intermediate certificates): the daemon serves HTTPS only. It loads a new certificate
+    /// within one minute after the files are replaced
     #[arg(long, value_name = "FILE", env = "JOINTBENCH_TLS_CERT", requires = "tls_key")]
     pub tls_cert: Option<PathBuf>,
     /// Private key of the certificate (PEM)
     #[arg(long, value_name = "FILE", env = "JOINTBENCH_TLS_KEY", requires = "tls_cert")]
     pub tls_key: Option<PathBuf>,
-    /// A reverse proxy with TLS is in front, and nothing else reaches this daemon: it may listen beyond loopback without TLS
+    /// A reverse proxy with TLS is the only client of this daemon: it may listen on other addresses than loopback
+    /// without TLS
     #[arg(long)]
     pub behind_proxy: bool,
 }
 
 #[derive(Debug, Args)]
 pub struct ServedTokens {
-    /// The token itself, of 16 characters and more; better in a file or in the variable, since arguments are seen by others
+    /// The token, at least 16 characters; prefer a file or the variable, because other users can see arguments
     #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
     pub token: Option<String>,
-    /// File with the token that lets its holder do everything; outweighs --token. Callers send it as `Authorization: Bearer
-    /// TOKEN`, and make and revoke further ones, a name for each, on the dashboard's page of settings [default: the
-    /// systemd credential jointbench-token]
+    /// File with the token for full access; takes precedence over --token. Clients send it as `Authorization: Bearer
+    /// TOKEN`. Further named tokens are created and revoked on the settings page of the dashboard [default: the systemd
+    /// credential jointbench-token]
     #[arg(long, value_name = "FILE", env = "JOINTBENCH_TOKEN_FILE")]
     pub token_file: Option<PathBuf>,
-    /// A second token, for those who only look; it can press the software stop, too
+    /// A second token for read access; it can also press the software stop
     #[arg(long, value_name = "TOKEN", env = "JOINTBENCH_READ_TOKEN", hide_env_values = true)]
     pub read_token: Option<String>,
-    /// File with that second token [default: the systemd credential jointbench-read-token]
+    /// File with the second token [default: the systemd credential jointbench-read-token]
     #[arg(long, value_name = "FILE", env = "JOINTBENCH_READ_TOKEN_FILE")]
     pub read_token_file: Option<PathBuf>,
 }
@@ -70,13 +71,14 @@ pub struct Reach {
     /// Address of the daemon [default: http://127.0.0.1:8080]
     #[arg(long, value_name = "URL", env = "JOINTBENCH_URL")]
     pub daemon: Option<String>,
-    /// Token of a daemon that asks for one; better in a file or in the variable, since arguments are seen by others
+    /// Token of a daemon that requires one; prefer a file or the variable, because other users can see arguments
     #[arg(long, env = "JOINTBENCH_TOKEN", hide_env_values = true)]
     pub token: Option<String>,
-    /// File with that token; outweighs --token
+    /// File with the token; takes precedence over --token
     #[arg(long, value_name = "FILE", env = "JOINTBENCH_TOKEN_FILE")]
     pub token_file: Option<PathBuf>,
-    /// Certificate (PEM) that a daemon at https:// is trusted by, its own or of its authority [default: the public authorities]
+    /// Certificate (PEM) to trust for a daemon at https://, its own or that of its authority [default: the public
+    /// authorities]
     #[arg(long, value_name = "FILE", env = "JOINTBENCH_CA_FILE")]
     pub ca_file: Option<PathBuf>,
 }

@@ -3,19 +3,19 @@
 use super::Reach;
 use clap::Args;
 
-pub(super) const STOP: &str = "\
-Exit codes: 0 the run has ended and the bench is safe, 1 the run failed before it could be ended or the bench is not known \
-to be safe, 2 nothing is there to be ended: no run is on, or the one that is named is over.";
+pub(super) const STOP: &str = "Exit codes: 0 the run has ended and the bench is in its safe state, 1 the run failed \
+                               earlier or the safe state is not confirmed, 2 no run is active, or the named run has \
+                               already ended.";
 
-pub(super) const STEER: &str = "\
-Exit codes: 0 done, 1 the run ended before that, or cannot do it now, 2 no such run is on.";
+pub(super) const STEER: &str = "Exit codes: 0 done, 1 the run has ended or does not allow it now, 2 no such active \
+                                run.";
 
 #[derive(Debug, Args)]
 pub struct Stop {
-    /// Number of the run [default: the one that is on]
+    /// Number of the run [default: the active run]
     pub run: Option<i64>,
-    /// End it at once: the shaft comes to rest, then the brake's current is taken away. That leaves poles in a brake that
-    /// was loaded: make `demagnetise` before the next run that counts on it
+    /// End the run immediately: the shaft stops, then the brake current is switched off. A loaded brake stays
+    /// magnetised: run `demagnetise` before the next measurement with the brake
     #[arg(long)]
     pub now: bool,
     #[command(flatten)]
@@ -24,7 +24,7 @@ pub struct Stop {
 
 #[derive(Debug, Args)]
 pub struct Steer {
-    /// Number of the run [default: the one that is on]
+    /// Number of the run [default: the active run]
     pub run: Option<i64>,
     #[command(flatten)]
     pub reach: Reach,
@@ -32,9 +32,9 @@ pub struct Steer {
 
 #[derive(Debug, Args)]
 pub struct Reset {
-    /// Bench to release; not needed where the daemon has only one
+    /// Bench to release; optional if the daemon has only one
     pub bench: Option<String>,
-    /// What was found at the bench and done; kept with it
+    /// Findings and action taken; stored with the bench
     #[arg(long, value_name = "TEXT")]
     pub reason: String,
     #[command(flatten)]

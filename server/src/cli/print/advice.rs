@@ -16,19 +16,13 @@ pub fn own_formula(columns: &[String], fit: &Fit) {
         return;
     }
     println!();
-    println!(
-        "what you can do: write what you suspect as a formula of {} with --own (see --help), and see whether the error falls",
-        words::list(&named)
-    );
+    println!("next: define your own effect as a formula of {} with --own (see --help)", words::list(&named));
     let turns = fit.scope.as_ref().is_none_or(|scope| scope.motion != Motion::Linear);
     let angle = formula::signals(fit.kind)
         .iter()
         .find(|s| s.name.ends_with("position") && columns.iter().any(|column| *column == s.column));
     if let Some(angle) = angle.filter(|_| turns) {
-        println!(
-            "  angles are folded into one turn above; a formula folds this one with wrap({} - p), -π to π",
-            angle.name
-        );
+        println!("  in a formula wrap({} - p) wraps this angle into one turn, -π to π", angle.name);
     }
 }
 
@@ -36,9 +30,9 @@ pub fn own_formula(columns: &[String], fit: &Fit) {
 pub fn next_run(experiment: Option<&Experiment>) {
     let Some(experiment) = experiment else { return };
     println!();
-    println!("what to measure next, on a bench that can do what this run shows: {}", experiment.why);
+    println!("recommended next run, within the range of this run: {}", experiment.why);
     if let Some(duration_s) = experiment.expected_duration_s {
-        println!("  {duration_s:.0} s of the bench at most:");
+        println!("  at most {duration_s:.0} s of bench time:");
     }
     println!("  {}", command(&experiment.procedure, &experiment.parameters));
 }

@@ -20,10 +20,8 @@ pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
     let largest = means.fold(f64::MIN_POSITIVE, |most, mean| most.max(mean.abs()));
     println!();
     if !axes.is_empty() {
-        println!("where the model fails: mean of what it leaves (measured − model) over each quantity");
-        println!(
-            "± holds for every line at once; ● is no noise, ○ may be, ? from too few pieces of the run to be judged"
-        );
+        println!("residual maps: mean residual (measured − model) over each quantity");
+        println!("±: simultaneous 95 % band; ● significant, ○ not significant, ? too few blocks");
     }
     for axis in &axes {
         println!();
@@ -43,7 +41,7 @@ pub fn print(maps: &ResidualMaps, named: &[String], kind: Kind) {
         let names: Vec<&str> = flat.iter().map(|(axis, _)| axis.axis.as_str()).collect();
         println!();
         println!(
-            "flat over {}: a function of one, in each direction its own too, would take less than 1 % off",
+            "no structure over {}: each explains less than 1 % of the squared error, also by direction",
             words::list(&names)
         );
     }
@@ -63,10 +61,9 @@ fn title(of: &(&AxisMap, Option<&PairMap>)) -> String {
     let axis = of.0;
     let unit = if axis.unit == "1" { String::new() } else { format!(" [{}]", axis.unit) };
     let percent = |share: f64| 100.0 * share.max(0.0);
-    let apart = told_apart(of)
-        .map(|pair| format!(", and one of its own in each direction {:.1} %", percent(pair.removable_share)));
+    let apart = told_apart(of).map(|pair| format!(", {:.1} % by direction", percent(pair.removable_share)));
     format!(
-        "{}{unit}: a function of it would take {:.1} % off the squared error{}",
+        "{}{unit}: explains {:.1} % of the squared error{}",
         axis.axis,
         percent(axis.removable_share),
         apart.unwrap_or_default()

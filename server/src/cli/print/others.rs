@@ -7,10 +7,10 @@ pub fn print(silent: &[Silent], hidden: &[Invisible], left_out: &[LeftOut], unit
         println!("{said}");
     }
     for effect in left_out {
-        println!("left out: {} ({})", effect.effect, effect.why);
+        println!("rejected: {} ({})", effect.effect, effect.why);
     }
     for (why, effects) in alike(hidden) {
-        println!("cannot be seen here: {} ({why})", effects.join(", "));
+        println!("not testable with this run: {} ({why})", effects.join(", "));
     }
 }
 
@@ -32,7 +32,7 @@ fn silences(silent: &[Silent], unit: &str) -> Option<String> {
     let within = |s: &Silent| s.sought.as_ref().map_or_else(String::new, |sought| format!(" ({sought})"));
     let sized = |s: &&Silent| format!("{} {}{}", s.effect, words::figure(s.minimum_detectable_rms, unit), within(s));
     let sized: Vec<String> = silent.iter().map(sized).collect();
-    (!sized.is_empty()).then(|| format!("would have been found from (rms): {}", sized.join(", ")))
+    (!sized.is_empty()).then(|| format!("detection limits (RMS, 80 % power): {}", sized.join(", ")))
 }
 
 #[cfg(test)]
@@ -47,7 +47,7 @@ mod tests {
         let said = silences(&all, "Nm").unwrap();
         assert!(
             said.starts_with(
-                "would have been found from (rms): cogging 120 µNm (1 to 60 waves a turn), gravity 2.00 mNm, "
+                "detection limits (RMS, 80 % power): cogging 120 µNm (1 to 60 waves a turn), gravity 2.00 mNm, "
             ),
             "{said}"
         );

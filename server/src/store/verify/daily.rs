@@ -13,14 +13,14 @@ const DAY: Duration = Duration::from_secs(24 * 3600);
 /// Between two runs.
 const PACE: Duration = Duration::from_secs(1);
 
-/// Whether all that is stored could be read, when that was looked at last.
+/// Result of the latest integrity check of the store.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
 pub struct StoreHealth {
-    /// `null` until the first check is over; there is one a day.
+    /// `null` until the first check is complete; one check per day.
     #[schema(format = DateTime)]
     pub checked_at: Option<String>,
     pub damaged: Vec<DamagedRecord>,
-    /// Changes that were acknowledged once and were missing when the store was opened.
+    /// Acknowledged changes that were missing when the store was opened.
     pub lost: Vec<Loss>,
 }
 

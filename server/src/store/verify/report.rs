@@ -28,7 +28,7 @@ pub struct VerifyReport {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct DamagedRecord {
     pub run: Option<i64>,
-    /// `file` where SQLite's own check found it.
+    /// `file` if found by the integrity check of SQLite.
     pub table: String,
     pub what: String,
 }

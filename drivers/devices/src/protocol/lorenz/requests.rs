@@ -10,7 +10,10 @@ fn answer<const N: usize>(packet: &[u8], expected: u8) -> Result<[u8; N], FaultK
     let telegram = Telegram::decode(packet)?;
     let odd = |what: String| FaultKind::Garbled { what };
     if (telegram.to, telegram.from) != (HOST, SENSOR) {
-        return Err(odd(format!("telegram from {:02X} to {:02X}, not for us", telegram.from, telegram.to)));
+        return Err(odd(format!(
+            "telegram from {:02X} to {:02X}, addressed to another device",
+            telegram.from, telegram.to
+        )));
     }
     if telegram.command == command::NACK {
         let code = telegram.parameters.first().copied().unwrap_or_default();

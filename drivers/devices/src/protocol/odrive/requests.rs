@@ -175,7 +175,9 @@ fn taken(text: &str, wanted: f64, path: &str) -> Result<f64, FaultKind> {
     if (found - wanted).abs() <= 1.01 * 10f64.powi(-decimals) + 1e-6 * wanted.abs() {
         return Ok(found);
     }
-    Err(FaultKind::Garbled { what: format!("{path} reads {text} after {wanted} was set: the command was not taken") })
+    Err(FaultKind::Garbled {
+        what: format!("{path} reads {text} after {wanted} was set: the command was not accepted"),
+    })
 }
 
 /// Keeps the drive armed (`u`); any set-point does so too. No reply.

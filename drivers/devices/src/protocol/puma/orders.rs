@@ -56,7 +56,7 @@ fn taken(sent: u16, held: u16) -> Result<(), FaultKind> {
         return Ok(());
     }
     let [sent, held] = [sent, held].map(u16::cast_signed);
-    Err(FaultKind::Garbled { what: format!("sent {sent}, and the servo holds {held}") })
+    Err(FaultKind::Garbled { what: format!("sent {sent}, but the servo reads back {held}") })
 }
 
 /// A position to be reached in `ninter` ticks from now, in counts.
@@ -200,7 +200,7 @@ impl Order for DiagRead {
         if address == self.0 {
             return Ok(byte);
         }
-        Err(FaultKind::Garbled { what: format!("address {address:#04X}, asked for {:#04X}", self.0) })
+        Err(FaultKind::Garbled { what: format!("address {address:#04X}, expected {:#04X}", self.0) })
     }
 }
 

@@ -10,8 +10,8 @@ const ERRORS: [(u16, &str); 5] = [
     (1 << 8, "RAM error"),
     (1 << 9, "out of the position envelope"),
     (1 << 10, "lost synchronization with the encoder"),
-    (1 << 11, "nobody asked for a quarter of a second: arm power was taken away"),
-    (1 << 12, "the motor current was at its limit for half a second: arm power was taken away"),
+    (1 << 11, "no request for 0.25 s: arm power was switched off"),
+    (1 << 12, "motor current at its limit for 0.5 s: arm power was switched off"),
 ];
 
 /// Low byte: what the servo does, bits 6 and 7 being its own; high byte: errors.

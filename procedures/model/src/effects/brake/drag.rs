@@ -10,10 +10,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "drag",
     kind: Kind::Brake,
     title: "Drag",
-    sentence: "Bearings and remanence brake a little without any current.",
+    sentence: "Bearings and remanence cause a small torque without current.",
     formula: "τ_0",
-    source: "makers' data of hysteresis brakes",
-    looks: "one constant everywhere",
+    source: "Data sheets of hysteresis brakes (residual drag)",
+    looks: "a constant in all samples",
     parameters: &[parameter("tau_0", "Nm", 0.0, f64::INFINITY)],
     needs: &[],
 };

@@ -19,10 +19,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "hysteresis",
     kind: Kind::Brake,
     title: "Hysteresis",
-    sentence: "At the same current the brake holds more on the way down than on the way up.",
+    sentence: "At the same current the torque is higher while the current falls than while it rises.",
     formula: "h·(z + 1), stop dz = di/r within ±1 or Dahl; or Σ h_k·(z_k + 1) over bands of stops with reaches up to i_max, half of the range of the current",
-    source: "Prandtl–Ishlinskii model: Kuhnen 2003",
-    looks: "loops over current",
+    source: "Kuhnen 2003, modified Prandtl–Ishlinskii model",
+    looks: "a loop over current",
     parameters: &[
         parameter("h_1", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("h_2", "Nm", f64::NEG_INFINITY, f64::INFINITY),

@@ -14,10 +14,11 @@ static INFO: EffectInfo = EffectInfo {
     id: "saturation",
     kind: Kind::Brake,
     title: "Saturation",
-    sentence: "The curve starts flat, is steep in the middle and bends when the iron is full.",
+    sentence: "The curve over current is S-shaped: flat at first, steep in the middle, flat again as the iron \
+               saturates.",
     formula: "c_2·i² + c_3·i³, also up to i⁵, or c·tanh((i − i_0)/i_s), or c·tanh(i/i_s), or Σ k_n·(T_n(2·i/i_max − 1) − T_n(−1))",
-    source: "makers' data of hysteresis brakes (S-shape); contract section 2",
-    looks: "a curve over current, the same on the way up and down",
+    source: "Data sheets of hysteresis brakes (torque over current)",
+    looks: "a curve over current, equal for rising and falling current",
     parameters: &[
         parameter("c_2", "Nm/A²", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_3", "Nm/A³", f64::NEG_INFINITY, f64::INFINITY),

@@ -12,9 +12,9 @@ static INFO: EffectInfo = EffectInfo {
     id: "temperature_dependence",
     kind: Kind::Brake,
     title: "Temperature dependence",
-    sentence: "A warm brake holds less.",
+    sentence: "The braking torque decreases as the brake warms up.",
     formula: "c_T·(T − 25 °C), or times i, or c_T·(T − T_0)·τ with the torque τ that current and history explain at T_0",
-    source: "makers' data of hysteresis brakes",
+    source: "Data sheets of hysteresis brakes (temperature coefficient)",
     looks: "a line over temperature",
     parameters: &[
         parameter("c_t", "Nm/K", f64::NEG_INFINITY, f64::INFINITY),

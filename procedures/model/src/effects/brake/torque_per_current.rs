@@ -13,7 +13,7 @@ static INFO: EffectInfo = EffectInfo {
     title: "Torque per current",
     sentence: "The braking torque grows in proportion to the coil current.",
     formula: "k_b·i",
-    source: "makers' data of hysteresis brakes",
+    source: "Data sheets of hysteresis brakes (torque over current)",
     looks: "a line over current",
     parameters: &[parameter("k_b", "Nm/A", 0.0, f64::INFINITY)],
     needs: &[],

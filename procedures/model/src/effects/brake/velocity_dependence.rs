@@ -15,10 +15,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "velocity_dependence",
     kind: Kind::Brake,
     title: "Velocity dependence",
-    sentence: "The brake holds more or less at higher speed: eddy currents and windage.",
+    sentence: "The braking torque changes with speed because of eddy currents and windage.",
     formula: "c_v·|ω|, or c_v·i·|ω|, or c_v·(|ω| − ω_0)·τ with the torque τ that current and history explain at ω_0",
-    source: "makers' data of hysteresis brakes (eddy currents)",
-    looks: "a line over speed, of which it takes more than one",
+    source: "Data sheets of hysteresis brakes (eddy currents)",
+    looks: "a line over speed; needs at least two speeds",
     parameters: &[
         parameter("c_v", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_v_i", "Nm·s/(rad·A)", f64::NEG_INFINITY, f64::INFINITY),

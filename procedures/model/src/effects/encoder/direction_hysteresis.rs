@@ -11,10 +11,11 @@ static INFO: EffectInfo = EffectInfo {
     id: "direction_hysteresis",
     kind: Kind::Encoder,
     title: "Direction hysteresis",
-    sentence: "The reading depends on the side from which a place is reached: play in the coupling or magnetic hysteresis.",
+    sentence: "The reading depends on the direction of approach because of play in the coupling or magnetic \
+               hysteresis.",
     formula: "h·sign ω",
-    source: "contract section 2",
-    looks: "the same constant, with the sign of the direction",
+    source: "ISO 230-2:2014, reversal error",
+    looks: "a constant that changes sign with the direction",
     parameters: &[parameter("h", "rad", f64::NEG_INFINITY, f64::INFINITY)],
     needs: &[],
 };

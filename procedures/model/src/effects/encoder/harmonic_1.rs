@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "harmonic_1",
     kind: Kind::Encoder,
     title: "Eccentricity",
-    sentence: "The ring or the sensor is off centre: one wave per turn.",
+    sentence: "The ring or the sensor is eccentric: one period per turn.",
     formula: "a·cos θ + b·sin θ",
-    source: "thesis on joint test benches, section 4.3 (sinusoid per turn)",
-    looks: "one wave per turn",
+    source: "Masuda, Kajitani 1989",
+    looks: "one period per turn",
     parameters: &[
         parameter("a", "rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("b", "rad", f64::NEG_INFINITY, f64::INFINITY),

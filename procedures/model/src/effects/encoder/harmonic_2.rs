@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "harmonic_2",
     kind: Kind::Encoder,
     title: "Tilt or ellipticity",
-    sentence: "The ring is tilted or not round: two waves per turn.",
+    sentence: "The ring is tilted or elliptical: two periods per turn.",
     formula: "a·cos 2θ + b·sin 2θ",
-    source: "thesis on joint test benches, section 4.3",
-    looks: "two waves per turn",
+    source: "Masuda, Kajitani 1989",
+    looks: "two periods per turn",
     parameters: &[
         parameter("a", "rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("b", "rad", f64::NEG_INFINITY, f64::INFINITY),

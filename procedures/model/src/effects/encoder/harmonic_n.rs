@@ -12,9 +12,9 @@ static INFO: EffectInfo = EffectInfo {
     kind: Kind::Encoder,
     title: "Higher harmonic",
     sentence: "A mechanical or magnetic error that repeats several times per turn.",
-    formula: "a·cos(h·θ) + b·sin(h·θ), h ≥ 3 found",
-    source: "thesis on joint test benches, section 4.3 (repeating side effects)",
-    looks: "several waves per turn",
+    formula: "a·cos(h·θ) + b·sin(h·θ), h ≥ 3 estimated",
+    source: "Masuda, Kajitani 1989",
+    looks: "several periods per turn",
     parameters: &[
         parameter("a", "rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("b", "rad", f64::NEG_INFINITY, f64::INFINITY),

@@ -11,10 +11,11 @@ static INFO: EffectInfo = EffectInfo {
     id: "pole_period",
     kind: Kind::Encoder,
     title: "Pole period error",
-    sentence: "Inside one pole pair the angle is interpolated from two waves that are never quite equal: an error once and twice per pole pair.",
+    sentence: "Within a pole pair the angle is interpolated from sine and cosine. Unequal offset, gain or phase causes \
+               one and two periods per pole pair.",
     formula: "a·cos pθ + b·sin pθ + c·cos 2pθ + d·sin 2pθ, p pole pairs",
-    source: "thesis on joint test benches, section 4.3; contract section 2",
-    looks: "fast waves, p and 2p per turn",
+    source: "Heydemann 1981",
+    looks: "p and 2p periods per turn",
     parameters: &[
         parameter("a", "rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("b", "rad", f64::NEG_INFINITY, f64::INFINITY),

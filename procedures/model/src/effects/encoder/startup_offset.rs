@@ -18,10 +18,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "startup_offset",
     kind: Kind::Encoder,
     title: "Start-up offset",
-    sentence: "The encoder finds another zero at every power-up.",
+    sentence: "The zero of the encoder changes at each power-up.",
     formula: "ξ_r for every repeat r after the first, up to 256",
-    source: "thesis on joint test benches, section 4.3 (start-up initialisation error)",
-    looks: "another constant in every repeat",
+    source: "JCGM 200:2012 (VIM), 4.28 zero error",
+    looks: "a different constant in each repeat",
     parameters: &[parameter("xi", "rad", f64::NEG_INFINITY, f64::INFINITY)],
     needs: &["repeat"],
 };

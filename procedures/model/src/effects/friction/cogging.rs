@@ -14,10 +14,11 @@ static INFO: EffectInfo = EffectInfo {
     id: "cogging",
     kind: Kind::Friction,
     title: "Cogging",
-    sentence: "The magnets of the rotor are drawn to the teeth of the stator: a torque that repeats with the motor's angle.",
-    formula: "Σ a·cos(h·θ_m) + b·sin(h·θ_m), up to eight orders h found",
-    source: "Hanselman, Brushless Permanent Magnet Motor Design, ch. 7",
-    looks: "waves over the motor's angle, the same in both directions, gone at high speed",
+    sentence: "The magnets of the rotor are attracted by the stator teeth: the torque varies periodically with the \
+               motor angle.",
+    formula: "Σ a·cos(h·θ_m) + b·sin(h·θ_m), up to eight orders h estimated",
+    source: "Hanselman 2003, ch. 7",
+    looks: "periodic over the motor angle, equal in both directions, averaged out at high speed",
     parameters: &[
         parameter("a", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("b", "Nm", f64::NEG_INFINITY, f64::INFINITY),

@@ -10,10 +10,11 @@ static INFO: EffectInfo = EffectInfo {
     id: "direction_offset",
     kind: Kind::Friction,
     title: "Direction offset",
-    sentence: "Friction is stronger one way than the other; on a moving joint this is the same as a constant torque, such as an offset of the current sensor.",
+    sentence: "Coulomb friction differs between the directions. In motion this is equivalent to a constant torque, \
+               such as an offset of the current sensor.",
     formula: "τ_0, that is τ_c⁺ = τ_c + τ_0 and τ_c⁻ = τ_c − τ_0",
-    source: "Puma chapter, f⁺ ≠ f⁻; Janot, Gautier, Brunot 2019, eq. 2",
-    looks: "the same constant at every speed in both directions",
+    source: "Armstrong-Hélouvry 1991; Janot, Gautier, Brunot 2019, eq. 2",
+    looks: "the same constant at all speeds and in both directions",
     parameters: &[parameter("tau_0", "Nm", f64::NEG_INFINITY, f64::INFINITY)],
     needs: &[],
 };

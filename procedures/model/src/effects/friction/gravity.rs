@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "gravity",
     kind: Kind::Friction,
     title: "Gravity",
-    sentence: "A weight that is off the axis pulls the joint once per link turn.",
+    sentence: "An eccentric mass: the torque has one period per link turn.",
     formula: "g_c·cos θ_link + g_s·sin θ_link",
-    source: "Puma chapter, removal of gravity by pose",
-    looks: "one wave per link turn, the same in both directions",
+    source: "Armstrong, Khatib, Burdick 1986",
+    looks: "one period per link turn, equal in both directions",
     parameters: &[
         parameter("g_c", "Nm", f64::NEG_INFINITY, f64::INFINITY),
         parameter("g_s", "Nm", f64::NEG_INFINITY, f64::INFINITY),

@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "inertia",
     kind: Kind::Friction,
     title: "Rotor inertia",
-    sentence: "The motor must accelerate its own rotor and everything that turns with it.",
+    sentence: "Torque that accelerates the rotor and the parts that turn with it.",
     formula: "J·α",
-    source: "Newton; contract section 1",
-    looks: "follows the acceleration: large in ramps, nothing at constant speed",
+    source: "Newton's second law; Gautier 1997",
+    looks: "proportional to acceleration: large in transients, zero at constant speed",
     parameters: &[parameter("j", "kg·m²", 0.0, f64::INFINITY)],
     needs: &[],
 };

@@ -12,10 +12,11 @@ static INFO: EffectInfo = EffectInfo {
     id: "presliding",
     kind: Kind::Friction,
     title: "Presliding hysteresis",
-    sentence: "After a reversal the contacts bend like bristles before they slip: friction builds up over a short way.",
+    sentence: "After a reversal the contacts deform elastically before they slide: friction builds up over a short \
+               displacement.",
     formula: "τ_p·(z − sign ω), dz = (1 − z·sign ω)·dθ/θ_p (Dahl); or a stop, dz = dθ/θ_p within ±1; or the mean of four stops with reaches up to θ_p (Maxwell slip); or τ_p·(z − g·sign ω), dz = (1 − z·sign ω/g)·dθ/θ_p, g = 1 + ρ·exp(−(ω/ω_s)²) (LuGre)",
     source: "Dahl 1968; Canudas de Wit, Olsson, Åström, Lischinsky 1995; Al-Bender, Lampaert, Swevers 2005",
-    looks: "loops at reversals: the torque arrives later than the direction changes",
+    looks: "hysteresis loops at reversals: torque lags behind the change of direction",
     parameters: &[
         parameter("tau_p", "Nm", 0.0, f64::INFINITY),
         parameter("theta_p", "rad", 0.0, f64::INFINITY),

@@ -11,10 +11,11 @@ static INFO: EffectInfo = EffectInfo {
     id: "signal_delay",
     kind: Kind::Friction,
     title: "Delay between torque and velocity",
-    sentence: "The torque is recorded earlier or later than the motion that it causes: a delay of the drive, a filter or a flexible shaft.",
-    formula: "k_j·dα/dt; divided by the inertia it is the delay",
+    sentence: "Torque and motion are recorded at different times because of a drive delay, a filter or a flexible \
+               shaft.",
+    formula: "k_j·dα/dt; k_j divided by the inertia is the delay",
     source: "Janot, Gautier, Brunot 2019, section 5 (flexibility); Taylor series of J·α(t + δ)",
-    looks: "follows the change of the acceleration: spikes at the beginning and end of every ramp",
+    looks: "proportional to jerk: peaks at the start and end of each ramp",
     parameters: &[parameter("k_j", "kg·m²·s", f64::NEG_INFINITY, f64::INFINITY)],
     needs: &[],
 };

@@ -13,10 +13,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "stribeck",
     kind: Kind::Friction,
     title: "Stribeck effect",
-    sentence: "Near standstill the oil film breaks down and friction rises again, so slow motion needs more torque.",
+    sentence: "At low speed the lubricant film breaks down and friction rises towards zero speed.",
     formula: "τ_s·exp(−(|ω|/ω_s)^δ)·sign ω",
-    source: "thesis on joint test benches, eq. 2.6 (τ_h − τ_c, θ̇_s, δ_s); Stribeck 1902; Bo and Pavelescu 1982",
-    looks: "an upturn at the lowest speeds, odd in direction",
+    source: "Stribeck 1902; Bo, Pavelescu 1982",
+    looks: "a rise at the lowest speeds, sign changes with the direction",
     parameters: &[
         parameter("tau_s", "Nm", 0.0, f64::INFINITY),
         parameter("omega_s", "rad/s", 0.0, f64::INFINITY),

@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "stribeck_load",
     kind: Kind::Friction,
     title: "Load-dependent Stribeck effect",
-    sentence: "Under load the oil film breaks down sooner: the extra friction at low speed grows with the transmitted torque.",
+    sentence: "The rise of friction at low speed grows with the transmitted torque.",
     formula: "μ_s·|τ_link/N|·exp(−(|ω|/ω_s)^δ)·sign ω",
     source: "Duclusaud et al. 2025, M4",
-    looks: "an upturn at the lowest speeds that is there only under load",
+    looks: "a rise at the lowest speeds, only under load",
     parameters: &[
         parameter("mu_s", "1", 0.0, f64::INFINITY),
         parameter("omega_s", "rad/s", 0.0, f64::INFINITY),

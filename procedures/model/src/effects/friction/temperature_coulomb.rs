@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     id: "temperature_coulomb",
     kind: Kind::Friction,
     title: "Temperature-dependent Coulomb friction",
-    sentence: "The constant part of the friction changes as the joint warms up.",
+    sentence: "Coulomb friction changes as the joint warms up.",
     formula: "τ_T·(T − 25 °C)·sign ω",
     source: "Bittencourt et al. 2010, linearised about 25 °C",
     looks: "a step at zero speed that changes with temperature",

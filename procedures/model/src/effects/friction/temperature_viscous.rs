@@ -11,7 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     id: "temperature_viscous",
     kind: Kind::Friction,
     title: "Temperature-dependent viscous friction",
-    sentence: "Warm grease is thinner: the speed-dependent drag falls as the joint warms up.",
+    sentence: "Warm grease is less viscous: viscous friction decreases as the joint warms up.",
     formula: "c_T·(T − 25 °C)·ω",
     source: "Bittencourt et al. 2010, linearised about 25 °C",
     looks: "a line over speed whose slope changes with temperature",

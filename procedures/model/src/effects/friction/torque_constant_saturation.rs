@@ -16,9 +16,9 @@ static INFO: EffectInfo = EffectInfo {
     id: "torque_constant_saturation",
     kind: Kind::Friction,
     title: "Saturation of the torque constant",
-    sentence: "At high current the iron saturates: the motor gives less torque for each ampere, so it seems to need more.",
-    formula: "s·τ³, that is k_m falls by s·τ² at the motor torque τ; or s_n·|τ|ⁿ·τ where iron saturates more suddenly or less",
-    source: "Hanselman, Brushless Permanent Magnet Motor Design, ch. 4",
+    sentence: "At high current the iron saturates: the torque constant decreases, so k_m·i_q overestimates the torque.",
+    formula: "s·τ³, that is k_m falls by s·τ² at the motor torque τ; or s_n·|τ|ⁿ·τ for a sharper or softer saturation",
+    source: "Hanselman 2003, ch. 4",
     looks: "odd in the motor torque, only at high torque",
     parameters: &[
         parameter("s", "1/Nm²", 0.0, f64::INFINITY),

@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "viscous_asymmetry",
     kind: Kind::Friction,
     title: "Viscous asymmetry",
-    sentence: "The speed-dependent drag is stronger one way than the other.",
+    sentence: "Viscous friction differs between the directions.",
     formula: "c_a·|ω|, that is c⁺ = c_v + c_a and c⁻ = c_v − c_a",
-    source: "Puma chapter, B⁺ ≠ B⁻; Janot, Gautier, Brunot 2019, section 5",
-    looks: "a V over speed: grows with speed to the same side in both directions",
+    source: "Janot, Gautier, Brunot 2019, section 5",
+    looks: "a V over speed: equal sign in both directions",
     parameters: &[parameter("c_a", "Nm·s/rad", f64::NEG_INFINITY, f64::INFINITY)],
     needs: &[],
 };

@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "viscous_quadratic",
     kind: Kind::Friction,
     title: "Quadratic drag",
-    sentence: "At high speed the drag grows faster than the speed, as stirred oil and fanned air do.",
-    formula: "c_2·ω·|ω|, or c_2a·ω² where one direction has more of it",
+    sentence: "Drag grows with the square of speed, as in churning oil or windage.",
+    formula: "c_2·ω·|ω|, or c_2a·ω² if it differs between the directions",
     source: "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994",
-    looks: "a curve over speed, odd in direction, steepest at top speed",
+    looks: "a curve over speed, sign changes with the direction, steepest at top speed",
     parameters: &[
         parameter("c_2", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY),
         parameter("c_2a", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY),

@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "viscous_sublinear",
     kind: Kind::Friction,
     title: "Shear-thinning viscous friction",
-    sentence: "Sheared grease gets thinner: the drag grows more slowly than the speed.",
+    sentence: "Shear thinning of grease: drag grows less than in proportion to speed.",
     formula: "c_α·|ω|^α·sign ω, α < 1; or τ_l·(1 − exp(−|ω|/ω_l))·sign ω, a limiting shear stress",
-    source: "Harnoy, Friedland, Cohn 2008; contract section 2; Bair and Winer 1979 for the limit",
-    looks: "a curve over speed that is steep at first and flattens, odd in direction",
+    source: "Harnoy, Friedland, Cohn 2008; Bair, Winer 1979 (limiting shear stress)",
+    looks: "a curve over speed, steep at first, then flat; sign changes with the direction",
     parameters: &[
         parameter("c_alpha", "Nm·(s/rad)^α", 0.0, f64::INFINITY),
         parameter("alpha", "1", 0.15, 0.85),

@@ -12,10 +12,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "creep",
     kind: Kind::Stiffness,
     title: "Creep",
-    sentence: "Under a lasting load the joint goes on twisting for a while.",
+    sentence: "Under a constant load the torsion keeps increasing for some time.",
     formula: "κ_c·(s − τ), ds = (τ − s)·dt/t_c",
-    source: "Findley, Lai, Onaran, Creep and Relaxation, standard linear solid",
-    looks: "the twist follows the torque late",
+    source: "Findley, Lai, Onaran 1976, standard linear solid",
+    looks: "torsion lags behind the torque",
     parameters: &[parameter("kappa_c", "rad/Nm", 0.0, f64::INFINITY), parameter("t_c", "s", 0.0, f64::INFINITY)],
     needs: &[],
 };

@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "directional_offset",
     kind: Kind::Stiffness,
     title: "Directional offset",
-    sentence: "The joint rests on the other flank when it turns the other way: a constant twist with the sign of the motion.",
+    sentence: "The contact flank changes with the direction: a constant torsion that changes sign with the motion.",
     formula: "β₀·sign ω",
-    source: "thesis on joint test benches, β₀",
-    looks: "the same constant, with the sign of the motion",
+    source: "Nordin, Gutman 2002",
+    looks: "a constant that changes sign with the motion",
     parameters: &[parameter("beta_0", "rad", f64::NEG_INFINITY, f64::INFINITY)],
     needs: &[],
 };

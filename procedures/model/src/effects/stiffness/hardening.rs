@@ -11,10 +11,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "hardening",
     kind: Kind::Stiffness,
     title: "Hardening",
-    sentence: "The joint gets stiffer or softer the more it is loaded, as more teeth come to bear.",
+    sentence: "Stiffness changes with the load, for example because more teeth engage.",
     formula: "κ·τ³, or φ_h·(√(1 + |τ|/τ_h) − 1)·sign τ, or φ_h·τ/(τ_hⁿ + |τ|ⁿ)^(1/n)",
-    source: "thesis on joint test benches, joint B softer at low torque; Kircanski and Goldenberg 1997",
-    looks: "a curve over torque, odd",
+    source: "Kircanski, Goldenberg 1997",
+    looks: "a curve over torque, sign changes with the torque",
     parameters: &[
         parameter("kappa", "rad/Nm³", f64::NEG_INFINITY, f64::INFINITY),
         parameter("phi_h", "rad", f64::NEG_INFINITY, f64::INFINITY),

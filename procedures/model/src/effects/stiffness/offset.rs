@@ -12,8 +12,8 @@ static INFO: EffectInfo = EffectInfo {
     title: "Offset",
     sentence: "The two encoders do not have the same zero.",
     formula: "ξ",
-    source: "thesis on joint test benches, eq. of section 6",
-    looks: "one constant everywhere",
+    source: "JCGM 200:2012 (VIM), 4.28 zero error",
+    looks: "a constant in all samples",
     parameters: &[parameter("xi", "rad", f64::NEG_INFINITY, f64::INFINITY)],
     needs: &[],
 };

@@ -16,10 +16,10 @@ static INFO: EffectInfo = EffectInfo {
     id: "torsional_hysteresis",
     kind: Kind::Stiffness,
     title: "Torsional hysteresis",
-    sentence: "The twist depends on how the torque came about: on the way up it lags, on the way down too.",
+    sentence: "Torsion depends on the history of the torque (hysteresis loop).",
     formula: "η·z, dz = (1 − z·sign dτ)·dτ/τ_η (Dahl), or a stop dz = dτ/τ_η within ±1, or the mean of four stops with reaches up to τ_η (Maxwell slip); or one of these with one or two more stops",
     source: "Dahl 1968; Al-Bender, Lampaert, Swevers 2005; Ruderman, Bertram, Iwasaki 2014",
-    looks: "loops over torque, whichever way round they are gone through",
+    looks: "a loop over torque, independent of the sweep direction",
     parameters: &[
         parameter("eta", "rad", f64::NEG_INFINITY, f64::INFINITY),
         parameter("tau_eta", "Nm", 0.0, f64::INFINITY),

@@ -17,7 +17,7 @@ struct Sweep {
     points: Vec<(f64, f64)>,
 }
 
-const LITTLE: Unusable = Unusable::TooLittle("the run did not reach the last of its reversal curves: make it again");
+const LITTLE: Unusable = Unusable::TooLittle("The run ended before the last reversal curve.", "Repeat the run.");
 
 pub(super) fn model(run: &RunTable) -> Result<Everett, Unusable> {
     model_of(&sweeps(run))
@@ -68,22 +68,18 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let full: Vec<f64> = major.iter().filter_map(|s| s.points.iter().find(|p| p.0 == top).map(|p| p.1)).collect();
     let quantities = vec![
         quantity(
-            ["model_currents", "N", "Currents of the Preisach model (Everett form), 0 among them", ""],
+            ["model_currents", "N", "Currents of the Preisach model (Everett form), including 0", ""],
             everett.currents() as f64,
             None,
         ),
-        quantity(["torque_top", "T_max", "Torque at the highest current", "Nm"], mean(&full), spread(&full)),
-        quantity(["width", "ΔT", "Width of the loop at half the current", "Nm"], falling - rising, None),
+        quantity(["torque_top", "T_max", "Torque at maximum current", "Nm"], mean(&full), spread(&full)),
+        quantity(["width", "ΔT", "Loop width at half of the maximum current", "Nm"], falling - rising, None),
         quantity(["drag", "T₀", "Torque without current", "Nm"], everett.torque_nm(&History::default()), None),
-        quantity(["error_max", "e_max", "Largest error on a history not seen, share of rated", ""], worst, None),
-        quantity(["error_rms", "e_rms", "The same, root mean square", ""], rms, None),
+        quantity(["error_max", "e_max", "Maximum error, validation history, fraction of rated", ""], worst, None),
+        quantity(["error_rms", "e_rms", "RMS error, validation history, fraction of rated", ""], rms, None),
+        quantity(["current_error", "e_I", "Maximum current error of the model inverse", "A"], current_error, None),
         quantity(
-            ["current_error", "e_I", "Largest error of the current that the inverse gives", "A"],
-            current_error,
-            None,
-        ),
-        quantity(
-            ["error_line", "e_line", "What a straight line through zero errs by at most", ""],
+            ["error_line", "e_line", "Maximum error of a linear model, fraction of rated", ""],
             by_line(&sweeps, rated),
             None,
         ),
@@ -92,12 +88,14 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     Ok(Identification {
         verdict: if good { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "The brake gives {:.2} Nm at {top:.3} A, {:.2} Nm more on the way down than up at half of it; a torque commanded through the Preisach model errs by at most {:.2} % of rated after a random history.",
+            "Torque {:.2} Nm at {top:.3} A. Hysteresis at half of this current: {:.2} Nm (falling minus rising). Inverse of the \
+             Preisach model: maximum torque error {:.2} % of rated on a random history.",
             mean(&full),
             falling - rising,
             100.0 * worst
         ),
-        advice: (!good).then(|| "Raise levels or dwell_s: the model must come within 1 % of the rated torque.".into()),
+        advice: (!good)
+            .then(|| "Increase levels or dwell_s. The model error must be below 1 % of the rated torque.".into()),
         quantities,
         figures: [loops(&sweeps, &everett), vec![judgement(&judged)]].concat(),
     })
@@ -193,8 +191,8 @@ fn loops(sweeps: &[Sweep], everett: &Everett) -> Vec<Figure> {
         ],
     )];
     for (name, title, label, wanted) in [
-        ("minor_loops", "Minor loops, which the model has not seen", "minor loops", Part::Minor),
-        ("random_history", "Random history, which the model has not seen", "random history", Part::Random),
+        ("minor_loops", "Minor loops (validation data)", "minor loops", Part::Minor),
+        ("random_history", "Random history (validation data)", "random history", Part::Random),
     ] {
         figures.push(figure(
             name,
@@ -226,10 +224,10 @@ fn judgement(judged: &[(f64, f64)]) -> Figure {
     let number = |error: fn(&(f64, f64)) -> f64| judged.iter().enumerate().map(move |(i, p)| (i as f64, error(p)));
     Figure {
         name: "error_of_the_inverse".into(),
-        title: "Error on histories that the model has not seen".into(),
+        title: "Error on validation histories".into(),
         form: Form::Cartesian,
         x: Axis::of("turn", ""),
         y: Axis::of("torque", "Nm"),
-        series: vec![scatter("measured less model", number(|p| p.0 - p.1))],
+        series: vec![scatter("measured − model", number(|p| p.0 - p.1))],
     }
 }

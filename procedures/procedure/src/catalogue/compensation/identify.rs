@@ -15,11 +15,11 @@ const SHOWN: usize = 1500;
 
 /// What is told of each way: name, symbol, title and unit.
 pub(super) const FIGURES: [[&str; 4]; 5] = [
-    ["rho_1", "ρ₁", "Sum of the errors", "rad"],
-    ["rho_2", "ρ₂", "Sum of the squared errors", "rad²"],
-    ["rho_max", "ρ_max", "Largest error", "rad"],
-    ["ratio", "ρ₁/ρ₁₀", "Sum of the errors, share of none", ""],
-    ["over", "Δτ", "Fed forward beyond what the drive gave", "Nm"],
+    ["rho_1", "ρ₁", "Sum of absolute errors", "rad"],
+    ["rho_2", "ρ₂", "Sum of squared errors", "rad²"],
+    ["rho_max", "ρ_max", "Maximum error", "rad"],
+    ["ratio", "ρ₁/ρ₁₀", "Sum of the errors, fraction of uncompensated", ""],
+    ["over", "Δτ", "Feed-forward minus drive torque", "Nm"],
 ];
 
 /// One way of compensating, as it was measured.
@@ -45,7 +45,7 @@ impl Followed {
 pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
     let followed: Vec<Followed> = Way::ALL.into_iter().filter_map(|way| follow(period_s, run, way)).collect();
     if followed.len() < Way::ALL.len() {
-        return Err(Unusable::TooLittle("not every way of compensating was followed to its end: make the run again"));
+        return Err(Unusable::TooLittle("Not all compensation methods were completed.", "Repeat the run."));
     }
     let none = followed[0].rho()[0];
     let mut quantities = Vec::new();
@@ -63,14 +63,19 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
     let active: Vec<&str> = followed.iter().filter(|f| f.over_nm > 0.0).map(|f| f.way.words()[1]).collect();
     let (title, gain) = best.map_or(("none", 0.0), |b| (b.way.words()[1], 100.0 * (1.0 - b.rho()[0] / none)));
     let summary = match &active[..] {
-        [] => format!("Best is {title}: it lowers ρ₁ by {gain:.0} %. No way over-compensates."),
-        ways => format!("Best is {title}: it lowers ρ₁ by {gain:.0} %. These over-compensate: {}.", ways.join(", ")),
+        [] => format!(
+            "Best method: {title}. It reduces the sum of absolute errors by {gain:.0} %. No method over-compensates."
+        ),
+        ways => format!(
+            "Best method: {title}. It reduces the sum of absolute errors by {gain:.0} %. Over-compensating methods: {}.",
+            ways.join(", ")
+        ),
     };
     Ok(Identification {
         verdict: if active.is_empty() { Verdict::Identified } else { Verdict::Inconclusive },
         summary,
         advice: (!active.is_empty())
-            .then(|| "Lower share, or identify friction again: the joint may be warmer.".into()),
+            .then(|| "Reduce share, or identify friction again because the joint may be warmer.".into()),
         quantities,
         figures: vec![bars(&followed), trajectories(&followed, period_s), errors(&followed)],
     })
@@ -130,7 +135,7 @@ fn errors(followed: &[Followed]) -> Figure {
     });
     Figure {
         name: "error_over_time".into(),
-        title: "Error against the reference".into(),
+        title: "Tracking error".into(),
         form: Form::Cartesian,
         x: Axis::of("time", "s"),
         y: Axis::of("error (link)", "rad"),
@@ -149,10 +154,10 @@ fn bars(followed: &[Followed]) -> Figure {
     };
     Figure {
         name: "ratio".into(),
-        title: "Errors as a share of those without compensation".into(),
+        title: "Errors relative to no compensation".into(),
         form: Form::Cartesian,
         x: Axis::names("compensation", followed.iter().map(|one| one.way.words()[1])),
-        y: Axis::of("share of none", ""),
+        y: Axis::of("fraction of uncompensated", ""),
         series: vec![series(0), series(1), series(2)],
     }
 }
@@ -176,7 +181,7 @@ fn trajectories(followed: &[Followed], period_s: f64) -> Figure {
     }
     Figure {
         name: "trajectory".into(),
-        title: "Trajectory of one period".into(),
+        title: "Trajectory, one period".into(),
         form: Form::Cartesian,
         x: Axis::of("time", "s"),
         y: Axis::of("angle (link)", "rad"),

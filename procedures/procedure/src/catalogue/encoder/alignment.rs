@@ -36,9 +36,9 @@ impl Procedure for EncoderAlignment {
     }
 
     fn summary(&self) -> &'static str {
-        "Moves the sensor along each axis of the stage until the encoder reports inconsistent periods, by halving and always from \
-         the consistent side; then maps the error over the radial shift and finds where it is smallest. Align the stage's zero \
-         with the sensor's place first."
+        "Moves the sensor along each axis of the stage until the encoder reports inconsistent periods (bisection from \
+         the consistent side). Then measures the error over the radial shift and finds its minimum. Align the stage \
+         zero with the sensor position first."
     }
 
     fn kind(&self) -> Kind {
@@ -48,22 +48,22 @@ impl Procedure for EncoderAlignment {
     fn schema(&self) -> &'static [Parameter] {
         const {
             &[
-                Parameter::number("radial_reach_m", "Furthest radial shift", "m", 0.42e-3, [1e-5, 5e-3]),
+                Parameter::number("radial_reach_m", "Maximum radial shift", "m", 0.42e-3, [1e-5, 5e-3]),
                 Parameter::number(
                     "axial_reach_m",
-                    "Furthest axial shift, away from the ring",
+                    "Maximum axial shift, away from the ring",
                     "m",
                     0.9e-3,
                     [1e-5, 5e-3],
                 ),
-                Parameter::number("vertical_reach_m", "Furthest vertical shift", "m", 1e-3, [1e-5, 5e-3]),
-                Parameter::number("rotation_reach_rad", "Furthest rotation", "rad", 0.028, [1e-3, 0.2]),
-                Parameter::number("tilt_reach_rad", "Furthest tilt", "rad", 0.035, [1e-3, 0.2]),
-                Parameter::count("halvings", "Halvings of an eighth of the reach", 4, [0, 12]),
+                Parameter::number("vertical_reach_m", "Maximum vertical shift", "m", 1e-3, [1e-5, 5e-3]),
+                Parameter::number("rotation_reach_rad", "Maximum rotation", "rad", 0.028, [1e-3, 0.2]),
+                Parameter::number("tilt_reach_rad", "Maximum tilt", "rad", 0.035, [1e-3, 0.2]),
+                Parameter::count("halvings", "Bisection steps", 4, [0, 12]),
                 Parameter::number("speed_rad_s", "Speed", "rad/s", 20.0, [1.0, 200.0]),
-                Parameter::number("map_reach_m", "Furthest radial shift of the map", "m", 0.2e-3, [1e-5, 5e-3]),
+                Parameter::number("map_reach_m", "Maximum radial shift of the map", "m", 0.2e-3, [1e-5, 5e-3]),
                 Parameter::count("map_positions", "Positions of the map", 5, [3, 50]),
-                Parameter::number("map_turns", "Turns each way at a position", "", 4.0, [1.0, 100.0]),
+                Parameter::number("map_turns", "Turns in each direction at a position", "", 4.0, [1.0, 100.0]),
                 ACCELERATION,
                 sample_rate(250.0),
             ]
@@ -114,11 +114,8 @@ impl Procedure for EncoderAlignment {
     fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
         let found: Vec<(&Way, Found)> = WAYS.iter().filter_map(|way| Some((way, found(run, way)?))).collect();
         if found.is_empty() {
-            let what = "The stage has not left its zero with the periods consistent.";
-            return too_little(
-                what,
-                "Align the stage's zero with the sensor's place, and let the run come to its end.",
-            );
+            let what = "The periods were not consistent at any position away from the stage zero.";
+            return too_little(what, "Align the stage zero with the sensor position, and let the run finish.");
         }
         let mut quantities: Vec<Quantity> = found.iter().filter_map(|(way, found)| way.quantity(found)).collect();
         let map = Map::of(run);
@@ -126,13 +123,13 @@ impl Procedure for EncoderAlignment {
         let mut summary = format!("{} {}", judged.said, told(&found));
         if let Some(best) = map.as_ref().and_then(Map::best) {
             summary.push_str(&format!(
-                " The error once a turn is smallest, {:.0} µrad, at a radial shift of {:.3} mm.",
+                " The eccentricity error has its minimum of {:.0} µrad at a radial shift of {:.3} mm.",
                 1e6 * best.once_rad,
                 1e3 * best.shift_m
             ));
-            let name = ["best_radial_shift", "", "Radial shift with the smallest error once a turn", "m"];
+            let name = ["best_radial_shift", "", "Radial shift with the minimum eccentricity error", "m"];
             quantities.push(quantity(name, best.shift_m, Some(best.ci95)));
-            let name = ["best_harmonic_1", "", "Error once a turn there", "rad"];
+            let name = ["best_harmonic_1", "", "Eccentricity error at this shift", "rad"];
             quantities.push(quantity(name, best.once_rad, None));
         }
         let mut figures = vec![tolerance::figure(&found)];
@@ -146,7 +143,8 @@ impl Procedure for EncoderAlignment {
         let parameters =
             serde_json::Map::from_iter([("radial_shift_m".to_owned(), ((1e7 * best_m).round() / 1e7).into())]);
         Values::parse(EncoderLinearity.schema(), &parameters).ok()?;
-        let why = "take the sensor to its best place and see what precision is left; an earlier run of it, planned again, takes it back";
+        let why = "move the sensor to this position and measure the linearity; repeat an earlier linearity run to move \
+                   it back";
         Some(FollowUp { procedure: EncoderLinearity.id(), parameters, why })
     }
 }
@@ -155,10 +153,10 @@ fn told(found: &[(&Way, Found)]) -> String {
     let (lost, kept): (Vec<_>, Vec<_>) = found.iter().partition(|(_, found)| found.bad.is_some());
     let names = |ways: &[&(&Way, Found)]| ways.iter().map(|(way, _)| way.title).collect::<Vec<_>>().join(", ");
     match (lost.len(), kept.len()) {
-        (0, _) => "Nowhere within reach does the encoder lose its periods.".into(),
-        (edges, 0) => format!("The encoder loses its periods on all {edges} ways."),
+        (0, _) => "Period count is not lost within the travel in any direction.".into(),
+        (edges, 0) => format!("Period count is lost in all {edges} directions."),
         (edges, _) => {
-            format!("The encoder loses its periods on {edges} ways, and keeps them within reach on: {}.", names(&kept))
+            format!("Period count is lost in {edges} directions; not lost within the travel: {}.", names(&kept))
         }
     }
 }
@@ -223,7 +221,7 @@ impl Map {
                 (0..=FITTED).map(|i| low + (high - low) * f64::from(i) / f64::from(FITTED)).collect();
             let errors = places.iter().map(|x| best.once_rad.hypot(best.rad_per_m * (x - best.shift_m))).collect();
             [
-                Series::new("once a turn, fitted", Mark::Line, places, errors),
+                Series::new("1 period per turn, fitted", Mark::Line, places, errors),
                 Series::new("smallest", Mark::Points, vec![best.shift_m], vec![best.once_rad]),
             ]
         });
@@ -235,8 +233,8 @@ impl Map {
             x: Axis::of("Radial shift", "m"),
             y: Axis::of("Amplitude", "rad"),
             series: vec![
-                Series::new("once a turn", Mark::Points, self.shift_m.clone(), once),
-                Series::new("twice a turn", Mark::Points, self.shift_m, self.twice_rad),
+                Series::new("1 period per turn", Mark::Points, self.shift_m.clone(), once),
+                Series::new("2 periods per turn", Mark::Points, self.shift_m, self.twice_rad),
             ]
             .into_iter()
             .chain(fitted)

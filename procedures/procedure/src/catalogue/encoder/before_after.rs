@@ -33,7 +33,7 @@ pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&st
         series,
     };
     let error = || Axis::of("Test − reference", "rad");
-    let title = |what: &str| format!("{what} at {slow_rad_s:.0} rad/s, forwards (CCW) and back (CW)");
+    let title = |what: &str| format!("{what} at {slow_rad_s:.0} rad/s, CCW and CW");
     let mut over_angle = ways(false);
     over_angle.push(table.series("look-up table"));
     let all = |left: Left| -> Vec<f64> {
@@ -42,22 +42,22 @@ pub fn figures(sweeps: &[Sweep], table: &Table, poles: &PolePairs, stages: [(&st
     let mut figures = vec![
         Figure {
             form: Form::Polar,
-            ..figure("polar", title("Error around the turn"), Axis::of("Angle", "rad"), error(), ways(true))
+            ..figure("polar", title("Error over the turn"), Axis::of("Angle", "rad"), error(), ways(true))
         },
-        figure("shape", title("Error over the angle"), Axis::of("Angle", "rad"), error(), over_angle),
+        figure("shape", title("Error over angle"), Axis::of("Angle", "rad"), error(), over_angle),
     ];
     figures.extend(harmonics(sweeps, poles, stages));
     figures.push(figure(
         "histogram",
         "Histogram of the error".into(),
         error(),
-        Axis::of("Share", ""),
+        Axis::of("Fraction", ""),
         stages.map(|(stage, left)| histogram(stage, &all(left), 60)).to_vec(),
     ));
     figures.push(figure(
         "spectrum",
         "Spectrum of the look-up table".into(),
-        Axis::of("Periods on a turn", ""),
+        Axis::of("Periods per turn", ""),
         Axis::of("Amplitude", "rad"),
         vec![Series::new(
             "look-up table",
@@ -95,12 +95,12 @@ fn harmonics(sweeps: &[Sweep], poles: &PolePairs, stages: [(&str, Left); 2]) -> 
         series.push(Series { band, ..Series::new(stage, Mark::Bars, places.clone(), waves.amplitude_rad.to_vec()) });
         noise_rad = waves.noise_rad;
     }
-    series.push(Series::new("noise stays below, 95 %", Mark::Line, places, vec![noise_rad; named.len()]));
+    series.push(Series::new("noise level (95 %)", Mark::Line, places, vec![noise_rad; named.len()]));
     Some(Figure {
         name: "harmonics".into(),
         title: "Harmonics of the error, 95 % intervals".into(),
         form: Form::Cartesian,
-        x: Axis::names("Periods on a turn", named.map(|(order, meaning)| format!("{order}× {meaning}"))),
+        x: Axis::names("Periods per turn", named.map(|(order, meaning)| format!("{order}× {meaning}"))),
         y: Axis::of("Amplitude", "rad"),
         series,
     })

@@ -24,8 +24,8 @@ impl Procedure for EncoderDelay {
     }
 
     fn summary(&self) -> &'static str {
-        "Turns at several speeds both ways: what the difference of both encoders gains with speed is the delay. With the \
-         encoder's filter switched on, a second run shows what the filter adds."
+        "Turns at several speeds in both directions. The slope of the encoder difference over speed is the delay. A \
+         second run with the filter of the encoder switched on measures the delay of the filter."
     }
 
     fn kind(&self) -> Kind {
@@ -35,11 +35,11 @@ impl Procedure for EncoderDelay {
     fn schema(&self) -> &'static [Parameter] {
         const {
             &[
-                Parameter::number("top_speed_rad_s", "Highest speed", "rad/s", 157.0, [5.0, 1256.0]),
-                Parameter::count("speeds", "Speeds", 3, [2, 20]),
-                Parameter::number("dwell_s", "Shortest time at each speed", "s", 1.5, [0.2, 60.0]),
+                Parameter::number("top_speed_rad_s", "Maximum speed", "rad/s", 157.0, [5.0, 1256.0]),
+                Parameter::count("speeds", "Number of speeds", 3, [2, 20]),
+                Parameter::number("dwell_s", "Minimum dwell time at each speed", "s", 1.5, [0.2, 60.0]),
                 Parameter::count("repeats", "Repeats", 2, [1, 20]),
-                Parameter::number("delay_without_filter_s", "Delay without filter, 0: unknown", "s", 0.0, [0.0, 1e-2]),
+                Parameter::number("delay_without_filter_s", "Delay without filter (0: unknown)", "s", 0.0, [0.0, 1e-2]),
                 ACCELERATION,
                 sample_rate(250.0),
             ]
@@ -47,7 +47,7 @@ impl Procedure for EncoderDelay {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("its positions share one zero of the encoders, which an instrument that was off has lost")
+        Err("the zero of the encoders is lost when an instrument is switched off")
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -77,8 +77,9 @@ impl Procedure for EncoderDelay {
         let rows: Vec<[f64; 3]> = points.iter().map(|(v, _)| [1.0, -v.signum(), -v]).collect();
         let means: Vec<f64> = points.iter().map(|(_, mean)| *mean).collect();
         let Some(solved) = solve(&rows, &means) else {
-            let what = "Fewer than two speeds in both directions were measured: a delay cannot be told from an offset.";
-            return too_little(what, "Let the run come to its end, with two speeds or more.");
+            let what = "Delay and offset cannot be distinguished, because fewer than two speeds were measured in both \
+                        directions.";
+            return too_little(what, "Let the run finish, with at least two speeds.");
         };
         let [offset_rad, hysteresis_rad, delay_s] = solved.values;
         let mut quantities = vec![
@@ -87,14 +88,14 @@ impl Procedure for EncoderDelay {
             quantity(["hysteresis", "h", "Half the hysteresis", "rad"], hysteresis_rad, Some(solved.ci95(1))),
         ];
         let without_s = values.number("delay_without_filter_s");
-        let mut summary = format!("The encoder under test tells its position {:.2} µs late.", 1e6 * delay_s);
+        let mut summary = format!("The encoder under test lags by {:.2} µs.", 1e6 * delay_s);
         if without_s > 0.0 {
             let filter_s = delay_s - without_s;
             // The delay without it comes from such a run, which was as unsure as this one.
             let ends_s = solved.ci95(2).map(|end_s| filter_s + std::f64::consts::SQRT_2 * (end_s - delay_s));
             let name = ["filter_delay", "t_f", "Delay of the filter", "s"];
             quantities.push(quantity(name, filter_s, Some(ends_s)));
-            summary.push_str(&format!(" Its filter adds {:.2} µs.", 1e6 * filter_s));
+            summary.push_str(&format!(" The filter contributes {:.2} µs.", 1e6 * filter_s));
         }
         let speeds: Vec<f64> = points.iter().map(|(v, _)| *v).collect();
         let top = speeds.iter().fold(0.0, |top: f64, v| top.max(v.abs()));
@@ -107,7 +108,7 @@ impl Procedure for EncoderDelay {
             quantities,
             figures: vec![Figure {
                 name: "disparity".into(),
-                title: "Disparity over speed".into(),
+                title: "Encoder difference over speed".into(),
                 form: Form::Cartesian,
                 x: Axis::of("Speed", "rad/s"),
                 y: Axis::of("Test − reference", "rad"),

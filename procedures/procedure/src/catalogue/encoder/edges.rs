@@ -90,7 +90,7 @@ impl Way {
     pub fn quantity(&self, found: &Found) -> Option<Quantity> {
         let (good, bad) = (found.good, found.bad?);
         let unit = self.unit();
-        let title = format!("{}: the periods are lost", self.title);
+        let title = format!("{}: loss of the period count", self.title);
         let ends = [good.min(bad), good.max(bad)];
         Some(quantity([self.name, "", &title, unit], 0.5 * (good + bad), Some(ends)))
     }

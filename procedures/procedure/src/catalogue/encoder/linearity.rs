@@ -31,8 +31,8 @@ impl Procedure for EncoderLinearity {
     }
 
     fn summary(&self) -> &'static str {
-        "Turns slowly and faster both ways: the error's shape over the turn, a look-up table against it, and the bits that are \
-         usable before and after, judged on turns that the table has not seen."
+        "Measures the error over the turn at two speeds in both directions. Builds a look-up table and reports the \
+         usable bits without and with it, on validation data."
     }
 
     fn kind(&self) -> Kind {
@@ -43,9 +43,9 @@ impl Procedure for EncoderLinearity {
         const {
             &[
                 Parameter::number("speed_rad_s", "Slow speed", "rad/s", 5.0, [0.5, 50.0]),
-                Parameter::number("fast_rad_s", "Fast speed, for the velocity term", "rad/s", 50.0, [1.0, 1256.0]),
-                Parameter::number("turns", "Turns each way", "", 8.0, [1.0, 200.0]),
-                Parameter::count("repeats", "Repeats; every other one judges", 2, [2, 20]),
+                Parameter::number("fast_rad_s", "Fast speed (for the velocity term)", "rad/s", 50.0, [1.0, 1256.0]),
+                Parameter::number("turns", "Turns in each direction", "", 8.0, [1.0, 200.0]),
+                Parameter::count("repeats", "Repeats (every second one is used for validation)", 2, [2, 20]),
                 Parameter::count("table_size", "Entries of the look-up table", 1024, [32, 16_384]),
                 Parameter::number("radial_shift_m", "Radial shift of the stage", "m", 0.0, [-5e-4, 5e-4]),
                 ACCELERATION,
@@ -55,7 +55,7 @@ impl Procedure for EncoderLinearity {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("its positions share one zero of the encoders, which an instrument that was off has lost")
+        Err("the zero of the encoders is lost when an instrument is switched off")
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -82,7 +82,10 @@ impl Procedure for EncoderLinearity {
     fn finds(&self) -> Vec<Findable> {
         findable(&[
             ("", "bits_before bits_table bits_velocity bits_direction pole_period_order"),
-            ("rad", "repeatability peak_before peak_table peak_velocity peak_direction harmonic_1 harmonic_2 pole_period"),
+            (
+                "rad",
+                "repeatability peak_before peak_table peak_velocity peak_direction harmonic_1 harmonic_2 pole_period",
+            ),
         ])
     }
 
@@ -91,14 +94,14 @@ impl Procedure for EncoderLinearity {
             sweeps(run).into_iter().partition(|sweep| sweep.repeat % 2 == 0);
         if known.len() < 4 || unseen.len() < 2 {
             let what =
-                "The run has not two speeds in both directions to learn from, and turns beside them to judge by.";
-            return too_little(what, "Let the run come to its end, with two repeats or more.");
+                "The run lacks two speeds in both directions for the estimation, or further turns for the validation.";
+            return too_little(what, "Let the run finish, with at least two repeats.");
         }
         let Some(terms) = Terms::of(&known) else {
-            return too_little("Offset, hysteresis and delay cannot be told apart.", "Choose two different speeds.");
+            return too_little("Offset, hysteresis and delay cannot be distinguished.", "Choose two different speeds.");
         };
         let Some(table) = Table::of(&known, &terms, values.count("table_size") as usize) else {
-            let what = "More than a tenth of the table's entries were never met.";
+            let what = "More than 10 % of the table entries contain no data.";
             return too_little(what, "Choose more turns, a higher sample rate or a smaller table.");
         };
         let classes: Vec<Class> = unseen.iter().map(Class::of).collect();
@@ -109,7 +112,7 @@ impl Procedure for EncoderLinearity {
         let delayed = |sweep: &Sweep, i: usize| direct(sweep, i) + terms.delay_s * sweep.speed_rad_s;
         let full = |sweep: &Sweep, i: usize| delayed(sweep, i) + terms.hysteresis_rad * sweep.speed_rad_s.signum();
         let stages: [(&str, &str, f64); 4] = [
-            ("before", "before compensation (INL)", peak(&before)),
+            ("before", "without compensation (INL)", peak(&before)),
             ("table", "with the look-up table", peak(&direct)),
             ("velocity", "with table and velocity term", peak(&delayed)),
             ("direction", "with table, velocity and direction term", peak(&full)),
@@ -119,19 +122,23 @@ impl Procedure for EncoderLinearity {
         for (name, title, peak_rad) in stages {
             let (bits_name, peak_name) = (format!("bits_{name}"), format!("peak_{name}"));
             quantities.push(quantity([&bits_name, "", &format!("Usable bits {title}"), ""], bits(peak_rad), None));
-            quantities.push(quantity([&peak_name, "", &format!("Largest error {title}"), "rad"], peak_rad, None));
+            quantities.push(quantity([&peak_name, "", &format!("Maximum error {title}"), "rad"], peak_rad, None));
         }
         quantities.extend(repeatability(&known, &unseen));
         quantities.extend(harmonics(&known, &terms));
         let poles = PolePairs::of(&table)?;
-        let name = ["pole_period", "", "Largest error inside a pole pair", "rad"];
+        let name = ["pole_period", "", "Maximum error within a pole pair", "rad"];
         quantities.push(quantity(name, poles.amplitude_rad, None));
-        quantities.push(quantity(["pole_period_order", "", "Its periods on a turn", ""], f64::from(poles.order), None));
+        quantities.push(quantity(
+            ["pole_period_order", "", "Pole pairs (periods per turn)", ""],
+            f64::from(poles.order),
+            None,
+        ));
         let compared: [(&str, Left); 2] = [("before", &before), ("after", &full)];
         let figures = figures(&unseen, &table, &poles, compared);
         let summary = format!(
-            "Of its bits {:.1} are usable as it is, {:.1} with a look-up table of {} entries, {:.1} with the velocity term \
-             too, and {:.1} with the direction of motion. {} {}",
+            "Usable resolution: {:.1} bits uncompensated, {:.1} with a look-up table of {} entries, {:.1} with the \
+             velocity term added, {:.1} with the direction term added. {} {}",
             bits(stages[0].2),
             bits(stages[1].2),
             table.len(),
@@ -141,8 +148,8 @@ impl Procedure for EncoderLinearity {
             poles.said()
         );
         let advice = poles.or.map(|_| {
-            "More turns and a table of more entries (jointbench run encoder_linearity --set turns=32 --set table_size=4096) \
-             settle how many pole pairs there are."
+            "To determine the number of pole pairs, use more turns and a larger table: jointbench run \
+             encoder_linearity --set turns=32 --set table_size=4096."
                 .into()
         });
         Some(Identification { verdict: Verdict::Identified, summary, advice, quantities, figures })
@@ -152,9 +159,9 @@ impl Procedure for EncoderLinearity {
 /// Whether more than table and velocity, the terms of the thesis, is needed for the bits that go beyond its 14.
 fn what_it_takes(without_direction: f64, full: f64) -> String {
     match (without_direction >= BEYOND_BITS, full >= BEYOND_BITS) {
-        (true, _) => format!("Table and velocity term are enough for {BEYOND_BITS} bits."),
-        (false, true) => format!("{BEYOND_BITS} bits take the direction term."),
-        (false, false) => format!("{BEYOND_BITS} bits are not reached, with the direction term neither."),
+        (true, _) => format!("Table and velocity term are sufficient for {BEYOND_BITS} bits."),
+        (false, true) => format!("{BEYOND_BITS} bits require the direction term."),
+        (false, false) => format!("{BEYOND_BITS} bits are not reached, not even with the direction term."),
     }
 }
 
@@ -167,7 +174,9 @@ fn repeatability(known: &[Sweep], unseen: &[Sweep]) -> Option<Quantity> {
     let mut sweeps: Vec<&Sweep> = known.iter().chain(unseen).collect();
     sweeps.sort_by(|a, b| a.speed_rad_s.total_cmp(&b.speed_rad_s));
     let (mut squares, mut freedom) = (0.0, 0.0);
-    for alike in sweeps.chunk_by(|a, b| b.speed_rad_s - a.speed_rad_s < 0.1 * b.speed_rad_s.abs().max(a.speed_rad_s.abs())) {
+    for alike in
+        sweeps.chunk_by(|a, b| b.speed_rad_s - a.speed_rad_s < 0.1 * b.speed_rad_s.abs().max(a.speed_rad_s.abs()))
+    {
         let error = |sweep: &Sweep, i: usize| sweep.error_rad[i];
         let each: Vec<_> = alike.iter().map(|sweep| means(std::iter::once(*sweep), PLACES, &error)).collect();
         for place in 0..PLACES {
@@ -198,7 +207,7 @@ fn harmonics(known: &[Sweep], terms: &Terms) -> Vec<Quantity> {
         quantity(name, value, Some([value - reach, value + reach]))
     };
     vec![
-        amplitude(1, ["harmonic_1", "", "Error once a turn (eccentricity)", "rad"]),
-        amplitude(3, ["harmonic_2", "", "Error twice a turn (tilt, ellipticity)", "rad"]),
+        amplitude(1, ["harmonic_1", "", "Eccentricity error (1 period per turn)", "rad"]),
+        amplitude(3, ["harmonic_2", "", "Tilt or ellipticity error (2 periods per turn)", "rad"]),
     ]
 }

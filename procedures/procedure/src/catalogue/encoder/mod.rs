@@ -35,7 +35,7 @@ fn counts(bench: &BenchFacts) -> Result<[f64; 2], PlanFault> {
     bench.encoder_counts.ok_or_else(|| PlanFault::MissingInstrument {
         bench: bench.name.clone(),
         role: "pair of encoders",
-        cure: "describe [bench.reference_encoder] and [bench.test_encoder]",
+        cure: "add [bench.reference_encoder] and [bench.test_encoder] to the bench file",
     })
 }
 
@@ -43,7 +43,7 @@ fn stage(bench: &BenchFacts) -> Result<(), PlanFault> {
     if bench.has_stage {
         return Ok(());
     }
-    let (role, cure) = ("stage", "describe [bench.stage], or leave the radial shift at 0");
+    let (role, cure) = ("stage", "add [bench.stage] to the bench file, or leave the radial shift at 0");
     Err(PlanFault::MissingInstrument { bench: bench.name.clone(), role, cure })
 }
 

@@ -25,8 +25,8 @@ impl Procedure for EncoderOffset {
     }
 
     fn summary(&self) -> &'static str {
-        "Turns slowly both ways and takes the mean difference of both encoders by the wrap rule. Repeat it after a power-up: the \
-         offset is not always the same."
+        "Turns slowly in both directions and averages the difference of both encoders (wrap-around handled). Repeat it \
+         after a power-up, because the offset can change."
     }
 
     fn kind(&self) -> Kind {
@@ -37,7 +37,7 @@ impl Procedure for EncoderOffset {
         const {
             &[
                 Parameter::number("speed_rad_s", "Speed", "rad/s", 4.0, [0.5, 50.0]),
-                Parameter::number("turns", "Turns each way", "", 2.0, [1.0, 100.0]),
+                Parameter::number("turns", "Turns in each direction", "", 2.0, [1.0, 100.0]),
                 Parameter::count("repeats", "Repeats", 4, [2, 50]),
                 ACCELERATION,
                 sample_rate(250.0),
@@ -46,7 +46,7 @@ impl Procedure for EncoderOffset {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("its positions share one zero of the encoders, which an instrument that was off has lost")
+        Err("the zero of the encoders is lost when an instrument is switched off")
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -73,8 +73,8 @@ impl Procedure for EncoderOffset {
             .filter_map(|(up, down)| Some([up.shape()?.mean_rad, down.shape()?.mean_rad]))
             .collect();
         if pairs.len() < 2 {
-            let what = "Fewer than two turns forwards and back were measured: their scatter is not known.";
-            return too_little(what, "Let the run come to its end, with two repeats or more.");
+            let what = "The scatter is unknown, because fewer than two turns in each direction were measured.";
+            return too_little(what, "Let the run finish, with at least two repeats.");
         }
         let (offset_rad, offset_reach) = mean(pairs.iter().map(|[up, down]| 0.5 * (up + down)));
         let (apart_rad, apart_reach) = mean(pairs.iter().map(|[up, down]| up - down));
@@ -86,13 +86,13 @@ impl Procedure for EncoderOffset {
         Some(Identification {
             verdict: Verdict::Identified,
             summary: format!(
-                "The encoder under test reads {:.3} mrad ({points:.1} of its points) more than the reference, over \
-                 {positions} positions in both directions. That is where the reference steps; a model of the readings as \
-                 they are has an offset of {:.3} mrad, as each reading stays at the step below.",
+                "Offset of the encoder under test: {:.3} mrad ({points:.1} counts) over {positions} positions in both \
+                 directions. The offset refers to the code transitions of the reference; referred to raw readings \
+                 (truncated) it is {:.3} mrad.",
                 1e3 * offset_rad,
                 1e3 * (offset_rad + half_rad)
             ),
-            advice: Some("After the next power-up measure it again: the start-up error changes it.".into()),
+            advice: Some("Repeat the measurement after the next power-up, because the offset can change.".into()),
             quantities: vec![
                 quantity(
                     ["offset", "ξ", "Offset, test − reference", "rad"],
@@ -100,16 +100,16 @@ impl Procedure for EncoderOffset {
                     around(offset_rad, offset_reach),
                 ),
                 quantity(
-                    ["offset_points", "ξ", "Offset in points of the encoder under test", ""],
+                    ["offset_points", "ξ", "Offset in counts (LSB) of the encoder under test", ""],
                     points,
                     around(points, offset_reach / step_rad),
                 ),
                 quantity(
-                    ["direction_difference", "Δξ", "Forwards − backwards, delay and hysteresis", "rad"],
+                    ["direction_difference", "Δξ", "CCW − CW, delay and hysteresis", "rad"],
                     apart_rad,
                     around(apart_rad, apart_reach),
                 ),
-                quantity(["positions", "n", "Positions", ""], positions as f64, None),
+                quantity(["positions", "n", "Number of positions", ""], positions as f64, None),
             ],
             figures: figures(&sweeps),
         })
@@ -142,7 +142,7 @@ fn figures(sweeps: &[Sweep]) -> Vec<Figure> {
     vec![
         Figure {
             name: "difference".into(),
-            title: "Difference of both encoders".into(),
+            title: "Difference of the encoders".into(),
             form: Form::Cartesian,
             x: Axis::of("Angle", "rad"),
             y: Axis::of("Test − reference", "rad"),
@@ -153,7 +153,7 @@ fn figures(sweeps: &[Sweep]) -> Vec<Figure> {
             title: "Histogram of the difference".into(),
             form: Form::Cartesian,
             x: Axis::of("Test − reference", "rad"),
-            y: Axis::of("Share", ""),
+            y: Axis::of("Fraction", ""),
             series: vec![histogram("all positions", &all, 40)],
         },
     ]

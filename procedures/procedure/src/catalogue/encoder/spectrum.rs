@@ -39,8 +39,8 @@ impl PolePairs {
 
     pub fn said(&self) -> String {
         match self.or {
-            None => format!("It has {} pole pairs (sure).", self.order),
-            Some(or) => format!("NOT SURE of its pole pairs: {}, or {or}.", self.order),
+            None => format!("{} pole pairs detected.", self.order),
+            Some(or) => format!("Number of pole pairs uncertain: {} or {or}.", self.order),
         }
     }
 
@@ -49,10 +49,10 @@ impl PolePairs {
         [
             (1, "eccentricity"),
             (2, "tilt, ellipticity"),
-            (3, "no known cause"),
-            (4, "no known cause"),
+            (3, "unassigned"),
+            (4, "unassigned"),
             (poles, "pole pairs"),
-            (2 * poles, "inside the pole pair"),
+            (2 * poles, "within the pole pair"),
         ]
     }
 }

@@ -31,8 +31,8 @@ impl Procedure for EncoderStartup {
     }
 
     fn summary(&self) -> &'static str {
-        "Switches the encoder under test off and on again many times and measures its offset from its index each time. A \
-         bench that has no switch for it waits for a hand before each."
+        "Switches the encoder under test off and on several times and measures its offset from the index each time. A \
+         bench without a power switch waits for the operator before each power-up."
     }
 
     fn kind(&self) -> Kind {
@@ -42,9 +42,9 @@ impl Procedure for EncoderStartup {
     fn schema(&self) -> &'static [Parameter] {
         const {
             &[
-                Parameter::count("power_ups", "Power-ups", 12, [3, 200]),
+                Parameter::count("power_ups", "Number of power-ups", 12, [3, 200]),
                 Parameter::number("speed_rad_s", "Speed", "rad/s", 4.0, [0.5, 50.0]),
-                Parameter::number("turns", "Turns each way", "", 1.2, [1.2, 100.0]),
+                Parameter::number("turns", "Turns in each direction", "", 1.2, [1.2, 100.0]),
                 ACCELERATION,
                 sample_rate(250.0),
             ]
@@ -52,7 +52,7 @@ impl Procedure for EncoderStartup {
     }
 
     fn goes_on(&self) -> Result<(), &'static str> {
-        Err("its offsets share one zero of the reference, which an instrument that was off has lost")
+        Err("the zero of the reference is lost when an instrument is switched off")
     }
 
     fn build(&self, values: &Values, bench: &BenchFacts) -> Result<Plan, PlanFault> {
@@ -89,8 +89,8 @@ impl Procedure for EncoderStartup {
             zeros.push(zero);
         }
         let (Some(offset), true) = (Mean::of(&zeros), zeros.len() >= 3 && pairs > 0.0) else {
-            let what = "Fewer than three power-ups were measured to their end: their spread is not known.";
-            return too_little(what, "Let the run come to its end.");
+            let what = "The variation is unknown, because fewer than three power-ups were completed.";
+            return too_little(what, "Let the run finish.");
         };
         let freedom = zeros.len() as f64 - 1.0;
         let spread = (zeros.iter().map(|zero| (zero - offset.value).powi(2)).sum::<f64>() / freedom).sqrt();
@@ -101,30 +101,30 @@ impl Procedure for EncoderStartup {
         let differs = spread > APART * repeats_to.max(point_rad / 12_f64.sqrt());
         let summary = match differs {
             true => format!(
-                "The zero lies elsewhere after each power-up, by {:.1} points of the encoder (standard deviation of {} \
-                 power-ups) and {:.1} at most; without one it repeats to {:.2}.",
+                "Zero varies between power-ups: standard deviation {:.1} counts (n = {}), range {:.1} counts. Without \
+                 power cycling: {:.2} counts.",
                 spread / point_rad,
                 zeros.len(),
                 range / point_rad,
                 repeats_to / point_rad
             ),
-            false => format!("The zero is the same after each of {} power-ups.", zeros.len()),
+            false => format!("The zero does not change over {} power-ups.", zeros.len()),
         };
-        let advice = "Measure the offset after each power-up, or take the position at start from another source.";
+        let advice = "Measure the offset after each power-up, or use another source for the initial position.";
         Some(Identification {
             verdict: Verdict::Identified,
             summary,
             advice: differs.then(|| advice.into()),
             quantities: vec![
-                quantity(["offset", "ξ", "Offset from index to zero, mean", "rad"], offset.value, Some(offset.ci95)),
+                quantity(["offset", "ξ", "Mean offset from index to zero", "rad"], offset.value, Some(offset.ci95)),
                 quantity(
-                    ["startup_spread", "σ_ξ", "Standard deviation from power-up to power-up", "rad"],
+                    ["startup_spread", "σ_ξ", "Standard deviation between power-ups", "rad"],
                     spread,
                     spread_ci95(spread, freedom),
                 ),
-                quantity(["startup_range", "", "Between the furthest two of them", "rad"], range, None),
-                quantity(["repeatability", "", "Standard deviation without a power-up", "rad"], repeats_to, None),
-                quantity(["power_ups", "n", "Power-ups", ""], zeros.len() as f64, None),
+                quantity(["startup_range", "", "Range between power-ups", "rad"], range, None),
+                quantity(["repeatability", "", "Standard deviation without power cycling", "rad"], repeats_to, None),
+                quantity(["power_ups", "n", "Number of power-ups", ""], zeros.len() as f64, None),
             ],
             figures: figures(&zeros),
         })
@@ -164,7 +164,7 @@ fn figures(zeros: &[f64]) -> Vec<Figure> {
             "histogram",
             "Histogram of the offset",
             offset(),
-            Axis::of("Share", ""),
+            Axis::of("Fraction", ""),
             histogram("power-ups", zeros, 12),
         ),
     ]

@@ -19,49 +19,49 @@ impl Judgement {
         let each = |ways: &[&(&Way, Found)], say: &dyn Fn(&(&Way, Found)) -> String| {
             ways.iter().map(|one| say(one)).collect::<Vec<_>>().join("; ")
         };
-        let allowed = |way: &Way| format!("the data sheet allows {}", way.length(way.manufacturing));
+        let allowed = |way: &Way| format!("tolerance {}", way.length(way.manufacturing));
         if !out.is_empty() {
             let lost = |(way, found): &(&Way, Found)| {
                 let bad = way.length(found.bad.unwrap_or(found.good));
-                format!("{}, where the periods are lost by {bad} and {}", way.title, allowed(way))
+                format!("{}: period count lost at {bad} ({})", way.title, allowed(way))
             };
             let cure = each(&out, &|(way, Found { good, .. })| {
                 let other = found.iter().find(|(other, _)| other.is_opposite(way)).map(|(_, other)| other.good);
                 match other {
                     Some(other) if (other - good).abs() >= 2.0 * way.manufacturing => {
                         format!(
-                            "{}: move the sensor by {} the other way, to the middle of both edges",
+                            "{}: move the sensor by {} in the opposite direction, to the centre of the range",
                             way.title,
                             way.length(0.5 * (other + good))
                         )
                     }
                     Some(other) => format!(
-                        "{}: between both edges lie {} only, so look at gap, ring and mounting",
+                        "{}: the range is only {}. Check air gap, ring and mounting",
                         way.title,
                         way.length(other - good)
                     ),
-                    None => format!("{}: mount the sensor closer", way.title),
+                    None => format!("{}: mount the sensor closer to the ring", way.title),
                 }
             });
-            let said = format!("OUT OF TOLERANCE on {}.", each(&out, &lost));
+            let said = format!("OUT OF TOLERANCE: {}.", each(&out, &lost));
             return Self {
                 verdict: Verdict::Identified,
                 said,
-                advice: Some(format!("{cure}. Then align and measure again.")),
+                advice: Some(format!("{cure}. Then align and repeat the run.")),
             };
         }
         if !unsure.is_empty() {
             let far = |(way, found): &(&Way, Found)| {
-                format!("{} was consistent up to {}, {}", way.title, way.length(found.good), allowed(way))
+                format!("{}: consistent up to {} ({})", way.title, way.length(found.good), allowed(way))
             };
             let further = each(&unsure, &|(way, _)| format!("--set {}={:.2e}", way.reach, 1.2 * way.manufacturing));
             return Self {
                 verdict: Verdict::Inconclusive,
-                said: format!("NOT SURE: {}.", each(&unsure, &far)),
-                advice: Some(format!("Go further, and halve more: {further} --set halvings=6.")),
+                said: format!("UNDECIDED: {}.", each(&unsure, &far)),
+                advice: Some(format!("Increase the travel and the bisection steps: {further} --set halvings=6.")),
             };
         }
-        let said = "PASS: every way is consistent as far as the data sheet allows.".into();
+        let said = "PASS: consistent within the data sheet tolerance in all directions.".into();
         Self { verdict: Verdict::Identified, said, advice: None }
     }
 }
@@ -71,8 +71,8 @@ pub fn figure(found: &[(&Way, Found)]) -> Figure {
     let share = |way: &Way, at: f64| at.abs() / way.manufacturing;
     let places: Vec<f64> = (0..found.len()).map(|i| i as f64).collect();
     let [mut lost, mut kept] = [
-        Series::new("periods lost beyond", Mark::Bars, Vec::new(), Vec::new()),
-        Series::new("not lost up to here", Mark::Points, Vec::new(), Vec::new()),
+        Series::new("range until period loss", Mark::Bars, Vec::new(), Vec::new()),
+        Series::new("no period loss within the travel", Mark::Points, Vec::new(), Vec::new()),
     ];
     for (place, (way, found)) in places.iter().zip(found) {
         let last = share(way, found.good);
@@ -83,10 +83,10 @@ pub fn figure(found: &[(&Way, Found)]) -> Figure {
     }
     Figure {
         name: "tolerance".into(),
-        title: "Last consistent place over the tolerance; whiskers end where the periods are lost".into(),
+        title: "Usable range / data sheet tolerance (whisker: period loss)".into(),
         form: Form::Cartesian,
-        x: Axis::names("Way", found.iter().map(|(way, _)| way.title)),
-        y: Axis::of("Share of the manufacturing tolerance", ""),
+        x: Axis::names("Direction", found.iter().map(|(way, _)| way.title)),
+        y: Axis::of("Fraction of the manufacturing tolerance", ""),
         series: [lost, kept]
             .into_iter()
             .filter(|series| !series.x.is_empty())
@@ -116,14 +116,14 @@ mod tests {
 
         let aside = judged([(-0.40, Some(-0.42)), (0.10, Some(0.12))]);
         assert!(
-            aside.said.starts_with("OUT OF TOLERANCE on Radial shift +") && aside.said.contains("120 µm"),
+            aside.said.starts_with("OUT OF TOLERANCE: Radial shift +") && aside.said.contains("120 µm"),
             "{}",
             aside.said
         );
-        assert!(aside.advice.unwrap().contains("move the sensor by 150 µm the other way"));
+        assert!(aside.advice.unwrap().contains("move the sensor by 150 µm in the opposite direction"));
 
         let narrow = judged([(-0.10, Some(-0.12)), (0.10, Some(0.12))]);
-        assert!(narrow.advice.unwrap().contains("between both edges lie 200 µm only"));
+        assert!(narrow.advice.unwrap().contains("the range is only 200 µm"));
     }
 
     #[test]
@@ -131,7 +131,7 @@ mod tests {
         for radial in [(0.10, None), (0.14, Some(0.16))] {
             let short = judged([(-0.24, Some(-0.26)), radial]);
             assert_eq!(short.verdict, Verdict::Inconclusive);
-            assert!(short.said.starts_with("NOT SURE: Radial shift +"), "{}", short.said);
+            assert!(short.said.starts_with("UNDECIDED: Radial shift +"), "{}", short.said);
             assert!(short.advice.unwrap().contains("--set radial_reach_m=1.80e-4"));
         }
     }

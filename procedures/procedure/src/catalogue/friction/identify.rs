@@ -100,7 +100,7 @@ pub(crate) fn free(run: &RunTable) -> Vec<Leg> {
 pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identification, Unusable> {
     let free = free(run);
     if ![1.0, -1.0].iter().all(|sign| free.iter().any(|leg| leg.direction == *sign)) {
-        return Err(Unusable::TooLittle("no step without load in each direction is over"));
+        return Err(Unusable::TooLittle("One unloaded step in each direction is required.", "Repeat the run."));
     }
     let part = |sign: f64| keep(run, free.iter().filter(|leg| leg.direction == sign));
     // A run of hours takes seconds: the directions are looked at beside the whole.
@@ -123,75 +123,78 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
     quantities.extend(named("_negative", "⁻", ", negative direction", &backward, gear));
     let sides = [("positive", Side::of(&points, 1.0, &forward)), ("negative", Side::of(&points, -1.0, &backward))];
     for ((suffix, side), symbol) in sides.iter().zip(["r²⁺", "r²⁻"]) {
-        let title = format!("Share of the scatter explained, {suffix} direction");
+        let title = format!("Coefficient of determination, {suffix} direction");
         let words = [&format!("r2_{suffix}"), symbol, &title, ""];
         quantities.push(quantity(words, side.r2, None));
     }
     let differences = [
         quantity_of(
-            ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction, difference of directions", "Nm"],
+            ["tau_c_difference", "τ_c⁺ − τ_c⁻", "Coulomb friction, difference between directions", "Nm"],
             combined(forward.coulomb, backward.coulomb, -1.0),
         ),
         quantity_of(
-            ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction, difference of directions", "Nm·s/rad"],
+            ["c_v_difference", "c_v⁺ − c_v⁻", "Viscous friction, difference between directions", "Nm·s/rad"],
             combined(forward.viscous, backward.viscous, -1.0),
         ),
     ];
     let differ = differences.iter().any(|d| d.ci95.is_some_and(|[low, high]| low > 0.0 || high < 0.0));
     quantities.extend(differences);
 
-    let directions = if differ { "differ at 95 %" } else { "do not differ at 95 %" };
+    let directions = if differ {
+        "The directions differ significantly (95 %)"
+    } else {
+        "No significant difference between directions (95 %)"
+    };
     let figures = vec![over_speed(&points, &whole), near_zero(&points, &whole, gear)];
     let hidden_nm = match whole.stribeck {
         Some(_) => None,
         None => hidden_rise_nm(&points, expected_rad_s * gear),
     };
     quantities.extend(hidden_nm.map(|most_nm| {
-        quantity(["tau_s_most", "τ_s", "Largest rise towards standstill that could hide", "Nm"], most_nm, None)
+        quantity(["tau_s_most", "τ_s", "Maximum rise towards zero speed that cannot be excluded", "Nm"], most_nm, None)
     }));
     let (is_decided, rise) = match (&whole.stribeck, hidden_nm) {
         (Some(stribeck), _) => {
             let below = words::figure(stribeck.speed.0 / gear, "rad/s");
             let to = words::figure(whole.coulomb.0 + stribeck.rise.0, "Nm");
-            (true, format!("below {below} at the link friction rises to {to}"))
+            (true, format!("Below {below} (link) friction rises to {to}"))
         }
         (None, Some(most_nm)) => {
             let most = words::figure(most_nm, "Nm");
             match is_small(most_nm, &whole) {
-                true => (true, format!("towards standstill it rises by no more than {most}")),
-                false => (false, format!("a rise towards standstill of up to {most} could hide")),
+                true => (true, format!("Towards zero speed friction rises by at most {most}")),
+                false => (false, format!("A rise of up to {most} towards zero speed cannot be excluded")),
             }
         }
-        (None, None) => (false, "whether friction rises towards standstill is not decided".to_owned()),
+        (None, None) => (false, "A rise of friction towards zero speed is not determined by this run".to_owned()),
     };
     let rest = rest(&sides, &whole);
     let square_said = square.map(|coulomb_nm| {
         let coulomb = words::figure(coulomb_nm, "Nm");
-        format!(
-            " Drag that grows with the square of speed explains this run as well; Coulomb friction is {coulomb} then."
-        )
+        format!(" Quadratic drag explains this run equally well; Coulomb friction would then be {coulomb}.")
     });
     // Figures of a curve over speed are none of a friction that follows something else.
     let is_decided = is_decided && square.is_none() && rest.is_none();
     let advice = match (&rest, is_decided) {
         _ if square.is_some() => Some(
-            "To see which of them the run speaks for, open it in the workbench, or export it and have the file diagnosed \
-             (jointbench export RUN, jointbench diagnose run-RUN.csv). Where that does not tell, twice as many fast_speeds do.",
+            "To distinguish the two effects, open the run in the workbench or diagnose its export (jointbench export \
+             RUN, jointbench diagnose run-RUN.csv). If they remain confounded, repeat the run with twice as many \
+             fast_speeds.",
         ),
         (Some(_), _) => Some(
-            "To see what the rest follows, open the run in the workbench, or export it and have the file diagnosed \
-             (jointbench export RUN, jointbench diagnose run-RUN.csv).",
+            "To find the missing effect, open the run in the workbench or diagnose its export (jointbench export RUN, \
+             jointbench diagnose run-RUN.csv).",
         ),
         (None, false) => Some(
-            "To decide the Stribeck part, have the run diagnosed first, as another effect may hide it (jointbench export RUN, \
-             jointbench diagnose run-RUN.csv); else repeat with more repeats or a lower stribeck_speed_rad_s.",
+            "Another effect may mask the Stribeck effect. Diagnose the run first (jointbench export RUN, jointbench \
+             diagnose run-RUN.csv). Otherwise repeat it with more repeats or a lower stribeck_speed_rad_s.",
         ),
         (None, true) => None,
     };
     Ok(Identification {
         verdict: if is_decided { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Coulomb friction is {}, viscous friction {}, and {rise}; the directions {directions}.{}{}",
+            "Coulomb friction {}, viscous friction {} (motor side). {rise}. {directions}.{}{}",
             words::figure(whole.coulomb.0, "Nm"),
             words::figure(whole.viscous.0, "Nm·s/rad"),
             square_said.unwrap_or_default(),
@@ -214,7 +217,7 @@ fn named(suffix: &str, mark: &str, words: &str, of: &FreeFriction, gear: f64) ->
     if let (Some(stribeck), Some(breakaway)) = (&of.stribeck, of.breakaway()) {
         let link = |v: f64| v / gear;
         out.extend([
-            one("tau_h", "τ_h", "Friction towards standstill", "Nm", breakaway),
+            one("tau_h", "τ_h", "Friction at zero speed", "Nm", breakaway),
             one(
                 "omega_s",
                 "θ̇_s",
@@ -269,7 +272,7 @@ fn near_zero(points: &[Plateau], whole: &FreeFriction, gear: f64) -> Figure {
     let mut series = sides(&near, gear);
     series.push(curve("model, positive", [0.0, top / gear], 200, |v| whole.at(v * gear)));
     series.push(curve("model, negative", [-top / gear, 0.0], 200, |v| -whole.at(-v * gear)));
-    figure("friction_near_zero", "Friction near standstill", "link velocity", series)
+    figure("friction_near_zero", "Friction near zero speed", "link velocity", series)
 }
 
 fn sides(points: &[Plateau], gear: f64) -> Vec<Series> {

@@ -59,8 +59,8 @@ pub(super) fn rest(sides: &[(&str, Side); 2], whole: &FreeFriction) -> Option<St
     let (way, side) =
         sides.iter().filter(|(_, side)| open(side)).max_by(|a, b| a.1.rest_rms_nm.total_cmp(&b.1.rest_rms_nm))?;
     Some(format!(
-        "Speed explains {} of how friction varies in the {way} direction; {} (RMS), {} of Coulomb friction, follow something \
-         else.",
+        "In the {way} direction speed explains only {} of the friction variance (residual {} RMS, {} of Coulomb \
+         friction).",
         words::percent(side.r2.max(0.0)),
         words::figure(side.rest_rms_nm, "Nm"),
         words::percent(side.rest_rms_nm / whole.coulomb.0)

@@ -20,13 +20,13 @@ pub(super) fn lesson(facts: &[Value]) -> Option<Lesson> {
 pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<Learnt, String> {
     let facts = parts_of(run).map_err(|why| why.to_string())?;
     let [from, to] = [&Friction as &dyn Procedure, &Compensation].map(|part| place(facts, part));
-    let (from, to) = from.zip(to).ok_or("the campaign has no such parts")?;
+    let (from, to) = from.zip(to).ok_or("the campaign does not contain both parts")?;
     let (_, friction) = found(run, facts, from).map_err(|why| why.to_string())?;
-    let friction = friction.ok_or("there are no rows of friction")?;
+    let friction = friction.ok_or("the friction part has no samples")?;
     if friction.verdict != Verdict::Identified {
-        return Err(format!("friction is not known well enough to feed it forward. {}", friction.summary));
+        return Err(format!("friction is not determined well enough for feed-forward. {}", friction.summary));
     }
-    let next = compensation::of_friction(&friction).ok_or("the friction found cannot be fed forward")?;
+    let next = compensation::of_friction(&friction).ok_or("the identified friction cannot be used for feed-forward")?;
     let mut parameters = facts[to]["parameters"].as_object().cloned().unwrap_or_default();
     parameters.extend(next.parameters.clone());
     let plan = Compensation.plan(&parameters, bench).map_err(|fault| fault.to_string())?;
@@ -37,7 +37,7 @@ pub(super) fn compensation(run: &RunTable, bench: &BenchFacts) -> Result<Learnt,
     let first = segments(&facts[to]).start as usize;
     Ok(Learnt {
         steps: numbered(plan.steps, &Compensation, first).collect(),
-        said: format!("compensation feeds forward what friction has found: {}", fed.join(", ")),
+        said: format!("Compensation uses the identified friction: {}", fed.join(", ")),
     })
 }
 

@@ -7,7 +7,7 @@ use serde_json::Value;
 /// The table of one part. A step that was made again after a pause has a number of its own: it belongs to the part that the
 /// rows before it belong to.
 pub(super) fn table_of(run: &RunTable, facts: &[Value], number: usize) -> Result<RunTable, Unusable> {
-    const NONE: Unusable = Unusable::TooLittle("the run ended before this part: make it again");
+    const NONE: Unusable = Unusable::TooLittle("The run ended before this part.", "Repeat the run.");
     let ranges: Vec<_> = facts
         .iter()
         .map(|fact| {

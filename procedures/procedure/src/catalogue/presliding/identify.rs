@@ -46,16 +46,21 @@ impl Dahl {
 pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let torque_constant = run.meta().torque_constant_nm_per_a.unwrap_or(1.0);
     let Some(all) = swings(run, torque_constant) else {
-        return Err(Unusable::TooLittle("the run holds no motor current set-point: it is of another procedure"));
+        return Err(Unusable::TooLittle(
+            "The run has no motor current set-point, so it belongs to another procedure.",
+            "Run presliding.",
+        ));
     };
     let broke_away = all.iter().filter(|swings| swings.broke_away).count();
     let held: Vec<&Swings> = all.iter().filter(|swings| !swings.broke_away).collect();
     let Some(dahl) = fit(&held) else {
-        return Err(Unusable::TooLittle(if broke_away > 0 {
-            "the joint broke away in the swings: lower top_torque_nm"
-        } else {
-            "the motor's encoder hardly moved: raise top_torque_nm towards breakaway, or repeats"
-        }));
+        return Err(match broke_away {
+            0 => Unusable::TooLittle(
+                "The motor encoder hardly moved.",
+                "Increase repeats, or increase top_torque_nm towards breakaway.",
+            ),
+            _ => Unusable::TooLittle("The joint broke away during the cycles.", "Reduce top_torque_nm."),
+        });
     };
     // Each step in turn is left out: what one step says is of one place and one start.
     let without = |left_out: usize| fit(&others(&held, left_out));
@@ -68,14 +73,10 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
     let bias = run.column("link_torque_nm").is_none().then(|| interval(|d| d.bias_nm)).flatten();
     let decided = !wide(k, dahl.stiffness()) && !wide(coulomb, dahl.coulomb_nm) && broke_away == 0;
     let mut quantities = vec![
-        quantity(
-            ["sigma_0", "σ₀", "Stiffness of the contacts before sliding (Dahl, LuGre)", "Nm/rad"],
-            dahl.stiffness(),
-            k,
-        ),
-        quantity(["tau_c", "τ_c", "Torque at which the contacts slide", "Nm"], dahl.coulomb_nm, coulomb),
-        quantity(["reach", "τ_c/σ₀", "Presliding way", "rad"], dahl.reach_rad(), reach),
-        quantity(["bias", "τ₀", "Torque that something else holds", "Nm"], dahl.bias_nm, bias),
+        quantity(["sigma_0", "σ₀", "Presliding (bristle) stiffness (Dahl, LuGre)", "Nm/rad"], dahl.stiffness(), k),
+        quantity(["tau_c", "τ_c", "Torque at the start of sliding", "Nm"], dahl.coulomb_nm, coulomb),
+        quantity(["reach", "τ_c/σ₀", "Presliding displacement", "rad"], dahl.reach_rad(), reach),
+        quantity(["bias", "τ₀", "Torque offset", "Nm"], dahl.bias_nm, bias),
     ];
     for (i, (stiffness, slips_nm)) in maxwell(dahl).into_iter().enumerate() {
         let (n, title) = (i + 1, format!("Maxwell slip, element {}", i + 1));
@@ -84,12 +85,12 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
             quantity(words.map(|word: &str| word), value, None)
         };
         quantities.push(named("stiffness", "k", "stiffness", "Nm/rad", stiffness));
-        quantities.push(named("slip", "w", "torque at which it slips", "Nm", slips_nm));
+        quantities.push(named("slip", "w", "slip torque", "Nm", slips_nm));
     }
     Ok(Identification {
         verdict: if decided { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Before it slides the joint gives way like a spring of {} (motor) and would slide at {}: {} of presliding, from {points} points.",
+            "Presliding stiffness {} (motor side). Sliding starts at {}, after a displacement of {} ({points} points).",
             words::figure(dahl.stiffness(), "Nm/rad"),
             words::figure(dahl.coulomb_nm, "Nm"),
             words::figure(dahl.reach_rad(), "rad"),
@@ -97,8 +98,8 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         advice: (!decided).then(|| {
             let top_nm = words::figure(values.number("top_torque_nm"), "Nm");
             match broke_away {
-                0 => "The loops are too small to decide: raise repeats, or top_torque_nm towards breakaway.".into(),
-                _ => format!("In {broke_away} steps the joint broke away below {top_nm}: lower top_torque_nm."),
+                0 => "The loops are too small. Increase repeats, or increase top_torque_nm towards breakaway.".into(),
+                _ => format!("The joint broke away below {top_nm} in {broke_away} steps. Reduce top_torque_nm."),
             }
         }),
         quantities,
@@ -211,7 +212,7 @@ fn loops(held: &[&Swings], at: Dahl) -> Figure {
         let (_, zero) = errors(swings, at);
         measured.extend(swings.points.iter().map(|(row, q)| (q - zero, swings.torque_nm[*row])));
     }
-    series.push(scatter("where the encoder moved on", measured));
+    series.push(scatter("measured at encoder increments", measured));
     // One step of each amplitude.
     let mut shown: Vec<f64> = Vec::new();
     for swings in held {
@@ -227,9 +228,9 @@ fn loops(held: &[&Swings], at: Dahl) -> Figure {
     }
     Figure {
         name: "loops".into(),
-        title: "Torque over the motor's way, before sliding".into(),
+        title: "Torque over motor displacement (presliding)".into(),
         form: Form::Cartesian,
-        x: Axis::of("motor way", "rad"),
+        x: Axis::of("motor displacement", "rad"),
         y: Axis::of("motor torque", "Nm"),
         series,
     }
@@ -241,9 +242,9 @@ fn first_loading(at: Dahl) -> Figure {
     let polygon = |way_rad: f64| elements.iter().map(|(k, w)| (k * way_rad).min(*w)).sum();
     Figure {
         name: "first_loading".into(),
-        title: "First loading: Dahl's contacts and Maxwell-slip elements".into(),
+        title: "First loading: Dahl model and Maxwell-slip elements".into(),
         form: Form::Cartesian,
-        x: Axis::of("motor way", "rad"),
+        x: Axis::of("motor displacement", "rad"),
         y: Axis::of("motor torque", "Nm"),
         series: vec![
             curve("Dahl", [0.0, 1.2 * end_rad], 100, |way_rad| first(at, way_rad)),

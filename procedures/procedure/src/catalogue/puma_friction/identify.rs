@@ -39,7 +39,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
         run.column("motor_current_a"),
         run.column("motor_current_setpoint_a"),
     ) else {
-        return Err(Unusable::TooLittle("the run is of another procedure: run puma_friction"));
+        return Err(Unusable::TooLittle("The run belongs to another procedure.", "Run puma_friction."));
     };
     let gear = meta.gear_ratio.unwrap_or(1.0);
     let km = meta.torque_constant_nm_per_a.unwrap_or(1.0);
@@ -74,16 +74,16 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     let differ = |(_, [low, high]): (f64, [f64; 2])| low > 0.0 || high < 0.0;
     let mut quantities = sides(&forward, &backward);
     quantities.extend([
-        named(["f_difference", "|f⁺| − |f⁻|", "Coulomb friction, difference of directions", "V"], f_difference),
-        named(["b_difference", "B⁺ − B⁻", "Viscous friction, difference of directions", "V/(°/s)"], b_difference),
+        named(["f_difference", "|f⁺| − |f⁻|", "Coulomb friction, difference between directions", "V"], f_difference),
+        named(["b_difference", "B⁺ − B⁻", "Viscous friction, difference between directions", "V/(°/s)"], b_difference),
         named(
-            ["weight", "g", "Weight of the link when level", "V"],
+            ["weight", "g", "Gravity torque, link horizontal", "V"],
             (-weight.value, [-weight.ci95[1], -weight.ci95[0]]),
         ),
     ]);
     for (name, symbol, title, mean) in [
-        ("stiction_positive", "τ_s⁺", "Stiction, first increase in positive direction", &out),
-        ("stiction_negative", "τ_s⁻", "Stiction, first increase in negative direction", &back),
+        ("stiction_positive", "τ_s⁺", "Breakaway (static) friction, positive direction", &out),
+        ("stiction_negative", "τ_s⁻", "Breakaway (static) friction, negative direction", &back),
     ] {
         quantities.extend(mean.map(|mean| named([name, symbol, title, "V"], (mean.value, mean.ci95))));
     }
@@ -91,27 +91,28 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     quantities.extend(at_motor(&forward, &backward, nm_per_v, nm_per_v * gear.recip().to_degrees()));
 
     let told = match (differ(f_difference), differ(b_difference)) {
-        (true, true) => "in Coulomb and in viscous friction the directions differ at 95 %",
-        (true, false) => "in Coulomb friction the directions differ at 95 %, in viscous friction they do not",
-        (false, true) => "in viscous friction the directions differ at 95 %, in Coulomb friction they do not",
-        (false, false) => "the directions do not differ at 95 %",
+        (true, true) => "Coulomb and viscous friction differ between directions (95 %)",
+        (true, false) => "Coulomb friction differs between directions (95 %); viscous friction does not",
+        (false, true) => "Viscous friction differs between directions (95 %); Coulomb friction does not",
+        (false, false) => "No significant difference between directions (95 %)",
     };
     let over_volts = over_speed(&points, &forward, &backward);
     let complete = held == 0 && out.is_some() && back.is_some();
     Ok(Identification {
         verdict: if complete { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Coulomb friction is {} and {} (motor), out and back; {told}.",
+            "Coulomb friction (motor side): {} in positive, {} in negative direction. {told}.",
             words::figure(nm_per_v * forward.offset, "Nm"),
             words::figure(nm_per_v * backward.offset, "Nm"),
         ),
-        advice: (!complete).then(|| "Not every breakaway was seen: raise top_torque_nm, or breakaways.".into()),
+        advice: (!complete)
+            .then(|| "Not all breakaway events were detected. Increase top_torque_nm or breakaways.".into()),
         quantities,
         figures: vec![over_volts.clone(), in_torque(over_volts, nm_per_v), figures.over_angle(&holds, arc_rad)],
     })
 }
 
-const FEW: Unusable = Unusable::TooLittle("too few speeds were held: make the run to its end");
+const FEW: Unusable = Unusable::TooLittle("Too few speeds were measured.", "Repeat the run.");
 
 /// The stretches of constant speed behind the work-out that were not broken off.
 fn measured(run: &RunTable, first: i64, count: i64, planned: i64) -> Vec<Hold> {
@@ -149,7 +150,8 @@ impl Figures<'_> {
         let arc_rad = holds.iter().map(reach).fold(f64::INFINITY, f64::min);
         if !(arc_rad > 0.0 && arc_rad.is_finite()) {
             return Err(Unusable::TooLittle(
-                "the link did not pass its upright pose: stand it upright, where its encoder is 0, and run again",
+                "The link did not pass its upright pose.",
+                "Set it upright (encoder at 0) and repeat the run.",
             ));
         }
         let points: Vec<Point> = holds.iter().filter_map(|hold| self.point(hold, arc_rad)).collect();
@@ -189,7 +191,7 @@ impl Figures<'_> {
         };
         Figure {
             name: "volts_over_angle".into(),
-            title: "Shunt voltage over the link's angle, all speeds".into(),
+            title: "Shunt voltage over link angle, all speeds".into(),
             form: Form::Cartesian,
             x: Axis::of("angle from upright (link)", "°"),
             y: Axis::of("shunt voltage", "V"),
@@ -214,7 +216,7 @@ fn sides(forward: &Line, backward: &Line) -> Vec<Quantity> {
         for ([name, symbol, title], unit, value, ci95) in [
             (words("b", "B", "Viscous friction"), "V/(°/s)", line.slope, Some(line.slope_ci95)),
             (words("f", "f", "Coulomb friction"), "V", line.offset, Some(line.offset_ci95)),
-            (words("r2", "r²", "Share of the scatter explained"), "", line.r2, None),
+            (words("r2", "r²", "Coefficient of determination"), "", line.r2, None),
         ] {
             all.push(quantity([&name, &symbol, &title, unit], value, ci95));
         }
@@ -230,9 +232,11 @@ fn at_motor(forward: &Line, backward: &Line, nm_per_v: f64, nm_s_per_slope: f64)
     };
     let mut all = Vec::new();
     for (suffix, sign, line) in [("positive", "⁺", forward), ("negative", "⁻", backward)] {
-        let coulomb = [&format!("tau_c_{suffix}"), &format!("τ_c{sign}"), "Coulomb friction (motor)", "Nm"];
+        let [coulomb, viscous] =
+            ["Coulomb", "Viscous"].map(|kind| format!("{kind} friction (motor), {suffix} direction"));
+        let coulomb = [&format!("tau_c_{suffix}"), &format!("τ_c{sign}"), &coulomb, "Nm"];
         all.push(named(coulomb, sized(line.offset, line.offset_ci95, nm_per_v)));
-        let viscous = [&format!("c_v_{suffix}"), &format!("c_v{sign}"), "Viscous friction (motor)", "Nm·s/rad"];
+        let viscous = [&format!("c_v_{suffix}"), &format!("c_v{sign}"), &viscous, "Nm·s/rad"];
         all.push(named(viscous, sized(line.slope, line.slope_ci95, nm_s_per_slope)));
     }
     all

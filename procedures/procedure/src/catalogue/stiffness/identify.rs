@@ -45,7 +45,7 @@ fn softening(run: &RunTable, shape: &str) -> Option<OwnEffect> {
             parameter("p", "1", Some(0.7), Some(6.0)),
         ],
         title: "Soft start".into(),
-        sentence: "The joint gives more at low torque, until all its teeth carry.".into(),
+        sentence: "Stiffness is lower at low torque, until all teeth engage.".into(),
     };
     OwnEffect::try_from(definition).ok()
 }
@@ -61,7 +61,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let held: Vec<_> = holds(run, 0.4).into_iter().filter(|hold| hold.velocity_rad_s != 0.0).collect();
     let rows: Vec<_> = held.iter().map(|hold| hold.tail(SETTLED)).collect();
     if rows.len() < 6 {
-        return Err(Unusable::TooLittle("the run holds too few loads: make it again to its end"));
+        return Err(Unusable::TooLittle("The run contains too few loads.", "Repeat the run."));
     }
     let settled = keep_rows(run, &rows)?;
     let with = |more: &str, own: Vec<OwnEffect>| {
@@ -92,24 +92,27 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         })
         .collect();
     let Some((inverse, inverse_ci95)) = of_all(&fits, "compliance", "inverse_k") else {
-        return Err(Unusable::TooLittle("the loads do not decide the stiffness: raise top_load or load_levels"));
+        return Err(Unusable::TooLittle(
+            "The loads do not determine the stiffness.",
+            "Increase top_load or load_levels.",
+        ));
     };
     let bearing = run.meta().bearing_stiffness_nm_per_rad.map_or(0.0, f64::recip);
     if inverse_ci95[0] <= bearing {
         return Err(Unusable::TooLittle(
-            "the bearing that was given is softer than bearing and joint together: give bearing_stiffness_nm_rad in Nm/rad, \
-             or 0 where it is not known",
+            "bearing_stiffness_nm_rad is below the measured stiffness of bearing and joint.",
+            "Enter it in Nm/rad, or 0 if unknown.",
         ));
     }
     let stiffness = |inverse: f64| 1.0 / (inverse - bearing);
     let reversal = Reversal::of(run, &held, gear);
     let area = reversal.as_ref().map_or(0.0, Reversal::area_j);
     let of_joint = match bearing > 0.0 {
-        true => "Stiffness of the joint, bearing taken off",
+        true => "Stiffness of the joint, without bearing",
         false => "Stiffness of joint and bearing",
     };
     let mut quantities = vec![
-        quantity(["inverse_k", "k'⁻¹", "Compliance as measured", "rad/Nm"], inverse, Some(inverse_ci95)),
+        quantity(["inverse_k", "k'⁻¹", "Measured compliance", "rad/Nm"], inverse, Some(inverse_ci95)),
         quantity(
             ["k", "k", of_joint, "Nm/rad"],
             stiffness(inverse),
@@ -117,7 +120,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         ),
     ];
     let (effect, name, label) = match is_curved {
-        true => (SOFT, "phi", "Offset of the line through high loads"),
+        true => (SOFT, "phi", "Offset of the line at high loads"),
         false => ("directional_offset", "beta_0", "Directional offset"),
     };
     if let Some(found) = of_all(&fits, effect, name) {
@@ -131,22 +134,26 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     quantities.extend(zones(&points, bearing));
     quantities.extend(reversal.iter().flat_map(Reversal::quantities));
     quantities.extend([
-        quantity(["line_rms", "e_line", "What a line leaves on loads not seen", "rad"], line.validation_rms, None),
-        quantity(["rms", "e", "What the chosen curve leaves on loads not seen", "rad"], best.validation_rms, None),
-        quantity(["loop_area", "A", "Area of the loop at the highest load", "J"], area, None),
+        quantity(
+            ["line_rms", "e_line", "Validation error of the straight line (RMS)", "rad"],
+            line.validation_rms,
+            None,
+        ),
+        quantity(["rms", "e", "Validation error of the selected curve (RMS)", "rad"], best.validation_rms, None),
+        quantity(["loop_area", "A", "Loop area at maximum load", "J"], area, None),
     ]);
     let whole = torsion_over_torque(&points, model(&settled, best)?, reversal.as_ref());
     let beyond = beyond_the_slope(&whole, inverse);
     let shape = if is_curved {
-        "softer at low torque: use the curve or a look-up table"
+        "Stiffness decreases at low torque. Use the curve or a look-up table"
     } else {
-        "linear: a line with an offset by direction is enough"
+        "Linear with a directional offset"
     };
     Ok(Identification {
         verdict: Verdict::Identified,
-        summary: format!("The joint's stiffness is {:.1} Nm/rad; it is {shape}.", stiffness(inverse)),
+        summary: format!("Stiffness of the joint {:.1} Nm/rad. {shape}.", stiffness(inverse)),
         advice: (bearing == 0.0)
-            .then(|| "Give bearing_stiffness_nm_rad where it is known: the figure contains the bearing.".into()),
+            .then(|| "The value includes the bearing. Enter bearing_stiffness_nm_rad to separate it.".into()),
         quantities,
         figures: vec![whole, beyond],
     })
@@ -228,7 +235,7 @@ impl Reversal {
     fn series(&self) -> Series {
         let every = self.course.len().div_ceil(LOOP_POINTS);
         let (x, y) = self.course.iter().copied().step_by(every).unzip();
-        Series::new("loop at the highest load", Mark::Line, x, y)
+        Series::new("loop at maximum load", Mark::Line, x, y)
     }
 }
 
@@ -300,7 +307,7 @@ fn beyond_the_slope(whole: &Figure, inverse: f64) -> Figure {
     };
     Figure {
         name: "beyond_the_slope".into(),
-        title: "Torsion without k'⁻¹ times torque".into(),
+        title: "Residual torsion (linear part removed)".into(),
         y: Axis::of("torsion − k'⁻¹·torque", "rad"),
         series: whole.series.iter().map(level).collect(),
         ..whole.clone()

@@ -43,8 +43,9 @@ mod tests {
         // 100, 200 and 400 Nm/rad between 0, 10, 20 and 30 Nm, both ways about an offset.
         let torsion = |t: f64| t.min(10.0) / 100.0 + (t - 10.0).clamp(0.0, 10.0) / 200.0 + (t - 20.0).max(0.0) / 400.0;
         let torques = (1..=12).map(|i| f64::from(i) * 2.5);
-        let points: Vec<(f64, f64)> =
-            torques.flat_map(|t| [(t, torsion(t)), (-t, -torsion(t)), (t, torsion(t) + 1e-5), (-t, -torsion(t) - 1e-5)]).collect();
+        let points: Vec<(f64, f64)> = torques
+            .flat_map(|t| [(t, torsion(t)), (-t, -torsion(t)), (t, torsion(t) + 1e-5), (-t, -torsion(t) - 1e-5)])
+            .collect();
         let found = zones(&points, 0.0);
         for (quantity, wanted) in found.iter().zip([100.0, 200.0, 400.0]) {
             assert!((quantity.value / wanted - 1.0).abs() < 0.02, "{} is {}", quantity.name, quantity.value);

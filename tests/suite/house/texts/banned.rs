@@ -1,0 +1,124 @@
+//! Words and phrases that the glossary replaces by standard terms.
+
+/// As lower-case words. A phrase matches these words in a row.
+const BANNED: [&str; 74] = [
+    "any more",
+    "asked for",
+    "at hand",
+    "beside",
+    "both ways",
+    "cannot be seen",
+    "cannot tell",
+    "come to its end",
+    "comes to",
+    "contract section",
+    "each way",
+    "errs",
+    "felt",
+    "goes",
+    "gone",
+    "halvings of",
+    "held against",
+    "held out",
+    "largest swing",
+    "late and moved",
+    "leaves",
+    "left out",
+    "longest way",
+    "look at it",
+    "look for",
+    "looked for",
+    "looks for",
+    "looks like this",
+    "make it again",
+    "make the rest",
+    "make the run",
+    "makes of",
+    "mend",
+    "mends",
+    "no part in",
+    "nobody",
+    "not known to be safe",
+    "not seen",
+    "not sure",
+    "out and back",
+    "pieces",
+    "points of the encoder",
+    "puma chapter",
+    "repeats itself",
+    "rival",
+    "rivals",
+    "run is on",
+    "settled motion",
+    "share of",
+    "somebody",
+    "take away",
+    "take off",
+    "taken away",
+    "taken back",
+    "taken off",
+    "takes away",
+    "takes off",
+    "tell",
+    "telling",
+    "tells",
+    "the way down",
+    "the way up",
+    "thesis on",
+    "told",
+    "told apart",
+    "too seldom",
+    "towards standstill",
+    "twin",
+    "waves over",
+    "what is missing",
+    "whatever",
+    "whoever",
+    "worked out",
+    "would have been found",
+];
+
+/// Longer sentences need a second reading.
+const MOST_WORDS: usize = 25;
+
+/// The first banned phrase in a text.
+pub fn banned(text: &str) -> Option<&'static str> {
+    let spoken = format!(" {} ", words(text).join(" "));
+    BANNED.into_iter().find(|phrase| spoken.contains(&format!(" {phrase} ")))
+}
+
+pub fn long_sentences(text: &str) -> Vec<&str> {
+    let sentences = text.split_inclusive([". ", ": ", "; "].map(|end| end));
+    sentences.filter(|sentence| words(sentence).len() > MOST_WORDS).collect()
+}
+
+/// In lower case, without code between backticks and without names of arguments between braces: a person sees their values.
+fn words(text: &str) -> Vec<String> {
+    let mut spoken = String::new();
+    let mut braces = 0;
+    for (i, part) in text.split('`').enumerate() {
+        if i % 2 == 1 {
+            continue;
+        }
+        for letter in part.chars() {
+            match letter {
+                '{' => braces += 1,
+                '}' => braces -= 1,
+                _ if braces > 0 => {}
+                _ => spoken.push(letter),
+            }
+        }
+        spoken.push(' ');
+    }
+    let split = spoken.split(|c: char| !c.is_alphanumeric() && c != '_' && c != '\'');
+    split.filter(|word| !word.is_empty()).map(str::to_lowercase).collect()
+}
+
+#[test]
+fn phrases_are_found_as_words_and_not_in_names_of_arguments_or_code() {
+    assert_eq!(banned("The error held-out falls."), Some("held out"));
+    assert_eq!(banned("Tells the error of a model"), Some("tells"));
+    assert_eq!(banned("{told}; `--leaves` and a teller, {beside}"), None);
+    assert_eq!(long_sentences(&"word ".repeat(26)).len(), 1);
+    assert_eq!(long_sentences(&format!("{0}. {0}", "word ".repeat(25))).len(), 0);
+}
