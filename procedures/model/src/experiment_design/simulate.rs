@@ -60,6 +60,8 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
         segment: vec![0; rows],
         repeat: vec![0; rows],
         settled: true,
+        form_error: None,
+        bandwidths: Vec::new(),
     };
     // What the drive is follows from the response, and a part of the response may follow from it.
     problem.view.points.set(Signal::Drive, vec![0.0; rows]);

@@ -192,6 +192,8 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         segment,
         repeat,
         settled,
+        form_error: None,
+        bandwidths: Vec::new(),
     };
     replicates::believe(&mut problem, &of, inputs);
     problem
