@@ -64,6 +64,8 @@ pub struct Judged {
 
 struct Told {
     named: Vec<String>,
+    /// Share of the held-out RMS that each takes alone, and how likely chance would bring that.
+    evidence: String,
     added: Vec<String>,
     verdict: Verdict,
     residual: String,
@@ -120,8 +122,9 @@ impl Judged {
                 let missed: Vec<String> =
                     told.held.iter().filter(|h| !h.1).map(|(name, _, off)| format!("{name}({off:.1})")).collect();
                 format!(
-                    "{} | {} | {:?} {} over floor {} {}",
+                    "{} [{}] | {} | {:?} {} over floor {} {}",
                     or(&told.named),
+                    told.evidence,
                     or(&told.added),
                     told.verdict,
                     told.residual,
@@ -176,8 +179,10 @@ impl Told {
             let half = (p.ci95[1] - p.ci95[0]) / 2.0;
             Some((key.clone(), (p.ci95[0]..=p.ci95[1]).contains(truth), (p.value - truth) / half))
         });
+        let evidence = first.suggestions.iter().map(|s| format!("{:.2}/{:.0e}", s.error_reduction, s.p_value));
         Ok(Self {
             named: first.suggestions.iter().map(|s| s.effect.clone()).collect(),
+            evidence: evidence.collect::<Vec<_>>().join(" "),
             added: whole.model.iter().filter(|e| !spec.contains(e)).cloned().collect(),
             verdict: first.verdict,
             residual: format!("{:?}", first.residual),

@@ -34,7 +34,7 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
         .filter_map(|problem| {
             let other = Solution::of(&at_corner(model, problem))?;
             let spread = spread(&factors_without(&other));
-            Some((other.factors, spread))
+            Some((other.factors.clone(), spread))
         })
         .collect();
     let own = spread(&replicates);

@@ -12,5 +12,6 @@ pub(crate) mod limits;
 pub(crate) mod report;
 pub(crate) mod search;
 pub(crate) mod solution;
+pub(crate) mod solved;
 pub(crate) mod structure;
 pub(crate) mod weights;

@@ -7,11 +7,11 @@
 use crate::decision::evidence::{Evidence, errors, evidence};
 use crate::decision::ground::Ground;
 use crate::decision::limits;
-use crate::decision::solution::{DELAY, PRESLIDING, Solution, beside, effect_factor, effects};
+use crate::decision::solution::{DELAY, PRESLIDING, Solution, beside, effect_columns, effect_factor};
 use crate::decision::structure::{self, Left};
 use crate::effect::Regime;
+use crate::preprocess::Prepared;
 use crate::preprocess::form_error::Lives;
-use crate::preprocess::{Prepared, Problem};
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::linear_model::LinearModel;
 use crate::regression::two_stage_model::TwoStageModel;
@@ -23,6 +23,7 @@ use crate::selection::model_selection::ModelSelection;
 use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, GAIN_ERRORS, LEFT_SHARE, SIMPLER_GAIN, UNMISTAKABLE_SHARE};
 use crate::words::percent;
 use crate::{Effect, ModelError, ModelSpec, Options};
+use std::cell::OnceCell;
 
 /// Effects that are added at most.
 const MOST_NAMED: usize = 4;
@@ -59,16 +60,16 @@ impl Refused<'_> {
 
 /// The libraries of a run: beside a direction that turns at once, and beside one that bends.
 struct Libraries<'p> {
-    plain: CandidateSet<'p>,
-    bristled: Option<CandidateSet<'p>>,
+    plain: OnceCell<CandidateSet<'p>>,
+    bristled: OnceCell<CandidateSet<'p>>,
 }
 
 impl<'p> Libraries<'p> {
-    fn of(&self, model: &LinearModel, prepared: &'p Prepared) -> &CandidateSet<'p> {
-        match &self.bristled {
-            Some(bristled) if !std::ptr::eq(model.problem, &prepared.main) => bristled,
-            _ => &self.plain,
-        }
+    /// The one beside the direction of a model.
+    fn of(&self, model: &LinearModel<'p>, prepared: &'p Prepared, spec: &'p ModelSpec) -> &CandidateSet<'p> {
+        let is_plain = std::ptr::eq(model.problem, &prepared.main);
+        let known = if is_plain { &self.plain } else { &self.bristled };
+        known.get_or_init(|| CandidateSet::new(spec, model.problem, prepared.regimes()))
     }
 }
 
@@ -80,10 +81,8 @@ pub fn search<'p>(
     most: usize,
     on_advance: &mut dyn FnMut(&SelectionStep),
 ) -> Result<ModelSelection<'p>, ModelError> {
-    let regimes = prepared.regimes();
     let start = TwoStageModel::new(prepared, spec, options)?;
-    let library = |problem: &'p Problem| CandidateSet::new(spec, problem, regimes);
-    let mut libraries = Libraries { plain: library(&prepared.main), bristled: None };
+    let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
     let mut advances: Vec<SelectionStep<'p>> = Vec::new();
     let mut ties: Vec<(&'p str, &'p str)> = Vec::new();
     let most = if prepared.clashes.void.is_empty() { most.min(MOST_NAMED) } else { 0 };
@@ -98,10 +97,7 @@ pub fn search<'p>(
     }
     loop {
         let now = advances.last().map_or(&start, |a| &a.after);
-        if !std::ptr::eq(now.main.problem, &prepared.main) && libraries.bristled.is_none() {
-            libraries.bristled = prepared.bristled.as_ref().map(library);
-        }
-        let library = libraries.of(&now.main, prepared);
+        let library = libraries.of(&now.main, prepared, spec);
         let Some(solution) = Solution::of(&now.main) else { break };
         let all = candidates(now, &solution, library, forms(library), &dropped);
         let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), options.alpha);
@@ -170,7 +166,7 @@ pub fn search<'p>(
     let now = end.main.clone();
     let (mut residual, mut silences) = (now.linear().residual, Vec::new());
     if let Some(solution) = Solution::of(&now) {
-        silences = limits::silences(end, &solution, libraries.of(&now, prepared), options);
+        silences = limits::silences(end, &solution, libraries.of(&now, prepared, spec), options);
         residual.clone_from(&solution.residual);
     }
     ties.retain(|(named, rival)| end.effects.iter().any(|e| e == named) && !end.effects.iter().any(|e| e == rival));
@@ -238,7 +234,7 @@ fn candidates<'l, 'p>(
 /// The model projected out without one kind of form error.
 pub fn without(now: &TwoStageModel, solution: &Solution, lives: Lives) -> Ground {
     let model = &now.main;
-    let mut columns = effects(model);
+    let mut columns = effect_columns(model);
     if let Some(form_error) = model.problem.form_error.as_deref() {
         let beside = beside(model, form_error, |other| other == lives);
         columns.extend(beside.error.into_iter().map(|(_, column)| column));
@@ -268,12 +264,12 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     // Other forms of the others would imitate it.
     let mut plain = end.main.clone();
     plain.relatives = Default::default();
-    let weight = Solution::of(&plain)?.weight;
+    let weight = Solution::of(&plain)?.weight.clone();
     let loss = |model: &LinearModel, is_late: bool| {
         if !is_late {
             return Solution::weighted(model, form_error, weight.clone(), None).ground.loss();
         }
-        let mut columns = effects(model);
+        let mut columns = effect_columns(model);
         let beside = beside(model, form_error, |lives| lives == Lives::Jerk);
         columns.extend(beside.error.into_iter().map(|(_, column)| column));
         Ground::new(&columns, &model.response(), &weight, &model.problem.block, None).loss()

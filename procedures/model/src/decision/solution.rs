@@ -1,9 +1,12 @@
 //! A model on a run that is judged sample by sample: effects, and beside them where the errors of their formulas live.
 
-use crate::decision::ground::{BaseColumn, Ground};
+use crate::decision::ground::{BaseColumn, Ground, fitted};
 use crate::decision::weights::weights;
+use crate::effects;
 use crate::preprocess::form_error::{FormError, Lives};
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
+use jointbench_instrument::Kind;
+use std::sync::Arc;
 
 /// Strength with which columns are held near zero before the weights are known.
 const FIRST_RIDGE: f64 = 1e-4;
@@ -42,7 +45,7 @@ pub fn rms(values: &[f64]) -> f64 {
 }
 
 /// The columns of the effects of a model.
-pub fn effects<'a>(model: &'a LinearModel) -> Vec<BaseColumn<'a>> {
+pub fn effect_columns<'a>(model: &'a LinearModel) -> Vec<BaseColumn<'a>> {
     let column = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), shrinks: false };
     model.terms.iter().flat_map(|term| &term.columns).map(column).collect()
 }
@@ -62,16 +65,26 @@ pub struct Solution {
 
 impl Solution {
     /// `None` of a run that is not judged this way.
-    pub fn of(model: &LinearModel) -> Option<Self> {
+    pub fn of(model: &LinearModel) -> Option<Arc<Self>> {
         let form_error = model.problem.form_error.as_deref()?;
-        let weight = weighed(model, form_error);
-        Some(Self::weighted(model, form_error, weight, None))
+        let make = || Self::weighted(model, form_error, weighed(model, form_error), None);
+        // Of a user's effect the name does not say all.
+        match model
+            .terms
+            .iter()
+            .map(|term| term.id())
+            .chain(model.offsets.iter().map(|e| e.info().id))
+            .all(is_of_library)
+        {
+            true => Some(model.problem.solved.of(name(model), make)),
+            false => Some(Arc::new(make())),
+        }
     }
 
     pub fn weighted(model: &LinearModel, form_error: &FormError, weight: Vec<f64>, ridge: Option<f64>) -> Self {
         let response = model.response();
         let beside = beside(model, form_error, |_| false);
-        let mut columns = effects(model);
+        let mut columns = effect_columns(model);
         let own = columns.len();
         columns.extend(beside.error.iter().map(|(_, column)| *column));
         columns.extend(beside.relatives.iter().copied());
@@ -99,11 +112,11 @@ impl Solution {
     }
 
     /// As any model's.
-    pub fn linear(self, model: &LinearModel) -> Linear {
-        let mut next = self.factors.into_iter();
+    pub fn linear(&self, model: &LinearModel) -> Linear {
+        let mut next = self.factors.iter().copied();
         let factors = model.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
         let sse = self.residual.iter().map(|e| e * e).sum();
-        Linear { factors, residual: self.residual, sse }
+        Linear { factors, residual: self.residual.clone(), sse }
     }
 
     /// Squared error of each block, as the others predict it.
@@ -111,7 +124,7 @@ impl Solution {
         let Some(form_error) = model.problem.form_error.as_deref() else { return Vec::new() };
         let response = model.response();
         let beside = beside(model, form_error, |_| false);
-        let mut columns = effects(model);
+        let mut columns = effect_columns(model);
         columns.extend(beside.error.iter().map(|(_, column)| *column));
         columns.extend(beside.relatives);
         let replicates = self.ground.replicates().zip(&self.ground.blocks);
@@ -150,11 +163,33 @@ fn beyond(model: &LinearModel, ground: &Ground) -> Option<usize> {
 /// Weights of the rows, from what the model leaves.
 pub fn weighed(model: &LinearModel, form_error: &FormError) -> Vec<f64> {
     let mut weight = vec![1.0; model.problem.rows()];
+    let response = model.response();
+    let beside = beside(model, form_error, |_| false);
+    let mut columns = effect_columns(model);
+    columns.extend(beside.error.into_iter().map(|(_, column)| column));
+    columns.extend(beside.relatives);
     for _ in 0..REWEIGHTED {
-        let left = Solution::weighted(model, form_error, weight, Some(FIRST_RIDGE)).residual;
-        weight = weights(form_error, &left);
+        let factors = fitted(&columns, &response, &weight, FIRST_RIDGE);
+        weight = weights(form_error, &left(&columns, &factors, &response));
     }
     weight
+}
+
+fn is_of_library(id: &str) -> bool {
+    effects::find(Kind::Friction, id).is_ok()
+}
+
+/// What a model is made of.
+fn name(model: &LinearModel) -> String {
+    let mut name = String::new();
+    model.offsets.iter().for_each(|effect| name.push_str(effect.info().id));
+    for term in &model.terms {
+        name.push_str(&format!("+{} {} {:?}", term.id(), term.form.name, term.shape));
+    }
+    for relative in model.relatives.iter() {
+        name.push_str(&format!("~{} {} {:?}", relative.effect.info().id, relative.form.name, relative.shape));
+    }
+    name
 }
 
 fn left(columns: &[BaseColumn], factors: &[f64], response: &[f64]) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use crate::decision::evidence::errors;
 use crate::decision::functions::{Functions, functions};
 use crate::decision::ground::{Ground, ranges};
-use crate::decision::solution::{Solution, beside, effects};
+use crate::decision::solution::{Solution, beside, effect_columns};
 use crate::linear::basis::dot;
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
@@ -88,7 +88,7 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
     let mut plain: LinearModel = end.main.clone();
     plain.terms.retain(|term| start.effects.iter().any(|e| e == term.id()));
     plain.relatives = Arc::default();
-    let mut columns = effects(&plain);
+    let mut columns = effect_columns(&plain);
     let Some(form_error) = plain.problem.form_error.as_deref() else { return false };
     let beside = beside(&plain, form_error, |_| false);
     columns.extend(beside.error.into_iter().map(|(_, column)| column));

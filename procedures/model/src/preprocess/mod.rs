@@ -17,6 +17,7 @@ pub(crate) mod stiffness;
 pub(crate) mod sweeps;
 pub(crate) mod unknown_columns;
 
+use crate::decision::solved::Solved;
 use crate::effect::Regime;
 use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::checks::{metadata, unit_mismatch};
@@ -65,6 +66,8 @@ pub struct Problem {
     pub form_error: Option<Arc<FormError>>,
     /// The same run at other corners of its filter: what they differ by nobody knows better.
     pub bandwidths: Vec<Problem>,
+    /// Models of it that were solved last.
+    pub(crate) solved: Solved,
 }
 
 impl Problem {
@@ -136,7 +139,7 @@ pub struct Prepared {
 }
 
 /// The effect beside which the direction bends.
-const BENDS: &str = "presliding";
+pub(crate) const BENDS: &str = "presliding";
 
 impl Prepared {
     /// What a model of these effects is judged on.

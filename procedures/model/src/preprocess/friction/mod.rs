@@ -9,7 +9,7 @@ pub(crate) mod work_rate;
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::segments;
-use crate::preprocess::{Prepared, TELLING, filter, median, sample_s};
+use crate::preprocess::{BENDS, Prepared, TELLING, filter, median, sample_s};
 use crate::report::fit::Bristles;
 use crate::signal::{Signal, Signals};
 use crate::view::Constants;
@@ -27,8 +27,10 @@ pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -
     // many steps does not take them away.
     let in_steps = settled * 2 > run.len()
         || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
+    // Where contacts are known to bend, ramps and reversals say as much as settled motion, and more of it.
+    let bends = run.meta().baseline.iter().any(|effect| effect == BENDS);
     match options.residual {
-        None if !in_steps => trajectory::prepare(run, options, bristles),
+        None if !in_steps || bends => trajectory::prepare(run, options, bristles),
         _ => steady_state::prepare(run, samples, plateaus, options),
     }
 }

@@ -4,6 +4,7 @@
 //! is made of them, and a lower one on every finished column and on the torque, before one of n samples is kept. Motion comes
 //! from the position alone, so that nothing lags behind it.
 
+use crate::decision::solved::Solved;
 use crate::linear::basis::dot;
 use crate::preprocess::design::replicates::{Same, are_apart};
 use crate::preprocess::design::{blocks, replicates, segments};
@@ -89,7 +90,7 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
         return Err(ModelError::TooFewSamples { usable: layout.rows.len(), needed: 24, what: "filtered rows" });
     }
     let mut bristles = Bristles { reaches_rad: reaches, weights: Vec::new(), band_rad_s: band };
-    bristles.weights = given.map_or_else(|| layout.weights(&work), |given| given.weights.clone());
+    bristles.weights = given.map_or_else(|| layout.weights(&work, &run.meta().baseline), |given| given.weights.clone());
     let mut view =
         View::new(work.signals.clone(), work.signals.clone(), Vec::new(), work.even.starts.clone(), work.even.step_s);
     view.constants = constants(&work, &bristles, cutoff_hz, run);
@@ -304,12 +305,18 @@ impl Layout {
     }
 
     /// What the torque at reversals says of the elements.
-    fn weights(&self, work: &Work) -> Vec<f64> {
+    fn weights(&self, work: &Work, baseline: &[String]) -> Vec<f64> {
+        let is_given = |id: &str| baseline.iter().any(|given| given == id);
         let of = |signal| work.signals.find(signal).map(|values| self.reduce.apply(values.to_vec()));
-        let mut free: Vec<Vec<f64>> = [Signal::Velocity, Signal::Load].into_iter().filter_map(of).collect();
-        free.push(vec![1.0; self.target.len()]);
-        free.extend(self.slopes[..2].iter().cloned());
-        bristles::weights(&self.states, &free, &self.target)
+        let mut free: Vec<Vec<f64>> = of(Signal::Velocity).into_iter().collect();
+        free.push(self.slopes[0].clone());
+        free.extend(is_given("direction_offset").then(|| vec![1.0; self.target.len()]));
+        free.extend(is_given("signal_delay").then(|| self.slopes[1].clone()));
+        let mut torque = self.target.clone();
+        if let Some(load) = of(Signal::Load).filter(|_| is_given("load_transmission")) {
+            torque.iter_mut().zip(load).for_each(|(torque, load)| *torque -= load);
+        }
+        bristles::weights(&self.states, &free, &torque)
     }
 
     fn problem(&self, work: &Work, view: &View) -> Problem {
@@ -335,6 +342,7 @@ impl Layout {
             settled: false,
             form_error: Some(Arc::new(self.form_error(work, view))),
             bandwidths: Vec::new(),
+            solved: Solved::default(),
         };
         let of = problem.repeat.clone();
         replicates::believe(&mut problem, &of, &[Signal::Velocity, Signal::Load].map(Same::Value));
