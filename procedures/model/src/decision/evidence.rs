@@ -3,7 +3,7 @@
 use crate::decision::ground::{Added, Gain, Ground};
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
-use crate::thresholds::GAIN_ERRORS;
+use crate::thresholds::{GAIN_ERRORS, UNMISTAKABLE_SHARE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
@@ -20,6 +20,8 @@ pub struct Evidence<'l, 'p> {
     pub errors: f64,
     /// How often chance would bring any form of the library as far.
     pub p_value: f64,
+    /// These forms live around reversals and rests, where every formula errs.
+    pub is_near: bool,
     /// Held-out squared error of each block with the effect.
     pub losses: Vec<f64>,
 }
@@ -41,27 +43,38 @@ struct Trial<'l, 'p> {
     taken: f64,
     gains: Vec<Gain>,
     chance: f64,
+    is_near: bool,
 }
 
 /// The evidence for each effect of the candidates, the one that takes most first. `forms`: how many were tried in all.
-pub fn evidence<'l, 'p>(ground: &Ground, candidates: &[&'l Regressor<'p>], forms: usize) -> Vec<Evidence<'l, 'p>> {
-    let trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ground, form)).collect();
+///
+/// Forms of which most lies in the rows that are `near` a reversal are judged apart from the others of their effect.
+pub fn evidence<'l, 'p>(
+    ground: &Ground,
+    candidates: &[&'l Regressor<'p>],
+    near: &[bool],
+    forms: usize,
+) -> Vec<Evidence<'l, 'p>> {
+    let mut trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ground, form, near)).collect();
+    let place = |id: &str| candidates.iter().position(|c| c.id() == id);
+    trials.sort_by_key(|t| (place(t.form.id()), t.is_near));
     let mut all: Vec<Evidence> = trials
-        .chunk_by(|a, b| a.form.id() == b.form.id())
+        .chunk_by(|a, b| a.form.id() == b.form.id() && a.is_near == b.is_near)
         .filter_map(|forms_of_one| of_effect(ground, forms_of_one, forms))
         .collect();
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all
 }
 
-fn trial<'l, 'p>(ground: &Ground, form: &'l Regressor<'p>) -> Option<Trial<'l, 'p>> {
+fn trial<'l, 'p>(ground: &Ground, form: &'l Regressor<'p>, near: &[bool]) -> Option<Trial<'l, 'p>> {
     let added = visible(ground, form)?;
     let is_possible = |factors: &[f64]| allows(form.effect, &form.form, factors);
     if !is_possible(&added.factors()) {
         return None;
     }
+    let is_near = form.effect.wave().is_none() && ground.share_in(&form.columns, near) > UNMISTAKABLE_SHARE;
     let chance = chance(added.wald(), added.size, ground.blocks.len());
-    Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
+    Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance, is_near })
 }
 
 /// What a form would add, where it is none of what the model has.
@@ -80,6 +93,7 @@ fn of_effect<'l, 'p>(ground: &Ground, trials: &[Trial<'l, 'p>], forms: usize) ->
     let gains: Vec<f64> = (0..ground.blocks.len()).map(of_block).collect();
     Some(Evidence {
         best: best.form,
+        is_near: best.is_near,
         gain: gains.iter().sum::<f64>() / ground.loss().max(f64::MIN_POSITIVE),
         errors: errors(&gains),
         p_value: (best.chance * forms as f64).min(1.0),

@@ -108,6 +108,21 @@ impl Ground {
         self.folds.iter().map(|fold| fold.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect())
     }
 
+    /// Share of the squared size of what some columns have of their own that lies in these rows.
+    pub fn share_in(&self, columns: &[Vec<f32>], rows: &[bool]) -> f64 {
+        let (mut inside, mut whole) = (0.0, 0.0);
+        for column in columns {
+            let mut own: Vec<f64> = column.iter().zip(&self.weight).map(|(v, w)| f64::from(*v) * w).collect();
+            let side: Vec<f64> = self.base.iter().map(|b| dot(b, &own)).collect();
+            for (base, factor) in self.base.iter().zip(times(&self.whole.inverse, &side)) {
+                own.iter_mut().zip(base).for_each(|(o, b)| *o -= factor * b);
+            }
+            whole += dot(&own, &own);
+            inside += own.iter().zip(rows).filter(|(_, is_in)| **is_in).map(|(o, _)| o * o).sum::<f64>();
+        }
+        inside / whole.max(f64::MIN_POSITIVE)
+    }
+
     /// What columns would add, beside the base.
     pub fn added(&self, columns: &[impl AsRef<[f32]>]) -> Added {
         let columns: Vec<Vec<f64>> = columns

@@ -100,7 +100,7 @@ pub fn search<'p>(
         let library = libraries.of(&now.main, prepared, spec);
         let Some(solution) = Solution::of(&now.main) else { break };
         let all = candidates(now, &solution, library, forms(library), &dropped);
-        let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), options.alpha);
+        let passes = |e: &&Evidence| e.passes(least_share(e.best.effect, e.is_near), options.alpha);
         let added = advances.iter().filter(|a| a.added.is_some()).count();
         let best = all.iter().find(passes).filter(|_| added < most);
         let Some(best) = best else {
@@ -112,7 +112,7 @@ pub fn search<'p>(
                     p_value: e.p_value,
                     alpha: options.alpha,
                     errors: e.errors,
-                    least: least_share(e.best.effect),
+                    least: least_share(e.best.effect, e.is_near),
                 })
                 .collect();
             break;
@@ -195,10 +195,10 @@ pub struct Decided<'p> {
 }
 
 /// What shows only where all formulas err has to take most of what is left.
-pub fn least_share(effect: &dyn Effect) -> f64 {
+pub fn least_share(effect: &dyn Effect, is_near: bool) -> f64 {
     match effect.regime() {
-        Regime::SteadyState => DECISION_SHARE,
-        Regime::Transient | Regime::Hysteresis => UNMISTAKABLE_SHARE,
+        Regime::SteadyState if !is_near => DECISION_SHARE,
+        _ => UNMISTAKABLE_SHARE,
     }
 }
 
@@ -214,19 +214,23 @@ fn candidates<'l, 'p>(
     let of = |wanted: &dyn Fn(&Regressor) -> bool| -> Vec<&'l Regressor<'p>> {
         library.candidates.iter().filter(|c| is_out(c.id()) && wanted(c)).collect()
     };
+    let near: Vec<bool> = match now.main.problem.form_error.as_deref() {
+        Some(form_error) => form_error.turn_s.iter().map(|turn_s| *turn_s < form_error.near_s).collect(),
+        None => Vec::new(),
+    };
     let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
-    let mut all = evidence(&solution.ground, &of(&regime(Regime::SteadyState)), forms);
+    let mut all = evidence(&solution.ground, &of(&regime(Regime::SteadyState)), &near, forms);
     // What is form error of all others is judged without it.
     let late = of(&|c| c.id() == DELAY);
     if !late.is_empty() && is_late(now, solution) {
-        all.extend(evidence(&without(now, solution, Lives::Jerk), &late, forms));
+        all.extend(evidence(&without(now, solution, Lives::Jerk), &late, &near, forms));
     }
     let bent = of(&regime(Regime::Hysteresis));
     if !bent.is_empty() {
-        all.extend(evidence(&without(now, solution, Lives::Bristle), &bent, forms));
+        all.extend(evidence(&without(now, solution, Lives::Bristle), &bent, &near, forms));
     }
     let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
-    all.extend(evidence(&solution.ground, &inertia, forms));
+    all.extend(evidence(&solution.ground, &inertia, &near, forms));
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all
 }

@@ -45,8 +45,10 @@ pub struct ErrorColumn {
 #[derive(Debug, Clone)]
 pub struct FormError {
     pub columns: Vec<ErrorColumn>,
-    /// Time to the nearest reversal at the rows [s].
+    /// Time to the nearest reversal or rest at the rows [s].
     pub turn_s: Vec<f64>,
+    /// The filter carries a reversal over this time [s].
+    pub near_s: f64,
     /// Sizes of acceleration and jerk at the rows: where they are large a model errs more.
     pub swift: [Vec<f64>; 2],
     /// Step from row to row [s].

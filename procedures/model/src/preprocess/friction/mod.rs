@@ -1,6 +1,8 @@
 //! Friction runs: motor torque k_m·i_q over motion, load and temperature.
 
 pub(crate) mod bristles;
+pub(crate) mod layout;
+pub(crate) mod signals;
 pub(crate) mod steady_state;
 pub(crate) mod trajectory;
 pub(crate) mod unmeasured_gravity;
