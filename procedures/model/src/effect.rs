@@ -226,9 +226,6 @@ pub trait Effect: Sync {
                  other direction as well"
             ));
         }
-        if self.regime() == Regime::Hysteresis && view.constants.turns_left_out {
-            return Some("no contact shows that bends before it slips: rests and reversals are left out".into());
-        }
         if self.forms(view).is_empty() { Some(format!("it would not show: {}", self.unseen())) } else { None }
     }
 }

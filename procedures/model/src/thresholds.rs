@@ -37,8 +37,12 @@ thresholds! {
     ALPHA = 0.05, "probability", "family-wise error of everything that is named or shown (`Options::alpha`)", "convention; `evaluate --part null` measures 0.4 %";
     PRACTICAL_SHARE = 0.02, "share of squared error", "smallest share of the remaining error that is worth a name (`Options::practical_share`)", "`evaluate --part power`";
     FLIPS = 499.0, "sign flips", "permutations of the max-T test (`Options::flips`)", "smallest p-value 0.002";
+    DECISION_SHARE = 0.03, "share of held-out squared error", "smallest share that an effect must take where samples are judged", "`score_cases`: flat from 2 to 5 %";
+    GAIN_ERRORS = 1.0, "standard errors over blocks", "and the gain is larger than this", "one standard error";
+    LEFT_SHARE = 0.1, "share of held-out squared error", "a function of an axis, a line in time or neighbouring seconds that take more are structure", "nulls of `score_cases`";
+    LEFT_ERRORS = 2.0, "standard errors over blocks", "and surely so", "nulls of `score_cases`";
+    TIME_ERRORS = 3.0, "standard errors", "the same of neighbouring seconds", "nulls of `score_cases`";
     FORMULA_ERROR = 0.002, "share of squared error", "of what an effect explains, its formula may leave this share (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
-    HYSTERESIS_FORMULA_ERROR = 0.17, "share of squared error", "the same of an effect with a memory", "simulated joints leave 2 to 17 % around reversals";
     UNMISTAKABLE_SHARE = 0.5, "share of squared error", "an effect that takes this share of what is left is no remainder of another formula", "`evaluate --part hidden,null`";
     PERIODIC_SHARE = 0.04, "share of squared error", "a wave that is sought among many orders takes at least this share", "`evaluate --part hidden,null`";
     MANY_ORDERS = 30.0, "orders", "so many orders are many", "`evaluate --part hidden,null`";
@@ -55,8 +59,6 @@ thresholds! {
     BIASED_COEFFICIENT = 0.25, "share of coefficient", "a coefficient that moves by this share with an effect is biased without it", "mock joint A, seeds 17001 to 17012";
     BIAS_TOLERANCE = 0.1, "share of squared column", "below this share of its own an effect looks like the model", "mock joint A, seeds 17001 to 17012";
     HYSTERESIS_SHARE = 0.72, "share of squared error", "an effect with a memory explains this share around reversals", "simulated joints: 83 to 98 %, nothing else above 63 %";
-    HYSTERESIS_SWING = 0.5, "share of Coulomb friction", "contacts that bend turn this share of the dry friction on their way", "`--test sticks`";
-    REST_SPEED = 0.003, "share of peak speed", "below this share a joint rests", "`--test sticks`";
     DELAY_HALF_WIDTHS = 2.0, "half widths of the 95 % interval", "a delay lies so far from zero", "519 joints without a delay: none; 13 with 9 to 14 ms: at least 2.6";
     DELAY_ROWS = 1.5, "rows", "a delay is longer than this: of which moment of its row a reading is is unknown", "seven mock runs, 0.9 to 1.1 rows late";
     DELAY_POWER = 0.43, "half widths of the 95 % interval", "added to the delay threshold for 80 % power", "z₀.₈ / z₀.₉₇₅";

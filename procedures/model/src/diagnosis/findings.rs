@@ -1,5 +1,6 @@
 //! What a selection found: the evidence for each effect, what was not found, and the verdict.
 
+use crate::decision::search::Decided;
 use crate::diagnosis::excluded_effects::ExcludedEffects;
 use crate::preprocess::Prepared;
 use crate::regression::cross_validation::held_out_rms;
@@ -32,6 +33,8 @@ pub struct Findings<'p> {
     pub upheld: Vec<Imitated>,
     /// One that may be there as well.
     pub open: Option<Imitated>,
+    /// What one decision leaves, where the run is judged sample by sample.
+    pub decided: Option<Decided<'p>>,
 }
 
 impl<'p> Findings<'p> {
@@ -46,11 +49,24 @@ impl<'p> Findings<'p> {
         let selected = ModelSelection::new(prepared, spec, options, most, on_advance)?;
         let others = ExcludedEffects::of(&selected);
         let floor = noise_floor::noise_floor(prepared, &selected.residual, selected.now.contains("hysteresis"));
-        let scatters =
-            lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
+        let scatters = selected.decided.is_none()
+            && lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
         let end_held_out_rms = held_out_rms(&selected.end().main);
-        let ModelSelection { start, advances, withdrawn, maps, ties, upheld, open, .. } = selected;
-        Ok(Self { start, advances, withdrawn, others, maps, scatters, floor, end_held_out_rms, ties, upheld, open })
+        let ModelSelection { start, advances, withdrawn, maps, ties, upheld, open, decided, .. } = selected;
+        Ok(Self {
+            start,
+            advances,
+            withdrawn,
+            others,
+            maps,
+            scatters,
+            floor,
+            end_held_out_rms,
+            ties,
+            upheld,
+            open,
+            decided,
+        })
     }
 
     pub fn end(&self) -> &TwoStageModel<'p> {
@@ -84,6 +100,10 @@ impl<'p> Findings<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
+        if let Some(decided) = &self.decided {
+            let shows = decided.left.is_some() && !self.is_negligible();
+            return if shows { Verdict::UnexplainedStructure } else { Verdict::Adequate };
+        }
         let shows = lack_of_fit::structured(&self.maps).is_some() && !self.scatters;
         if (shows || self.repeats_itself()) && !self.is_negligible() {
             Verdict::UnexplainedStructure
@@ -128,6 +148,11 @@ impl<'p> Findings<'p> {
                 seen.push(id);
                 ranked.push((advance, importance(end, id)));
             }
+        }
+        if self.decided.is_some() {
+            // In the order in which they came, each with what it took then.
+            let taken = |advance: &SelectionStep| advance.added.as_ref().map_or(0.0, |rival| rival.share);
+            return ranked.into_iter().rev().map(|(advance, _)| (advance, taken(advance))).collect();
         }
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         ranked

@@ -1,5 +1,6 @@
 //! A diagnosis in plain sentences.
 
+use crate::decision::structure::Left;
 use crate::diagnosis::findings::Findings;
 use crate::effect::{Effect, Regime};
 use crate::inference::parameter_state::IMPOSSIBLE;
@@ -203,6 +204,11 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
 
 /// The columns over which what is left shows most, and what a function of them would take off it. `None` where none does.
 pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
+    if let Some(decided) = &found.decided {
+        let prepared = found.start.prepared;
+        let named = |left: &Left| left.over.iter().map(|signal| prepared.column_name(*signal).to_owned()).collect();
+        return decided.left.as_ref().map(|left| (named(left), left.share));
+    }
     let pair = shown.map(|s| (vec![s.x.clone(), s.y.clone()], s.removable_share));
     let axis = found.maps.shows_over();
     // A second axis cuts the first one's bins: what shows over one alone can be more, and is said more shortly.
@@ -256,9 +262,10 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
 
 /// What is said of structure, where something that was left out might be it.
 fn unexplained(found: &Findings) -> &'static str {
-    match left_out(found).next() {
-        Some(_) => "no effect of the library is sure to explain",
-        None => "no effect of the library explains",
+    let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());
+    match left_out(found).next().is_some() || is_refused {
+        true => "no effect of the library is sure to explain",
+        false => "no effect of the library explains",
     }
 }
 
@@ -298,5 +305,7 @@ fn taken_back(found: &Findings, unit: &str) -> String {
         let explains = if borrowing.len() > 1 { "they explain" } else { "it explains" };
         format!(" Taken back: {}, because {explains} nothing beside the structure that remains.", list(&borrowing))
     });
-    open.into_iter().chain(half).chain(borrowing).collect()
+    let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_rival(r.effect));
+    let refused = refused.map(|refused| format!(" Left out: {}: {}.", refused.effect, refused.why()));
+    open.into_iter().chain(half).chain(borrowing).chain(refused).collect()
 }

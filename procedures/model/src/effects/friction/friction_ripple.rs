@@ -31,6 +31,10 @@ impl Effect for FrictionRipple {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        // Beside what the way since a reversal and the speed explain, even a part of a wave is one.
+        if view.constants.followed_hz.is_some() {
+            return crate::effects::harmonic_form(view, Signal::Link, 1..=24);
+        }
         let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Link, 1..=60);
         let with_speed =
             forms.iter().map(|f| Form { name: "with_speed", linear: vec!["a", "b", "a_v", "b_v"], ..f.clone() });

@@ -71,13 +71,6 @@ pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -
     if deepest < SHORT * way { vec![ahead; direction.len()] } else { direction }
 }
 
-/// The rows of a way back, with those beside them, where filters see both ways.
-pub fn way_back(direction: &[f64], ahead: f64) -> Vec<bool> {
-    const BESIDE: usize = 3;
-    let near = |i: usize| i.saturating_sub(BESIDE)..(i + BESIDE + 1).min(direction.len());
-    (0..direction.len()).map(|i| direction[near(i)].contains(&-ahead)).collect()
-}
-
 /// The integers of a column, where the run has it.
 pub fn integers(run: &RunTable, column: &str) -> Option<Vec<i64>> {
     run.column(column).map(|values| values.iter().map(|v| *v as i64).collect())
