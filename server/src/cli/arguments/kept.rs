@@ -27,7 +27,7 @@ pub struct Runs {
 
 #[derive(Debug, Args)]
 pub struct Import {
-    /// Run tables: .csv, .csv.gz, .parquet or .arrow
+    /// Run tables: text (.csv, .tsv, .txt, .dat and others, also .gz), .parquet or .arrow
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Facts about the set-up [default: RUN.meta.json or meta.json beside each file, or what is embedded]
@@ -43,17 +43,41 @@ pub struct Import {
 pub struct Export {
     /// Number of the run
     pub run: i64,
-    /// Kind of file [default: what the ending of --output says, else csv]
+    /// Kind of file [default: what the ending of --out says, else csv]
     #[arg(long, value_enum)]
     pub format: Option<FileFormat>,
     /// File to write; a CSV gets its facts beside it as NAME.meta.json [default: run-N.csv, run-N.parquet or run-N.mat]
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    #[arg(short, long, visible_alias = "output", value_name = "FILE")]
+    pub out: Option<PathBuf>,
     /// Begin cells of text in a CSV that a spreadsheet would take for a formula (= + - @) with an apostrophe
     #[arg(long)]
     pub spreadsheet_safe: bool,
     #[command(flatten)]
     pub store: StorePlace,
+}
+
+pub const CONVERT: &str = "\
+  jointbench convert log.txt --out run.csv                     what was understood, and run.meta.json beside it
+  jointbench convert log.csv --map motor_current_a=Iq --unit motor_current_a=mA --out run.parquet
+  jointbench convert log.csv --time-from-rate 200 --out run.csv
+
+What was skipped or assumed is said on standard error, each with the option that changes it.";
+
+#[derive(Debug, Args)]
+pub struct Convert {
+    /// Table: text (.csv, .tsv, .txt, .dat and others, also .gz), .parquet or .arrow
+    pub file: PathBuf,
+    /// Facts about the set-up [default: FILE.meta.json or meta.json beside the file, or what is embedded]
+    #[arg(long, value_name = "META.JSON")]
+    pub meta: Option<PathBuf>,
+    /// File to write, .csv, .csv.gz or .parquet; a CSV gets its facts beside it as NAME.meta.json
+    #[arg(short, long, visible_alias = "output", value_name = "RUN.CSV")]
+    pub out: PathBuf,
+    /// Print what was understood as JSON: columns, rows, notes and what was left out
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub columns: Columns,
 }
 
 #[derive(Debug, Args)]

@@ -1,11 +1,13 @@
 //! What can be written on the command line.
 
+mod columns;
 mod kept;
 mod model;
 mod place;
 mod steer;
 
-pub use kept::{Backup, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
+pub use columns::Columns;
+pub use kept::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
 pub use steer::{Reset, Steer, Stop};
@@ -92,6 +94,9 @@ pub enum Command {
     Import(Import),
     /// Write a run of the store to a file
     Export(Export),
+    /// Write what was understood of a file as a run table with its meta.json; no kind and no required columns are needed
+    #[command(after_help = kept::CONVERT)]
+    Convert(Convert),
     /// Say what a run of the store shows: its procedure's verdict, quantities and intervals
     Identify(Identify),
     /// Write a run as one page to send and to print
@@ -241,7 +246,7 @@ pub struct Autopilot {
 /// A measured run, or several of one joint, and how to read and prepare it.
 #[derive(Debug, Args)]
 pub struct Measured {
-    /// Run table: .csv, .csv.gz, .parquet or .arrow, or the folder of a run.csv; further runs of the same kind and
+    /// Run table: text (.csv, .tsv, .txt, .dat and others, also .gz), .parquet or .arrow, or the folder of a run.csv; further runs of the same kind and
     /// joint are looked at together with the first, in the order in which they were made
     #[arg(required = true, value_name = "RUN")]
     pub files: Vec<PathBuf>,
@@ -260,22 +265,6 @@ pub struct Measured {
     pub own: OwnEffects,
     #[command(flatten)]
     pub preparation: Preparation,
-}
-
-#[derive(Debug, Args)]
-pub struct Columns {
-    /// Take a column from one of another name, such as motor_current_a=Iq; may be given again
-    #[arg(long, value_name = "COLUMN=NAME")]
-    pub map: Vec<String>,
-    /// Multiply a column, such as motor_position_rad=0.0174533; may be given again
-    #[arg(long, value_name = "COLUMN=FACTOR")]
-    pub scale: Vec<String>,
-    /// Leave a column of the file out, such as one of remarks; may be given again
-    #[arg(long, value_name = "NAME")]
-    pub leave: Vec<String>,
-    /// Leave out rows with an empty cell, which are refused otherwise; how many is told
-    #[arg(long)]
-    pub leave_empty_rows: bool,
 }
 
 /// How the run is prepared. Everything left out is chosen from the data and told with the fit.
