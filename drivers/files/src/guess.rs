@@ -29,113 +29,40 @@ impl Proposal {
 }
 
 /// Names without their units that people give these columns, the surest first.
-const ALIASES: [(&str, &[&str]); 15] = [
+const ALIASES: [(&str, &str); 15] = [
     (
         "motor_position_rad",
-        &[
-            "motor_position",
-            "motor_pos",
-            "motor_angle",
-            "theta_m",
-            "thetam",
-            "rotor_position",
-            "encoder",
-            "encoder_position",
-            "position",
-            "pos",
-            "angle",
-            "q",
-            "phi",
-            "theta",
-            "winkel",
-        ],
+        "motor_position motor_pos motor_angle theta_m rotor_position encoder encoder_position position pos angle q phi theta \
+         winkel",
     ),
     (
         "motor_velocity_rad_s",
-        &[
-            "motor_velocity",
-            "motor_vel",
-            "motor_speed",
-            "omega_m",
-            "velocity",
-            "vel",
-            "speed",
-            "omega",
-            "qd",
-            "dq",
-            "rpm",
-            "w",
-            "drehzahl",
-            "velocity_estimate",
-        ],
+        "motor_velocity motor_vel motor_speed omega_m velocity velocity_measured vel speed omega qd dq rpm w drehzahl \
+         velocity_estimate",
     ),
     (
         "motor_current_a",
-        &[
-            "motor_current",
-            "iq",
-            "i_q",
-            "iq_measured",
-            "iq_meas",
-            "current_q",
-            "current",
-            "cur",
-            "i",
-            "amps",
-            "strom",
-            "motor_current_measured",
-        ],
+        "motor_current iq i_q iq_measured iq_meas q_current current_q current cur i amps strom motor_current_measured",
     ),
     (
         "link_position_rad",
-        &[
-            "link_position",
-            "link_pos",
-            "link_angle",
-            "output_position",
-            "output_pos",
-            "output_angle",
-            "load_position",
-            "load_angle",
-            "joint_position",
-            "joint_angle",
-        ],
+        "link_position link_pos link_angle output_position output_pos output_angle load_position load_angle joint_position \
+         joint_angle",
     ),
-    (
-        "link_velocity_rad_s",
-        &["link_velocity", "link_vel", "output_velocity", "output_speed", "load_velocity", "joint_velocity"],
-    ),
+    ("link_velocity_rad_s", "link_velocity link_vel output_velocity output_speed load_velocity joint_velocity"),
     (
         "link_torque_nm",
-        &[
-            "link_torque",
-            "load_torque",
-            "output_torque",
-            "sensor_torque",
-            "joint_torque",
-            "torque",
-            "tau",
-            "load",
-            "moment",
-            "drehmoment",
-            "last",
-        ],
+        "link_torque load_torque output_torque sensor_torque joint_torque torque tau load moment drehmoment last",
     ),
-    (
-        "temperature_c",
-        &["temperature", "temp", "winding_temperature", "motor_temperature", "motor_temp", "tmotor", "t_motor"],
-    ),
-    ("brake_current_a", &["brake_current", "i_brake", "ibrake", "current", "i"]),
-    ("brake_torque_nm", &["brake_torque", "torque", "tau", "drehmoment"]),
-    ("velocity_rad_s", &["velocity", "vel", "speed", "omega", "rpm", "w"]),
-    ("position_rad", &["position", "pos", "angle", "phi"]),
-    ("reference_position_rad", &["reference_position", "reference", "ref", "ref_position", "ref_angle", "ref_pos"]),
-    (
-        "test_position_rad",
-        &["test_position", "test", "dut", "test_angle", "dut_position", "encoder_position", "encoder"],
-    ),
-    ("segment", &["segment", "seg", "step", "leg"]),
-    ("repeat", &["repeat", "rep", "cycle", "pass"]),
+    ("temperature_c", "temperature temp winding_temperature motor_temperature motor_temp t_motor"),
+    ("brake_current_a", "brake_current i_brake current i"),
+    ("brake_torque_nm", "brake_torque torque tau drehmoment"),
+    ("velocity_rad_s", "velocity velocity_measured vel speed omega rpm w"),
+    ("position_rad", "position pos angle phi"),
+    ("reference_position_rad", "reference_position reference ref ref_position ref_angle ref_pos"),
+    ("test_position_rad", "test_position test dut test_angle dut_position encoder_position encoder"),
+    ("segment", "segment seg step leg"),
+    ("repeat", "repeat rep cycle pass"),
 ];
 
 /// The most likely source of each column that is not there; no source twice.
@@ -183,7 +110,7 @@ fn rank(column: &str, source: &Column) -> Option<usize> {
         "time_s" => is_time(&bare).then_some(0),
         _ => {
             let (_, names) = ALIASES.iter().find(|(name, _)| *name == column)?;
-            names.iter().position(|name| *name == bare || name.replace('_', "") == bare)
+            names.split_whitespace().position(|name| name == bare || name.replace('_', "") == bare)
         }
     }
 }

@@ -91,6 +91,9 @@ const TIMES: [&str; 22] = [
     "time_of_day",
 ];
 
+/// Columns whose names are said of other quantities, too.
+const NAMELESS: [&str; 2] = ["velocity_rad_s", "position_rad"];
+
 pub fn is_time(quantity: &str) -> bool {
     TIMES.contains(&quantity)
 }
@@ -112,9 +115,16 @@ pub struct Match {
 /// called in other ways, and without a unit.
 pub fn matches(columns: &[Column], kind: Option<Kind>, motion: Motion) -> Vec<Match> {
     let there = |name: &str| columns.iter().any(|column| column.name == name);
-    let wanted = kind.map_or_else(|| vec!["time_s"], |kind| known(kind).collect());
+    let wanted: Vec<&'static str> = match kind {
+        Some(kind) => known(kind).collect(),
+        // A position of what, without a kind?
+        None => Kind::ALL.into_iter().flat_map(known).filter(|name| !NAMELESS.contains(name)).collect(),
+    };
     let mut found: Vec<Match> = Vec::new();
     for column in wanted.into_iter().filter(|column| !there(column)) {
+        if found.iter().any(|one| one.column == column) {
+            continue;
+        }
         let candidate = columns.iter().enumerate().find_map(|(place, source)| {
             let is_taken = found.iter().any(|one| one.place == place);
             if is_taken { None } else { match_of(place, source, column, motion) }
