@@ -1,17 +1,21 @@
-//! Parquet and Arrow in: columns of any number type, without gaps.
+//! Parquet and Arrow in: columns of any number type, clocks, and which cells are empty.
 
 use crate::ReadOptions;
+use crate::column::Column;
 use crate::error::{FileError, FileFault};
 use crate::facts::{self, EMBEDDED};
 use crate::raw::RawTable;
+use crate::text::{Content, Stamp};
 use crate::{arrow_check, parquet_check};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{
-    Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+    DurationMicrosecondType, DurationMillisecondType, DurationNanosecondType, DurationSecondType, Float32Type,
+    Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, TimestampMicrosecondType, TimestampMillisecondType,
+    TimestampNanosecondType, TimestampSecondType, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
 };
 use arrow_array::{Array, ArrowPrimitiveType, RecordBatch};
 use arrow_ipc::reader::FileReader;
-use arrow_schema::{ArrowError, DataType, Schema};
+use arrow_schema::{ArrowError, DataType, Field, Schema, TimeUnit};
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::errors::ParquetError;
@@ -59,26 +63,18 @@ fn guarded(name: &str, read: impl FnOnce() -> Result<RawTable, FileError>) -> Re
     })
 }
 
-/// The columns that are read, by their places: all but those to leave. One that holds no numbers is refused before any of it
-/// is decoded.
+/// The columns that are read, by their places: all but those to leave and those that hold no numbers.
 fn wanted(name: &str, schema: &Schema, options: &ReadOptions) -> Result<Vec<usize>, FileError> {
     let names: Vec<String> = schema.fields().iter().map(|field| field.name().clone()).collect();
     options.bounds.check_columns(&names).map_err(|fault| fault.in_file(name))?;
-    let fields = schema.fields().iter().enumerate().filter(|(_, field)| !options.leave.contains(field.name()));
-    fields
-        .map(|(place, field)| match is_numeric(field.data_type()) {
-            true => Ok(place),
-            false => {
-                let found = field.data_type().to_string();
-                Err(FileFault::NotNumeric { found }.in_file(name).in_column(field.name()))
-            }
-        })
-        .collect()
+    let fields = schema.fields().iter().enumerate();
+    let is_read = |field: &Field| !options.leave.contains(field.name()) && is_numeric(field.data_type());
+    Ok(fields.filter(|(_, field)| is_read(field)).map(|(place, _)| place).collect())
 }
 
 fn is_numeric(of: &DataType) -> bool {
     use DataType as D;
-    of.is_integer() || matches!(of, D::Float64 | D::Float32 | D::Boolean)
+    of.is_integer() || matches!(of, D::Float64 | D::Float32 | D::Boolean | D::Timestamp(_, _) | D::Duration(_))
 }
 
 fn collect(
@@ -91,8 +87,8 @@ fn collect(
     let embedded = schema.metadata().get(EMBEDDED);
     let meta =
         embedded.map(|json| facts::parse_meta(&format!("{name}, embedded meta"), json.as_bytes())).transpose()?;
-    let names: Vec<String> = schema.fields().iter().map(|field| field.name().clone()).collect();
-    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+    let mut columns: Vec<Column> = schema.fields().iter().map(|field| empty(field)).collect();
+    let mut clocks: Vec<Option<i64>> = vec![None; columns.len()];
     let mut rows = 0;
     for batch in batches {
         let batch = batch.map_err(|fault| FileFault::Columnar(fault.to_string()).in_file(name))?;
@@ -100,29 +96,36 @@ fn collect(
         options.bounds.check_rows(rows, wanted.len()).map_err(|fault| fault.in_file(name))?;
         for (array, place) in batch.columns().iter().zip(wanted) {
             let column = &mut columns[*place];
-            let first = column.len();
-            append(array.as_ref(), column, options.leave_empty_rows).map_err(|(row, fault)| {
-                let mut error = fault.in_file(name).in_column(&names[*place]);
+            let first = column.values.len();
+            append(array.as_ref(), column, &mut clocks[*place]).map_err(|(row, fault)| {
+                let mut error = fault.in_file(name).in_column(&column.name);
                 error.place.row = row.map(|row| (first + row) as u64 + 1);
                 error
             })?;
         }
     }
-    Ok(RawTable { names, columns, meta })
+    Ok(RawTable { columns, rows, meta, ..RawTable::default() })
+}
+
+fn empty(field: &Field) -> Column {
+    let (name, of) = (field.name().clone(), field.data_type());
+    let content = match of {
+        DataType::Timestamp(_, _) | DataType::Duration(_) => Content::Stamps(Stamp::Date(0)),
+        _ => Content::Numbers,
+    };
+    Column { name, content, other_type: (!is_numeric(of)).then(|| of.to_string()), ..Column::default() }
 }
 
 /// A fault, and the row in the batch where one row is at fault.
 type At<T> = Result<T, (Option<usize>, FileFault)>;
 
-fn append(array: &dyn Array, column: &mut Vec<f64>, leave_empty: bool) -> At<()> {
+fn append(array: &dyn Array, into: &mut Column, clock: &mut Option<i64>) -> At<()> {
     let empty: Vec<usize> = match array.null_count() {
         0 => Vec::new(),
         _ => (0..array.len()).filter(|row| array.is_null(*row)).collect(),
     };
-    if let Some(row) = empty.first().filter(|_| !leave_empty) {
-        return Err((Some(*row), FileFault::NotNumber { found: String::new() }));
-    }
-    let first = column.len();
+    let first = into.values.len();
+    let column = &mut into.values;
     match array.data_type() {
         DataType::Float64 => column.extend_from_slice(array.as_primitive::<Float64Type>().values()),
         DataType::Float32 => widen::<Float32Type>(array, column),
@@ -141,10 +144,49 @@ fn append(array: &dyn Array, column: &mut Vec<f64>, leave_empty: bool) -> At<()>
             exact(values.iter().map(|v| (*v, *v as f64)), column)?;
         }
         DataType::Boolean => column.extend(array.as_boolean().values().iter().map(|on| f64::from(u8::from(on)))),
+        DataType::Timestamp(unit, _) | DataType::Duration(unit) => {
+            let ticks = ticks(array, *unit);
+            let zero = *clock.get_or_insert_with(|| ticks.first().copied().unwrap_or(0));
+            column.extend(ticks.iter().map(|tick| tick.wrapping_sub(zero) as f64 * tick_s(*unit)));
+        }
         other => return Err((None, FileFault::NotNumeric { found: other.to_string() })),
     }
-    empty.iter().for_each(|row| column[first + row] = f64::NAN);
+    into.found.numbers += array.len() - empty.len();
+    for row in empty {
+        into.values[first + row] = f64::NAN;
+        into.found.missing(first + row, b"");
+    }
+    for row in first..into.values.len() {
+        // What is not a number in a file of numbers is a missing one.
+        if into.values[row].is_nan() && !array.is_null(row - first) {
+            into.found.missing(row, b"NaN");
+        }
+    }
     Ok(())
+}
+
+fn tick_s(unit: TimeUnit) -> f64 {
+    match unit {
+        TimeUnit::Second => 1.0,
+        TimeUnit::Millisecond => 1e-3,
+        TimeUnit::Microsecond => 1e-6,
+        TimeUnit::Nanosecond => 1e-9,
+    }
+}
+
+/// The ticks of a clock or of a duration.
+fn ticks(array: &dyn Array, unit: TimeUnit) -> Vec<i64> {
+    let is_clock = matches!(array.data_type(), DataType::Timestamp(_, _));
+    match (unit, is_clock) {
+        (TimeUnit::Second, true) => array.as_primitive::<TimestampSecondType>().values().to_vec(),
+        (TimeUnit::Millisecond, true) => array.as_primitive::<TimestampMillisecondType>().values().to_vec(),
+        (TimeUnit::Microsecond, true) => array.as_primitive::<TimestampMicrosecondType>().values().to_vec(),
+        (TimeUnit::Nanosecond, true) => array.as_primitive::<TimestampNanosecondType>().values().to_vec(),
+        (TimeUnit::Second, false) => array.as_primitive::<DurationSecondType>().values().to_vec(),
+        (TimeUnit::Millisecond, false) => array.as_primitive::<DurationMillisecondType>().values().to_vec(),
+        (TimeUnit::Microsecond, false) => array.as_primitive::<DurationMicrosecondType>().values().to_vec(),
+        (TimeUnit::Nanosecond, false) => array.as_primitive::<DurationNanosecondType>().values().to_vec(),
+    }
 }
 
 fn widen<T: ArrowPrimitiveType>(array: &dyn Array, column: &mut Vec<f64>)

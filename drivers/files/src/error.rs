@@ -1,11 +1,18 @@
 //! Why a file is refused, and where in it.
 
+use crate::text::Decimal;
 use jointbench_instrument::TableFault;
 use std::{fmt, io};
 
+/// So many wrong rows are told of, beside how many there are.
+pub(crate) const TOLD_ROWS: usize = 5;
+
 /// A file that is refused: where, and what was expected.
 #[derive(Debug, thiserror::Error)]
-#[error("{place}: {fault}{}", if fault.is_of_empty_cells() { "; rows with empty cells can be left out" } else { "" })]
+#[error(
+    "{place}: {fault}{}",
+    if fault.is_of_empty_cells() { "; rows with empty cells can be left out with --leave-empty-rows" } else { "" }
+)]
 pub struct FileError {
     pub place: Box<Place>,
     #[source]
@@ -41,30 +48,41 @@ impl fmt::Display for Place {
 pub enum FileFault {
     #[error("{}", io_words(.0))]
     Io(io::Error),
-    #[error("expected a file that ends in .csv, .csv.gz, .parquet or .arrow")]
+    #[error(
+        "expected a table that ends in .csv, .tsv, .txt, .dat, .asc, .log or .lvm (also with .gz behind it), .parquet or .arrow; \
+         save a workbook (.xlsx, .ods) as CSV"
+    )]
     UnknownForm,
     #[error("the file is empty: expected a line of column names, then one line for each sample")]
     Empty,
     #[error("not a whole gzip file ({0}): copy or pack it again")]
     Gzip(String),
-    #[error("expected text in UTF-8, found the byte 0x{0:02x}: save the table as UTF-8")]
+    #[error("expected text, found the byte 0x{0:02x}: save the table as CSV")]
     NotText(u8),
     #[error("there are column names and no sample below them: was the table cut off, or is it still being written?")]
     NoRows,
     #[error("{first}; and {} more rows are wrong: {}", .rows - 1, shown_rows(.more, .rows - 1))]
     Rows { first: Box<FileFault>, more: Vec<Wrong>, rows: usize },
-    #[error("column {number} has no name: expected a name with its unit, such as time_s")]
-    NoName { number: usize },
     #[error(
-        "numbers stand where the line of column names is expected: write it above them, such as time_s,motor_position_rad"
+        "numbers stand where the line of column names is expected, in {columns} columns: write it above them, or name them with \
+         --names, such as --names {proposed}"
     )]
-    NoNames,
+    NoNames { columns: usize, proposed: String },
+    /// What cannot be decided from the file, and the options that decide it.
+    #[error("{said}. Use {}", .options.join(" or "))]
+    Choice { said: String, options: Vec<String> },
+    /// A time that does not rise, what it looks like, and the options that mend it.
+    #[error("{fault}; {said}. Use {}", .options.join(" or "))]
+    Time { fault: TableFault, said: String, options: Vec<String> },
+    /// What the file seems to hold under other names.
+    #[error("{fault}; {said}: {}", .options.join(" "))]
+    Proposed { fault: TableFault, said: &'static str, options: Vec<String> },
     #[error(
         "expected {expected} values as in the line of column names, found {found}{}",
         if found > expected { ": where numbers have commas, semicolons or tabs stand between the columns" } else { "" }
     )]
     Width { expected: usize, found: usize },
-    #[error("expected a number, found {}", shown(.found))]
+    #[error("expected a number, found {}{}", shown(.found), other_sign(.found))]
     NotNumber { found: String },
     #[error("expected numbers, found {found}")]
     NotNumeric { found: String },
@@ -99,6 +117,9 @@ pub struct Wrong {
 }
 
 fn shown_rows(more: &[Wrong], count: usize) -> String {
+    if more.is_empty() {
+        return "…".to_owned();
+    }
     let row = |Wrong { line, column, fault }: &Wrong| match column {
         Some(column) => format!("line {line}, column {column}: {fault}"),
         None => format!("line {line}: {fault}"),
@@ -116,6 +137,15 @@ fn io_words(fault: &io::Error) -> String {
     }
 }
 
+/// What is a number with the other decimal sign.
+fn other_sign(found: &str) -> String {
+    let is_one = |decimal: &Decimal| crate::text::number(found.as_bytes(), *decimal).is_some();
+    match [Decimal::Point, Decimal::Comma].iter().find(|decimal| is_one(decimal)) {
+        Some(decimal) => format!(": it is one with --decimal NAME={}", decimal.word()),
+        None => String::new(),
+    }
+}
+
 fn shown(found: &str) -> String {
     match found {
         "" => "nothing".to_owned(),
@@ -127,7 +157,7 @@ fn shown(found: &str) -> String {
 impl FileFault {
     fn is_of_empty_cells(&self) -> bool {
         match self {
-            Self::NotNumber { found } => found.trim().is_empty(),
+            Self::NotNumber { found } => crate::text::is_missing(found.as_bytes()),
             Self::Rows { first, more, .. } => {
                 first.is_of_empty_cells() || more.iter().any(|wrong| wrong.fault.is_of_empty_cells())
             }
@@ -152,14 +182,38 @@ impl FileError {
     }
 
     /// `wrong`: the first of `rows` rows that are wrong, one at least. Told at the place of the first.
-    pub(crate) fn of_rows(file: &str, mut wrong: Vec<Wrong>, rows: usize) -> Self {
+    pub(crate) fn of_rows(file: &str, mut wrong: Vec<Wrong>, rows: usize, is_text: bool) -> Self {
         let Wrong { line, column, fault } = wrong.remove(0);
         let fault = match rows {
             1 => fault,
             _ => FileFault::Rows { first: Box::new(fault), more: wrong, rows },
         };
-        let error = fault.at_line(file, line);
-        Self { place: Box::new(Place { column, ..*error.place }), ..error }
+        let place = Place { file: file.to_owned(), column, ..Place::default() };
+        let place = match is_text {
+            true => Place { line: Some(line), ..place },
+            false => Place { row: Some(line), ..place },
+        };
+        Self { place: Box::new(place), fault }
+    }
+
+    /// The column that is to be blamed, where one is.
+    pub fn column(&self) -> Option<&str> {
+        match &self.fault {
+            FileFault::Table(fault) | FileFault::Time { fault, .. } | FileFault::Proposed { fault, .. } => {
+                fault.column()
+            }
+            _ => self.place.column.as_deref(),
+        }
+    }
+
+    /// Options that are proposed, as they are written on the command line.
+    pub fn options(&self) -> &[String] {
+        match &self.fault {
+            FileFault::Choice { options, .. }
+            | FileFault::Time { options, .. }
+            | FileFault::Proposed { options, .. } => options,
+            _ => &[],
+        }
     }
 
     /// The machine's trouble (a disk, a permission), not a table that is wrong.

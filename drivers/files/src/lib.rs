@@ -7,84 +7,92 @@
 
 mod arrow_check;
 mod bounds;
+mod column;
 mod columnar;
-mod csv_in;
+mod contradiction;
 mod csv_out;
 mod error;
 mod facts;
+mod form;
+mod guess;
 mod mat_out;
+mod naming;
+mod note;
 mod options;
+mod order;
 mod parquet_check;
 mod parquet_out;
+mod preview;
 mod raw;
 mod table_out;
+mod text;
+mod time;
+mod understand;
+mod unit;
 
 pub use bounds::Bounds;
 pub use csv_out::{CsvWriter, write_csv};
 pub use error::{FileError, FileFault, Place, Wrong};
 pub use facts::{meta_json, meta_path_of, parse_meta};
+pub use guess::Proposal;
 pub use mat_out::{MatWriter, write_mat};
-pub use options::{OptionFault, ReadOptions, parse_map, parse_scale};
+pub use note::{Note, paragraph};
+pub use options::{Choices, OptionFault, ReadOptions, TimeFrom, parse_map, parse_scale};
 pub use parquet_out::{ParquetWriter, write_parquet};
-pub use raw::LEFT_OUT_ROWS;
+pub use preview::{Preview, PreviewColumn, preview};
 pub use table_out::{TableColumn, write_table_csv, write_table_parquet};
+pub use text::Decimal;
+pub use understand::{LEFT_OUT_ROWS, Understood};
+pub use unit::{Dimension, Unit, dimension_of};
 
+use form::Form;
 use jointbench_instrument::{Meta, RunTable, Trace};
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// A file's form, told by the end of its name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
-    Csv,
-    GzippedCsv,
-    Parquet,
-    Arrow,
-}
-
-impl Form {
-    fn of(name: &str) -> Option<Form> {
-        let name = name.to_ascii_lowercase();
-        [
-            (".csv", Form::Csv),
-            (".csv.gz", Form::GzippedCsv),
-            (".parquet", Form::Parquet),
-            (".arrow", Form::Arrow),
-            (".feather", Form::Arrow),
-        ]
-        .into_iter()
-        .find_map(|(end, form)| name.ends_with(end).then_some(form))
-    }
-}
-
 /// Reads a run table with its facts: `options.meta_path`, else what is embedded, else `<name>.meta.json` or `meta.json`
 /// beside the file.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<RunTable, FileError> {
+    Ok(understand(path, options)?.into_run()?.0)
+}
+
+/// What there is in a file, before it is known whether it makes a run: see [`Understood::into_run`].
+pub fn understand(path: &Path, options: &ReadOptions) -> Result<Understood, FileError> {
     let name = path.display().to_string();
-    let bytes = fs::read(path).map_err(|fault| FileFault::Io(fault).in_file(&name))?;
-    let raw = raw_table(&name, &bytes, options)?;
+    understand_as(&name, path, facts::beside(path), options)
+}
+
+/// The same of a file that came over a wire as `name`, which tells its form and stands in messages. Nothing is looked for
+/// beside it.
+pub fn understand_upload(name: &str, path: &Path, options: &ReadOptions) -> Result<Understood, FileError> {
+    understand_as(name, path, None, options)
+}
+
+fn understand_as(
+    name: &str,
+    path: &Path,
+    beside: Option<std::path::PathBuf>,
+    options: &ReadOptions,
+) -> Result<Understood, FileError> {
+    let raw = form::open(name, path, options)?;
     let beside = match (&options.meta_path, &options.meta, &raw.meta) {
         (Some(path), _, _) => Some(facts::read_meta(path)?),
-        (None, None, None) => facts::beside(path).map(|path| facts::read_meta(&path)).transpose()?,
+        (None, None, None) => beside.map(|path| facts::read_meta(&path)).transpose()?,
         _ => None,
     };
-    raw.into_table(&name, &bytes, beside, options)
+    raw.understand(name, beside, options)
 }
 
-/// Reads a run table that came over a wire. `name` tells the form and stands in messages; nothing is looked for beside it.
+/// Reads a run table from memory. `name` tells the form and stands in messages; nothing is looked for beside it.
 pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<RunTable, FileError> {
-    let meta = options.meta_path.as_deref().map(facts::read_meta).transpose()?;
-    raw_table(name, bytes, options)?.into_table(name, bytes, meta, options)
+    Ok(understand_bytes(name, bytes, options)?.into_run()?.0)
 }
 
-fn raw_table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<raw::RawTable, FileError> {
-    match Form::of(name).ok_or_else(|| FileFault::UnknownForm.in_file(name))? {
-        Form::Csv => csv_in::read(name, bytes, options),
-        Form::GzippedCsv => csv_in::read(name, &csv_in::gunzip(name, bytes, &options.bounds)?, options),
-        Form::Parquet => columnar::read_parquet(name, bytes, options),
-        Form::Arrow => columnar::read_arrow(name, bytes, options),
-    }
+/// What there is in a table in memory.
+pub fn understand_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Understood, FileError> {
+    let meta = options.meta_path.as_deref().map(facts::read_meta).transpose()?;
+    form::of_bytes(name, bytes, options)?.understand(name, meta, options)
 }
 
 /// Writes a run to `path` in the form that its name tells: Parquet with embedded facts, or CSV (also `.csv.gz`) with
@@ -97,7 +105,7 @@ pub fn write(path: &Path, meta: &Meta, trace: &Trace) -> Result<(), FileError> {
     let mut out = BufWriter::new(fs::File::create(path).map_err(io_fault)?);
     match form {
         Form::Parquet => write_parquet(&mut out, meta, trace).map_err(io_fault)?,
-        Form::GzippedCsv => {
+        Form::PackedText => {
             let mut packed = flate2::write::GzEncoder::new(&mut out, flate2::Compression::default());
             write_csv(&mut packed, trace).map_err(io_fault)?;
             packed.finish().map_err(io_fault)?;

@@ -1,7 +1,11 @@
 //! How a table with other names or units becomes a run table.
 
 use crate::Bounds;
+use crate::text::Decimal;
+use crate::unit::Unit;
 use jointbench_instrument::Meta;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 /// What to do to a file on its way in.
@@ -19,11 +23,170 @@ pub struct ReadOptions {
     pub leave: Vec<String>,
     /// A row with an empty cell stays out, and is a gap in time. How many did is a fact of the run.
     pub leave_empty_rows: bool,
+    /// Units of the file: (name in the run table, unit).
+    pub unit: Vec<(String, Unit)>,
+    /// Angles that begin anew after a turn, made continuous: (name in the run table, period in its SI unit).
+    pub unwrap: Vec<(String, f64)>,
+    /// Names of the columns, for a table without a line of names.
+    pub names: Vec<String>,
+    /// The decimal sign: of a column of the file, or of all others.
+    pub decimal: Vec<(Option<String>, Decimal)>,
+    pub time: TimeFrom,
+    /// A file in which time begins again holds several recordings: they are joined as runs of one measurement.
+    pub split_runs: bool,
     pub bounds: Bounds,
+}
+
+/// Where time comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum TimeFrom {
+    #[default]
+    Column,
+    /// From the number of the row and this rate [Hz]; for a table without a time.
+    Rate(f64),
+    /// The same, in the place of the time that the table has.
+    RateInstead(f64),
+    /// From the column; rows with one time stamp are spread evenly up to the next.
+    Spread,
+}
+
+impl ReadOptions {
+    /// Columns of the run table that an option names.
+    pub(crate) fn asked(&self) -> Vec<&str> {
+        let mapped = self.map.iter().map(|(name, _)| name);
+        let scaled = self.scale.iter().map(|(name, _)| name).chain(self.unit.iter().map(|(name, _)| name));
+        mapped.chain(scaled).chain(self.unwrap.iter().map(|(name, _)| name)).map(String::as_str).collect()
+    }
+
+    pub(crate) fn decimal_of_all(&self) -> Option<Decimal> {
+        self.decimal.iter().find(|(column, _)| column.is_none()).map(|(_, decimal)| *decimal)
+    }
+
+    /// Where somebody has said it, for all or for this one.
+    pub(crate) fn decimal_of(&self, name: &str) -> Option<Decimal> {
+        let own = self.decimal.iter().find(|(column, _)| column.as_deref() == Some(name));
+        own.map(|(_, decimal)| *decimal).or_else(|| self.decimal_of_all())
+    }
+}
+
+/// What to do to a file, as people and programs write it: options of the command line, parts of a request.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Choices {
+    /// `column=name in the file`.
+    pub map: Vec<String>,
+    /// `column=factor`.
+    pub scale: Vec<String>,
+    /// `column=unit`.
+    pub unit: Vec<String>,
+    /// `column` or `column=period`.
+    pub unwrap: Vec<String>,
+    /// Names in the file.
+    pub leave: Vec<String>,
+    pub leave_empty_rows: bool,
+    /// Names with commas between.
+    pub names: Option<String>,
+    /// `point`, `comma` or `name in the file=comma`.
+    pub decimal: Vec<String>,
+    pub rate: Option<f64>,
+    pub time_from_rate: Option<f64>,
+    pub spread_time: bool,
+    pub split_runs: bool,
+}
+
+impl Choices {
+    /// Each choice as the part of a request: its name and its text.
+    pub fn parts(&self) -> Vec<(&'static str, String)> {
+        let mut parts = Vec::new();
+        for (name, list) in [
+            ("map", &self.map),
+            ("scale", &self.scale),
+            ("unit", &self.unit),
+            ("unwrap", &self.unwrap),
+            ("leave", &self.leave),
+            ("decimal", &self.decimal),
+        ] {
+            parts.extend(list.iter().map(|text| (name, text.clone())));
+        }
+        for (name, number) in [("rate", self.rate), ("time_from_rate", self.time_from_rate)] {
+            parts.extend(number.map(|number| (name, number.to_string())));
+        }
+        for (name, is_chosen) in [
+            ("leave_empty_rows", self.leave_empty_rows),
+            ("spread_time", self.spread_time),
+            ("split_runs", self.split_runs),
+        ] {
+            parts.extend(is_chosen.then(|| (name, true.to_string())));
+        }
+        parts.extend(self.names.iter().map(|names| ("names", names.clone())));
+        parts
+    }
+
+    /// Takes a part of a request. `Ok(false)`: no choice is called so.
+    pub fn take(&mut self, name: &str, text: String) -> Result<bool, OptionFault> {
+        let number = |text: &str| text.trim().parse().map_err(|_| OptionFault::Rate(f64::NAN)).map(Some);
+        match name {
+            "map" => self.map.push(text),
+            "scale" => self.scale.push(text),
+            "unit" => self.unit.push(text),
+            "unwrap" => self.unwrap.push(text),
+            "leave" => self.leave.push(text),
+            "decimal" => self.decimal.push(text),
+            "rate" => self.rate = number(&text)?,
+            "time_from_rate" => self.time_from_rate = number(&text)?,
+            "leave_empty_rows" => self.leave_empty_rows = text == "true",
+            "spread_time" => self.spread_time = text == "true",
+            "split_runs" => self.split_runs = text == "true",
+            "names" => self.names = Some(text),
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Checked, with the widest bounds and no facts.
+    pub fn options(&self) -> Result<ReadOptions, OptionFault> {
+        let each = |list: &[String]| list.to_vec();
+        Ok(ReadOptions {
+            map: self.map.iter().map(|pair| parse_map(pair)).collect::<Result<_, _>>()?,
+            scale: self.scale.iter().map(|pair| parse_scale(pair)).collect::<Result<_, _>>()?,
+            unit: self.unit.iter().map(|pair| parse_unit(pair)).collect::<Result<_, _>>()?,
+            unwrap: self.unwrap.iter().map(|text| parse_unwrap(text)).collect::<Result<_, _>>()?,
+            leave: each(&self.leave),
+            leave_empty_rows: self.leave_empty_rows,
+            names: self.names.iter().flat_map(|names| names.split(',')).map(|name| name.trim().to_owned()).collect(),
+            decimal: self.decimal.iter().map(|text| parse_decimal(text)).collect::<Result<_, _>>()?,
+            time: self.time()?,
+            split_runs: self.split_runs,
+            ..ReadOptions::default()
+        })
+    }
+
+    fn time(&self) -> Result<TimeFrom, OptionFault> {
+        let rate = |rate: f64| if rate.is_finite() && rate > 0.0 { Ok(rate) } else { Err(OptionFault::Rate(rate)) };
+        match (self.rate, self.time_from_rate, self.spread_time) {
+            (None, None, false) => Ok(TimeFrom::Column),
+            (Some(hz), None, false) => Ok(TimeFrom::Rate(rate(hz)?)),
+            (None, Some(hz), false) => Ok(TimeFrom::RateInstead(rate(hz)?)),
+            (None, None, true) => Ok(TimeFrom::Spread),
+            _ => Err(OptionFault::TwoTimes),
+        }
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OptionFault {
+    #[error(
+        "“{0}”: expected COLUMN=UNIT, such as motor_position_rad=deg, motor_position_rad=counts/4096 or motor_velocity_rad_s=rpm"
+    )]
+    Unit(String),
+    #[error("“{0}”: expected COLUMN, or COLUMN=PERIOD in its SI unit, such as motor_position_rad=6.2831853")]
+    Unwrap(String),
+    #[error("“{0}”: expected point or comma, for all columns or for one of the file, such as current_ma=comma")]
+    Decimal(String),
+    #[error("{0} is no rate: expected a number of rows a second above 0")]
+    Rate(f64),
+    #[error("time comes from one place: choose one of --rate, --time-from-rate and --spread-time")]
+    TwoTimes,
     #[error("“{0}”: expected NAME=COLUMN, such as motor_current_a=Iq")]
     Map(String),
     #[error("“{0}”: expected NAME=FACTOR with a finite factor other than 0, such as motor_position_rad=0.0174532925")]
@@ -51,6 +214,37 @@ pub fn parse_scale(text: &str) -> Result<(String, f64), OptionFault> {
     Ok((name.trim().to_owned(), factor))
 }
 
+/// `motor_position_rad=deg` → (`motor_position_rad`, a degree).
+fn parse_unit(text: &str) -> Result<(String, Unit), OptionFault> {
+    let fault = || OptionFault::Unit(text.to_owned());
+    let (name, unit) = text.split_once('=').ok_or_else(fault)?;
+    let unit = Unit::parse(unit).filter(|_| !name.trim().is_empty()).ok_or_else(fault)?;
+    let fits = crate::unit::dimension_of(name.trim()).is_none_or(|of| of == unit.dimension || unit.is_linear());
+    if fits { Ok((name.trim().to_owned(), unit)) } else { Err(fault()) }
+}
+
+fn parse_unwrap(text: &str) -> Result<(String, f64), OptionFault> {
+    let fault = || OptionFault::Unwrap(text.to_owned());
+    let (name, period) = match text.split_once('=') {
+        Some((name, period)) => (name, period.trim().parse().map_err(|_| fault())?),
+        None => (text, TAU),
+    };
+    let is_period = |period: f64| period.is_finite() && period > 0.0;
+    if is_period(period) && !name.trim().is_empty() { Ok((name.trim().to_owned(), period)) } else { Err(fault()) }
+}
+
+fn parse_decimal(text: &str) -> Result<(Option<String>, Decimal), OptionFault> {
+    let (column, word) = match text.rsplit_once('=') {
+        Some((column, word)) => (Some(column.trim().to_owned()), word),
+        None => (None, text),
+    };
+    match word.trim() {
+        "point" => Ok((column, Decimal::Point)),
+        "comma" => Ok((column, Decimal::Comma)),
+        _ => Err(OptionFault::Decimal(text.to_owned())),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,5 +259,31 @@ mod tests {
         for text in ["x_rad", "x_rad=deg", "x_rad=0", "x_rad=inf", "=2"] {
             assert!(parse_scale(text).unwrap_err().to_string().contains("expected NAME=FACTOR"), "{text}");
         }
+    }
+
+    #[test]
+    fn choices_are_checked_where_they_are_written() {
+        let all = Choices {
+            unit: vec!["motor_position_rad=deg".into()],
+            unwrap: vec!["motor_position_rad".into(), "x=1".into()],
+            decimal: vec!["comma".into(), "a=b=point".into()],
+            names: Some("time_s, x".into()),
+            time_from_rate: Some(200.0),
+            ..Choices::default()
+        };
+        let options = all.options().unwrap();
+        assert_eq!(options.unwrap, [("motor_position_rad".to_owned(), TAU), ("x".to_owned(), 1.0)]);
+        assert_eq!((options.decimal_of("a=b"), options.decimal_of("c")), (Some(Decimal::Point), Some(Decimal::Comma)));
+        assert_eq!(
+            (options.names, options.time),
+            (vec!["time_s".to_owned(), "x".into()], TimeFrom::RateInstead(200.0))
+        );
+        let said = |choices: Choices| choices.options().unwrap_err().to_string();
+        let unit = |text: &str| said(Choices { unit: vec![text.into()], ..Choices::default() });
+        assert!(unit("motor_position_rad=rpm").contains("expected COLUMN=UNIT"), "of another dimension");
+        assert!(unit("motor_position_rad").contains("expected COLUMN=UNIT"));
+        assert!(said(Choices { rate: Some(-1.0), ..Choices::default() }).contains("-1 is no rate"));
+        assert!(said(Choices { spread_time: true, rate: Some(1.0), ..Choices::default() }).contains("choose one"));
+        assert!(said(Choices { decimal: vec!["dot".into()], ..Choices::default() }).contains("point or comma"));
     }
 }

@@ -1,94 +1,169 @@
 //! A table as it stands in a file, before names, units and values are checked.
 
-use crate::error::{FileError, FileFault, Place};
-use crate::{Form, ReadOptions, csv_in, facts};
-use jointbench_instrument::{Meta, RunTable, Trace};
+use crate::ReadOptions;
+use crate::column::Column;
+use crate::error::{FileError, FileFault, Place, Wrong};
+use crate::naming::Named;
+use crate::note::Note;
+use crate::text::{Decimal, Lines};
+use jointbench_instrument::Meta;
 
-/// The fact that says how many rows of the file were left out for their empty cells.
-pub const LEFT_OUT_ROWS: &str = "left_out_rows";
+/// A row of another width.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Odd {
+    pub line: u64,
+    pub cells: usize,
+}
 
+#[derive(Debug, Default)]
 pub(crate) struct RawTable {
-    pub names: Vec<String>,
-    pub columns: Vec<Vec<f64>>,
+    pub columns: Vec<Column>,
+    pub rows: usize,
+    /// A text has lines; a columnar file has none.
+    pub is_text: bool,
+    pub lines: Lines,
+    pub names_line: u64,
+    pub odd: Vec<Odd>,
+    pub comments: usize,
+    pub is_cut: bool,
+    /// Rows above which the names stand again.
+    pub named_again: Vec<usize>,
+    /// The rows of the file that stay, where some were left out.
+    pub places: Option<Vec<usize>>,
+    pub decimal: Decimal,
     pub meta: Option<Meta>,
+    pub notes: Vec<Note>,
 }
 
 impl RawTable {
-    /// Renames, scales and checks. `bytes` is the whole file: only a refusal looks into it again, for the line.
-    pub fn into_table(
-        mut self,
-        name: &str,
-        bytes: &[u8],
-        meta: Option<Meta>,
-        options: &ReadOptions,
-    ) -> Result<RunTable, FileError> {
-        self.leave(options).map_err(|fault| fault.in_file(name))?;
-        self.rename(options).map_err(|fault| fault.in_file(name))?;
-        self.scale(options).map_err(|fault| fault.in_file(name))?;
-        let mut meta = meta.or_else(|| options.meta.clone()).or(self.meta.take()).unwrap_or_default();
-        let places = options.leave_empty_rows.then(|| self.leave_empty_rows(&mut meta));
-        let channels = facts::take_resolutions(&mut meta, &self.names);
-        RunTable::new(meta, Trace::from_columns(channels, self.columns)).map_err(|fault| {
-            let mut place = Place { file: name.to_owned(), ..Place::default() };
-            let row = fault.row().map(|row| places.as_ref().map_or(row, |places| places[row]));
-            match (row, Form::of(name)) {
-                (Some(row), Some(Form::Csv)) => place.line = csv_in::line_of(bytes, row),
-                (Some(row), Some(Form::GzippedCsv)) => {
-                    place.line =
-                        csv_in::gunzip(name, bytes, &options.bounds).ok().and_then(|text| csv_in::line_of(&text, row));
-                }
-                (Some(row), _) => place.row = Some(row as u64 + 1),
-                // A column as a whole is at fault: the line of column names.
-                (None, Some(Form::Csv | Form::GzippedCsv)) if fault.column().is_some() => place.line = Some(1),
-                (None, _) => {}
-            }
-            FileError { place: Box::new(place), fault: FileFault::Table(fault) }
-        })
+    pub fn of_text(columns: Vec<Column>) -> Self {
+        Self { columns, is_text: true, names_line: 1, ..Self::default() }
     }
 
-    fn leave(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
+    pub fn place(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
+    }
+
+    pub fn names(&self) -> Vec<String> {
+        self.columns.iter().map(|column| column.name.clone()).collect()
+    }
+
+    /// Where a row stands: by line in a text, else by its number from 1.
+    pub fn located(&self, file: &str, row: usize) -> Place {
+        let place = Place { file: file.to_owned(), ..Place::default() };
+        let row = self.places.as_ref().map_or(row, |places| places[row]);
+        match self.is_text {
+            true => Place { line: self.lines.of(row), ..place },
+            false => Place { row: Some(row as u64 + 1), ..place },
+        }
+    }
+
+    /// Names that nobody has given, or given twice, become names of their own.
+    pub fn name_all(&mut self) {
+        self.leave_index();
+        let mut taken: Vec<String> = Vec::new();
+        for (place, column) in self.columns.iter_mut().enumerate() {
+            if column.name.is_empty() {
+                column.name = format!("column_{}", place + 1);
+                self.notes.push(Note::new(format!("column {} has no name and is called {}", place + 1, column.name)));
+            }
+            if taken.contains(&column.name) {
+                let twice = column.name.clone();
+                let more = (2..).map(|number| format!("{twice}_{number}")).find(|name| !taken.contains(name));
+                column.name = more.unwrap_or_default();
+                let said = format!(
+                    "{twice} stands twice among the names: the first is taken, the other is called {}",
+                    column.name
+                );
+                self.notes.push(Note::new(said));
+            }
+            column.source.clone_from(&column.name);
+            taken.push(column.name.clone());
+        }
+    }
+
+    /// A first column without a name that counts the rows, as data frames write it.
+    fn leave_index(&mut self) {
+        let counts = |column: &Column| {
+            let from = column.values.first().copied().unwrap_or(f64::NAN);
+            let is_counted = |(row, value): (usize, &f64)| *value == from + row as f64;
+            column.values.len() > 1 && column.values.iter().enumerate().all(is_counted)
+        };
+        let is_index = |column: &Column| matches!(column.name.as_str(), "" | "Unnamed: 0") && counts(column);
+        if self.columns.len() > 1 && self.columns.first().is_some_and(is_index) {
+            self.columns.remove(0);
+            self.notes.push(Note::with("the first column counts the rows and was left out", "--names to keep it"));
+        }
+    }
+
+    pub fn leave(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
         for wanted in &options.leave {
-            let place = self.names.iter().position(|name| name == wanted);
-            let place =
-                place.ok_or_else(|| FileFault::NotLeft { wanted: wanted.clone(), there: self.names.clone() })?;
-            self.names.remove(place);
+            let fault = || FileFault::NotLeft { wanted: wanted.clone(), there: self.names() };
+            let place = self.place(wanted).ok_or_else(fault)?;
             self.columns.remove(place);
         }
         Ok(())
     }
 
-    /// The rows that stay, by their places in the file.
-    fn leave_empty_rows(&mut self, meta: &mut Meta) -> Vec<usize> {
-        let rows = self.columns.first().map_or(0, Vec::len);
-        let whole = |row: &usize| self.columns.iter().all(|column| !column[*row].is_nan());
-        let places: Vec<usize> = (0..rows).filter(whole).collect();
-        if places.len() < rows {
-            self.columns = self.columns.iter().map(|c| places.iter().map(|row| c[*row]).collect()).collect();
-            meta.other.insert(LEFT_OUT_ROWS.to_owned(), (rows - places.len()).into());
-        }
-        places
-    }
-
-    fn rename(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
+    pub fn rename(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
         // All sources are looked up before any name changes, so that two columns can swap their names.
-        let places = options.map.iter().map(|(_, column)| {
-            let place = self.names.iter().position(|name| name == column);
-            place.ok_or_else(|| FileFault::Unmapped { wanted: column.clone(), there: self.names.clone() })
+        let places = options.map.iter().map(|(_, wanted)| {
+            self.place(wanted).ok_or_else(|| FileFault::Unmapped { wanted: wanted.clone(), there: self.names() })
         });
         let places: Vec<usize> = places.collect::<Result<_, _>>()?;
         for (place, (name, _)) in places.into_iter().zip(&options.map) {
-            self.names[place] = name.clone();
+            let column = &mut self.columns[place];
+            // Whoever renames a column says what it is, and not in which unit the file has it.
+            column.unit = Named::of(column).unit;
+            column.is_unit_open = name == "time_s" && column.name != *name && column.unit.is_none();
+            column.name.clone_from(name);
         }
         Ok(())
     }
 
-    fn scale(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
-        for (wanted, factor) in &options.scale {
-            let place = self.names.iter().position(|name| name == wanted);
-            let place =
-                place.ok_or_else(|| FileFault::Unscaled { wanted: wanted.clone(), there: self.names.clone() })?;
-            self.columns[place].iter_mut().for_each(|value| *value *= factor);
+    /// Refuses rows of another width and cells that should be numbers, all in one message.
+    pub fn refuse_wrong(
+        &self,
+        file: &str,
+        is_needed: impl Fn(&str) -> bool,
+        leave_empty: bool,
+    ) -> Result<(), FileError> {
+        let other = |column: &&Column| column.other_type.is_some() && is_needed(&column.name);
+        if let Some(column) = self.columns.iter().find(other) {
+            let found = column.other_type.clone().unwrap_or_default();
+            return Err(FileFault::NotNumeric { found }.in_file(file).in_column(&column.name));
         }
-        Ok(())
+        let mut rows: Vec<u64> = self.odd.iter().map(|odd| odd.line).collect();
+        let names = self.columns.len();
+        let width = |odd: &Odd| Wrong {
+            line: odd.line,
+            column: None,
+            fault: FileFault::Width { expected: names, found: odd.cells },
+        };
+        let mut told: Vec<Wrong> = self.odd.iter().take(crate::error::TOLD_ROWS).map(width).collect();
+        let line = |row: usize| if self.is_text { self.lines.of(row).unwrap_or_default() } else { row as u64 + 1 };
+        for column in self.columns.iter().filter(|column| is_needed(&column.name)) {
+            let missing = column.found.first_missing.iter().filter(|_| !leave_empty);
+            told.extend(column.found.wrong.iter().chain(missing).map(|cell| Wrong {
+                line: line(cell.row),
+                column: Some(column.name.clone()),
+                fault: FileFault::NotNumber { found: cell.text.clone() },
+            }));
+            rows.extend(column.found.wrong_rows.iter().map(|row| line(*row)));
+            if column.found.missing > 0 && !leave_empty {
+                let empty = column.values.iter().enumerate().filter(|(_, value)| value.is_nan());
+                rows.extend(empty.map(|(row, _)| line(row)));
+            }
+        }
+        rows.sort_unstable();
+        rows.dedup();
+        // The first fault of each row is told.
+        told.sort_by_key(|wrong| wrong.line);
+        told.dedup_by_key(|wrong| wrong.line);
+        told.truncate(crate::error::TOLD_ROWS);
+        match rows.len() {
+            0 => Ok(()),
+            count => Err(FileError::of_rows(file, told, count, self.is_text)),
+        }
     }
 }

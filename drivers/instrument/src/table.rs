@@ -29,7 +29,8 @@ pub enum TableFault {
     MissingColumn { kind: Kind, column: &'static str, found: Vec<String> },
     #[error(
         "column {found}: the unit is not the expected one, expected {expected}; convert it with --map {expected}={found} \
-         --scale {expected}=FACTOR"
+         --unit {expected}={}",
+        unit_words(.found, .expected)
     )]
     WrongUnit { found: String, expected: String },
     #[error("{fact} = {value} in the facts: expected {expected}")]
@@ -205,6 +206,17 @@ fn unit_suffix(name: &str, unit: &str) -> usize {
         "rad" => "_rad".len(),
         "Nm" => "_nm".len(),
         _ => name.len() - name.rfind('_').unwrap_or(name.len()),
+    }
+}
+
+/// The unit of a name that has the quantity of `expected`, as an option takes it.
+fn unit_words(found: &str, expected: &str) -> String {
+    let unit = crate::units::unit_of(expected).map_or(0, |unit| unit_suffix(expected, unit));
+    let rest = found.get(expected.len() - unit..).unwrap_or_default().trim_start_matches('_');
+    match rest {
+        "" => "UNIT".to_owned(),
+        "counts" => "counts/PER_TURN".to_owned(),
+        _ => rest.replace("_s", "/s"),
     }
 }
 

@@ -103,8 +103,11 @@ fn operations() -> OpenApiRouter<Lab> {
         routes.layer(middleware::from_fn_with_state(weight::Gate::of(at_once), weight::one_by_one))
     };
     let turns = Arc::new(Semaphore::new(size::UPLOADS));
-    let uploads = sized(OpenApiRouter::new().routes(routes!(transfer::import)), size::UPLOAD_LIMIT_BYTES)
-        .layer(middleware::from_fn(move |request, next| size::queue(turns.clone(), request, next)));
+    let uploads = sized(
+        OpenApiRouter::new().routes(routes!(transfer::import)).routes(routes!(transfer::preview)),
+        size::UPLOAD_LIMIT_BYTES,
+    )
+    .layer(middleware::from_fn(move |request, next| size::queue(turns.clone(), request, next)));
     let tables = gated(TABLES_AT_ONCE, OpenApiRouter::new().routes(routes!(tables::write)));
     let tables = sized(tables, size::TABLE_LIMIT_BYTES);
     let rest = OpenApiRouter::new()

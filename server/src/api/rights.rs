@@ -4,7 +4,8 @@
 use axum::http::Method;
 
 /// They need a body, and keep nothing.
-const ASKING: [&str; 5] = [
+const ASKING: [&str; 6] = [
+    "/api/v1/runs/import/preview",
     "/api/v1/procedures/{id}/preview",
     "/api/v1/effects/check",
     "/api/v1/models/{id}/evaluate",

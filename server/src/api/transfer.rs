@@ -1,10 +1,10 @@
 //! Run tables in and out, as files.
 
-use super::extract::{Created, Path, Query, created};
+use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::{Problem, Refusals};
 use crate::job::Streamed;
 use crate::lab::{Caller, ExportRequest, FileFormat, ImportRequest, Lab, LabError};
-use crate::view::Run;
+use crate::view::{ImportPreview, Run};
 use axum::Extension;
 use axum::body::{Body, Bytes, HttpBody};
 use axum::extract::State;
@@ -75,7 +75,8 @@ pub struct ImportQuery {
 #[derive(ToSchema)]
 #[allow(dead_code, reason = "describes the multipart body in the specification")]
 pub struct ImportForm {
-    /// Run table: `.csv`, `.csv.gz`, `.parquet` or `.arrow`. The part carries the file's name.
+    /// Run table: text (`.csv`, `.tsv`, `.txt`, `.dat` and others, also `.gz`), `.parquet` or `.arrow`. The part carries the
+    /// file's name.
     #[schema(value_type = String, format = Binary)]
     file: Vec<u8>,
     /// `meta.json`; a Parquet file may carry it itself.
@@ -88,6 +89,22 @@ pub struct ImportForm {
     leave: Option<Vec<String>>,
     /// Whether to omit rows with an empty cell (rejected otherwise). The run states their number.
     leave_empty_rows: Option<bool>,
+    /// `column=unit`, such as `motor_position_rad=deg`; may be repeated.
+    unit: Option<Vec<String>>,
+    /// `column` or `column=period`: an angle that begins anew after a turn is made continuous; may be repeated.
+    unwrap: Option<Vec<String>>,
+    /// Names of the columns with commas between, for a table without a line of names.
+    names: Option<String>,
+    /// `point`, `comma` or `name in the file=comma`: the decimal sign; may be repeated.
+    decimal: Option<Vec<String>>,
+    /// Rows a second of a table without a time.
+    rate: Option<f64>,
+    /// The same in the place of the time that the table has.
+    time_from_rate: Option<f64>,
+    /// Whether rows of one time stamp are spread evenly up to the next.
+    spread_time: Option<bool>,
+    /// Whether a file in which the time begins again is taken as several recordings of one measurement.
+    split_runs: Option<bool>,
 }
 
 /// Imports a measured file as a run; a rejected file stores no data
@@ -102,6 +119,15 @@ pub async fn import(
 ) -> Created<Run> {
     let (request, _lies) = read_form(&lab, form, query.name).await?;
     created(lab.import(request, &caller.name).await?)
+}
+
+/// What a file holds, what was understood of it and what is proposed; keeps nothing
+#[utoipa::path(post, path = "/runs/import/preview", operation_id = "preview_import", tag = "runs",
+    request_body(content = ImportForm, content_type = "multipart/form-data"),
+    responses((status = 200, description = "The preview", body = ImportPreview), Refusals))]
+pub async fn preview(State(lab): State<Lab>, form: Multipart) -> Answer<ImportPreview> {
+    let (request, _lies) = read_form(&lab, form, None).await?;
+    Ok(Json(lab.preview_file(request).await?.into()))
 }
 
 /// All parts but the file together.
@@ -124,13 +150,14 @@ async fn read_form(lab: &Lab, mut form: Multipart, name: Option<String>) -> Resu
                 write(part, &mut file).await?;
             }
             "meta" => request.meta = Some(words.of(part).await?),
-            "map" => request.map.push(words.of(part).await?),
-            "scale" => request.scale.push(words.of(part).await?),
-            "leave" => request.leave.push(words.of(part).await?),
-            "leave_empty_rows" => request.leave_empty_rows = words.of(part).await? == "true",
-            other => {
-                let expected = "file, meta, map, scale, leave or leave_empty_rows";
-                return Err(Problem::malformed(format!("part {other:?}: expected {expected}")));
+            name => {
+                let text = words.of(part).await?;
+                if !request.choices.take(name, text).map_err(LabError::from)? {
+                    let expected = "file, meta, or a choice such as map, unit or leave_empty_rows";
+                    return Err(Problem::malformed(format!(
+                        "part {name:?}: expected {expected}; /api/v1/openapi.json names them all"
+                    )));
+                }
             }
         }
     }

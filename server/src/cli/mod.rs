@@ -5,6 +5,7 @@ mod autopilot;
 mod backup;
 mod check;
 mod client;
+mod convert;
 mod demo;
 mod exit;
 mod files;
@@ -70,6 +71,7 @@ pub fn main() -> ExitCode {
         Command::Model(arguments) => model::model(&arguments),
         Command::Import(arguments) => transfer::import(&arguments),
         Command::Export(arguments) => transfer::export(&arguments),
+        Command::Convert(arguments) => convert::convert(&arguments),
         Command::Identify(arguments) => identify::identify(&arguments),
         Command::Report(arguments) => identify::report(&arguments),
         Command::Backup(arguments) => backup::backup(&arguments),

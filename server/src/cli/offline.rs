@@ -5,7 +5,7 @@ use super::exit::{Done, Exit};
 use super::files;
 use super::print;
 use crate::lab::{Offer, next_run, reread};
-use jointbench_files::{LEFT_OUT_ROWS, ReadOptions, parse_map, parse_scale};
+use jointbench_files::{ReadOptions, Understood, paragraph, understand};
 use jointbench_instrument::RunTable;
 use jointbench_model::{ModelSpec, Open, Options};
 use serde::Serialize;
@@ -110,18 +110,17 @@ fn open(measured: &Measured) -> Result<(RunTable, ModelSpec, Options), Exit> {
 }
 
 pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<RunTable, Exit> {
-    let mut options = ReadOptions {
-        meta_path: meta.map(Path::to_owned),
-        leave: columns.leave.clone(),
-        leave_empty_rows: columns.leave_empty_rows,
-        ..ReadOptions::default()
-    };
-    for pair in &columns.map {
-        options.map.push(parse_map(pair)?);
+    let (understood, table) = understood(file, meta, columns)?;
+    let (run, notes) = understood.into_run()?;
+    if !notes.is_empty() {
+        eprintln!("{}: {}", table.display(), paragraph(&notes));
     }
-    for pair in &columns.scale {
-        options.scale.push(parse_scale(pair)?);
-    }
+    Ok(run)
+}
+
+/// What there is in a file, and which file that is.
+pub(super) fn understood(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<(Understood, PathBuf), Exit> {
+    let options = ReadOptions { meta_path: meta.map(Path::to_owned), ..columns.choices().options()? };
     let table = files::table(file)?;
     if !table.exists() && file.to_str().is_some_and(|name| name.parse::<u64>().is_ok()) {
         let run = file.display();
@@ -129,11 +128,7 @@ pub(super) fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Resul
             "file {run} does not exist; to write the stored run {run} to a file: jointbench export {run}"
         )));
     }
-    let run = jointbench_files::read(&table, &options)?;
-    if let Some(rows) = run.meta().other.get(LEFT_OUT_ROWS) {
-        eprintln!("{}: {rows} rows with an empty cell omitted", table.display());
-    }
-    Ok(run)
+    Ok((understand(&table, &options)?, table))
 }
 
 fn options(preparation: &Preparation) -> Result<Options, Exit> {

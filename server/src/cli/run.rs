@@ -133,9 +133,30 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     }
     match arguments.wait || arguments.junit.is_some() || !arguments.require.is_empty() {
         // The arguments were good: from here on it is the run that fails.
-        true => wait(client, id).map_err(|exit| lost(id, client.is_answered(), &exit.said)),
+        true => {
+            say_that_it_goes_on(id);
+            wait(client, id).map_err(|exit| lost(id, client.is_answered(), &exit.said))
+        }
         false => Ok(run),
     }
+}
+
+/// As a shell says of a command that Ctrl-C has ended.
+const INTERRUPTED: i32 = 130;
+
+/// Ctrl-C ends the waiting and not the run, which the person at the bench has to know at once.
+fn say_that_it_goes_on(id: i64) {
+    std::thread::spawn(move || {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        // Without it Ctrl-C ends this command as it ends any other.
+        let Ok(runtime) = runtime else { return };
+        if runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
+            eprintln!(
+                "\nrun {id} goes on: `jointbench runs id:{id}` shows it, `jointbench stop` ends it in an orderly way"
+            );
+            std::process::exit(INTERRUPTED);
+        }
+    });
 }
 
 /// What is known of a run whose daemon has gone, and of one that cannot be asked for any more.

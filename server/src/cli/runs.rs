@@ -8,10 +8,12 @@ use super::serve::runtime;
 use super::transfer::{Way, open};
 use crate::lab::{LabError, Order, RunFilter};
 use crate::view::{RunList, RunSummary, word};
+use jiff::Timestamp;
+use jiff::tz::TimeZone;
 use jointbench_model::words;
 
-/// What stands above the list; error and Coulomb friction are of the last version that is not idle.
-const HEAD: &str = "  run  started           state        procedure                 bench             duration       rows       error     Coulomb";
+/// What stands above the list; times are local, error and Coulomb friction are of the last version that is not idle.
+const HEAD: &str = "  run  started (local)   state        procedure                 bench             duration       rows       error     Coulomb";
 const BENCH: usize = 16;
 
 /// Of a run that is not over, in a folder that no daemon has.
@@ -55,7 +57,7 @@ pub fn runs(arguments: &Runs) -> Done {
 
 fn line(run: &RunSummary) -> String {
     let duration = run.duration_s.map(|s| format!("{s:.0} s")).unwrap_or_default();
-    let day = run.created_at.get(..16).unwrap_or(&run.created_at).replace('T', " ");
+    let day = local(&run.created_at, &TimeZone::system());
     let reason = run.damaged.as_ref().or(run.reason.as_ref()).map(|reason| format!("  {reason}")).unwrap_or_default();
     let not_stored = run.not_stored.as_ref().map(|why| format!("  not yet stored: {why}")).unwrap_or_default();
     let (id, state, procedure, rows) = (run.id, word(run.state), &run.procedure, run.rows);
@@ -72,6 +74,14 @@ fn line(run: &RunSummary) -> String {
     )
 }
 
+/// A moment of the API, which is in UTC, on the clock of the person who reads the list.
+fn local(moment: &str, zone: &TimeZone) -> String {
+    match moment.parse::<Timestamp>() {
+        Ok(moment) => moment.to_zoned(zone.clone()).strftime("%Y-%m-%d %H:%M").to_string(),
+        Err(_) => moment.to_owned(),
+    }
+}
+
 /// As it may stand in an address.
 fn encoded(text: &str) -> String {
     let byte = |byte: u8| match byte {
@@ -83,7 +93,15 @@ fn encoded(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::encoded;
+    use super::{encoded, local};
+    use jiff::tz::TimeZone;
+
+    #[test]
+    fn a_moment_is_told_on_the_clock_of_who_reads_it() {
+        let tokyo = TimeZone::fixed(jiff::tz::offset(9));
+        assert_eq!(local("2026-11-26T18:13:02.602Z", &tokyo), "2026-11-27 03:13");
+        assert_eq!(local("", &tokyo), "");
+    }
 
     #[test]
     fn a_search_may_stand_in_an_address() {

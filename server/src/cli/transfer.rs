@@ -7,7 +7,7 @@ use super::files::{self, table, write};
 use super::serve::runtime;
 use crate::api::Health;
 use crate::job::Job;
-use crate::lab::{ATTENTION, COPY_OF, ExportRequest, FileFormat, ImportRequest, LOCAL, Lab, LabError};
+use crate::lab::{ATTENTION, COPY_OF, ExportRequest, FileFormat, ImportRequest, LOCAL, Lab, LabError, UNDERSTOOD};
 use crate::view::Run;
 use jointbench_files::meta_path_of;
 use std::path::{Path, PathBuf};
@@ -26,6 +26,9 @@ pub fn import(arguments: &Import) -> Done {
         println!("run {}: {} ({}, {} rows)", summary.id, file.display(), summary.kind, summary.rows);
         if let Some(original) = run.provenance["imported"][COPY_OF].as_i64() {
             println!("  its samples are identical to those of run {original} (a copy, not a repeat)");
+        }
+        if let Some(said) = run.provenance["imported"][UNDERSTOOD].as_str() {
+            println!("  {said}");
         }
         for sentence in run.provenance["imported"][ATTENTION].as_array().into_iter().flatten() {
             println!("  warning: {}", sentence.as_str().unwrap_or_default());
@@ -53,7 +56,7 @@ pub fn export(arguments: &Export) -> Done {
         }
     };
     let named = || PathBuf::from(format!("run-{run}.{}", format.extension()));
-    let path = arguments.output.clone().unwrap_or_else(named);
+    let path = arguments.out.clone().unwrap_or_else(named);
     write(&path, &bytes)?;
     println!("{}", path.display());
     if format == FileFormat::Csv {
@@ -66,7 +69,7 @@ pub fn export(arguments: &Export) -> Done {
 
 /// What was asked for, or what the file's ending says.
 fn format(arguments: &Export) -> Result<FileFormat, Exit> {
-    let ending = arguments.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
+    let ending = arguments.out.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
     let said = [FileFormat::Csv, FileFormat::Parquet, FileFormat::Mat]
         .into_iter()
         .find(|format| Some(format.extension()) == ending);
@@ -120,7 +123,8 @@ pub(super) fn open(runtime: &tokio::runtime::Runtime, place: &StorePlace, makes_
 
 fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportRequest, Exit> {
     let beside = [meta_path_of(file), file.with_file_name("meta.json")].into_iter().find(|path| path.is_file());
-    let carries_its_own = !matches!(file.extension().and_then(|end| end.to_str()), Some("csv" | "gz"));
+    let carries_its_own =
+        matches!(file.extension().and_then(|end| end.to_str()), Some("parquet" | "arrow" | "feather"));
     let meta = match (meta, beside) {
         (Some(path), _) => Some(files::read_text(path)?),
         (None, Some(path)) if !carries_its_own => Some(files::read_text(&path)?),
@@ -131,10 +135,7 @@ fn read(file: &Path, meta: Option<&Path>, columns: &Columns) -> Result<ImportReq
         file_name: file.display().to_string(),
         file: file.to_owned(),
         meta,
-        map: columns.map.clone(),
-        scale: columns.scale.clone(),
-        leave: columns.leave.clone(),
-        leave_empty_rows: columns.leave_empty_rows,
+        choices: columns.choices(),
     })
 }
 
@@ -154,10 +155,9 @@ fn upload(client: &Client, request: &ImportRequest) -> Result<Run, Exit> {
     if let Some(meta) = &request.meta {
         part("\"meta\"", meta.as_bytes());
     }
-    request.map.iter().for_each(|pair| part("\"map\"", pair.as_bytes()));
-    request.scale.iter().for_each(|pair| part("\"scale\"", pair.as_bytes()));
-    request.leave.iter().for_each(|name| part("\"leave\"", name.as_bytes()));
-    part("\"leave_empty_rows\"", request.leave_empty_rows.to_string().as_bytes());
+    for (name, text) in request.choices.parts() {
+        part(&format!("\"{name}\""), text.as_bytes());
+    }
     body.extend_from_slice(format!("--{boundary}--\r\n").as_bytes());
     client.post_bytes("/runs/import", &format!("multipart/form-data; boundary={boundary}"), &body)
 }

@@ -104,12 +104,17 @@ pub enum Job {
         rows: PathBuf,
         uploaded: bool,
     },
+    /// What a file holds, before it is taken in.
+    Preview {
+        request: ImportRequest,
+        uploaded: bool,
+    },
 }
 
 impl Job {
     /// Files wait for each other, not for computations: a slow reader of an export holds up no fit.
     fn moves_a_file(&self) -> bool {
-        matches!(self, Job::Export(_) | Job::Import { .. })
+        matches!(self, Job::Export(_) | Job::Import { .. } | Job::Preview { .. })
     }
 }
 

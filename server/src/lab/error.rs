@@ -87,10 +87,7 @@ impl From<crate::store::StoreError> for LabError {
 
 impl From<jointbench_files::FileError> for LabError {
     fn from(error: jointbench_files::FileError) -> Self {
-        let column = match &error.fault {
-            jointbench_files::FileFault::Table(fault) => fault.column().map(str::to_owned),
-            _ => error.place.column.clone(),
-        };
+        let column = error.column().map(str::to_owned);
         let line = error.place.line.or(error.place.row);
         if error.is_io() {
             return LabError::Setup(error.to_string());

@@ -42,7 +42,7 @@ pub use log::OF_TOKENS;
 pub use models::diagnose;
 pub use tables::TableFormat;
 pub use tokens::{Caller, LOCAL, Tokens, weakness};
-pub use transfer::{ATTENTION, COPY_OF, ImportRequest};
+pub use transfer::{ATTENTION, COPY_OF, ImportRequest, UNDERSTOOD};
 
 use crate::bench::{Beginning, BenchHandle, store_leftovers, worker};
 use crate::config::BenchDescription;

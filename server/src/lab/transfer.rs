@@ -6,7 +6,9 @@ use super::{Answer, Lab, LabError, UPLOADS};
 use crate::job::Job;
 use crate::store::{BLOCK_ROWS, NewRun, RunFilter};
 use crate::view::Run;
-use jointbench_files::{Bounds, LEFT_OUT_ROWS, ReadOptions, parse_map, parse_meta, parse_scale, read_bytes};
+use jointbench_files::{
+    Bounds, Choices, Note, Preview, ReadOptions, paragraph, parse_meta, preview, understand_upload,
+};
 use jointbench_instrument::{Channel, Meta, RunTable, Trace};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -20,6 +22,8 @@ use tokio::sync::mpsc;
 pub const COPY_OF: &str = "copy_of";
 /// In the provenance of an import: what its columns and facts contradict or lack, in sentences.
 pub const ATTENTION: &str = "attention";
+/// In the provenance of an import: what was skipped or assumed on the way in, in one paragraph.
+pub const UNDERSTOOD: &str = "understood";
 /// Among the facts that leave with a run of a simulated bench, so that it does not come back as one of hardware.
 pub(super) const SIMULATED: &str = "simulated";
 
@@ -33,13 +37,7 @@ pub struct ImportRequest {
     /// Where the bytes lie.
     pub file: PathBuf,
     pub meta: Option<String>,
-    /// `column=name in the file`.
-    pub map: Vec<String>,
-    /// `column=factor`.
-    pub scale: Vec<String>,
-    /// Names in the file.
-    pub leave: Vec<String>,
-    pub leave_empty_rows: bool,
+    pub choices: Choices,
 }
 
 /// What was found in a file, but for its rows.
@@ -50,6 +48,7 @@ pub(super) struct Found {
     channels: Vec<Channel>,
     rows: usize,
     attention: Vec<String>,
+    understood: String,
     copy_of: Option<i64>,
 }
 
@@ -68,12 +67,31 @@ impl Lab {
     pub async fn import(&self, request: ImportRequest, by: &str) -> Answer<Run> {
         let request = request.with_names()?;
         let name = request.name.clone().unwrap_or_else(|| request.file_name.clone());
-        let source =
-            json!({ "file": request.file_name, "map": request.map, "scale": request.scale, "leave": request.leave });
+        let mut source = json!({ "file": request.file_name });
+        for (part, text) in request.choices.parts() {
+            match &mut source[part] {
+                serde_json::Value::Array(several) => several.push(text.into()),
+                none => *none = vec![text].into(),
+            }
+        }
         let (_, rows) = self.upload()?;
         let uploaded = self.inner.jobs.is_some();
         let found = self.work_out(Job::Import { request, rows: rows.to_path_buf(), uploaded }).await?;
         self.keep(&name, source, found, &rows, by).await
+    }
+
+    /// What a file holds and what is proposed for it; keeps nothing.
+    pub async fn preview_file(&self, request: ImportRequest) -> Answer<Preview> {
+        let request = request.with_names()?;
+        let uploaded = self.inner.jobs.is_some();
+        self.work_out(Job::Preview { request, uploaded }).await
+    }
+
+    pub(super) async fn preview_here(&self, request: ImportRequest, uploaded: bool) -> Answer<Preview> {
+        let look = move || Ok(preview(&request.file_name, &request.file, &request.options(uploaded)?)?);
+        tokio::task::spawn_blocking(look)
+            .await
+            .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))?
     }
 
     async fn keep(
@@ -84,9 +102,12 @@ impl Lab {
         rows: &Path,
         by: &str,
     ) -> Answer<Run> {
-        let Found { kind, mut meta, channels, rows: count, attention, copy_of } = found;
+        let Found { kind, mut meta, channels, rows: count, attention, understood, copy_of } = found;
         if !attention.is_empty() {
             source[ATTENTION] = attention.into();
+        }
+        if !understood.is_empty() {
+            source[UNDERSTOOD] = understood.into();
         }
         if let Some(original) = copy_of {
             source[COPY_OF] = original.into();
@@ -116,19 +137,16 @@ impl Lab {
 
     /// Reads and checks a file, and lays its rows down.
     pub(super) async fn read_here(&self, request: ImportRequest, rows: &Path, uploaded: bool) -> Answer<Found> {
-        let bounds = if uploaded { Bounds::UPLOADED } else { Bounds::default() };
-        let table = tokio::task::spawn_blocking(move || read(&request, bounds))
+        let (table, notes) = tokio::task::spawn_blocking(move || read(&request, uploaded))
             .await
             .map_err(|fault| LabError::Internal(format!("reading the file failed: {fault}")))??;
-        let mut attention = jointbench_model::preprocess::attention(&table);
-        if let Some(rows) = table.meta().other.get(LEFT_OUT_ROWS) {
-            attention.push(format!("rows omitted because of an empty cell: {rows}"));
-        }
+        let attention = jointbench_model::preprocess::attention(&table);
+        let understood = paragraph(&notes);
         let kind = table.kind().to_string();
         let (meta, trace) = table.into_parts();
         let copy_of = self.original_of(&kind, &trace).await?;
         lay_down(&trace, rows).map_err(unkept)?;
-        Ok(Found { kind, meta, rows: trace.len(), channels: trace.channels().to_vec(), attention, copy_of })
+        Ok(Found { kind, meta, rows: trace.len(), channels: trace.channels().to_vec(), attention, understood, copy_of })
     }
 
     /// The first run of the store that holds the same samples.
@@ -157,24 +175,16 @@ impl Lab {
     }
 }
 
-fn read(request: &ImportRequest, bounds: Bounds) -> Answer<RunTable> {
-    let mut options = ReadOptions {
-        leave: request.leave.clone(),
-        leave_empty_rows: request.leave_empty_rows,
-        bounds,
-        ..ReadOptions::default()
-    };
-    for pair in &request.map {
-        options.map.push(parse_map(pair)?);
+impl ImportRequest {
+    fn options(&self, uploaded: bool) -> Answer<ReadOptions> {
+        let bounds = if uploaded { Bounds::UPLOADED } else { Bounds::default() };
+        let meta = self.meta.as_ref().map(|meta| parse_meta("meta.json", meta.as_bytes())).transpose()?;
+        Ok(ReadOptions { bounds, meta, ..self.choices.options()? })
     }
-    for pair in &request.scale {
-        options.scale.push(parse_scale(pair)?);
-    }
-    if let Some(meta) = &request.meta {
-        options.meta = Some(parse_meta("meta.json", meta.as_bytes())?);
-    }
-    let bytes = std::fs::read(&request.file).map_err(unkept)?;
-    Ok(read_bytes(&request.file_name, &bytes, &options)?)
+}
+
+fn read(request: &ImportRequest, uploaded: bool) -> Answer<(RunTable, Vec<Note>)> {
+    Ok(understand_upload(&request.file_name, &request.file, &request.options(uploaded)?)?.into_run()?)
 }
 
 fn unkept(fault: io::Error) -> LabError {

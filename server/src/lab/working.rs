@@ -47,6 +47,7 @@ impl Lab {
             }
             Job::Spectrum { run, formula, window } => json(&self.spectrum_here(run, &formula, window).await?),
             Job::Import { request, rows, uploaded } => json(&self.read_here(request, &rows, uploaded).await?),
+            Job::Preview { request, uploaded } => json(&self.preview_here(request, uploaded).await?),
             Job::Export(request) => {
                 let out = Arc::<Mutex<Vec<u8>>>::default();
                 self.export_into(request, Gathered(out.clone())).await?;

@@ -7,6 +7,10 @@ const GOOD: &str = "time_s,motor_position_rad,motor_current_a\n0,0,0.1\n0.004,0.
 const META: &str = r#"{"kind": "friction", "torque_constant_nm_per_a": 0.04}"#;
 
 pub fn upload(daemon: &TestDaemon, table: &str, more: &[(&str, &str)]) -> (u16, Value) {
+    send(daemon, "/api/v1/runs/import", table, more)
+}
+
+fn send(daemon: &TestDaemon, address: &str, table: &str, more: &[(&str, &str)]) -> (u16, Value) {
     let mut body = String::new();
     let mut part = |name: &str, content: &str| {
         body += &format!("--edge\r\nContent-Disposition: form-data; name={name}\r\n\r\n{content}\r\n");
@@ -15,7 +19,7 @@ pub fn upload(daemon: &TestDaemon, table: &str, more: &[(&str, &str)]) -> (u16, 
     more.iter().for_each(|(name, content)| part(&format!("\"{name}\""), content));
     body += "--edge--\r\n";
     let media_type = ("content-type", "multipart/form-data; boundary=edge");
-    daemon.post_with("/api/v1/runs/import", body.as_bytes(), &[media_type])
+    daemon.post_with(address, body.as_bytes(), &[media_type])
 }
 
 #[test]
@@ -55,7 +59,7 @@ fn rows_with_empty_cells_stay_out_where_that_is_asked_for() {
     assert!(status == 422 && problem["detail"].as_str().unwrap().contains("can be left out"), "{problem}");
     let (status, run) = upload(&daemon, &gap, &[("meta", META), ("leave_empty_rows", "true")]);
     assert_eq!((status, &run["rows"]), (201, &2.into()), "{run}");
-    assert!(run["provenance"]["imported"]["attention"].to_string().contains("because of an empty cell: 1"), "{run}");
+    assert!(run["provenance"]["imported"]["understood"].to_string().contains("for an empty cell: 1"), "{run}");
 }
 
 #[test]
@@ -119,4 +123,39 @@ fn a_report_says_whose_data_it_tells_of() {
     assert!(!report.contains("HARDWARE"));
     let report = told(&META.replace('}', r#", "simulated": true}"#));
     assert!(report.contains("SIMULATED</span>") && report.contains("bench.csv"), "{report}");
+}
+
+#[test]
+fn a_preview_says_what_would_be_understood_and_keeps_nothing() {
+    let daemon = TestDaemon::start();
+    let foreign = "Time [ms];pos_deg;Iq [A];remark\n0;90;0,1;cold\n4;91;0,2;\n8;92;0,1;\n";
+    let (status, seen) = send(&daemon, "/api/v1/runs/import/preview", foreign, &[]);
+    assert_eq!((status, &seen["kind"], &seen["rows"]), (200, &"friction".into(), &3.into()), "{seen}");
+    let proposed = |column: &str| {
+        let all = seen["proposals"].as_array().unwrap();
+        let one = all.iter().find(|one| one["column"] == column).unwrap();
+        (one["from"].as_str().unwrap().to_owned(), one["unit"].as_str().unwrap_or_default().to_owned())
+    };
+    assert_eq!(proposed("time_s"), ("Time [ms]".into(), "ms".into()));
+    assert_eq!(proposed("motor_position_rad"), ("pos_deg".into(), "deg".into()));
+    assert_eq!(proposed("motor_current_a"), ("Iq [A]".into(), "A".into()));
+    assert_eq!(seen["left"], serde_json::json!(["remark"]));
+    let options = seen["refused"]["options"].to_string();
+    assert!(options.contains("--map motor_position_rad=pos_deg --unit motor_position_rad=deg"), "{seen}");
+
+    let choices = [
+        ("meta", META),
+        ("map", "motor_position_rad=pos_deg"),
+        ("unit", "motor_position_rad=deg"),
+        ("map", "motor_current_a=Iq [A]"),
+    ];
+    let (status, seen) = send(&daemon, "/api/v1/runs/import/preview", foreign, &choices);
+    assert!(status == 200 && seen["refused"].is_null(), "{seen}");
+    assert_eq!(daemon.get("/api/v1/runs").1["total"], 0);
+    let (status, run) = upload(&daemon, foreign, &choices);
+    assert_eq!((status, &run["rows"]), (201, &3.into()), "{run}");
+    let understood = run["provenance"]["imported"]["understood"].as_str().unwrap();
+    assert!(understood.contains("column remark was left out: it holds words"), "{understood}");
+    let (status, problem) = upload(&daemon, foreign, &[("unit", "motor_position_rad=furlong")]);
+    assert!(status == 422 && problem["detail"].as_str().unwrap().contains("expected COLUMN=UNIT"), "{problem}");
 }

@@ -18,6 +18,7 @@ export type EffectDefinition = Schemas['EffectDefinition'];
 export type Exclusion = Schemas['Exclusion'];
 export type Experiment = Schemas['Experiment'];
 export type Beside = Schemas['Beside'];
+export type ImportPreview = Schemas['ImportPreview'];
 export type Identification = Schemas['Identification'];
 export type IdentifiedQuantity = Schemas['Quantity'];
 export type LiveMessage = Schemas['LiveMessage'];

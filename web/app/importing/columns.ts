@@ -45,23 +45,37 @@ export const KINDS: Kind[] = [
 	},
 ];
 
-export interface Unit {
-	name: string;
-	/** SI value of one of it. */
-	factor: number;
+/** Where a column of the daemon comes from. */
+export interface Source {
+	/** Name in the file; empty: not there. */
+	from: string;
+	/** Name of the unit there; empty: as the file says, or as the daemon asks. */
+	unit: string;
 }
 
-const UNITS: [suffix: string, units: [string, number][]][] = [
-	['_rad_s', [['rad/s', 1], ['rpm', (2 * Math.PI) / 60], ['deg/s', Math.PI / 180]]],
-	['_rad', [['rad', 1], ['deg', Math.PI / 180], ['turn', 2 * Math.PI], ['mrad', 1e-3]]],
-	['_nm', [['Nm', 1], ['mNm', 1e-3], ['Ncm', 1e-2]]],
-	['_a', [['A', 1], ['mA', 1e-3]]],
-	['_s', [['s', 1], ['ms', 1e-3], ['µs', 1e-6]]],
-	['_c', [['°C', 1]]],
+export type Mapping = Record<string, Source>;
+
+/** Units to choose from; the first is the daemon's own. The daemon knows more of them (docs/your-files.md). */
+const UNITS: [suffix: string, units: string[]][] = [
+	['_rad_s', ['rad/s', 'rpm', 'deg/s', 'rev/s']],
+	['_rad', ['rad', 'deg', 'rev', 'mrad', 'arcmin', 'counts/4096', 'counts/8192', 'counts/16384', 'counts/65536']],
+	['_nm', ['Nm', 'mNm', 'Ncm', 'ozf·in', 'lbf·in', 'lbf·ft', 'kgf·cm']],
+	['_a', ['A', 'mA']],
+	['_s', ['s', 'ms', 'µs', 'ns', 'days']],
+	['_c', ['°C', 'K', '°F']],
 ];
 
-/** Units that a column may come in; the first is the daemon's own. */
-export function unitsOf(column: string): Unit[] {
-	const found = UNITS.find(([suffix]) => column.endsWith(suffix));
-	return (found?.[1] ?? [['', 1]]).map(([name, factor]) => ({ name, factor }));
+/** Units that a column may come in, `stated` among them; none for a whole number. */
+export function unitsOf(column: string, stated = ''): string[] {
+	const found = UNITS.find(([suffix]) => column.endsWith(suffix))?.[1] ?? [];
+	return stated && !found.includes(stated) ? [...found, stated] : found;
+}
+
+/** What the daemon is told of where columns come from. */
+export function instructions(mapping: Mapping): { map: string[]; unit: string[] } {
+	const used = Object.entries(mapping).filter(([, source]) => source.from !== '');
+	return {
+		map: used.filter(([column, { from }]) => from !== column).map(([column, { from }]) => `${column}=${from}`),
+		unit: used.filter(([column, { from, unit }]) => unit !== '' && (from !== column || unit !== unitsOf(column)[0])).map(([column, { unit }]) => `${column}=${unit}`),
+	};
 }

@@ -1,4 +1,5 @@
 import { router } from '../state/router.svelte';
+import { filesOf } from './unpack';
 
 /** Files that were let fall on whatever page: people miss small targets, and a browser would leave the dashboard for them. */
 class Dropped {
@@ -20,8 +21,16 @@ class Dropped {
 	drop(event: DragEvent): void {
 		this.hold(event);
 		if (!event.dataTransfer?.files.length) return;
-		this.files = [...event.dataTransfer.files];
+		const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
+		const files = [...event.dataTransfer.files];
+		void this.takeAll(entries, files);
 		if (router.route.page !== 'runs') router.go('/runs');
+	}
+
+	/** Folders with what is in them; a browser that knows no entries gives the files alone. */
+	private async takeAll(entries: FileSystemEntry[], files: File[]): Promise<void> {
+		const found = entries.some((entry) => entry.isDirectory) ? (await Promise.all(entries.map(filesOf))).flat() : files;
+		this.files = found;
 	}
 
 	/** Hands the files over, once. */

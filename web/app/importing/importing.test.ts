@@ -1,60 +1,69 @@
-import { describe, expect, it } from 'vitest';
-import { KINDS, unitsOf } from './columns';
-import { guess, guessKind, instructions, unitIn } from './guess';
-import { parseHead, peek } from './peek';
+import { beforeEach, describe, expect, it } from 'vitest';
+import type { ImportPreview } from '../api/types';
+import { isWhole, parseOption, recall, remember, withOption, without } from './choices';
+import { instructions, unitsOf } from './columns';
+import { unzip } from './unpack';
 
-const friction = KINDS[0]!;
-
-describe('the mapping of a foreign table', () => {
-	const headers = ['Time [ms]', 'pos_deg', 'Iq [A]', 'speed_rpm', 'Torque (mNm)'];
-	const mapping = guess(friction, headers);
-
-	it('is guessed from names and units', () => {
-		expect(mapping['time_s']).toEqual({ from: 'Time [ms]', unit: 'ms' });
-		expect(mapping['motor_position_rad']).toEqual({ from: 'pos_deg', unit: 'deg' });
-		expect(mapping['motor_current_a']).toEqual({ from: 'Iq [A]', unit: 'A' });
-		expect(mapping['motor_velocity_rad_s']).toEqual({ from: 'speed_rpm', unit: 'rpm' });
-		expect(mapping['link_torque_nm']).toEqual({ from: 'Torque (mNm)', unit: 'mNm' });
-		expect(mapping['segment']!.from).toBe('');
+describe('options that the daemon proposes', () => {
+	it('are parts of a request', () => {
+		expect(parseOption('--spread-time')).toEqual([['spread_time', 'true']]);
+		expect(parseOption("--map 'time_s=Time [ms]' --unit time_s=ms")).toEqual([['map', 'time_s=Time [ms]'], ['unit', 'time_s=ms']]);
+		expect([isWhole('--rate HZ'), isWhole('--rate 200'), isWhole('--split-runs')]).toEqual([false, true, true]);
 	});
 
-	it('reads the unit of a column that is chosen by hand from its header', () => {
-		const units = unitsOf('motor_position_rad');
-		expect(['Winkel Motor (°)', 'phi', 'n (rpm)'].map((header) => unitIn(header, units))).toEqual(['deg', 'rad', 'rad']);
-	});
-
-	it('takes the load by the name that the page gives it', () => {
-		for (const load of ['load', 'Load [Nm]', 'load_nm', 'Last']) expect(guess(friction, [load])['link_torque_nm']!.from).toBe(load);
-	});
-
-	it('tells a temperature from a time by its unit', () => {
-		const mapping = guess(friction, ['t [s]', 'T [degC]']);
-		expect([mapping['time_s']!.from, mapping['temperature_c']!.from]).toEqual(['t [s]', 'T [degC]']);
-		expect(guess(friction, ['T_°C'])['time_s']!.from).toBe('');
-	});
-
-	it('becomes what the daemon understands', () => {
-		const { map, scale } = instructions(mapping);
-		expect(map).toContain('motor_current_a=Iq [A]');
-		expect(scale).toContain('time_s=0.001');
-		expect(scale.some((one) => one.startsWith('motor_current_a'))).toBe(false);
-		expect(Number(scale.find((one) => one.startsWith('motor_position_rad'))!.split('=')[1])).toBeCloseTo(Math.PI / 180, 15);
-	});
-
-	it('leaves a table of the daemon alone', () => {
-		const own = [...friction.required, 'temperature_c'];
-		expect(instructions(guess(friction, own))).toEqual({ map: [], scale: [] });
+	it('are taken, exchanged and taken back', () => {
+		const once = withOption({ leave: ['remark'] }, '--unit time_s=ms');
+		expect(withOption(once, '--unit time_s=us')).toEqual({ leave: ['remark'], unit: ['time_s=us'] });
+		expect(withOption({ time_from_rate: ['100'] }, '--time-from-rate 200')).toEqual({ time_from_rate: ['200'] });
+		expect(without(once, 'unit', 'time_s=ms')).toEqual({ leave: ['remark'] });
 	});
 });
 
-it.each(KINDS)('knows a $id table by its columns', (kind) => expect(guessKind(kind.required).id).toBe(kind.id));
+describe('what a person chose', () => {
+	const preview = (...names: string[]) => ({ columns: names.map((name) => ({ name })) }) as ImportPreview;
+	let kept: Record<string, string> = {};
+	const storage = { getItem: (key: string) => kept[key] ?? null, setItem: (key: string, value: string) => void (kept[key] = value) } as unknown as Storage;
+	beforeEach(() => (kept = {}));
 
-it('reads the beginning of a text table, packed or not, and of no other', async () => {
-	const text = 't, "v"\r\n0,1\n1,2\n';
-	expect(parseHead(text)).toEqual({ headers: ['t', 'v'], rows: [['0', '1'], ['1', '2']] });
-	expect(parseHead('\ufefft;"v, w"\r\n0,5;1\n')).toEqual({ headers: ['t', 'v, w'], rows: [['0,5', '1']] });
-	expect(parseHead('t\tv\n0,5\t1').rows).toEqual([['0,5', '1']]);
-	const packed = await new Response(new Blob([text]).stream().pipeThrough(new CompressionStream('gzip'))).arrayBuffer();
-	expect((await peek(new File([packed], 'a.CSV.gz')))?.headers).toEqual(['t', 'v']);
-	expect(await peek(new File(['PAR1'], 'a.parquet'))).toBeNull();
+	it('comes back for a file of the same shape', () => {
+		const what = { kind: 'friction', mapping: { time_s: { from: 't', unit: 'ms' } }, facts: {}, left: [], choices: {} };
+		remember(preview('t', 'x'), what, storage);
+		expect(recall(preview('t', 'x'), storage)).toEqual(what);
+		expect(recall(preview('t', 'y'), storage)).toBeNull();
+	});
+
+	it('becomes what the daemon understands', () => {
+		const mapping = { time_s: { from: 'Time', unit: '' }, motor_position_rad: { from: 'pos', unit: 'deg' }, motor_current_a: { from: 'motor_current_a', unit: 'A' }, segment: { from: '', unit: '' } };
+		expect(instructions(mapping)).toEqual({ map: ['time_s=Time', 'motor_position_rad=pos'], unit: ['motor_position_rad=deg'] });
+		expect(unitsOf('motor_velocity_rad_s', '1/min')).toEqual(['rad/s', 'rpm', 'deg/s', 'rev/s', '1/min']);
+	});
+});
+
+/** A zip archive of one file, as `zip` writes it. */
+async function zip(name: string, text: string, method: 0 | 8): Promise<File> {
+	const plain = new TextEncoder().encode(text);
+	const packed = method === 0 ? plain : new Uint8Array(await new Response(new Blob([plain]).stream().pipeThrough(new CompressionStream('deflate-raw'))).arrayBuffer());
+	const named = new TextEncoder().encode(name);
+	const record = (size: number, fields: [at: number, bytes: 2 | 4, value: number][]) => {
+		const view = new DataView(new ArrayBuffer(size));
+		for (const [at, bytes, value] of fields) bytes === 2 ? view.setUint16(at, value, true) : view.setUint32(at, value, true);
+		return new Uint8Array(view.buffer);
+	};
+	const local = record(30, [[0, 4, 0x04034b50], [8, 2, method], [18, 4, packed.length], [22, 4, plain.length], [26, 2, named.length]]);
+	const entry = record(46, [[0, 4, 0x02014b50], [10, 2, method], [20, 4, packed.length], [24, 4, plain.length], [28, 2, named.length]]);
+	const from = local.length + named.length + packed.length;
+	const end = record(22, [[0, 4, 0x06054b50], [8, 2, 1], [10, 2, 1], [12, 4, entry.length + named.length], [16, 4, from]]);
+	return new File([local, named, packed, entry, named, end], 'runs.zip');
+}
+
+describe('a zip archive', () => {
+	it.each([0, 8] as const)('gives its tables (method %i)', async (method) => {
+		const [file] = await unzip(await zip('day 1/run.csv', 't,x\n0,1\n', method));
+		expect([file?.name, await file?.text()]).toEqual(['run.csv', 't,x\n0,1\n']);
+		expect(await unzip(await zip('notes.docx', 'x', method))).toEqual([]);
+	});
+
+	it('that is none is refused', async () => {
+		await expect(unzip(new File(['PK'], 'runs.zip'))).rejects.toThrow('runs.zip is no whole zip archive');
+	});
 });

@@ -1,4 +1,4 @@
-//! Broken Parquet and Arrow files: each is refused or read, without an end by panic, and in bounded memory.
+//! Broken files of every form: each is refused or read, without an end by panic, and in bounded memory.
 //!
 //! In a process of its own, whose address space is limited: an allocation that a broken length asks for would end it.
 //! `JOINTBENCH_MUTATIONS=100000 cargo test -p jointbench-files --test mutated` tries more.
@@ -91,5 +91,5 @@ fn a_broken_file_is_refused() {
     let caught = caught.load(Ordering::Relaxed) - escaped.len() as u64;
     println!("{tries} files: {refused} refused ({caught} after a panic of a decoder), the others read");
     assert!(escaped.is_empty(), "mutations {escaped:?} end by a panic");
-    assert!(refused > tries / 2, "{refused} of {tries} are refused");
+    assert!(refused > tries / 4, "{refused} of {tries} are refused");
 }

@@ -27,7 +27,7 @@ pub struct Runs {
 
 #[derive(Debug, Args)]
 pub struct Import {
-    /// Run tables: .csv, .csv.gz, .parquet or .arrow
+    /// Run tables: text (.csv, .tsv, .txt, .dat and others, also .gz), .parquet or .arrow
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Meta file of the test conditions [default: RUN.meta.json or meta.json in the folder of each file, or embedded
@@ -44,19 +44,43 @@ pub struct Import {
 pub struct Export {
     /// Number of the run
     pub run: i64,
-    /// File format [default: by the extension of --output, otherwise csv]
+    /// File format [default: by the extension of --out, otherwise csv]
     #[arg(long, value_enum)]
     pub format: Option<FileFormat>,
     /// File to write; for CSV also NAME.meta.json with the test conditions [default: run-N.csv, run-N.parquet or
     /// run-N.mat]
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    #[arg(short, long, visible_alias = "output", value_name = "FILE")]
+    pub out: Option<PathBuf>,
     /// Prefix text cells of a CSV that start with = + - @ with an apostrophe, so that a spreadsheet does not interpret
     /// them as formulas
     #[arg(long)]
     pub spreadsheet_safe: bool,
     #[command(flatten)]
     pub store: StorePlace,
+}
+
+pub const CONVERT: &str = "\
+  jointbench convert log.txt --out run.csv                     what was understood, and run.meta.json beside it
+  jointbench convert log.csv --map motor_current_a=Iq --unit motor_current_a=mA --out run.parquet
+  jointbench convert log.csv --time-from-rate 200 --out run.csv
+
+What was skipped or assumed is said on standard error, each with the option that changes it.";
+
+#[derive(Debug, Args)]
+pub struct Convert {
+    /// Table: text (.csv, .tsv, .txt, .dat and others, also .gz), .parquet or .arrow
+    pub file: PathBuf,
+    /// Facts about the set-up [default: FILE.meta.json or meta.json beside the file, or what is embedded]
+    #[arg(long, value_name = "META.JSON")]
+    pub meta: Option<PathBuf>,
+    /// File to write, .csv, .csv.gz or .parquet; a CSV gets its facts beside it as NAME.meta.json
+    #[arg(short, long, visible_alias = "output", value_name = "RUN.CSV")]
+    pub out: PathBuf,
+    /// Print what was understood as JSON: columns, rows, notes and what was left out
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub columns: Columns,
 }
 
 #[derive(Debug, Args)]

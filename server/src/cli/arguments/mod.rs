@@ -1,11 +1,13 @@
 //! What can be written on the command line.
 
+mod columns;
 mod kept;
 mod model;
 mod place;
 mod steer;
 
-pub use kept::{Backup, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
+pub use columns::Columns;
+pub use kept::{Backup, Convert, Export, Identify, Import, Report, Reproduce, Runs, StorePlace, Verify};
 pub use model::{Model, ModelCommand};
 pub use place::{Place, Reach, ServedTokens};
 pub use steer::{Reset, Steer, Stop};
@@ -92,6 +94,9 @@ pub enum Command {
     Import(Import),
     /// Export a stored run to a file
     Export(Export),
+    /// Convert a table of another program to a run table with its meta file; needs no kind and no required columns
+    #[command(after_help = kept::CONVERT)]
+    Convert(Convert),
     /// Print the result of a stored run: verdict, quantities and intervals
     Identify(Identify),
     /// Write a report of a run as one HTML page
@@ -240,8 +245,8 @@ pub struct Autopilot {
 /// One or several measured runs of one joint, with import and preprocessing options.
 #[derive(Debug, Args)]
 pub struct Measured {
-    /// Run table: .csv, .csv.gz, .parquet or .arrow, or the folder of a run.csv; further runs of the same kind and
-    /// joint are analysed together with the first, in chronological order
+    /// Run table: text (.csv, .tsv, .txt, .dat and others, also .gz), .parquet or .arrow, or the folder of a run.csv;
+    /// further runs of the same kind and joint are analysed together with the first, in chronological order
     #[arg(required = true, value_name = "RUN")]
     pub files: Vec<PathBuf>,
     /// Meta file of the test conditions, for all files [default: RUN.meta.json or meta.json in the folder of each file,
@@ -260,22 +265,6 @@ pub struct Measured {
     pub own: OwnEffects,
     #[command(flatten)]
     pub preparation: Preparation,
-}
-
-#[derive(Debug, Args)]
-pub struct Columns {
-    /// Map a column of the file to a column of the run table, such as motor_current_a=Iq; repeatable
-    #[arg(long, value_name = "COLUMN=NAME")]
-    pub map: Vec<String>,
-    /// Multiply a column by a factor, such as motor_position_rad=0.0174533; repeatable
-    #[arg(long, value_name = "COLUMN=FACTOR")]
-    pub scale: Vec<String>,
-    /// Omit a column of the file, such as remarks; repeatable
-    #[arg(long, value_name = "NAME")]
-    pub leave: Vec<String>,
-    /// Omit rows with an empty cell (rejected otherwise) and print their number
-    #[arg(long)]
-    pub leave_empty_rows: bool,
 }
 
 /// Preprocessing of the run. Omitted options are chosen from the data and printed with the fit.

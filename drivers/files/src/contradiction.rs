@@ -1,0 +1,187 @@
+//! What columns say of each other: angles that begin anew after a turn, and velocities in another unit than the slope of
+//! their position. Proposed to people, never applied.
+
+use crate::column::Column;
+use crate::note::Note;
+use jointbench_instrument::{Kind, RunTable};
+use std::f64::consts::TAU;
+
+/// Makes an angle continuous that begins anew after a period.
+pub fn unwrap(values: &mut [f64], period: f64) {
+    let mut turns = 0.0;
+    let mut before = values.first().copied().unwrap_or(0.0);
+    for value in values {
+        let step = *value - before;
+        before = *value;
+        turns -= (step / period).round();
+        *value += turns * period;
+    }
+}
+
+/// What the columns of a run propose, each with the option that does it.
+pub fn proposals(run: &RunTable) -> Vec<Note> {
+    let angles: &[&str] = match run.kind() {
+        Kind::Friction | Kind::Stiffness => &["motor_position_rad", "link_position_rad"],
+        // The difference of two encoders is wrapped by itself.
+        Kind::Encoder => &[],
+        Kind::Brake => &["position_rad"],
+    };
+    let wrapped: Vec<Note> = angles.iter().filter_map(|name| wrapped(run, name)).collect();
+    let (speed, angle) = motion(run.kind());
+    // A wrapped angle has no slope.
+    let slope = if wrapped.is_empty() { slope(run, speed, angle) } else { None };
+    wrapped.into_iter().chain(slope).collect()
+}
+
+/// A velocity, and the angle whose slope it is.
+fn motion(kind: Kind) -> (&'static str, &'static str) {
+    match kind {
+        Kind::Friction => ("motor_velocity_rad_s", "motor_position_rad"),
+        Kind::Stiffness => ("link_velocity_rad_s", "link_position_rad"),
+        Kind::Encoder => ("velocity_rad_s", "reference_position_rad"),
+        Kind::Brake => ("velocity_rad_s", "position_rad"),
+    }
+}
+
+/// An angle that moves by so much is not one at rest [rad].
+const MOVES: f64 = 0.1;
+
+/// The velocity, where it is 0 in every row while its angle moves, and what to say of it.
+pub fn idle_velocity(columns: &[Column], kind: Kind) -> Option<(usize, Note)> {
+    let (speed, angle) = motion(kind);
+    let place = columns.iter().position(|column| column.name == speed)?;
+    let angles = &columns.iter().find(|column| column.name == angle)?.values;
+    let (low, high) = angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let is_idle = columns[place].values.iter().all(|value| *value == 0.0);
+    (is_idle && high - low > MOVES).then(|| {
+        let moved = high - low;
+        let said = format!(
+            "{speed} stays at 0 in every row, while {angle} moves by {moved:.3} rad: the column was left out, and the velocity is \
+             the slope of the position"
+        );
+        (place, Note::with(said, format!("--leave {speed}")))
+    })
+}
+
+/// Leaps of an angle are of one size to this share, and larger than this share of its range.
+const SAME_LEAP: f64 = 0.05;
+const LEAP_OF_RANGE: f64 = 0.8;
+
+fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
+    let values = run.column(name)?;
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let range = high - low;
+    let leaps: Vec<f64> =
+        values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > LEAP_OF_RANGE * range).collect();
+    let mean = leaps.iter().sum::<f64>() / leaps.len() as f64;
+    let is_one_size = leaps.iter().all(|leap| (leap / mean - 1.0).abs() < SAME_LEAP);
+    // A turn is what most encoders begin anew after, also where their samples do not reach its ends.
+    let is_turn = (mean / TAU - 1.0).abs() < LEAP_OF_RANGE / 4.0 && range <= TAU * 1.001;
+    if leaps.len() < 2 || !is_one_size || range <= 0.0 {
+        return None;
+    }
+    let period = if is_turn { String::new() } else { format!("={mean:.4}") };
+    let said =
+        format!("{name} leaps by {mean:.3} rad {} times, as an angle that begins anew after a turn", leaps.len());
+    Some(Note::with(said, format!("--unwrap {name}{period}")))
+}
+
+/// Rows over which a slope is taken.
+const OVER: usize = 20;
+/// Share of the variance in common, below which the columns do not tell the same.
+const SAME: f64 = 0.9;
+/// A ratio is a unit's where it is as near as this.
+const NEAR: f64 = 0.04;
+
+fn slope(run: &RunTable, speed: &str, angle: &str) -> Option<Note> {
+    let (speeds, angles, time_s) = (run.column(speed)?, run.column(angle)?, run.column("time_s")?);
+    let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
+    for from in (0..speeds.len().saturating_sub(OVER)).step_by(OVER) {
+        let to = from + OVER;
+        let way = (angles[to] - angles[from]) / (time_s[to] - time_s[from]);
+        // By the trapezoidal rule.
+        let ends = 0.5 * (speeds[from] + speeds[to]);
+        let mean = (speeds[from + 1..to].iter().sum::<f64>() + ends) / OVER as f64;
+        (aa, ab, bb) = (aa + mean * mean, ab + mean * way, bb + way * way);
+    }
+    if ab * ab < SAME * aa * bb || bb <= 0.0 {
+        return None;
+    }
+    let ratio = ab / bb;
+    if (ratio - 1.0).abs() < NEAR {
+        return None;
+    }
+    let gear = run.meta().gear_ratio.unwrap_or(f64::NAN);
+    let is = |wanted: f64| (ratio / wanted - 1.0).abs() < NEAR;
+    let (guess, option) = match () {
+        () if is(60.0 / TAU) => ("it is in rpm".to_owned(), format!("--unit {speed}=rpm")),
+        () if is(360.0 / TAU) => ("it is in deg/s".to_owned(), format!("--unit {speed}=deg/s")),
+        () if is(1.0 / TAU) => ("it is in turns/s".to_owned(), format!("--unit {speed}=rev/s")),
+        () if is(TAU / 360.0) => (format!("{angle} is in degrees"), format!("--unit {angle}=deg")),
+        () if is(TAU) => (format!("{angle} is in turns"), format!("--unit {angle}=rev")),
+        () if is(-1.0) => ("it has the other sign".to_owned(), format!("--scale {speed}=-1")),
+        () if is(gear) => (format!("{angle} is that of the other side of the gear"), format!("--scale {angle}={gear}")),
+        () if is(1.0 / gear) => {
+            ("it is that of the other side of the gear".to_owned(), format!("--scale {speed}={gear}"))
+        }
+        () => return None,
+    };
+    Some(Note::with(format!("{speed} is {ratio:.3} times the slope of {angle}: perhaps {guess}"), option))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointbench_instrument::{Channel, Meta, Trace};
+
+    fn run(speed: f64, angle: impl Fn(f64) -> f64) -> RunTable {
+        let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a"];
+        let mut trace = Trace::new(names.map(Channel::new).to_vec());
+        for row in 0..2000 {
+            let t = f64::from(row) * 0.005;
+            trace.push_row(&[t, angle(20.0 * t.sin()), speed * 20.0 * t.cos(), 0.1]);
+        }
+        let meta = Meta { kind: Some(Kind::Friction), gear_ratio: Some(50.0), ..Meta::default() };
+        RunTable::new(meta, trace).unwrap()
+    }
+
+    #[test]
+    fn a_unit_or_a_sign_is_proposed_from_the_slope() {
+        let told = |speed, angle: f64| proposals(&run(speed, |x| x * angle)).first().map(Note::to_string);
+        assert_eq!(told(1.0, 1.0), None);
+        assert!(told(9.5493, 1.0).unwrap().ends_with("perhaps it is in rpm (--unit motor_velocity_rad_s=rpm)"));
+        assert!(told(-1.0, 1.0).unwrap().ends_with("(--scale motor_velocity_rad_s=-1)"));
+        assert!(told(1.0, 57.29578).unwrap().ends_with("(--unit motor_position_rad=deg)"));
+        assert!(told(0.02, 1.0).unwrap().contains("other side of the gear"));
+        assert_eq!(told(1.5, 1.0), None, "no unit is like that");
+    }
+
+    #[test]
+    fn a_velocity_that_stays_at_0_is_told() {
+        let columns = |speed: f64, way: f64| {
+            let values = |by: f64| (0..10).map(|row| by * f64::from(row)).collect();
+            vec![Column::new("motor_position_rad", values(way)), Column::new("motor_velocity_rad_s", values(speed))]
+        };
+        let (place, note) = idle_velocity(&columns(0.0, 1.0), Kind::Friction).unwrap();
+        assert!(
+            place == 1
+                && note
+                    .said
+                    .contains("motor_velocity_rad_s stays at 0 in every row, while motor_position_rad moves by 9.000")
+        );
+        assert!(idle_velocity(&columns(1.0, 1.0), Kind::Friction).is_none());
+        assert!(idle_velocity(&columns(0.0, 1e-3), Kind::Friction).is_none(), "at rest");
+    }
+
+    #[test]
+    fn a_wrapped_angle_is_told_and_made_continuous() {
+        let wrapped = run(1.0, |x| x.rem_euclid(TAU));
+        let said = proposals(&wrapped)[0].to_string();
+        assert!(said.contains("leaps by 6.") && said.ends_with("(--unwrap motor_position_rad)"), "{said}");
+        let mut values = wrapped.column("motor_position_rad").unwrap().to_vec();
+        unwrap(&mut values, TAU);
+        let whole = run(1.0, |x| x);
+        let expected = whole.column("motor_position_rad").unwrap();
+        assert!(values.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9));
+    }
+}

@@ -1,0 +1,82 @@
+//! What was skipped or assumed on the way in, for people.
+
+use serde::{Deserialize, Serialize};
+
+/// One thing that was skipped, assumed or noticed, and the option that changes it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Note {
+    /// A clause without a full stop.
+    pub said: String,
+    /// As it is written on the command line, such as `--leave remark`.
+    pub option: Option<String>,
+}
+
+impl Note {
+    pub fn new(said: impl Into<String>) -> Self {
+        Self { said: said.into(), option: None }
+    }
+
+    pub fn with(said: impl Into<String>, option: impl Into<String>) -> Self {
+        Self { said: said.into(), option: Some(option.into()) }
+    }
+}
+
+impl std::fmt::Display for Note {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.option {
+            Some(option) => write!(f, "{} ({option})", self.said),
+            None => f.write_str(&self.said),
+        }
+    }
+}
+
+/// All of them in one paragraph; empty where there is none.
+pub fn paragraph(notes: &[Note]) -> String {
+    let said: Vec<String> = notes.iter().map(Note::to_string).collect();
+    if said.is_empty() { String::new() } else { format!("{}.", said.join(". ")) }
+}
+
+/// 34442 → 34,442.
+pub fn counted(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// `1 row`, `2 rows`.
+pub fn plural(number: usize, one: &str) -> String {
+    format!("{} {one}{}", counted(number), if number == 1 { "" } else { "s" })
+}
+
+/// A word of the command line, quoted where a shell would part or change it.
+pub fn shell(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "_-=./,:+%@".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn notes_are_one_paragraph() {
+        let notes = [Note::new("one line was skipped"), Note::with("remark was left out", "--map x=remark")];
+        assert_eq!(paragraph(&notes), "one line was skipped. remark was left out (--map x=remark).");
+        assert_eq!(paragraph(&[]), "");
+        assert_eq!(
+            (counted(999), counted(34_442), counted(1_000_000)),
+            ("999".into(), "34,442".into(), "1,000,000".into())
+        );
+        assert_eq!((plural(1, "row"), plural(1200, "row")), ("1 row".into(), "1,200 rows".into()));
+        assert_eq!((shell("time_s=t"), shell("t=Time [ms]")), ("time_s=t".into(), "'t=Time [ms]'".into()));
+    }
+}

@@ -1,0 +1,118 @@
+//! What a page shows of a file before it is taken in: its columns, what was understood, and what is proposed.
+
+use crate::column::Column;
+use crate::error::FileError;
+use crate::guess::{Proposal, guess, guess_kind};
+use crate::naming::{Named, matches};
+use crate::note::Note;
+use crate::options::ReadOptions;
+use crate::raw::RawTable;
+use crate::{Unit, facts, form};
+use jointbench_instrument::{Kind, Meta};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Preview {
+    /// As the facts say, or as the columns look.
+    pub kind: Kind,
+    pub rows: usize,
+    pub columns: Vec<PreviewColumn>,
+    /// Columns that say themselves what they are, and likely sources of the others.
+    pub proposals: Vec<Proposal>,
+    pub notes: Vec<Note>,
+    /// Columns that are left out, as no model can use them.
+    pub left: Vec<String>,
+    /// Why the file is not taken in as it stands.
+    pub refused: Option<PreviewFault>,
+}
+
+/// One column as it stands in the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PreviewColumn {
+    pub name: String,
+    /// As its name or a line of units states it.
+    pub unit: Option<String>,
+    /// Its first cells.
+    pub first: Vec<String>,
+    pub is_words: bool,
+    /// Cells without a value.
+    pub missing: usize,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PreviewFault {
+    pub said: String,
+    /// Line of a text, row of a columnar file.
+    pub line: Option<u64>,
+    pub column: Option<String>,
+    /// Options that are proposed, as they are written on the command line.
+    pub options: Vec<String>,
+}
+
+impl From<&FileError> for PreviewFault {
+    fn from(error: &FileError) -> Self {
+        PreviewFault {
+            said: error.to_string(),
+            line: error.place.line.or(error.place.row),
+            column: error.column().map(str::to_owned),
+            options: error.options().to_vec(),
+        }
+    }
+}
+
+/// Reads a file as [`crate::understand_upload`] does and says what came of it. `Err`: nothing can be shown of it.
+pub fn preview(name: &str, path: &Path, options: &ReadOptions) -> Result<Preview, FileError> {
+    let mut raw = form::open(name, path, options)?;
+    raw.name_all();
+    let meta = options.meta_path.as_deref().map(facts::read_meta).transpose()?;
+    let meta = meta.or_else(|| options.meta.clone()).or(raw.meta.clone()).unwrap_or_default();
+    let kind = meta.kind.unwrap_or_else(|| guess_kind(&raw.columns));
+    let mut seen = Preview {
+        kind,
+        rows: raw.rows,
+        columns: raw.columns.iter().map(shown).collect(),
+        proposals: proposals(&raw, kind, &meta),
+        notes: raw.notes.clone(),
+        left: Vec::new(),
+        refused: None,
+    };
+    let meta = Meta { kind: Some(kind), ..meta };
+    let understood = raw.understand(name, Some(meta), options).and_then(|understood| {
+        seen.left.clone_from(&understood.left);
+        seen.notes.clone_from(&understood.notes);
+        understood.into_run()
+    });
+    match understood {
+        Ok((_, notes)) => seen.notes = notes,
+        Err(error) => seen.refused = Some(PreviewFault::from(&error)),
+    }
+    Ok(seen)
+}
+
+fn shown(column: &Column) -> PreviewColumn {
+    const CELLS: usize = 6;
+    let first = match column.first.is_empty() {
+        true => column.values.iter().take(CELLS).map(f64::to_string).collect(),
+        false => column.first.clone(),
+    };
+    PreviewColumn {
+        name: column.name.clone(),
+        unit: Named::of(column).unit.filter(|text| Unit::parse(text).is_some()),
+        first,
+        is_words: column.is_words() || column.other_type.is_some(),
+        missing: column.found.missing,
+    }
+}
+
+fn proposals(raw: &RawTable, kind: Kind, meta: &Meta) -> Vec<Proposal> {
+    let sure = matches(&raw.columns, Some(kind), meta.motion).into_iter().map(|one| Proposal {
+        column: one.column.to_owned(),
+        from: raw.columns[one.place].name.clone(),
+        unit: one.unit.map(|(text, _)| text),
+    });
+    let sure: Vec<Proposal> = sure.collect();
+    let is_new = |one: &Proposal| !sure.iter().any(|other| other.column == one.column || other.from == one.from);
+    let guessed: Vec<Proposal> = guess(&raw.columns, kind).into_iter().filter(is_new).collect();
+    sure.into_iter().chain(guessed).collect()
+}

@@ -1,0 +1,319 @@
+//! What the first lines of a text say of the rest: what parts the columns, where their names stand, and what they hold.
+//!
+//! A row is a line that holds numbers where most lines hold numbers. The names stand in the last line of words above the
+//! first rows, and a line of units may stand between.
+
+use super::cell::{self, Decimal};
+use super::line::{Holds, Line, SEPARATORS, Separator, cells, holds, is_comment, lines, uncommented};
+use super::stamp::{self, Stamp};
+use crate::unit::Unit;
+
+/// Lines that are looked at; a logger's preface has fewer.
+const LOOKED_AT: usize = 400;
+/// So many rows one behind the other are where the rows begin.
+const BEGINNING: usize = 3;
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    pub separator: Separator,
+    pub columns: Vec<Column>,
+    /// `None` where numbers stand in the first line.
+    pub names_line: Option<u64>,
+    pub units_line: Option<u64>,
+    /// Lines above the names, blank ones not counted, and how many of them are comments.
+    pub above: usize,
+    pub comments_above: usize,
+    /// Where the rows begin, and the number of that line.
+    pub start: usize,
+    pub start_line: u64,
+    pub decimal: Decimal,
+    /// Names behind the last column that holds anything.
+    pub extra_names: Vec<String>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// As it stands in the file; empty where there is none.
+    pub name: String,
+    /// As it stands in the line of units.
+    pub unit: Option<String>,
+    pub content: Content,
+    /// Its first cells.
+    pub first: Vec<String>,
+}
+
+/// What a column holds, by its first rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    Numbers,
+    /// Dates and clocks, read as seconds since this one.
+    Stamps(Stamp),
+    Words,
+    /// Nothing at all and no name: what a separator at the end of each line makes.
+    Empty,
+}
+
+/// Cells of a column to show.
+const SHOWN: usize = 6;
+
+impl Layout {
+    /// `is_whole`: the head is the whole text. `decimal`: where somebody has said it.
+    pub fn of(head: &[u8], is_whole: bool, decimal: Option<Decimal>) -> Layout {
+        let all = lines(head, is_whole, LOOKED_AT);
+        let (stated, all) = match all.split_first() {
+            Some((first, rest)) if stated_separator(first.text).is_some() => (stated_separator(first.text), rest),
+            _ => (None, all.as_slice()),
+        };
+        let filled: Vec<Line<'_>> = all.iter().filter(|line| !line.text.trim_ascii().is_empty()).copied().collect();
+        let candidates: Vec<Separator> = stated.map_or_else(|| SEPARATORS.to_vec(), |one| vec![one]);
+        let surveys = candidates.into_iter().map(|separator| Survey::of(&filled, separator));
+        // The first of equals.
+        let best = surveys.reduce(|best, next| if next.score > best.score { next } else { best });
+        let survey = best.unwrap_or_else(|| Survey::of(&filled, Separator::Sign(b',')));
+        survey.layout(&filled, head.len(), decimal, usize::from(stated.is_some()))
+    }
+
+    /// Columns that have a name or hold something.
+    pub fn width(&self) -> usize {
+        self.columns.iter().filter(|column| column.content != Content::Empty).count()
+    }
+}
+
+/// `sep=;`, as spreadsheets write it above everything else.
+fn stated_separator(line: &[u8]) -> Option<Separator> {
+    let line = line.trim_ascii();
+    let line = line.strip_prefix(b"\"").and_then(|line| line.strip_suffix(b"\"")).unwrap_or(line);
+    match line.strip_prefix(b"sep=").or_else(|| line.strip_prefix(b"SEP="))? {
+        [sign] => Some(Separator::Sign(*sign)),
+        b"\\t" | b"" => Some(Separator::Sign(b'\t')),
+        _ => None,
+    }
+}
+
+/// The first lines as one separator parts them.
+struct Survey {
+    separator: Separator,
+    rows: Vec<Vec<Vec<u8>>>,
+    held: Vec<Vec<Holds>>,
+    /// Cells of most lines that hold numbers.
+    width: usize,
+    score: f64,
+}
+
+impl Survey {
+    fn of(lines: &[Line<'_>], separator: Separator) -> Survey {
+        let rows: Vec<Vec<Vec<u8>>> = lines.iter().map(|line| cells(line.text, separator)).collect();
+        let held: Vec<Vec<Holds>> = rows.iter().map(|row| row.iter().map(|cell| holds(cell)).collect()).collect();
+        let mut worth: Vec<(usize, f64)> = Vec::new();
+        for held in held.iter().filter(|held| held.len() > 1) {
+            let filled = held.iter().filter(|one| **one != Holds::Nothing).count() as f64;
+            let tell = held.iter().filter(|one| matches!(one, Holds::Number | Holds::Stamp)).count() as f64;
+            if tell > 0.0 {
+                let more = tell * tell / filled;
+                match worth.iter_mut().find(|(width, _)| *width == held.len()) {
+                    Some((_, sum)) => *sum += more,
+                    None => worth.push((held.len(), more)),
+                }
+            }
+        }
+        let best = worth.into_iter().reduce(|best, next| if next.1 > best.1 { next } else { best });
+        let (width, score) = best.unwrap_or_else(|| {
+            // Words only: as many cells as possible in the first line, worth less than any number.
+            let width = rows.first().map_or(0, Vec::len);
+            (width, if width > 1 { 1e-3 * width as f64 } else { 0.0 })
+        });
+        Survey { separator, rows, held, width, score }
+    }
+
+    fn layout(&self, lines: &[Line<'_>], end: usize, decimal: Option<Decimal>, stated: usize) -> Layout {
+        let begin = self.begin();
+        let names = self.names(lines, begin);
+        let units = names.as_ref().and_then(|names| names.units.as_ref()).map(|(at, _)| *at);
+        let after = units.or(names.as_ref().map(|names| names.at)).map_or(begin.min(lines.len()), |at| at + 1);
+        let (start, start_line) = match (lines.get(after), lines.last()) {
+            (Some(line), _) => (line.start, line.number),
+            (None, Some(last)) => (end, last.number + 1),
+            (None, None) => (end, 1),
+        };
+        let first = names.as_ref().map_or(after, |names| names.at);
+        let rows = || self.rows[after.min(self.rows.len())..].iter().filter(|row| row.len() > 1);
+        let decimal = decimal.unwrap_or_else(|| decimal_of(rows().flatten()));
+        let (columns, extra_names) = self.columns(after, names.as_ref());
+        Layout {
+            separator: self.separator,
+            columns,
+            names_line: names.as_ref().map(|names| lines[names.at].number),
+            units_line: units.map(|at| lines[at].number),
+            above: first + stated,
+            comments_above: lines[..first].iter().filter(|line| is_comment(line.text)).count(),
+            start,
+            start_line,
+            decimal,
+            extra_names,
+        }
+    }
+
+    /// Whether most rows hold a number or a time in each column.
+    fn usual(&self) -> Vec<bool> {
+        let tells = |one: &Holds| matches!(one, Holds::Number | Holds::Stamp);
+        let rows: Vec<&Vec<Holds>> =
+            self.held.iter().filter(|held| held.len() == self.width && held.iter().any(tells)).collect();
+        (0..self.width).map(|i| 2 * rows.iter().filter(|held| tells(&held[i])).count() > rows.len()).collect()
+    }
+
+    /// The first of the lines with which the rows begin; behind the last line where there are none.
+    fn begin(&self) -> usize {
+        let usual = self.usual();
+        let is_row = |held: &Vec<Holds>| {
+            held.len() == self.width
+                && held.iter().any(|one| matches!(one, Holds::Number | Holds::Stamp))
+                && held.iter().zip(&usual).all(|(one, usual)| !usual || *one != Holds::Words)
+        };
+        let are_rows: Vec<bool> = self.held.iter().map(is_row).collect();
+        let most = BEGINNING.min(are_rows.iter().filter(|is_row| **is_row).count());
+        let from = (most > 0).then(|| are_rows.windows(most).position(|few| few.iter().all(|one| *one))).flatten();
+        from.or_else(|| are_rows.iter().position(|is_row| *is_row)).unwrap_or(are_rows.len())
+    }
+}
+
+/// The line of names.
+struct Names {
+    at: usize,
+    /// The line of units, and its cells.
+    units: Option<(usize, Vec<String>)>,
+    cells: Vec<String>,
+}
+
+impl Survey {
+    fn names(&self, lines: &[Line<'_>], begin: usize) -> Option<Names> {
+        let fits = |cells: &[Vec<u8>]| cells.len() > 1 && (cells.len() as i64 - self.width as i64).abs() <= 1;
+        let words = |cells: &[Vec<u8>]| cells.iter().all(|cell| !matches!(holds(cell), Holds::Number | Holds::Stamp));
+        let is_some = |cells: &[Vec<u8>]| cells.iter().any(|cell| holds(cell) == Holds::Words);
+        let plain = |at: usize| (!is_comment(lines[at].text)).then(|| self.rows[at].clone());
+        // What stands in a comment may be parted in another way than the rows.
+        let other = |at: usize| {
+            let bare = uncommented(lines[at].text);
+            let parted = std::iter::once(self.separator).chain(SEPARATORS).map(|separator| cells(bare, separator));
+            parted.into_iter().find(|cells| fits(cells))
+        };
+        let find = |of: &dyn Fn(usize) -> Option<Vec<Vec<u8>>>, is_wide: bool| {
+            let found = (0..begin.min(lines.len())).rev().filter_map(|at| Some((at, of(at)?)));
+            found.into_iter().find(|(_, cells)| words(cells) && is_some(cells) && (is_wide || fits(cells)))
+        };
+        let wide = |at: usize| plain(at).filter(|cells| cells.len() > 1);
+        let (at, found) =
+            find(&plain, false).or_else(|| find(&other, false)).or_else(|| find(&wide, true)).or_else(|| {
+                // Not one number below: the first line is what there is.
+                (begin == lines.len() && !lines.is_empty()).then(|| (0, self.rows[0].clone()))
+            })?;
+        let text = |cells: &[Vec<u8>]| cells.iter().map(|cell| name_of(cell)).collect::<Vec<String>>();
+        if at > 0 && are_units(&found) {
+            let above = plain(at - 1).filter(|cells| fits(cells)).or_else(|| other(at - 1));
+            if let Some(above) = above.filter(|above| is_some(above) && above.len() + 1 >= found.len()) {
+                return Some(Names { at: at - 1, units: Some((at, text(&found))), cells: text(&above) });
+            }
+        }
+        Some(Names { at, units: None, cells: text(&found) })
+    }
+
+    /// The columns from what stands in the rows `after` the names, and the names that have no column.
+    fn columns(&self, after: usize, names: Option<&Names>) -> (Vec<Column>, Vec<String>) {
+        let is_row = |row: &&Vec<Vec<u8>>| row.len() == self.width;
+        let rows: Vec<&Vec<Vec<u8>>> = self.rows[after.min(self.rows.len())..].iter().filter(is_row).collect();
+        let contents: Vec<Content> = (0..self.width).map(|i| content(rows.iter().map(|row| &row[i][..]))).collect();
+        let units = names.and_then(|names| names.units.as_ref()).map_or(&[][..], |(_, units)| units);
+        let mut words = names.map(|names| names.cells.clone()).unwrap_or_default();
+        let mut extra = Vec::new();
+        // A table of another width is told row by row.
+        let width = if words.is_empty() || words.len().abs_diff(self.width) <= 1 { self.width } else { words.len() };
+        while words.len() > width && !rows.is_empty() {
+            extra.extend(words.pop().filter(|name| !name.is_empty()));
+        }
+        let is_counted = || rows.iter().enumerate().all(|(i, row)| counts(&row[0], i));
+        let is_last_empty = contents.last() == Some(&Content::Empty);
+        if words.len() + 1 == width && !words.is_empty() && !is_last_empty && is_counted() {
+            words.insert(0, String::new());
+        }
+        let width = if !words.is_empty() && words.len() + 1 == width && !is_last_empty { words.len() } else { width };
+        let column = |i: usize| {
+            let name = words.get(i).cloned().unwrap_or_default();
+            let found = contents.get(i).copied().unwrap_or(Content::Numbers);
+            Column {
+                content: if found == Content::Empty && !name.is_empty() { Content::Numbers } else { found },
+                unit: units.get(i).map(|unit| bare_unit(unit)).filter(|unit| !unit.is_empty() && unit != "-"),
+                first: rows.iter().take(SHOWN).filter_map(|row| row.get(i)).map(|cell| name_of(cell)).collect(),
+                name,
+            }
+        };
+        ((0..width).map(column).collect(), extra)
+    }
+}
+
+/// The number of a row, from 0 or 1.
+fn counts(cell: &[u8], row: usize) -> bool {
+    cell::plain(cell).is_some_and(|value| value == row as f64 || value == row as f64 + 1.0)
+}
+
+fn name_of(cell: &[u8]) -> String {
+    let text = String::from_utf8_lossy(cell);
+    text.split_whitespace().collect::<Vec<&str>>().join(" ")
+}
+
+/// `[s]` or `(s)` → `s`.
+pub fn bare_unit(text: &str) -> String {
+    text.trim().trim_matches(['[', ']', '(', ')', '<', '>']).trim().to_owned()
+}
+
+/// Units, or nothing, in each cell.
+fn are_units(cells: &[Vec<u8>]) -> bool {
+    let texts: Vec<String> = cells.iter().map(|cell| bare_unit(&name_of(cell))).collect();
+    let known = texts.iter().filter(|text| Unit::parse(text).is_some()).count();
+    let is_other = |text: &String| matches!(text.as_str(), "" | "-" | "1" | "none");
+    known > 0 && texts.iter().all(|text| is_other(text) || Unit::parse(text).is_some())
+}
+
+fn content<'c>(cells: impl Iterator<Item = &'c [u8]>) -> Content {
+    let (mut numbers, mut words, mut stamps, mut first) = (0, 0, 0, None);
+    let mut is_bare = true;
+    for cell in cells {
+        is_bare &= cell.is_empty();
+        match holds(cell) {
+            Holds::Number | Holds::Truth => numbers += 1,
+            Holds::Words => words += 1,
+            Holds::Nothing => {}
+            Holds::Stamp => {
+                stamps += 1;
+                first = first.or_else(|| stamp::parse(cell));
+            }
+        }
+    }
+    match first {
+        Some(stamp) if stamps > words.max(numbers) => Content::Stamps(stamp),
+        _ if words > numbers => Content::Words,
+        _ if is_bare => Content::Empty,
+        _ => Content::Numbers,
+    }
+}
+
+/// What most of the numbers that can tell say; a comma where nothing but commas could be one.
+fn decimal_of<'c>(cells: impl Iterator<Item = &'c Vec<u8>>) -> Decimal {
+    let (mut points, mut commas, mut doubtful_commas, mut doubtful_points) = (0, 0, 0, 0);
+    for cell in cells {
+        match cell::tells(cell) {
+            Some(Decimal::Point) => points += 1,
+            Some(Decimal::Comma) => commas += 1,
+            None if cell::could_be_grouped(cell, b',') => doubtful_commas += 1,
+            None if cell::could_be_grouped(cell, b'.') => doubtful_points += 1,
+            None => {}
+        }
+    }
+    match (points, commas) {
+        (0, 0) if doubtful_commas > 0 && doubtful_points == 0 => Decimal::Comma,
+        _ if commas > points => Decimal::Comma,
+        _ => Decimal::Point,
+    }
+}
+
+#[cfg(test)]
+#[path = "layout_tests.rs"]
+mod tests;

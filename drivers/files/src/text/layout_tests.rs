@@ -1,0 +1,83 @@
+use super::*;
+
+fn names(layout: &Layout) -> Vec<&str> {
+    layout.columns.iter().filter(|c| c.content != Content::Empty).map(|c| c.name.as_str()).collect()
+}
+
+fn of(text: &str) -> Layout {
+    Layout::of(text.as_bytes(), true, None)
+}
+
+#[test]
+fn separators_are_those_that_make_numbers() {
+    for (text, separator) in [
+        ("t,x\n0,1\n1,2\n", Separator::Sign(b',')),
+        ("t;x\n0,5;1,5\n1;2\n", Separator::Sign(b';')),
+        ("t\tx\n0,5\t1,5\n", Separator::Sign(b'\t')),
+        ("t|x\n0|1\n", Separator::Sign(b'|')),
+        ("  t   x\n  0   1.5\n  1   2.5\n", Separator::Blanks),
+        ("t, x\n0, 1\n1, 2\n", Separator::Sign(b',')),
+        ("sep=;\nt;x\n0;1\n", Separator::Sign(b';')),
+        ("Date and Time,x\n2026-01-02 10:00:00.005,1\n2026-01-02 10:00:00.010,2\n", Separator::Sign(b',')),
+        ("t,\"v; w\"\n0,1\n", Separator::Sign(b',')),
+    ] {
+        assert_eq!(of(text).separator, separator, "{text}");
+    }
+}
+
+#[test]
+fn names_stand_above_the_rows_and_below_everything_else() {
+    for (text, expected, start_line) in [
+        ("t,x\n0,1\n1,2\n", &["t", "x"][..], 2),
+        ("2026-01-02 15:22\nt,x\n0,1\n1,2\n", &["t", "x"], 3),
+        ("# a\n# b, c\nt,x\n0,1\n", &["t", "x"], 4),
+        ("# t x\n0 1\n1 2\n", &["t", "x"], 2),
+        ("Rate,1000\nOperator,N\n\nt,x\n0,1\n1,2\n2,3\n", &["t", "x"], 5),
+        ("Test, joint 3, warm\nt,x,y\n0,1,2\n", &["t", "x", "y"], 3),
+        ("t,x,\n0,1,\n1,2,\n", &["t", "x"], 2),
+        ("t,x\n0,1,\n1,2,\n", &["t", "x"], 2),
+        (",t,x\n0,0,1\n1,1,2\n", &["", "t", "x"], 2),
+        ("t x\n1 0 5\n2 1 6\n", &["", "t", "x"], 2),
+        ("t,x,remark\n0,1,cold\n1,2,warm\n", &["t", "x", "remark"], 2),
+    ] {
+        let layout = of(text);
+        assert_eq!(names(&layout), expected, "{text}");
+        assert_eq!(layout.start_line, start_line, "{text}");
+    }
+    assert_eq!(of("0,1\n1,2\n").names_line, None);
+    assert_eq!(of("time_s\tx\tComment\n0\t1\n1\t2\n").extra_names, ["Comment"]);
+}
+
+#[test]
+fn a_line_of_units_is_no_line_of_names() {
+    let layout = of("t,x\ns,rad\n0,1\n");
+    assert_eq!((names(&layout), layout.units_line, layout.start_line), (vec!["t", "x"], Some(2), 3));
+    assert_eq!(layout.columns[1].unit.as_deref(), Some("rad"));
+    let layout = of("x-axis,1,2\nsecond,Volt,A\n0,1,2\n1,2,3\n");
+    assert_eq!((names(&layout), layout.columns[2].unit.as_deref()), (vec!["x-axis", "1", "2"], Some("A")));
+    let layout = of("# t x\n# [s] [rad]\n0 1\n");
+    assert_eq!((names(&layout), layout.columns[1].unit.as_deref()), (vec!["t", "x"], Some("rad")));
+    assert_eq!(names(&of("s,V\n0,1\n")), ["s", "V"], "where nothing else names them");
+}
+
+#[test]
+fn columns_say_what_they_hold() {
+    let layout = of("t,on,remark,clock\n0,True,x,10:00:00.5\n1,False,y,10:00:01\n");
+    let contents: Vec<Content> = layout.columns.iter().map(|column| column.content).collect();
+    let first = Stamp::Clock(36_000_500_000_000);
+    assert_eq!(contents, [Content::Numbers, Content::Numbers, Content::Words, Content::Stamps(first)]);
+}
+
+#[test]
+fn the_decimal_sign_is_what_the_numbers_tell() {
+    for (text, decimal) in [
+        ("t;x\n0,005;1.220\n0,010;1.230\n", Decimal::Comma),
+        ("t;x\n0.005;1\n", Decimal::Point),
+        ("t;x\n1.234,5;1\n", Decimal::Comma),
+        ("t,x\n0.5,\"1,234\"\n", Decimal::Point),
+        ("t,x\n\"0,5\",\"1,25\"\n", Decimal::Comma),
+    ] {
+        assert_eq!(of(text).decimal, decimal, "{text}");
+    }
+    assert_eq!(Layout::of(b"t;x\n0,5;1\n", true, Some(Decimal::Point)).decimal, Decimal::Point);
+}

@@ -1,0 +1,225 @@
+//! Text in: CSV and its relatives, in pieces, so that only the numbers of a file lie in memory.
+//!
+//! The first lines decide how all others are read ([`layout`]). The csv crate parts rows and cells; what is ours is how the
+//! text is recognised and what a cell may hold.
+
+mod cell;
+mod encoding;
+mod layout;
+mod line;
+mod rows;
+mod source;
+mod stamp;
+
+pub use cell::{Decimal, Shape, is_missing, number};
+pub use layout::Content;
+pub use rows::Lines;
+pub use source::{Packed, Plain, Source};
+pub use stamp::Stamp;
+
+use crate::ReadOptions;
+use crate::column::Column;
+use crate::error::{FileError, FileFault};
+use crate::note::{Note, plural, shell};
+use crate::raw::{Odd, RawTable};
+use layout::Layout;
+use line::Separator;
+use rayon::prelude::*;
+use rows::{Part, Rows};
+use source::Pieces;
+
+/// Bytes of the beginning that decide about the rest.
+const HEAD_BYTES: usize = 256 << 10;
+
+impl Default for Content {
+    fn default() -> Self {
+        Content::Numbers
+    }
+}
+
+/// `bytes`: of the text, where that is known; room is made for so many.
+pub(crate) fn read(
+    name: &str,
+    source: &mut dyn Source,
+    bytes: Option<u64>,
+    options: &ReadOptions,
+) -> Result<RawTable, FileError> {
+    let mut pieces = Pieces::new(source);
+    let in_file = |fault: FileFault| fault.in_file(name);
+    let Some((first, is_last)) = pieces.next().map_err(in_file)? else { return Err(FileFault::Empty.in_file(name)) };
+    let head = &first[..first.len().min(HEAD_BYTES)];
+    let layout = Layout::of(head, is_last && head.len() == first.len(), options.decimal_of_all());
+    let names_line = layout.names_line.unwrap_or(1);
+    let mut table = table(&layout, options).map_err(|fault| fault.at_line(name, names_line))?;
+    table.notes = notes(&layout, &pieces);
+    let names: Vec<String> = layout.columns.iter().map(|column| column.name.clone()).collect();
+    let rows =
+        Rows { separator: layout.separator, ways: ways(&layout, &table, options), names, bounds: &options.bounds };
+    let guess = bytes.map_or(0, |bytes| guess_rows(&first, bytes)).min(options.bounds.rows);
+    for (column, way) in table.columns.iter_mut().zip(&rows.ways) {
+        column.values.reserve(if way.is_left { 0 } else { guess });
+    }
+    let begin = first[layout.start.min(first.len())..].to_vec();
+    let mut line = layout.start_line - 1;
+    let mut batch = vec![(begin, is_last)];
+    let most = 2 * rayon::current_num_threads();
+    loop {
+        while batch.len() < most && !batch.last().is_some_and(|(_, is_last)| *is_last) {
+            match pieces.next().map_err(in_file)? {
+                Some(piece) => batch.push(piece),
+                None => break,
+            }
+        }
+        if batch.is_empty() {
+            break;
+        }
+        let is_over = batch.last().is_some_and(|(_, is_last)| *is_last);
+        let parts: Vec<Part> = batch.par_iter().map(|(text, is_last)| rows.part(text, *is_last)).collect();
+        for part in parts {
+            append(&mut table, part, &mut line, name, options)?;
+        }
+        batch.clear();
+        if is_over {
+            break;
+        }
+    }
+    finish(table, &layout, name)
+}
+
+/// The table without rows.
+fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> {
+    let mut names: Vec<String> = layout.columns.iter().map(|column| column.name.clone()).collect();
+    let is_named = layout.names_line.is_some();
+    if !options.names.is_empty() {
+        let (found, given) = (layout.width(), options.names.len());
+        if found != given {
+            let said = format!("--names gives {given} names, and the table has {}", plural(found, "column"));
+            return Err(FileFault::Choice { said, options: vec![format!("--names {}", proposed_names(layout))] });
+        }
+        options.names.iter().zip(&mut names).for_each(|(given, name)| name.clone_from(given));
+    } else if !is_named {
+        return Err(FileFault::NoNames { columns: layout.width(), proposed: proposed_names(layout) });
+    }
+    options.bounds.check_columns(&names)?;
+    let columns = layout.columns.iter().zip(names).map(|(column, name)| Column {
+        name,
+        unit: column.unit.clone(),
+        content: column.content,
+        first: column.first.clone(),
+        ..Column::default()
+    });
+    Ok(RawTable {
+        names_line: layout.names_line.unwrap_or(1),
+        decimal: layout.decimal,
+        ..RawTable::of_text(columns.collect())
+    })
+}
+
+/// `time_s,column_2,…`: time where the first column rises evenly.
+fn proposed_names(layout: &Layout) -> String {
+    let rises = layout.columns.first().is_some_and(|column| {
+        let values: Vec<f64> = column
+            .first
+            .iter()
+            .filter_map(|cell| cell::number(cell.as_bytes(), layout.decimal))
+            .map(|(value, _)| value)
+            .collect();
+        values.len() > 1 && values.windows(2).all(|pair| pair[0] < pair[1])
+    });
+    let name = |place: usize| if place == 0 && rises { "time_s".to_owned() } else { format!("column_{}", place + 1) };
+    (0..layout.width()).map(name).collect::<Vec<String>>().join(",")
+}
+
+fn ways(layout: &Layout, table: &RawTable, options: &ReadOptions) -> Vec<rows::Way> {
+    let mut ways = layout.ways();
+    for (way, column) in ways.iter_mut().zip(&table.columns) {
+        way.is_left |= options.leave.contains(&column.name);
+        way.decimal = options.decimal_of(&column.name).unwrap_or(way.decimal);
+    }
+    ways
+}
+
+/// Rows of a text of so many bytes, by its first lines.
+fn guess_rows(first: &[u8], bytes: u64) -> usize {
+    let lines = first.iter().filter(|byte| **byte == b'\n').count().max(1) as u64;
+    (bytes / (first.len() as u64 / lines).max(1)) as usize
+}
+
+fn append(
+    table: &mut RawTable,
+    mut part: Part,
+    line: &mut u64,
+    name: &str,
+    options: &ReadOptions,
+) -> Result<(), FileError> {
+    if let Some((at, place, fault)) = part.refused {
+        let error = fault.at_line(name, *line + at);
+        return Err(error.in_column(&table.columns[place].name));
+    }
+    let rows = table.rows;
+    for (column, (values, found)) in table.columns.iter_mut().zip(std::mem::take(&mut part.columns)) {
+        column.append(rows, &values, found);
+    }
+    table.rows += part.rows;
+    table.comments += part.comments;
+    table.is_cut |= part.is_cut;
+    table.named_again.extend(part.named_again.iter().map(|row| row + rows));
+    table.odd.extend(part.odd.iter().map(|(at, cells)| Odd { line: *line + at, cells: *cells }));
+    table.lines.append(part.lines, rows, *line);
+    *line += part.ends;
+    let columns = table.columns.iter().filter(|column| !column.values.is_empty()).count();
+    options.bounds.check_rows(table.rows, columns).map_err(|fault| {
+        let beyond = table.lines.of(options.bounds.rows.min(table.rows - 1));
+        fault.at_line(name, beyond.unwrap_or(*line))
+    })
+}
+
+fn finish(mut table: RawTable, layout: &Layout, name: &str) -> Result<RawTable, FileError> {
+    if table.rows == 0 && table.odd.is_empty() {
+        return Err(FileFault::NoRows.at_line(name, table.names_line));
+    }
+    let is_kept: Vec<bool> = layout.columns.iter().map(|column| column.content != Content::Empty).collect();
+    let mut kept = is_kept.iter();
+    table.columns.retain(|_| *kept.next().unwrap_or(&true));
+    if table.comments > 0 {
+        table.notes.push(Note::new(format!("{} between the rows skipped", plural(table.comments, "comment line"))));
+    }
+    if table.is_cut {
+        table.notes.push(Note::new("the last line is cut off and was left out"));
+    }
+    if !table.named_again.is_empty() {
+        let times = plural(table.named_again.len(), "more time");
+        table.notes.push(Note::new(format!("the line of names stands {times} between the rows and was skipped")));
+    }
+    Ok(table)
+}
+
+/// What the layout skips or assumes.
+fn notes(layout: &Layout, pieces: &Pieces<'_>) -> Vec<Note> {
+    let mut notes = Vec::new();
+    if let Some(coding) = pieces.coding.filter(|coding| coding.encoding != encoding_rs::UTF_8) {
+        notes.push(Note::new(format!("the text was read as {}", coding.encoding.name())));
+    }
+    if layout.above > 0 {
+        let comments = match layout.comments_above {
+            0 => String::new(),
+            count => format!(", {} of them", plural(count, "comment")),
+        };
+        let lines = plural(layout.above, "line");
+        notes.push(Note::new(format!("{lines} above the names skipped{comments}")));
+    }
+    if matches!(layout.separator, Separator::Blanks | Separator::Sign(b'|')) {
+        notes.push(Note::new(format!("columns are parted by {}", layout.separator.name())));
+    }
+    if layout.decimal == Decimal::Comma {
+        notes.push(Note::with("decimals stand behind commas", "--decimal point"));
+    }
+    if let Some(line) = layout.units_line {
+        notes.push(Note::new(format!("line {line} was taken as units")));
+    }
+    if !layout.extra_names.is_empty() {
+        let names: Vec<String> = layout.extra_names.iter().map(|name| shell(name)).collect();
+        notes.push(Note::new(format!("no row has a value for {}", names.join(", "))));
+    }
+    notes
+}

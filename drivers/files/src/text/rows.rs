@@ -1,0 +1,225 @@
+//! The rows of a text: each cell a number, or what else it is.
+
+use super::cell::{self, Decimal, Shape};
+use super::layout::{Content, Layout};
+use super::line::{Separator, is_comment, spread};
+use super::stamp;
+use crate::Bounds;
+use crate::column::Found;
+use crate::error::FileFault;
+use csv::ByteRecord;
+
+/// How the cells of one column are read.
+#[derive(Debug, Clone, Copy)]
+pub struct Way {
+    pub content: Content,
+    pub decimal: Decimal,
+    /// Whatever it holds, nobody asks for it.
+    pub is_left: bool,
+}
+
+/// How rows are read: what does not change from piece to piece.
+pub struct Rows<'o> {
+    pub separator: Separator,
+    pub ways: Vec<Way>,
+    pub names: Vec<String>,
+    pub bounds: &'o Bounds,
+}
+
+/// What a piece of the text holds. Rows count from 0, lines from 1, both within the piece.
+#[derive(Debug, Default)]
+pub struct Part {
+    pub columns: Vec<(Vec<f64>, Found)>,
+    pub rows: usize,
+    pub lines: Lines,
+    /// Line ends in it.
+    pub ends: u64,
+    /// Rows of another width: their lines and cells.
+    pub odd: Vec<(u64, usize)>,
+    pub comments: usize,
+    /// Rows above which the names stand again.
+    pub named_again: Vec<usize>,
+    /// The last row, where it is shorter and no line end follows.
+    pub is_cut: bool,
+    pub refused: Option<(u64, usize, FileFault)>,
+}
+
+/// The lines on which rows begin. Kept where a row does not begin on the line behind the one before.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Lines {
+    leaps: Vec<(usize, u64)>,
+    next: u64,
+}
+
+impl Lines {
+    fn push(&mut self, row: usize, line: u64) {
+        if self.leaps.is_empty() || line != self.next {
+            self.leaps.push((row, line));
+        }
+        self.next = line + 1;
+    }
+
+    pub fn append(&mut self, later: Lines, rows: usize, lines: u64) {
+        self.leaps.extend(later.leaps.into_iter().map(|(row, line)| (row + rows, line + lines)));
+    }
+
+    /// The line of a row.
+    pub fn of(&self, row: usize) -> Option<u64> {
+        let at = self.leaps.partition_point(|(first, _)| *first <= row).checked_sub(1)?;
+        let (first, line) = self.leaps[at];
+        Some(line + (row - first) as u64)
+    }
+}
+
+impl Layout {
+    pub fn ways(&self) -> Vec<Way> {
+        let way = |content| Way { content, decimal: self.decimal, is_left: content == Content::Empty };
+        self.columns.iter().map(|column| way(column.content)).collect()
+    }
+}
+
+impl Rows<'_> {
+    /// `is_last`: no line end needs to follow the last row.
+    pub fn part(&self, text: &[u8], is_last: bool) -> Part {
+        let mut even = Vec::new();
+        let text = match self.separator {
+            Separator::Blanks => {
+                spread(text, &mut even);
+                &even
+            }
+            Separator::Sign(_) => text,
+        };
+        let mut part = Part { ends: text.iter().filter(|byte| **byte == b'\n').count() as u64, ..Part::default() };
+        let guess = text.len() / (self.ways.len().max(1) * 6);
+        part.columns = self.ways.iter().map(|way| (self.room(way, guess), Found::default())).collect();
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(self.separator.sign())
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(text);
+        let mut record = ByteRecord::new();
+        // From memory, in any width: nothing fails.
+        while reader.read_byte_record(&mut record).unwrap_or(false) {
+            let is_end = is_last && reader.position().byte() == text.len() as u64 && !text.ends_with(b"\n");
+            self.take(&record, text, is_end, &mut part);
+            if part.refused.is_some() || part.rows > self.bounds.rows {
+                break;
+            }
+        }
+        part
+    }
+
+    fn room(&self, way: &Way, rows: usize) -> Vec<f64> {
+        if way.is_left { Vec::new() } else { Vec::with_capacity(rows) }
+    }
+
+    fn take(&self, record: &ByteRecord, text: &[u8], is_end: bool, part: &mut Part) {
+        let line = || line_of(text, record);
+        if record.len() <= 1 && record.iter().all(|cell| cell.trim_ascii().is_empty()) {
+            return;
+        }
+        let first = record.get(0).unwrap_or_default();
+        if matches!(first.first(), Some(b'#' | b'%' | b'/')) && is_comment(first) {
+            part.comments += 1;
+            return;
+        }
+        if self.is_names(record) {
+            part.named_again.push(part.rows);
+            return;
+        }
+        if !self.fits(record) {
+            match is_end && record.len() < self.ways.len() {
+                true => part.is_cut = true,
+                false => part.odd.push((line(), record.len())),
+            }
+            return;
+        }
+        let row = part.rows;
+        for (place, way) in self.ways.iter().enumerate().filter(|(_, way)| !way.is_left) {
+            let cell = record.get(place).unwrap_or_default();
+            if let Err(fault) = self.bounds.check_cell(cell.len()) {
+                part.refused = Some((line(), place, fault));
+                return;
+            }
+            let (values, found) = &mut part.columns[place];
+            values.push(way.read(cell, row, found));
+        }
+        part.lines.push(row, line());
+        part.rows += 1;
+    }
+
+    /// The line of names again, as a logger writes it that was started anew.
+    fn is_names(&self, record: &ByteRecord) -> bool {
+        let named = self.names.first().is_some_and(|name| !name.is_empty());
+        let is_same = |(cell, name): (&[u8], &String)| cell.trim_ascii() == name.as_bytes();
+        named && record.len() == self.names.len() && record.iter().zip(&self.names).all(is_same)
+    }
+
+    /// What is more may be empty, and what is less may lack what is always empty.
+    fn fits(&self, record: &ByteRecord) -> bool {
+        let (found, expected) = (record.len(), self.ways.len());
+        match found.cmp(&expected) {
+            std::cmp::Ordering::Equal => true,
+            std::cmp::Ordering::Greater => record.iter().skip(expected).all(|cell| cell.trim_ascii().is_empty()),
+            std::cmp::Ordering::Less => self.ways[found..].iter().all(|way| way.content == Content::Empty),
+        }
+    }
+}
+
+impl Way {
+    fn read(self, cell: &[u8], row: usize, found: &mut Found) -> f64 {
+        if let Content::Stamps(first) = self.content {
+            if let Some(stamp) = stamp::parse(cell) {
+                found.numbers += 1;
+                return (stamp.nanoseconds() - first.nanoseconds()) as f64 * 1e-9;
+            }
+        } else if let Some(value) = self.number(cell, row, found) {
+            found.numbers += 1;
+            return value;
+        }
+        match cell::truth(cell) {
+            _ if cell::is_missing(cell) => found.missing(row, cell),
+            Some(truth) => {
+                found.truths += 1;
+                return f64::from(u8::from(truth));
+            }
+            None => found.wrong(row, cell),
+        }
+        f64::NAN
+    }
+
+    fn number(self, cell: &[u8], row: usize, found: &mut Found) -> Option<f64> {
+        if self.decimal == Decimal::Point
+            && let Some(value) = cell::plain(cell)
+        {
+            if !found.is_decimal {
+                self.weigh(cell, value, row, found);
+            }
+            return Some(value);
+        }
+        let (value, shape) = cell::number(cell, self.decimal)?;
+        if shape == Shape::Plain && !found.is_decimal {
+            self.weigh(cell, value, row, found);
+        }
+        found.number(row, cell, shape);
+        Some(value)
+    }
+
+    /// What a plain number says of the decimal sign of its column.
+    fn weigh(self, cell: &[u8], value: f64, row: usize, found: &mut Found) {
+        match cell.contains(&self.decimal.sign()) {
+            true if cell::could_be_grouped(cell, self.decimal.sign()) => {
+                found.three_decimals(row, cell);
+            }
+            true => found.is_decimal = true,
+            false => found.has_hundreds |= value.abs() >= 100.0,
+        }
+    }
+}
+
+fn line_of(text: &[u8], record: &ByteRecord) -> u64 {
+    let Some(position) = record.position() else { return 1 };
+    // The reader notes where it began to look; empty lines come before the record.
+    let blank = text[position.byte() as usize..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n'));
+    position.line() + blank.filter(|byte| **byte == b'\n').count() as u64
+}

@@ -1,0 +1,272 @@
+//! From a table as it stands in a file to the table of a run.
+
+use crate::column::Column;
+use crate::error::{FileError, FileFault};
+use crate::note::{Note, counted, plural, shell};
+use crate::raw::RawTable;
+use crate::text::Decimal;
+use crate::{ReadOptions, contradiction, facts, guess, naming, time};
+use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
+
+/// The fact that says how many rows of the file were left out for their empty cells.
+pub const LEFT_OUT_ROWS: &str = "left_out_rows";
+
+/// What was understood of a file.
+#[derive(Debug)]
+pub struct Understood {
+    pub meta: Meta,
+    pub trace: Trace,
+    /// What was skipped, assumed and noticed.
+    pub notes: Vec<Note>,
+    /// Columns of the file that no model can use.
+    pub left: Vec<String>,
+    file: String,
+    table: RawTable,
+    starts: Vec<usize>,
+}
+
+impl RawTable {
+    pub fn understand(
+        mut self,
+        file: &str,
+        meta: Option<Meta>,
+        options: &ReadOptions,
+    ) -> Result<Understood, FileError> {
+        let mut meta = meta.or_else(|| options.meta.clone()).or(self.meta.take()).unwrap_or_default();
+        let in_file = |fault: FileFault| fault.in_file(file);
+        self.name_all();
+        self.leave(options).map_err(in_file)?;
+        self.rename(options).map_err(in_file)?;
+        let mut notes = std::mem::take(&mut self.notes);
+        naming::apply(&mut self.columns, &meta, &mut notes);
+        self.notes = notes;
+        let asked = options.asked();
+        let is_needed = |name: &str| {
+            let is_known = meta.kind.is_some_and(|kind| naming::known(kind).any(|known| known == name));
+            name == "time_s" || is_known || asked.contains(&name)
+        };
+        self.refuse_wrong(file, is_needed, options.leave_empty_rows)?;
+        self.refuse_doubtful(file, options)?;
+        let mut left = self.leave_unusable(is_needed, options);
+        self.check_units(options).map_err(|fault| fault.at_line(file, self.names_line))?;
+        self.scale(options).map_err(in_file)?;
+        if options.leave_empty_rows {
+            self.leave_empty_rows(&mut meta);
+        }
+        if let Some((place, note)) = meta.kind.and_then(|kind| contradiction::idle_velocity(&self.columns, kind)) {
+            left.push(self.columns.remove(place).name);
+            self.notes.push(note);
+        }
+        let starts = time::settle(&mut self, &meta, options, file)?;
+        let names = self.names();
+        let channels = facts::take_resolutions(&mut meta, &names);
+        let columns = self.columns.iter_mut().map(|column| std::mem::take(&mut column.values)).collect();
+        let trace = Trace::from_columns(channels, columns);
+        let notes = std::mem::take(&mut self.notes);
+        Ok(Understood { meta, trace, notes, left, file: file.to_owned(), table: self, starts })
+    }
+
+    /// Refuses a column in which a sign could part thousands or decimals.
+    fn refuse_doubtful(&self, file: &str, options: &ReadOptions) -> Result<(), FileError> {
+        if options.decimal_of_all().is_some() {
+            return Ok(());
+        }
+        let is_certain = |column: &Column| column.found.is_decimal || column.found.is_grouped;
+        let is_comma = self.decimal == Decimal::Comma;
+        let table_is_certain = !is_comma || self.columns.iter().any(is_certain);
+        for column in self.columns.iter().filter(|column| options.decimal_of(&column.source).is_none()) {
+            let found = &column.found;
+            let cell = match (&found.doubtful, &found.three_decimals) {
+                (Some(cell), _) if !found.is_grouped => cell,
+                (_, Some(cell)) if !is_certain(column) && (found.has_hundreds || !table_is_certain) => cell,
+                _ => continue,
+            };
+            let (sign, decimals, thousands) = match cell.text.contains('.') {
+                true => ("point", Decimal::Point, Decimal::Comma),
+                false => ("comma", Decimal::Comma, Decimal::Point),
+            };
+            let value =
+                |decimal| crate::text::number(cell.text.as_bytes(), decimal).map_or(f64::NAN, |(value, _)| value);
+            let said = format!(
+                "“{}” is {} where the {sign} stands before decimals, and {} where it parts thousands",
+                cell.text.trim(),
+                value(decimals),
+                value(thousands)
+            );
+            let option =
+                |decimal: Decimal| format!("--decimal {}", shell(&format!("{}={}", column.source, decimal.word())));
+            let options = vec![option(decimals), option(thousands)];
+            let place = self.located(file, cell.row);
+            return Err(FileError { place: Box::new(place), fault: FileFault::Choice { said, options } }
+                .in_column(&column.name));
+        }
+        Ok(())
+    }
+
+    /// Columns that nobody asks for, and that hold words or have gaps.
+    fn leave_unusable(&mut self, is_needed: impl Fn(&str) -> bool, options: &ReadOptions) -> Vec<String> {
+        let (rows, mut left) = (self.rows, Vec::new());
+        let mut notes = Vec::new();
+        self.columns.retain(|column| {
+            let found = &column.found;
+            let why = match () {
+                () if is_needed(&column.name) => None,
+                () if column.other_type.is_some() || column.is_words() => Some("it holds words".to_owned()),
+                () if !found.wrong_rows.is_empty() => {
+                    let example = found.wrong.first().map_or("", |cell| cell.text.trim());
+                    Some(format!(
+                        "{} of {} hold no number, such as “{example}”",
+                        counted(found.wrong_rows.len()),
+                        plural(rows, "cell")
+                    ))
+                }
+                () if found.missing == rows => Some("it is empty".to_owned()),
+                () if found.missing > 0 && !options.leave_empty_rows => {
+                    Some(format!("{} of {} are empty", counted(found.missing), plural(rows, "cell")))
+                }
+                () => None,
+            };
+            if found.truths > 0 && why.is_none() {
+                notes.push(Note::with(
+                    format!("{} is 1 for true and 0 for false", column.name),
+                    format!("--leave {}", shell(&column.name)),
+                ));
+            }
+            why.is_none_or(|why| {
+                notes.push(Note::new(format!("column {} was left out: {why}", column.name)));
+                left.push(column.name.clone());
+                false
+            })
+        });
+        self.notes.append(&mut notes);
+        left
+    }
+
+    /// A unit in the file that contradicts the name in the run table: one of them is wrong.
+    fn check_units(&self, options: &ReadOptions) -> Result<(), FileFault> {
+        for column in self.columns.iter().filter(|column| column.name != "time_s") {
+            let (name, Some(text)) = (&column.name, &column.unit) else { continue };
+            let is_said =
+                options.unit.iter().any(|(of, _)| of == name) || options.scale.iter().any(|(of, _)| of == name);
+            let (Some(dimension), Some(unit)) = (crate::unit::dimension_of(name), crate::unit::Unit::parse(text))
+            else {
+                continue;
+            };
+            if !is_said && (unit.dimension == dimension && !unit.is_si()) {
+                let said = format!("the file says {text} for column {name}");
+                let si = jointbench_instrument::units::unit_of(name).unwrap_or_default();
+                let option = |unit: &str| format!("--unit {}", shell(&format!("{name}={unit}")));
+                return Err(FileFault::Choice { said, options: vec![option(text), option(si)] });
+            }
+        }
+        Ok(())
+    }
+
+    fn scale(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
+        let place = |table: &RawTable, wanted: &String| {
+            let fault = || FileFault::Unscaled { wanted: wanted.clone(), there: table.names() };
+            table.place(wanted).ok_or_else(fault)
+        };
+        for (wanted, unit) in &options.unit {
+            let place = place(self, wanted)?;
+            let column = &mut self.columns[place];
+            (column.is_unit_open, column.unit) = (false, None);
+            column.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
+        }
+        for (wanted, factor) in &options.scale {
+            let place = place(self, wanted)?;
+            let column = &mut self.columns[place];
+            (column.is_unit_open, column.unit) = (false, None);
+            column.values.iter_mut().for_each(|value| *value *= factor);
+        }
+        for (wanted, period) in &options.unwrap {
+            let place = place(self, wanted)?;
+            contradiction::unwrap(&mut self.columns[place].values, *period);
+        }
+        Ok(())
+    }
+
+    /// How many did not stay is a fact of the run.
+    fn leave_empty_rows(&mut self, meta: &mut Meta) {
+        let whole = |row: &usize| self.columns.iter().all(|column| !column.values[*row].is_nan());
+        let places: Vec<usize> = (0..self.rows).filter(whole).collect();
+        let left = self.rows - places.len();
+        if left == 0 {
+            return;
+        }
+        for column in &mut self.columns {
+            column.values = places.iter().map(|row| column.values[*row]).collect();
+        }
+        meta.other.insert(LEFT_OUT_ROWS.to_owned(), left.into());
+        self.notes
+            .push(Note::with(format!("rows left out for an empty cell: {}", counted(left)), "--leave-empty-rows"));
+        self.named_again = self.named_again.iter().map(|row| places.partition_point(|place| place < row)).collect();
+        self.rows = places.len();
+        self.places = Some(places);
+    }
+}
+
+impl Understood {
+    /// Whether it has what a run of its kind needs; a table without a kind has not.
+    pub fn is_run(&self) -> bool {
+        let has = |name: &&str| self.trace.column(name).is_some();
+        self.meta.kind.is_some_and(|kind| kind.required_columns().iter().all(has))
+    }
+
+    /// The run, checked, and the notes.
+    pub fn into_run(self) -> Result<(RunTable, Vec<Note>), FileError> {
+        let Understood { meta, trace, mut notes, file, table, starts, .. } = self;
+        let guessed = || meta.kind.map(|kind| guess::guess(&table.columns, kind)).unwrap_or_default();
+        let refused = |fault: TableFault| refusal(fault, &file, &table, guessed());
+        let run = match starts.is_empty() {
+            true => RunTable::new(meta.clone(), trace).map_err(refused)?,
+            false => joined(&meta, &trace, &starts).map_err(|said| {
+                FileFault::Choice { said, options: vec!["the file without --split-runs".into()] }.in_file(&file)
+            })?,
+        };
+        if !starts.is_empty() {
+            let said = format!("the file holds {} recordings, numbered in column run", starts.len() + 1);
+            notes.push(Note::with(said, "--split-runs"));
+        }
+        notes.extend(contradiction::proposals(&run));
+        Ok((run, notes))
+    }
+}
+
+/// Recordings one behind the other as one measurement.
+fn joined(meta: &Meta, trace: &Trace, starts: &[usize]) -> Result<RunTable, String> {
+    let mut bounds: Vec<usize> = std::iter::once(0).chain(starts.iter().copied()).collect();
+    bounds.push(trace.len());
+    let parts = bounds.windows(2).map(|pair| {
+        let columns = trace.columns().iter().map(|column| column[pair[0]..pair[1]].to_vec()).collect();
+        RunTable::new(meta.clone(), Trace::from_columns(trace.channels().to_vec(), columns))
+    });
+    let mut parts: Vec<RunTable> = parts.collect::<Result<_, _>>().map_err(|fault| fault.to_string())?;
+    let first = parts.remove(0);
+    first.join(parts).map_err(|fault| fault.to_string())
+}
+
+/// Where the fault is, and what the file seems to hold instead.
+fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: Vec<guess::Proposal>) -> FileError {
+    let row = fault.row();
+    let mut place = match row {
+        Some(row) => table.located(file, row),
+        None => crate::error::Place { file: file.to_owned(), ..Default::default() },
+    };
+    // A column as a whole is at fault: the line of column names.
+    if row.is_none() && table.is_text && fault.column().is_some() {
+        place.line = Some(table.names_line);
+    }
+    let fault = match &fault {
+        TableFault::MissingColumn { column, .. } if guessed.iter().any(|one| one.column == *column) => {
+            let options = guessed.iter().map(guess::Proposal::option).collect();
+            FileFault::Proposed { fault, said: "the file seems to hold it", options }
+        }
+        TableFault::MissingColumn { column: "time_s", .. } => {
+            let options = vec!["--rate HZ".to_owned()];
+            FileFault::Proposed { fault, said: "a table without a time has one by its rate", options }
+        }
+        _ => FileFault::Table(fault),
+    };
+    FileError { place: Box::new(place), fault }
+}

@@ -1,0 +1,217 @@
+//! Units that tables come in, by the words that people write, and their values in SI.
+
+use std::f64::consts::TAU;
+
+/// What a unit measures. A column is only taken in a unit of its own dimension.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    Time,
+    Angle,
+    AngularVelocity,
+    Torque,
+    Current,
+    Temperature,
+    Length,
+    Velocity,
+    Force,
+    Other,
+}
+
+/// A value in SI is `factor` times the value in this unit, plus `offset` (K and °F).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    pub dimension: Dimension,
+    pub factor: f64,
+    pub offset: f64,
+}
+
+/// Newton metres of an ounce-force inch, and of the other units of the inch and the pound (NIST SP 811, appendix B.8).
+const OZF_IN: f64 = 7.061_551_814e-3;
+const LBF_IN: f64 = 0.112_984_829;
+const LBF_FT: f64 = 1.355_817_948;
+const KGF_CM: f64 = 9.806_65e-2;
+const DEGREE: f64 = TAU / 360.0;
+const DAY_S: f64 = 86_400.0;
+/// 0 °C in kelvin.
+const ICE_K: f64 = 273.15;
+
+type Row = (Dimension, f64, &'static [&'static str]);
+
+/// Names are as [`plain`] leaves them; the first of each row is the one to write.
+const UNITS: [Row; 52] = {
+    use Dimension as D;
+    [
+        (D::Time, 1.0, &["s", "sec", "secs", "second", "seconds", "sek", "sekunden"]),
+        (D::Time, 1e-3, &["ms", "msec", "millisecond", "milliseconds", "millis"]),
+        (D::Time, 1e-6, &["us", "usec", "microsecond", "microseconds", "micros"]),
+        (D::Time, 1e-9, &["ns", "nsec", "nanosecond", "nanoseconds", "nanos"]),
+        (D::Time, 60.0, &["min", "minute", "minutes"]),
+        (D::Time, 3600.0, &["h", "hour", "hours"]),
+        (D::Time, DAY_S, &["day", "days", "d"]),
+        (D::Angle, 1.0, &["rad", "rads", "radian", "radians"]),
+        (D::Angle, 1e-3, &["mrad"]),
+        (D::Angle, 1e-6, &["urad"]),
+        (D::Angle, DEGREE, &["deg", "degs", "degree", "degrees", "°"]),
+        (D::Angle, DEGREE / 60.0, &["arcmin"]),
+        (D::Angle, DEGREE / 3600.0, &["arcsec"]),
+        (
+            D::Angle,
+            TAU,
+            &["rev", "revs", "turn", "turns", "revolution", "revolutions", "rotation", "rotations", "umdrehungen"],
+        ),
+        (D::AngularVelocity, 1.0, &["rad/s", "rads/s", "rad/sec", "radians/s", "1/s", "s-1"]),
+        (D::AngularVelocity, 1e-3, &["mrad/s"]),
+        (D::AngularVelocity, DEGREE, &["deg/s", "°/s", "degrees/s", "deg/sec", "dps"]),
+        (D::AngularVelocity, TAU / 60.0, &["rpm", "1/min", "min-1", "u/min", "rev/min", "r/min", "upm"]),
+        (D::AngularVelocity, TAU, &["rev/s", "revs/s", "turn/s", "turns/s", "rps", "r/s"]),
+        (D::Torque, 1.0, &["Nm", "N*m", "newtonmetre", "newtonmetres", "newtonmeters"]),
+        (D::Torque, 1e-3, &["mNm", "Nmm", "mN*m", "N*mm"]),
+        (D::Torque, 1e-6, &["uNm", "uN*m"]),
+        (D::Torque, 1e-2, &["Ncm", "N*cm", "cNm"]),
+        (D::Torque, 1e3, &["kNm", "kN*m"]),
+        (D::Torque, OZF_IN, &["ozf*in", "oz*in", "ozin", "ozfin", "inoz", "in*oz"]),
+        (D::Torque, LBF_IN, &["lbf*in", "lb*in", "in*lb", "inlb", "inlbs", "lbin", "in*lbs", "in*lbf"]),
+        (D::Torque, LBF_FT, &["lbf*ft", "lb*ft", "ft*lb", "ftlb", "ft*lbs", "ftlbs", "ft*lbf"]),
+        (D::Torque, KGF_CM, &["kgf*cm", "kg*cm", "kgcm", "kgfcm"]),
+        (D::Torque, 9.806_65, &["kgf*m", "kg*m"]),
+        (D::Current, 1.0, &["A", "amp", "amps", "ampere", "amperes"]),
+        (D::Current, 1e-3, &["mA", "milliamp", "milliamps"]),
+        (D::Current, 1e-6, &["uA"]),
+        (D::Current, 1e3, &["kA"]),
+        (D::Temperature, 1.0, &["°C", "C", "degC", "celsius", "degreesC", "deg_c"]),
+        (D::Temperature, 1.0, &["K", "kelvin"]),
+        (D::Temperature, 5.0 / 9.0, &["°F", "degF", "fahrenheit", "F", "deg_f"]),
+        (D::Length, 1.0, &["m", "metre", "metres", "meters"]),
+        (D::Length, 1e-3, &["mm"]),
+        (D::Length, 1e-6, &["um"]),
+        (D::Length, 1e-2, &["cm"]),
+        (D::Velocity, 1.0, &["m/s"]),
+        (D::Velocity, 1e-3, &["mm/s"]),
+        (D::Force, 1.0, &["N", "newton", "newtons"]),
+        (D::Force, 1e-3, &["mN"]),
+        (D::Force, 1e3, &["kN"]),
+        (D::Other, 1.0, &["V", "volt", "volts"]),
+        (D::Other, 1e-3, &["mV"]),
+        (D::Other, 1.0, &["W", "watt"]),
+        (D::Other, 1.0, &["Pa"]),
+        (D::Other, 1e5, &["bar"]),
+        (D::Other, 1.0, &["Hz"]),
+        (D::Other, 1e-2, &["%", "percent"]),
+    ]
+};
+
+/// One spelling of what people write in several: µ and μ, dots and dashes for times, no blanks.
+fn plain(text: &str) -> String {
+    let text = text.trim().replace(['µ', 'μ'], "u").replace(['·', '⋅', '•', '×'], "*").replace("º", "°");
+    let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+    match text.as_str() {
+        // A dash between two units is a product, and one before a digit an exponent.
+        dashed if dashed.contains('-') && !dashed.ends_with("-1") => dashed.replace('-', "*"),
+        dotted if dotted.len() > 2 && dotted.contains('.') => dotted.trim_end_matches('.').replace('.', "*"),
+        _ => text,
+    }
+}
+
+impl Unit {
+    /// SI, whatever it measures.
+    pub const SI: Unit = Unit { dimension: Dimension::Other, factor: 1.0, offset: 0.0 };
+
+    /// By its name, as people write it: `deg`, `rpm`, `N·cm`, `counts/4096` (counts with the counts per turn), `°F`.
+    pub fn parse(text: &str) -> Option<Unit> {
+        let text = plain(text);
+        if let Some(unit) = counts(&text) {
+            return Some(unit);
+        }
+        // mA and MA, Nm and nm are not the same: as written first, then without regard to case where that is clear.
+        let exact = UNITS.iter().find(|(_, _, names)| names.contains(&text.as_str()));
+        let lower = text.to_lowercase();
+        let alike = || {
+            let mut rows = UNITS.iter().filter(|(_, _, names)| names.iter().any(|name| name.to_lowercase() == lower));
+            rows.next().filter(|_| rows.next().is_none())
+        };
+        let (dimension, factor, names) = exact.or_else(alike)?;
+        let offset = match names[0] {
+            "K" => -ICE_K,
+            "°F" => -32.0 * factor,
+            _ => 0.0,
+        };
+        Some(Unit { dimension: *dimension, factor: *factor, offset })
+    }
+
+    pub fn to_si(self, value: f64) -> f64 {
+        value * self.factor + self.offset
+    }
+
+    /// Of an axis that slides, whose columns are called as those of one that turns.
+    pub fn is_linear(self) -> bool {
+        matches!(self.dimension, Dimension::Length | Dimension::Velocity | Dimension::Force)
+    }
+
+    pub fn is_si(self) -> bool {
+        self.factor == 1.0 && self.offset == 0.0
+    }
+
+    /// Names to choose from, for a column of this dimension.
+    pub fn names_of(dimension: Dimension) -> Vec<&'static str> {
+        UNITS.iter().filter(|(of, _, _)| *of == dimension).map(|(_, _, names)| names[0]).collect()
+    }
+}
+
+/// `counts/4096`: a 4096th of a turn; `counts/4096/s` the same a second.
+fn counts(text: &str) -> Option<Unit> {
+    let rest = ["counts/", "count/", "cts/", "ticks/", "inc/"].iter().find_map(|word| text.strip_prefix(word))?;
+    let (number, dimension) = match rest.strip_suffix("/s") {
+        Some(number) => (number, Dimension::AngularVelocity),
+        None => (rest, Dimension::Angle),
+    };
+    let per_turn: f64 = number.parse().ok().filter(|n: &f64| n.is_finite() && *n != 0.0)?;
+    Some(Unit { dimension, factor: TAU / per_turn, offset: 0.0 })
+}
+
+/// What a column of the run table measures, by the suffix of its name. `None` where that is no quantity with a unit.
+pub fn dimension_of(column: &str) -> Option<Dimension> {
+    use Dimension as D;
+    Some(match jointbench_instrument::units::unit_of(column)? {
+        "s" => D::Time,
+        "rad" => D::Angle,
+        "rad/s" => D::AngularVelocity,
+        "Nm" => D::Torque,
+        "A" => D::Current,
+        "°C" => D::Temperature,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_known_by_the_words_that_people_write() {
+        for (word, dimension, value, si) in [
+            ("deg", Dimension::Angle, 180.0, TAU / 2.0),
+            ("°", Dimension::Angle, 180.0, TAU / 2.0),
+            ("RPM", Dimension::AngularVelocity, 60.0, TAU),
+            ("1/min", Dimension::AngularVelocity, 60.0, TAU),
+            ("mA", Dimension::Current, 250.0, 0.25),
+            ("N·cm", Dimension::Torque, 100.0, 1.0),
+            ("N.mm", Dimension::Torque, 1000.0, 1.0),
+            ("oz-in", Dimension::Torque, 1.0, OZF_IN),
+            ("ozf·in", Dimension::Torque, 1.0, OZF_IN),
+            ("°F", Dimension::Temperature, 212.0, 100.0),
+            ("K", Dimension::Temperature, 300.15, 27.0),
+            ("counts/4096", Dimension::Angle, 1024.0, TAU / 4.0),
+            ("µs", Dimension::Time, 5.0, 5e-6),
+            ("Second", Dimension::Time, 5.0, 5.0),
+        ] {
+            let unit = Unit::parse(word).unwrap_or_else(|| panic!("{word}"));
+            assert_eq!(unit.dimension, dimension, "{word}");
+            assert!((unit.to_si(value) - si).abs() < 1e-9, "{word}: {}", unit.to_si(value));
+        }
+        for word in ["", "fast", "counts/0", "counts/x", "counts", "m/A"] {
+            assert_eq!(Unit::parse(word), None, "{word}");
+        }
+        assert_eq!(dimension_of("motor_velocity_rad_s"), Some(Dimension::AngularVelocity));
+        assert_eq!(dimension_of("segment"), None);
+    }
+}

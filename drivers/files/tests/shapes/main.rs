@@ -1,0 +1,126 @@
+//! One recording in the shapes that other laboratories' tools write: read right, or refused with the option that reads it.
+//!
+//! `make.py` writes the files; pandas, polars and NumPy write theirs themselves.
+
+mod mutations;
+mod texts;
+
+use jointbench_files::{Choices, FileError, Note, ReadOptions, understand};
+use jointbench_instrument::{Kind, Meta, RunTable};
+use std::path::{Path, PathBuf};
+
+/// What cannot be told from the file: the option that the refusal must name, and the choices that read it.
+fn options() -> Vec<(&'static str, &'static str, Choices)> {
+    let names = Some("time_s,motor_position_rad,motor_velocity_rad_s,motor_current_a".to_owned());
+    let named = Choices { names, ..Choices::default() };
+    let unit = Choices { unit: vec!["time_s=ms".into()], ..Choices::default() };
+    let comma = Choices { decimal: vec!["motor_current [mA]=comma".into()], ..Choices::default() };
+    vec![
+        ("numpy_bare.txt", "--names time_s,column_2,column_3,column_4", named.clone()),
+        ("matlab_bare.csv", "--names time_s,column_2,column_3,column_4", named),
+        ("arduino_millis.csv", "--unit time_s=ms", unit),
+        ("mixed_signs.csv", "--decimal 'motor_current [mA]=comma'", comma),
+    ]
+}
+
+fn files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/shapes/written");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+fn take(path: &Path, choices: &Choices) -> Result<(RunTable, Vec<Note>), FileError> {
+    let meta = Some(Meta { kind: Some(Kind::Friction), ..Meta::default() });
+    understand(path, &ReadOptions { meta, ..choices.options().unwrap() })?.into_run()
+}
+
+/// The recording of `make.py`: name, values, and how far they may be off as they were written.
+fn truth() -> [(&'static str, fn(f64) -> f64, f64); 4] {
+    [
+        ("time_s", |i| 0.005 * i, 1e-6),
+        ("motor_position_rad", |i| 2.5 * (0.2 * i).sin(), 6e-4),
+        ("motor_velocity_rad_s", |i| 100.0 * (0.2 * i).cos(), 6e-4),
+        ("motor_current_a", |i| 1.2 + 0.8 * (0.2 * i).cos(), 6e-4),
+    ]
+}
+
+/// What is wrong with a table that was read.
+fn wrong(run: &RunTable) -> Option<String> {
+    if !(39..=40).contains(&run.len()) {
+        return Some(format!("{} rows", run.len()));
+    }
+    truth().into_iter().find_map(|(name, value, off)| {
+        let Some(column) = run.column(name) else { return Some(format!("{name} is missing")) };
+        let row = column.iter().enumerate().find(|(row, found)| (*found - value(*row as f64)).abs() > off)?;
+        Some(format!("{name} is {} in row {}, not {}", row.1, row.0, value(row.0 as f64)))
+    })
+}
+
+#[test]
+fn usual_shapes_are_read_right_or_say_the_option() {
+    let options = options();
+    let (mut right, mut told) = (0, Vec::new());
+    for path in files() {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let choices = options.iter().find(|(of, _, _)| *of == name);
+        match (take(&path, &Choices::default()), choices) {
+            (Ok((run, _)), None) => match wrong(&run) {
+                None => right += 1,
+                Some(wrong) => told.push(format!("{name} is read wrong: {wrong}")),
+            },
+            (Ok(_), Some(_)) => told.push(format!("{name} is read without a question")),
+            (Err(refused), None) => told.push(format!("{refused}")),
+            (Err(refused), Some((_, option, choices))) => {
+                if !refused.to_string().contains(option) {
+                    told.push(format!("{refused}: {option} is not named"));
+                }
+                match take(&path, choices) {
+                    Err(refused) => told.push(format!("{refused}, with {choices:?}")),
+                    // Numbers of the mixed table are others.
+                    Ok((run, _)) if name != "mixed_signs.csv" => told.extend(wrong(&run)),
+                    Ok((run, _)) => assert_eq!(run.column("motor_current_a").unwrap()[0], 1.2),
+                }
+            }
+        }
+    }
+    println!("{right} files are read without an option, {} say it", options.len());
+    assert!(told.is_empty(), "{}", told.join("\n"));
+    assert!(right >= 57, "{right}");
+}
+
+#[test]
+fn what_was_skipped_or_assumed_is_said() {
+    let said = |name: &str| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/shapes/written");
+        jointbench_files::paragraph(&take(&folder.join(name), &Choices::default()).unwrap().1)
+    };
+    for (name, words) in [
+        ("pandas_plain.csv", &[][..]),
+        ("pandas_index.csv", &["the first column counts the rows and was left out"]),
+        ("csv_comments.csv", &["2 lines above the names skipped, 2 comments of them"]),
+        ("csv_units_line.csv", &["line 2 was taken as units"]),
+        ("pandas_german.csv", &["decimals stand behind commas (--decimal point)"]),
+        (
+            "calc_units_latin1.csv",
+            &["read as windows-1252", "motor_position_rad is Motor Position [°], converted from °"],
+        ),
+        (
+            "pandas_gaps.csv",
+            &[
+                "column remark was left out: it holds words",
+                "column oil_temperature was left out: 30 of 40 cells are empty",
+            ],
+        ),
+        ("pandas_bool.csv", &["valid is 1 for true and 0 for false (--leave valid)"]),
+        ("csv_cut_off.csv", &["the last line is cut off"]),
+        ("labview.lvm", &["no row has a value for Comment", "time_s has no unit and was taken as s"]),
+        ("epoch_ms.csv", &["time_s has no unit and was taken as ms, since 1970"]),
+        ("pandas_datetime.csv", &["time_s counts the seconds from the stamp in the first row, 2026-01-02 10:00:00"]),
+        ("named_again.csv", &["the line of names stands 1 more time between the rows"]),
+    ] {
+        let said = said(name);
+        assert!(words.iter().all(|word| said.contains(word)), "{name}: {said}");
+        assert_eq!(words.is_empty(), said.is_empty(), "{name}: {said}");
+    }
+}

@@ -1,0 +1,152 @@
+//! Small texts: numbers, times and names that could be taken for something else.
+
+use jointbench_files::{Choices, FileError, Note, ReadOptions, understand_bytes};
+use jointbench_instrument::{Kind, Meta, RunTable};
+
+fn take(text: &str, choices: &Choices) -> Result<(RunTable, Vec<Note>), FileError> {
+    let meta = Some(Meta { kind: Some(Kind::Friction), ..Meta::default() });
+    understand_bytes("run.csv", text.as_bytes(), &ReadOptions { meta, ..choices.options().unwrap() })?.into_run()
+}
+
+fn column(text: &str, name: &str) -> Vec<f64> {
+    let (run, _) = take(text, &Choices::default()).unwrap_or_else(|refused| panic!("{refused}\n{text}"));
+    run.column(name).unwrap().to_vec()
+}
+
+#[track_caller]
+fn refused(text: &str, words: &[&str]) {
+    let said = take(text, &Choices::default()).unwrap_err().to_string();
+    assert!(words.iter().all(|word| said.contains(word)), "{said}");
+}
+
+/// A table with a time, a position and one more column.
+fn table(name: &str, cells: &[&str]) -> String {
+    let rows = cells.iter().enumerate().map(|(row, cell)| format!("{},5;0,{row};{cell}\n", row));
+    format!("time_s;motor_position_rad;{name}\n{}", rows.collect::<String>())
+}
+
+#[test]
+fn no_number_is_silently_wrong_by_a_thousand() {
+    let grouped = table("motor_current_a", &["1.220,5", "998", "1.204"]);
+    assert_eq!(column(&grouped, "motor_current_a"), [1220.5, 998.0, 1204.0]);
+    let doubtful = table("motor_current_a", &["1.220", "1.210", "1.238"]);
+    refused(
+        &doubtful,
+        &[
+            "run.csv, line 2, column motor_current_a",
+            "“1.220” is 1.22 where the point stands before decimals, and 1220 where it parts thousands",
+            "--decimal motor_current_a=point or --decimal motor_current_a=comma",
+        ],
+    );
+    for (word, value) in [("point", 1.22), ("comma", 1220.0)] {
+        let choices = Choices { decimal: vec![format!("motor_current_a={word}")], ..Choices::default() };
+        assert_eq!(take(&doubtful, &choices).unwrap().0.column("motor_current_a").unwrap()[0], value);
+    }
+    let decimal = table("motor_current_a", &["1.5", "2.25", "1.125"]);
+    refused(&decimal, &["expected a number, found “1.5”: it is one with --decimal NAME=point"]);
+    // Whole numbers below a thousand, and points in all above.
+    let points = "time_s,motor_position_rad,motor_current_a\n0.1,0.5,998\n0.2,0.5,1.002\n0.3,0.5,1.004\n";
+    refused(points, &["line 3, column motor_current_a", "“1.002” is 1.002 where the point"]);
+    let quoted = "time_s,motor_position_rad,motor_current_a\n0.1,0.5,\"1,220\"\n0.2,0.5,\"1,210\"\n";
+    refused(quoted, &["“1,220” is 1.22 where the comma", "--decimal motor_current_a=comma"]);
+    let only = "time_s;motor_position_rad;motor_current_a\n1;1,500;1,220\n2;1,500;1,210\n";
+    refused(only, &["“1,500” is 1.5 where the comma"]);
+    assert_eq!(column(&quoted.replace("1,210", "1,210.5"), "motor_current_a"), [1220.0, 1210.5]);
+    assert_eq!(column(&table("motor_current_a", &["12,5", "-0,25", "3"]), "motor_current_a"), [12.5, -0.25, 3.0]);
+}
+
+fn rows(times: impl IntoIterator<Item = f64>) -> String {
+    let rows = times.into_iter().enumerate().map(|(row, time)| format!("{time},{},0.1\n", 0.01 * row as f64));
+    format!("time_s,motor_position_rad,motor_current_a\n{}", rows.collect::<String>())
+}
+
+#[test]
+fn a_clock_that_ticks_more_slowly_than_rows_come_is_told_and_spread() {
+    let ticking = rows((0..300).map(|row| f64::from(row * 5 / 16) * 0.016));
+    refused(
+        &ticking,
+        &[
+            "run.csv, line 3: column time_s: expected a time after 0 s, found 0 s",
+            "206 of 300 rows repeat a time stamp: its clock ticks every 16 ms, rows come every 5 ms",
+            "Use --spread-time or --time-from-rate 200",
+        ],
+    );
+    let spread = take(&ticking, &Choices { spread_time: true, ..Choices::default() }).unwrap().0;
+    let time_s = spread.column("time_s").unwrap();
+    assert!(time_s.iter().enumerate().all(|(row, time)| (time - 0.005 * row as f64).abs() < 0.005), "{time_s:?}");
+    let (counted, notes) = take(&ticking, &Choices { time_from_rate: Some(200.0), ..Choices::default() }).unwrap();
+    assert!((counted.column("time_s").unwrap()[299] - 1.495).abs() < 1e-12);
+    assert!(notes[0].said.contains("counts the rows, 200 a second"), "{notes:?}");
+}
+
+#[test]
+fn several_recordings_in_a_file_are_told_and_split() {
+    let twice = rows((0..40).map(|row| 0.01 * f64::from(row % 20)));
+    refused(&twice, &["line 22, column time_s: the time begins again: the file holds 2 recordings. Use --split-runs"]);
+    let (run, notes) = take(&twice, &Choices { split_runs: true, ..Choices::default() }).unwrap();
+    assert_eq!(run.column("run").unwrap().iter().sum::<f64>(), 20.0);
+    assert!(notes.iter().any(|note| note.said.contains("2 recordings, numbered in column run")), "{notes:?}");
+    let slip = rows((0..40).map(|row| if row == 30 { 0.285 } else { 0.01 * f64::from(row) }));
+    refused(&slip, &["line 32", "in 1 of 40 rows the time goes back", "Use --time-from-rate 100"]);
+}
+
+#[test]
+fn a_table_without_a_time_gets_one() {
+    let bare = "motor_position_rad,motor_current_a\n0.1,1\n0.2,2\n0.3,3\n";
+    refused(bare, &["column time_s is missing", "a table without a time has one by its rate: --rate HZ"]);
+    let (run, _) = take(bare, &Choices { rate: Some(50.0), ..Choices::default() }).unwrap();
+    assert_eq!(run.column("time_s").unwrap(), [0.0, 0.02, 0.04]);
+    let said = take(&rows([0.0, 1.0]), &Choices { rate: Some(50.0), ..Choices::default() }).unwrap_err().to_string();
+    assert!(said.contains("the table has a time of its own. Use --time-from-rate 50"), "{said}");
+}
+
+#[test]
+fn foreign_names_are_proposed_and_not_taken() {
+    let foreign = "Time [ms],pos_deg,Iq [A]\n0,0,0.1\n5,1,0.2\n10,2,0.1\n";
+    refused(
+        foreign,
+        &[
+            "column motor_position_rad is missing",
+            "the file seems to hold it: --map motor_position_rad=pos_deg --unit motor_position_rad=deg --map 'motor_current_a=Iq [A]'",
+        ],
+    );
+    let choices = Choices {
+        map: vec!["motor_position_rad=pos_deg".into(), "motor_current_a=Iq [A]".into()],
+        unit: vec!["motor_position_rad=deg".into()],
+        ..Choices::default()
+    };
+    let (run, _) = take(foreign, &choices).unwrap();
+    assert_eq!(run.column("time_s").unwrap(), [0.0, 0.005, 0.01]);
+    assert!((run.column("motor_position_rad").unwrap()[2] - 2.0_f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
+fn a_line_of_units_that_contradicts_a_name_is_asked_about() {
+    let text = "time_s,motor_position_rad,motor_current_a\ns,deg,A\n0,90,0.1\n1,91,0.1\n";
+    refused(
+        text,
+        &[
+            "the file says deg for column motor_position_rad",
+            "--unit motor_position_rad=deg or --unit motor_position_rad=rad",
+        ],
+    );
+    let choices = Choices { unit: vec!["motor_position_rad=deg".into()], ..Choices::default() };
+    let (run, _) = take(text, &choices).unwrap();
+    assert!((run.column("motor_position_rad").unwrap()[0] - 90.0_f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
+fn names_that_are_empty_or_there_twice_are_given() {
+    let text = "time_s,,motor_current_a,motor_current_a\n0,7,0.1,5\n1,8,0.1,5\n";
+    refused(
+        text,
+        &["column motor_position_rad is missing", "the file has time_s, column_2, motor_current_a, motor_current_a_2"],
+    );
+    let (run, notes) =
+        take(text, &Choices { map: vec!["motor_position_rad=column_2".into()], ..Choices::default() }).unwrap();
+    assert_eq!(
+        (run.column("motor_position_rad").unwrap(), run.column("motor_current_a").unwrap()),
+        (&[7.0, 8.0][..], &[0.1, 0.1][..])
+    );
+    assert!(notes.iter().any(|note| note.said.contains("motor_current_a stands twice")), "{notes:?}");
+}

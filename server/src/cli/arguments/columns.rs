@@ -1,0 +1,66 @@
+//! How a file of measurements is read.
+
+use clap::Args;
+use jointbench_files::Choices;
+
+/// What to do to a file on its way in. Each message about a file names the option that it needs.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reading the file (docs/your-files.md)")]
+pub struct Columns {
+    /// Take a column from one of another name, such as motor_current_a=Iq; may be given again
+    #[arg(long, value_name = "COLUMN=NAME")]
+    pub map: Vec<String>,
+    /// Unit of a column in the file, such as motor_position_rad=deg, motor_velocity_rad_s=rpm, time_s=ms or
+    /// motor_position_rad=counts/4096 (counts with the counts per turn); may be given again
+    #[arg(long, value_name = "COLUMN=UNIT")]
+    pub unit: Vec<String>,
+    /// Multiply a column, such as motor_velocity_rad_s=-1; may be given again
+    #[arg(long, value_name = "COLUMN=FACTOR")]
+    pub scale: Vec<String>,
+    /// Make an angle continuous that begins anew after a turn (or after PERIOD, in the column's SI unit); may be given again
+    #[arg(long, value_name = "COLUMN[=PERIOD]")]
+    pub unwrap: Vec<String>,
+    /// Leave a column of the file out; may be given again. Columns of words stay out by themselves
+    #[arg(long, value_name = "NAME")]
+    pub leave: Vec<String>,
+    /// Leave out rows with an empty cell, which are refused otherwise; how many is told
+    #[arg(long)]
+    pub leave_empty_rows: bool,
+    /// Names of the columns, for a table without a line of names
+    #[arg(long, value_name = "NAME,NAME,…")]
+    pub names: Option<String>,
+    /// Decimal sign: point or comma, of all columns or of one (current_ma=comma); the other sign parts thousands
+    #[arg(long, value_name = "[NAME=]SIGN")]
+    pub decimal: Vec<String>,
+    /// Rows a second of a table without a time [Hz]
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
+    /// Count the rows instead of reading the time, so many a second [Hz]
+    #[arg(long, value_name = "HZ")]
+    pub time_from_rate: Option<f64>,
+    /// Spread rows of one time stamp evenly up to the next, where a clock ticks more slowly than rows come
+    #[arg(long)]
+    pub spread_time: bool,
+    /// Take a file in which the time begins again as several recordings of one measurement, numbered in column run
+    #[arg(long)]
+    pub split_runs: bool,
+}
+
+impl Columns {
+    pub fn choices(&self) -> Choices {
+        Choices {
+            map: self.map.clone(),
+            scale: self.scale.clone(),
+            unit: self.unit.clone(),
+            unwrap: self.unwrap.clone(),
+            leave: self.leave.clone(),
+            leave_empty_rows: self.leave_empty_rows,
+            names: self.names.clone(),
+            decimal: self.decimal.clone(),
+            rate: self.rate,
+            time_from_rate: self.time_from_rate,
+            spread_time: self.spread_time,
+            split_runs: self.split_runs,
+        }
+    }
+}

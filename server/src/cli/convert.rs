@@ -1,0 +1,48 @@
+//! `jointbench convert`: any readable file as a run table.
+
+use super::arguments::Convert;
+use super::exit::{Done, Exit};
+use super::files;
+use super::offline::{json_out, understood};
+use jointbench_files::{Understood, meta_path_of, paragraph, write};
+use serde_json::json;
+
+pub fn convert(arguments: &Convert) -> Done {
+    let Convert { file, meta, out, columns, .. } = arguments;
+    files::writable(out)?;
+    let same = |a: &std::path::Path, b: &std::path::Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    let (understood, table) = understood(file, meta.as_deref(), columns)?;
+    if same(&table, out) {
+        return Err(Exit::bad_input(format!(
+            "{} would be written over itself: name another file with --out",
+            out.display()
+        )));
+    }
+    // A measurement that says its kind is joined and looked at as a run; any other table is written as it was understood.
+    let (meta, trace, notes, left) = match understood.is_run() {
+        true => {
+            let left = understood.left.clone();
+            let (run, notes) = understood.into_run()?;
+            let (meta, trace) = run.into_parts();
+            (meta, trace, notes, left)
+        }
+        false => {
+            let Understood { meta, trace, notes, left, .. } = understood;
+            (meta, trace, notes, left)
+        }
+    };
+    write(out, &meta, &trace)?;
+    if arguments.json {
+        let names: Vec<&str> = trace.channels().iter().map(|channel| channel.name.as_str()).collect();
+        json_out(&json!({ "file": out, "rows": trace.len(), "columns": names, "left": left, "notes": notes }))?;
+    } else {
+        println!("{} ({} rows)", out.display(), trace.len());
+        if !out.extension().is_some_and(|end| end == "parquet") {
+            println!("{}", meta_path_of(out).display());
+        }
+    }
+    if !notes.is_empty() {
+        eprintln!("{}: {}", table.display(), paragraph(&notes));
+    }
+    Ok(())
+}

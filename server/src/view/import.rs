@@ -1,0 +1,88 @@
+//! What a file holds, before it is taken in.
+
+use jointbench_files as files;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// What is shown of a file before it is taken in. Nothing of it is kept.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportPreview {
+    /// As the facts say, or as the columns look: `friction`, `encoder`, `stiffness` or `brake`.
+    pub kind: String,
+    pub rows: usize,
+    pub columns: Vec<ImportColumn>,
+    /// Columns that say themselves what they are, and likely sources of the others.
+    pub proposals: Vec<ImportProposal>,
+    /// What was skipped, assumed or noticed.
+    pub notes: Vec<ImportNote>,
+    /// Columns that no model can use.
+    pub left: Vec<String>,
+    /// Why the file is not taken in with these choices.
+    pub refused: Option<ImportRefusal>,
+}
+
+/// A column as it stands in the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportColumn {
+    pub name: String,
+    /// As its name or a line of units states it.
+    pub unit: Option<String>,
+    /// Its first cells.
+    pub first: Vec<String>,
+    pub is_words: bool,
+    /// Cells without a value.
+    pub missing: usize,
+}
+
+/// A column of the run table, and where it seems to be in the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportProposal {
+    pub column: String,
+    /// Name in the file.
+    pub from: String,
+    pub unit: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportNote {
+    pub said: String,
+    /// What changes it, as it is written on the command line.
+    pub option: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ImportRefusal {
+    pub said: String,
+    /// Line of a text, row of a columnar file.
+    pub line: Option<u64>,
+    pub column: Option<String>,
+    /// What would mend it, as it is written on the command line.
+    pub options: Vec<String>,
+}
+
+impl From<files::Preview> for ImportPreview {
+    fn from(preview: files::Preview) -> Self {
+        let column = |one: files::PreviewColumn| ImportColumn {
+            name: one.name,
+            unit: one.unit,
+            first: one.first,
+            is_words: one.is_words,
+            missing: one.missing,
+        };
+        let proposal = |one: files::Proposal| ImportProposal { column: one.column, from: one.from, unit: one.unit };
+        ImportPreview {
+            kind: preview.kind.to_string(),
+            rows: preview.rows,
+            columns: preview.columns.into_iter().map(column).collect(),
+            proposals: preview.proposals.into_iter().map(proposal).collect(),
+            notes: preview.notes.into_iter().map(|one| ImportNote { said: one.said, option: one.option }).collect(),
+            left: preview.left,
+            refused: preview.refused.map(|one| ImportRefusal {
+                said: one.said,
+                line: one.line,
+                column: one.column,
+                options: one.options,
+            }),
+        }
+    }
+}

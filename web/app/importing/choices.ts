@@ -1,0 +1,71 @@
+import type { Choices } from '../api/upload';
+import type { ImportPreview } from '../api/types';
+import type { Mapping } from './columns';
+
+/** Parts of a request that hold one value. */
+const SINGLE = new Set(['rate', 'time_from_rate', 'names', 'spread_time', 'split_runs', 'leave_empty_rows']);
+
+/** `--unit time_s=ms --map 'time_s=Time [ms]'`, as the daemon proposes it for the command line, as parts of a request. */
+export function parseOption(text: string): [part: string, value: string][] {
+	const words = text.match(/'(?:[^']|'\\'')*'|[^\s']+/g) ?? [];
+	const bare = words.map((word) => (word.startsWith("'") ? word.slice(1, -1).replaceAll("'\\''", "'") : word));
+	return bare.flatMap((word, i) => {
+		if (!word.startsWith('--')) return [];
+		const value = bare[i + 1];
+		return [[word.slice(2).replaceAll('-', '_'), value === undefined || value.startsWith('--') ? 'true' : value] as [string, string]];
+	});
+}
+
+/** With what an option does; one that says the same of the same column is exchanged. */
+export function withOption(choices: Choices, text: string): Choices {
+	const next = { ...choices };
+	for (const [part, value] of parseOption(text)) {
+		const of = (one: string) => one.slice(0, one.lastIndexOf('='));
+		const others = (next[part] ?? []).filter((one) => !SINGLE.has(part) && one !== value && (!value.includes('=') || of(one) !== of(value)));
+		next[part] = [...others, value];
+	}
+	return next;
+}
+
+/** Without one value of a part. */
+export function without(choices: Choices, part: string, value: string): Choices {
+	const rest = (choices[part] ?? []).filter((one) => one !== value);
+	const { [part]: _gone, ...others } = choices;
+	return rest.length ? { ...others, [part]: rest } : others;
+}
+
+/** Whether a proposal can be carried out as it stands: `--rate HZ` lacks its number. */
+export const isWhole = (option: string) => parseOption(option).every(([part, value]) => part !== 'rate' || Number.isFinite(+value));
+
+/** What was chosen for a file, to be chosen again for the next one of its shape. */
+export interface Remembered {
+	kind: string;
+	mapping: Mapping;
+	facts: Record<string, string>;
+	left: string[];
+	choices: Choices;
+}
+
+const KEY = 'jointbench.imports';
+/** Shapes that are kept; the oldest go first. */
+const MOST = 30;
+
+/** Files are of one shape where their columns have the same names. */
+const shapeOf = (preview: ImportPreview) => preview.columns.map(({ name }) => name).join('\n');
+
+function kept(storage: Storage): [shape: string, what: Remembered][] {
+	try {
+		const found: unknown = JSON.parse(storage.getItem(KEY) ?? '[]');
+		return Array.isArray(found) ? (found as [string, Remembered][]) : [];
+	} catch {
+		return [];
+	}
+}
+
+export const recall = (preview: ImportPreview, storage: Storage): Remembered | null => kept(storage).find(([shape]) => shape === shapeOf(preview))?.[1] ?? null;
+
+export function remember(preview: ImportPreview, what: Remembered, storage: Storage): void {
+	const shape = shapeOf(preview);
+	const others = kept(storage).filter(([one]) => one !== shape);
+	storage.setItem(KEY, JSON.stringify([...others, [shape, what]].slice(-MOST)));
+}
