@@ -98,7 +98,7 @@ export function limitsOf({ provenance }: Pick<Run, 'provenance'>, names: readonl
 		if (typeof limit !== 'number') return [];
 		const level = limit * factor;
 		const oneSided = name.endsWith('_c');
-		const title = names.filter((one) => typeof limits[one] === 'number').length > 1 ? `limit, ${name.split('_').slice(0, 2).join(' ')}` : 'limit';
+		const title = names.filter((one) => typeof limits[one] === 'number').length > 1 ? `limit, ${name.split('_')[0]}` : 'limit';
 		return [{ label: title, said: `${oneSided ? '' : '± '}${tickText(level)} ${unit}`, stroke: '--bad', dash: [8, 3], levels: oneSided ? [level] : [level, -level], x: [], y: [] }];
 	});
 }
