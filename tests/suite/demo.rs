@@ -15,7 +15,7 @@ fn demo(more: &[&str]) -> String {
 #[test]
 fn the_hidden_effect_is_found() {
     let said = demo(&["--effect", "load_linear"]);
-    assert!(said.contains("Found missing: load_linear."), "{said}");
+    assert!(said.contains("Missing effect found: load_linear."), "{said}");
 }
 
 #[test]

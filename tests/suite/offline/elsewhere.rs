@@ -95,7 +95,7 @@ fn a_file_that_will_not_do_is_named() {
     assert!(told.contains("its samples are identical to those of run 1"), "{told}");
     assert!(!told.contains("attention"), "{told}");
     let told = done(folder, &["import", "run.csv", "--scale", "motor_current_a=1000", "--data", &data]);
-    assert!(told.contains("attention: motor_current_a with the torque constant and the gear ratio is "), "{told}");
+    assert!(told.contains("warning: motor_current_a with the torque constant and the gear ratio is "), "{told}");
     refused(
         folder,
         &["export", "1", "-o", "x.foo", "--data", &data],
