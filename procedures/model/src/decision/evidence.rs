@@ -1,14 +1,18 @@
 //! What speaks for an effect: what it takes off data that had no part in choosing its form and its factors.
 
 use crate::decision::ground::{Added, Gain, Ground};
+use crate::effect::Regime;
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
-use crate::thresholds::{GAIN_ERRORS, UNMISTAKABLE_SHARE};
+use crate::thresholds::UNMISTAKABLE_SHARE;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// A candidate with less than this share of its own looks like the model.
 const LEAST_VISIBLE: f64 = 1e-5;
+
+/// The rule of one standard error (Breiman and others 1984, ch. 3).
+pub const ONE_ERROR: f64 = 1.0;
 
 /// The evidence for one effect beside a model.
 pub struct Evidence<'l, 'p> {
@@ -20,8 +24,6 @@ pub struct Evidence<'l, 'p> {
     pub errors: f64,
     /// How often chance would bring any form of the library as far.
     pub p_value: f64,
-    /// These forms live around reversals and rests, where every formula errs.
-    pub is_near: bool,
     /// Held-out squared error of each block with the effect.
     pub losses: Vec<f64>,
 }
@@ -33,7 +35,7 @@ impl Evidence<'_, '_> {
 
     /// It takes more than a share, surely, and by more than the scatter of its gain.
     pub fn passes(&self, share: f64, alpha: f64) -> bool {
-        self.gain > share && self.p_value < alpha && self.errors > GAIN_ERRORS
+        self.gain > share && self.p_value < alpha && self.errors > ONE_ERROR
     }
 }
 
@@ -43,23 +45,21 @@ struct Trial<'l, 'p> {
     taken: f64,
     gains: Vec<Gain>,
     chance: f64,
-    is_near: bool,
 }
 
 /// The evidence for each effect of the candidates, the one that takes most first. `forms`: how many were tried in all.
 ///
-/// Forms of which most lies in the rows that are `near` a reversal are judged apart from the others of their effect.
+/// An effect of settled motion has to show beside reversals and rests: forms of which most lies in the rows that are `near` one
+/// are none.
 pub fn evidence<'l, 'p>(
     ground: &Ground,
     candidates: &[&'l Regressor<'p>],
     near: &[bool],
     forms: usize,
 ) -> Vec<Evidence<'l, 'p>> {
-    let mut trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ground, form, near)).collect();
-    let place = |id: &str| candidates.iter().position(|c| c.id() == id);
-    trials.sort_by_key(|t| (place(t.form.id()), t.is_near));
+    let trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ground, form, near)).collect();
     let mut all: Vec<Evidence> = trials
-        .chunk_by(|a, b| a.form.id() == b.form.id() && a.is_near == b.is_near)
+        .chunk_by(|a, b| a.form.id() == b.form.id())
         .filter_map(|forms_of_one| of_effect(ground, forms_of_one, forms))
         .collect();
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -72,9 +72,12 @@ fn trial<'l, 'p>(ground: &Ground, form: &'l Regressor<'p>, near: &[bool]) -> Opt
     if !is_possible(&added.factors()) {
         return None;
     }
-    let is_near = form.effect.wave().is_none() && ground.share_in(&form.columns, near) > UNMISTAKABLE_SHARE;
+    let is_settled = form.effect.regime() == Regime::SteadyState && form.effect.wave().is_none();
+    if is_settled && ground.share_in(&form.columns, near) > UNMISTAKABLE_SHARE {
+        return None;
+    }
     let chance = chance(added.wald(), added.size, ground.blocks.len());
-    Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance, is_near })
+    Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
 }
 
 /// What a form would add, where it is none of what the model has.
@@ -93,7 +96,6 @@ fn of_effect<'l, 'p>(ground: &Ground, trials: &[Trial<'l, 'p>], forms: usize) ->
     let gains: Vec<f64> = (0..ground.blocks.len()).map(of_block).collect();
     Some(Evidence {
         best: best.form,
-        is_near: best.is_near,
         gain: gains.iter().sum::<f64>() / ground.loss().max(f64::MIN_POSITIVE),
         errors: errors(&gains),
         p_value: (best.chance * forms as f64).min(1.0),

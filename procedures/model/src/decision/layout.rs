@@ -1,10 +1,11 @@
 //! A set of effects as a model of a run that is judged sample by sample: one model, in whatever order they came together.
 
-use crate::decision::evidence::visible;
+use crate::decision::evidence::{chance, visible};
 use crate::decision::solution::Solution;
 use crate::effect::Effect;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::linear_model::{LinearModel, Relative, Term, allows};
+use crate::thresholds::{ALPHA, DECISION_SHARE};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -33,7 +34,9 @@ pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &Can
         let forms = open.remove(most);
         let chosen = forms[best[most].1];
         model.terms.push(chosen.term(problem));
-        let others = forms.iter().filter(|form| !std::ptr::eq(**form, chosen)).map(|form| relative(form));
+        let parts = extend(&mut model, chosen, &forms);
+        let is_part = |form: &Regressor| parts.iter().any(|part| std::ptr::eq(*part, form));
+        let others = forms.iter().filter(|form| !is_part(form)).map(|form| relative(form));
         let relatives = model.relatives.iter().cloned().chain(others).collect();
         model.relatives = Arc::new(relatives);
     }
@@ -41,6 +44,34 @@ pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &Can
     let place = |term: &Term| library.effects.iter().position(|effect| effect.info().id == term.id());
     model.terms.sort_by_key(place);
     model
+}
+
+/// Gives an effect of several like parts, which entered last with one, those that take enough of held-out data as well. Returns
+/// its parts.
+fn extend<'l, 'p>(
+    model: &mut LinearModel<'p>,
+    chosen: &'l Regressor<'p>,
+    forms: &[&'l Regressor<'p>],
+) -> Vec<&'l Regressor<'p>> {
+    let mut parts = vec![chosen];
+    while let Some(last) = model.terms.last().cloned()
+        && let Some((_, longer)) = last.effect.extended(&last.form)
+        && let Some(solution) = Solution::of(model)
+    {
+        let judged = forms.par_iter().filter(|form| !parts.iter().any(|part| std::ptr::eq(*part, **form)));
+        let judged = judged.filter_map(|form| {
+            let added = visible(&solution.ground, form)?;
+            let gain: f64 = added.gains(0.0, |_| true).iter().map(|gain| gain.held_out).sum();
+            let chance = chance(added.wald(), added.size, solution.ground.blocks.len()) * forms.len() as f64;
+            (gain > DECISION_SHARE * solution.ground.loss() && chance < ALPHA).then_some((gain, *form))
+        });
+        let Some((_, next)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        let shape = last.shape.iter().chain(&next.shape).copied().collect();
+        model.terms.pop();
+        model.terms.push(Term::new(last.effect, longer, shape, model.problem));
+        parts.push(next);
+    }
+    parts
 }
 
 /// The form that takes most of what a model leaves, and what it takes. What is physically possible comes first.

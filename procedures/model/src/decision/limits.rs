@@ -50,7 +50,7 @@ pub fn silences<'p>(
 fn smallest(form: &Regressor, ground: &Ground, critical: f64, end: &TwoStageModel, solution: &Solution) -> Option<f64> {
     let added = visible(ground, form)?;
     let scatter = added.scatter(&added.factors());
-    let share = least_share(form.effect, false);
+    let share = least_share(form.effect);
     let least = share / (1.0 - share) * ground.loss();
     let delay = || {
         let form_error = end.main.problem.form_error.as_deref()?;

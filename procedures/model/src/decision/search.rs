@@ -4,7 +4,7 @@
 //! Size ranks, significance only gates. What shows only where everything else is imperfect too, around reversals and on
 //! ramps, has to take most of what is left.
 
-use crate::decision::evidence::{Evidence, errors, evidence};
+use crate::decision::evidence::{Evidence, ONE_ERROR, errors, evidence};
 use crate::decision::ground::Ground;
 use crate::decision::limits;
 use crate::decision::solution::{DELAY, PRESLIDING, Solution, beside, effect_columns, effect_factor};
@@ -20,7 +20,7 @@ use crate::selection::advance::SelectionStep;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
-use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, GAIN_ERRORS, LEFT_SHARE, SIMPLER_GAIN, UNMISTAKABLE_SHARE};
+use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, LEFT_SHARE, SIMPLER_GAIN, UNMISTAKABLE_SHARE};
 use crate::words::percent;
 use crate::{Effect, ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
@@ -48,7 +48,7 @@ impl Refused<'_> {
             () if self.p_value >= self.alpha => {
                 format!("{takes}, which chance does with a probability of {:.2}", self.p_value)
             }
-            () if self.errors <= GAIN_ERRORS => format!("{takes}, in a few stretches of the run alone"),
+            () if self.errors <= ONE_ERROR => format!("{takes}, in a few stretches of the run alone"),
             () if self.gain <= self.least => format!(
                 "{takes}, and shows only around reversals and on ramps, where every formula errs: there it takes {} to name it",
                 percent(self.least)
@@ -100,7 +100,7 @@ pub fn search<'p>(
         let library = libraries.of(&now.main, prepared, spec);
         let Some(solution) = Solution::of(&now.main) else { break };
         let all = candidates(now, &solution, library, forms(library), &dropped);
-        let passes = |e: &&Evidence| e.passes(least_share(e.best.effect, e.is_near), options.alpha);
+        let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), options.alpha);
         let added = advances.iter().filter(|a| a.added.is_some()).count();
         let best = all.iter().find(passes).filter(|_| added < most);
         let Some(best) = best else {
@@ -112,7 +112,7 @@ pub fn search<'p>(
                     p_value: e.p_value,
                     alpha: options.alpha,
                     errors: e.errors,
-                    least: least_share(e.best.effect, e.is_near),
+                    least: least_share(e.best.effect),
                 })
                 .collect();
             break;
@@ -195,9 +195,9 @@ pub struct Decided<'p> {
 }
 
 /// What shows only where all formulas err has to take most of what is left.
-pub fn least_share(effect: &dyn Effect, is_near: bool) -> f64 {
+pub fn least_share(effect: &dyn Effect) -> f64 {
     match effect.regime() {
-        Regime::SteadyState if !is_near => DECISION_SHARE,
+        Regime::SteadyState => DECISION_SHARE,
         _ => UNMISTAKABLE_SHARE,
     }
 }
@@ -244,7 +244,9 @@ pub fn without(now: &TwoStageModel, solution: &Solution, lives: Lives) -> Ground
         columns.extend(beside.error.into_iter().map(|(_, column)| column));
         columns.extend(beside.relatives);
     }
-    Ground::new(&columns, &model.response(), &solution.weight, &model.problem.block, Some(solution.ground.ridge))
+    // Weights make least of the very rows that such an effect is about.
+    let even = vec![1.0; model.problem.rows()];
+    Ground::new(&columns, &model.response(), &even, &model.problem.block, Some(solution.ground.ridge))
 }
 
 /// The torque is later or earlier than the motion by more than a sample: of which moment of it a reading is nobody knows.

@@ -9,7 +9,7 @@ use crate::report::fit::Parameter;
 use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::maps::Maps;
 use crate::selection::removal::{RemovalReason, Withdrawn};
-use crate::thresholds::{NOTHING_IN_COMMON, SECOND_AXIS_GAIN, SHOWN_SHARE, TOLD_LOSS};
+use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, TOLD_LOSS};
 use crate::words::{figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
@@ -214,7 +214,7 @@ pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<Stri
     // A second axis cuts the first one's bins: what shows over one alone can be more, and is said more shortly.
     let pair = pair.filter(|(_, both)| axis.as_ref().is_none_or(|(_, alone)| *both > SECOND_AXIS_GAIN * alone));
     let most = pair.or(axis);
-    most.filter(|(_, share)| *share > SHOWN_SHARE)
+    most.filter(|(_, share)| *share > PRACTICAL_SHARE)
 }
 
 /// Why no region is named where the model fails, in a sentence of its own. `maps` is what was looked at.

@@ -31,9 +31,11 @@ impl Effect for FrictionRipple {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        // Beside what the way since a reversal and the speed explain, even a part of a wave is one.
+        // Beside what the way since a reversal and the speed explain, a wave that was hardly there once is one.
         if view.constants.followed_hz.is_some() {
-            return crate::effects::harmonic_form(view, Signal::Link, 1..=24);
+            const SEEN: f64 = 0.8;
+            let first = (SEEN / view.turns(Signal::Link)).ceil().clamp(1.0, 25.0) as u32;
+            return crate::effects::harmonic_form(view, Signal::Link, first..=24);
         }
         let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Link, 1..=60);
         let with_speed =
