@@ -60,7 +60,7 @@ pub struct Export {
 }
 
 pub const CONVERT: &str = "\
-  jointbench convert log.txt --out run.csv                     what was understood, and run.meta.json beside it
+  jointbench convert log.txt --out run.csv                     converted table and run.meta.json
   jointbench convert log.csv --map motor_current_a=Iq --unit motor_current_a=mA --out run.parquet
   jointbench convert log.csv --time-from-rate 200 --out run.csv
 
