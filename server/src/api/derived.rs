@@ -15,11 +15,11 @@ pub struct DerivedQuery {
     /// One to four formulas over the columns of the run, with semicolons between, in the language of effects; besides
     /// `derivative(x)`, `integral(x)` and `smooth(x, seconds)`.
     pub formulas: String,
-    /// Begin of the window on the run's clock; its first row where left out.
+    /// Start of the window, in run time; first row if omitted.
     pub from_s: Option<f64>,
-    /// End of the window; the last row where left out.
+    /// End of the window, in run time; last row if omitted.
     pub to_s: Option<f64>,
-    /// Width of the view in pixels: smallest and largest value of each; 2000 where left out.
+    /// Width of the view in pixels, each with minimum and maximum; 2000 if omitted.
     #[param(minimum = 1, maximum = 20_000)]
     pub px: Option<u32>,
     /// Instead of a view at most so many rows as they are, evenly chosen: to draw one channel over another.
@@ -47,9 +47,9 @@ pub async fn samples(
 pub struct SpectrumQuery {
     /// A column of the run, or a formula over its columns.
     pub formula: String,
-    /// Begin of the window on the run's clock; its first row where left out.
+    /// Start of the window, in run time; first row if omitted.
     pub from_s: Option<f64>,
-    /// End of the window; the last row where left out.
+    /// End of the window, in run time; last row if omitted.
     pub to_s: Option<f64>,
 }
 

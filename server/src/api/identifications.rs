@@ -28,7 +28,7 @@ pub async fn earlier(State(lab): State<Lab>, Path(id): Path<i64>) -> Answer<Vec<
 #[into_params(parameter_in = Query)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrendQuery {
-    /// As in the list of runs; terms that are not understood are left out.
+    /// As in the list of runs; unknown terms are ignored.
     pub search: String,
 }
 

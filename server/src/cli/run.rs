@@ -152,7 +152,7 @@ fn say_that_it_goes_on(id: i64) {
         let Ok(runtime) = runtime else { return };
         if runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
             eprintln!(
-                "\nrun {id} goes on: `jointbench runs id:{id}` shows it, `jointbench stop` ends it in an orderly way"
+                "\nrun {id} continues: show it with `jointbench runs id:{id}`, end it with `jointbench stop`"
             );
             std::process::exit(INTERRUPTED);
         }

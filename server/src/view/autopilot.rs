@@ -122,7 +122,7 @@ pub struct AutopilotStep {
     #[schema(format = DateTime)]
     pub at: String,
     pub action: AutopilotAction,
-    /// =One sentence.
+    /// One sentence.
     pub text: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub run: Option<i64>,

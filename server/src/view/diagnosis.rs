@@ -52,7 +52,7 @@ pub struct Diagnosis {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Finding {
     pub kind: String,
-    /// =Effects of the diagnosed model.
+    /// Effects of the diagnosed model.
     pub model: Vec<String>,
     pub fit: Fit,
     pub residual: ResidualKind,
@@ -60,7 +60,7 @@ pub struct Finding {
     pub noise_floor_rms: Option<f64>,
     pub noise_floor: NoiseFloor,
     pub verdict: Verdict,
-    /// =One sentence.
+    /// One sentence.
     pub summary: String,
     /// Why no verdict is possible: the data cannot show a missing effect, or the columns contradict each other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -73,13 +73,13 @@ pub struct Finding {
     pub structure_remains: bool,
     /// Ranked; empty unless the verdict is `missing_effect`.
     pub suggestions: Vec<Suggestion>,
-    /// =Recommended next run.
+    /// Recommended next run.
     pub experiment: Option<Experiment>,
-    /// =Effects that were tested and are not significant.
+    /// Effects that were tested and are not significant.
     pub silent: Vec<Silent>,
-    /// =Effects that are not testable with this data.
+    /// Effects that are not testable with this data.
     pub not_visible: Vec<Invisible>,
-    /// =Rejected effects.
+    /// Rejected effects.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
 }
@@ -141,7 +141,7 @@ pub struct Suggestion {
     pub parameters: Vec<FittedParameter>,
     /// Effects that this data cannot distinguish from it.
     pub confounded_with: Vec<String>,
-    /// =One sentence.
+    /// One sentence.
     pub why: String,
 }
 

@@ -32,7 +32,7 @@ pub struct Identification {
     pub software: String,
     #[serde(flatten)]
     pub result: Shown,
-    /// =The run that uses the result.
+    /// The run that uses the result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub follow_up: Option<FollowUp>,
     pub applies: Applies,
@@ -96,7 +96,7 @@ pub struct Earlier {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Trends {
     pub runs: Vec<TrendRun>,
-    /// Runs whose figures are not worked out yet: ask again.
+    /// Runs whose figures are not computed yet: repeat the request.
     pub pending: u64,
     /// Older runs that the search finds too.
     pub left_out: u64,

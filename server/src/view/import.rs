@@ -56,7 +56,7 @@ pub struct ImportRefusal {
     /// Line of a text, row of a columnar file.
     pub line: Option<u64>,
     pub column: Option<String>,
-    /// What would mend it, as it is written on the command line.
+    /// Remedy, as an option of the command line.
     pub options: Vec<String>,
 }
 

@@ -31,7 +31,7 @@ pub enum LiveMessage {
         run: i64,
         event: RunEvent,
     },
-    /// =The columns of the following binary frames, including `time_s`.
+    /// The columns of the following binary frames, including `time_s`.
     Channels {
         bench: String,
         run: i64,

@@ -13,7 +13,7 @@ pub struct LogEntry {
     /// `stopped`, `blocked`, `reset` or `calibration` of a bench; `started`, `imported` or `model` of a run; the kind of an entry of the run's
     /// journal; `token`.
     pub kind: String,
-    /// =One sentence.
+    /// One sentence.
     pub text: String,
     /// Who did it: name of the token, or `local`.
     pub by: Option<String>,

@@ -94,7 +94,7 @@ pub struct Model {
     pub effects: Vec<String>,
     pub fit: Fit,
     pub residual: ResidualKind,
-    /// =Validation error (cross-validated RMS).
+    /// Validation error (cross-validated RMS).
     pub validation_rms: f64,
     pub rms: f64,
     pub noise_floor_rms: Option<f64>,
@@ -131,9 +131,9 @@ pub struct Fit {
     /// User-defined effects at the time of the fit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<EffectDefinition>,
-    /// =Training error (RMS).
+    /// Training error (RMS).
     pub rms: f64,
-    /// =Validation error (cross-validated RMS).
+    /// Validation error (cross-validated RMS).
     pub validation_rms: f64,
     pub unit: String,
     pub residual: ResidualKind,

@@ -28,7 +28,7 @@ pub struct EffectDefinition {
 #[serde(deny_unknown_fields)]
 pub struct DefinedParameter {
     pub name: String,
-    /// =`1` if omitted.
+    /// `1` if omitted.
     #[serde(default = "one")]
     pub unit: String,
     #[serde(default)]
@@ -163,7 +163,7 @@ pub struct Evaluation {
     pub notes: Vec<String>,
 }
 
-/// =Comparison of two model versions.
+/// Comparison of two model versions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Comparison {
     pub kind: String,

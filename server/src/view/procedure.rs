@@ -74,7 +74,7 @@ pub struct Extreme {
     pub quantity: String,
     pub unit: String,
     pub value: f64,
-    /// =`null` without a limit.
+    /// `null` without a limit.
     pub limit: Option<f64>,
     pub ok: bool,
 }

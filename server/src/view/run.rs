@@ -79,7 +79,7 @@ pub struct RunSummary {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LastModel {
     pub id: i64,
-    /// =Validation error (cross-validated RMS).
+    /// Validation error (cross-validated RMS).
     pub validation_rms: f64,
     pub noise_floor_rms: Option<f64>,
     /// Of the RMS figures.
@@ -181,7 +181,7 @@ pub struct RunEvent {
     pub at_s: f64,
     /// `state`, `step_started`, `step_finished`, `fault`, `breach`, `safe`, `note`, …
     pub kind: String,
-    /// =One sentence.
+    /// One sentence.
     pub text: String,
     /// Fields of the event.
     #[schema(value_type = Object)]

@@ -23,7 +23,7 @@ pub struct Columns {
     /// Leave a column of the file out; may be given again. Columns of words stay out by themselves
     #[arg(long, value_name = "NAME")]
     pub leave: Vec<String>,
-    /// Leave out rows with an empty cell, which are refused otherwise; how many is told
+    /// Omit rows with an empty cell (rejected otherwise) and print their number
     #[arg(long)]
     pub leave_empty_rows: bool,
     /// Names of the columns, for a table without a line of names

@@ -11,7 +11,7 @@ pub struct Runs {
     /// -tag:oil, follow after --
     #[arg(value_name = "TERM")]
     pub search: Vec<String>,
-    /// =Maximum number of runs
+    /// Maximum number of runs
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     pub limit: u32,
     /// started, state, procedure, bench, duration, rows, safe, error (validation error of the latest active model
@@ -60,7 +60,7 @@ pub struct Export {
 }
 
 pub const CONVERT: &str = "\
-  jointbench convert log.txt --out run.csv                     what was understood, and run.meta.json beside it
+  jointbench convert log.txt --out run.csv                     converted table and run.meta.json
   jointbench convert log.csv --map motor_current_a=Iq --unit motor_current_a=mA --out run.parquet
   jointbench convert log.csv --time-from-rate 200 --out run.csv
 
@@ -70,13 +70,14 @@ What was skipped or assumed is said on standard error, each with the option that
 pub struct Convert {
     /// Table: text (.csv, .tsv, .txt, .dat and others, also .gz), .parquet or .arrow
     pub file: PathBuf,
-    /// Facts about the set-up [default: FILE.meta.json or meta.json beside the file, or what is embedded]
+    /// Meta file of the test conditions [default: FILE.meta.json or meta.json in the folder of the file, or embedded
+    /// metadata]
     #[arg(long, value_name = "META.JSON")]
     pub meta: Option<PathBuf>,
-    /// File to write, .csv, .csv.gz or .parquet; a CSV gets its facts beside it as NAME.meta.json
+    /// File to write, .csv, .csv.gz or .parquet; for CSV also NAME.meta.json with the test conditions
     #[arg(short, long, visible_alias = "output", value_name = "RUN.CSV")]
     pub out: PathBuf,
-    /// Print what was understood as JSON: columns, rows, notes and what was left out
+    /// Print columns, rows, notes and omitted data as JSON
     #[arg(long)]
     pub json: bool,
     #[command(flatten)]
@@ -85,7 +86,7 @@ pub struct Convert {
 
 #[derive(Debug, Args)]
 pub struct Backup {
-    /// =Backup file
+    /// Backup file
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Folder of the store
