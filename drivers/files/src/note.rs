@@ -33,7 +33,7 @@ impl std::fmt::Display for Note {
 /// All of them in one paragraph; empty where there is none.
 pub fn paragraph(notes: &[Note]) -> String {
     let said: Vec<String> = notes.iter().map(Note::to_string).collect();
-    if said.is_empty() { String::new() } else { format!("{}.", said.join(". ")) }
+    if said.is_empty() { String::new() } else { format!("{}.", said.join("; ")) }
 }
 
 /// 34442 → 34,442.
@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn notes_are_one_paragraph() {
         let notes = [Note::new("one line was skipped"), Note::with("remark was left out", "--map x=remark")];
-        assert_eq!(paragraph(&notes), "one line was skipped. remark was left out (--map x=remark).");
+        assert_eq!(paragraph(&notes), "one line was skipped; remark was left out (--map x=remark).");
         assert_eq!(paragraph(&[]), "");
         assert_eq!(
             (counted(999), counted(34_442), counted(1_000_000)),

@@ -150,7 +150,7 @@ pub fn noticed(values: &[f64], starts: &[usize]) -> Vec<Note> {
     let uneven = steps().filter(|(_, step)| (step / usual - 1.0).abs() > JITTER).count();
     if uneven - gaps > values.len() / 20 {
         let said = format!(
-            "{} come unevenly, most of them {} after the one before",
+            "the time is uneven: {} come more or less than {} after the one before",
             plural(uneven - gaps, "row"),
             seconds(usual)
         );

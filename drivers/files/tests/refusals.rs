@@ -48,7 +48,7 @@ fn text_is_refused_where_it_is_wrong() {
     check_refused(
         &with("0,1,2\n1,1,2\n0.5,1,2\n"),
         "run.csv, line 4: column time_s: expected a time after 1 s, found 0.5 s; in 1 of 3 rows the time goes back. Use \
-         --time-from-rate 2",
+         --time-from-rate 1",
     );
     check_refused(
         b"time_s,motor_position_rad\n0,1\n",

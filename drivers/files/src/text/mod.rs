@@ -89,6 +89,7 @@ pub(crate) fn read(
 /// The table without rows.
 fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> {
     let mut names: Vec<String> = layout.columns.iter().map(|column| column.name.clone()).collect();
+    options.bounds.check_columns(&names)?;
     let is_named = layout.names_line.is_some();
     if !options.names.is_empty() {
         let (found, given) = (layout.width(), options.names.len());
@@ -115,6 +116,9 @@ fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> 
     })
 }
 
+/// Names that are proposed; of more the first.
+const PROPOSED: usize = 12;
+
 /// `time_s,column_2,…`: time where the first column rises evenly.
 fn proposed_names(layout: &Layout) -> String {
     let rises = layout.columns.first().is_some_and(|column| {
@@ -127,7 +131,10 @@ fn proposed_names(layout: &Layout) -> String {
         values.len() > 1 && values.windows(2).all(|pair| pair[0] < pair[1])
     });
     let name = |place: usize| if place == 0 && rises { "time_s".to_owned() } else { format!("column_{}", place + 1) };
-    (0..layout.width()).map(name).collect::<Vec<String>>().join(",")
+    let width = layout.width();
+    let mut names: Vec<String> = (0..width.min(PROPOSED)).map(name).collect();
+    names.extend((width > PROPOSED).then(|| "…".to_owned()));
+    names.join(",")
 }
 
 fn ways(layout: &Layout, table: &RawTable, options: &ReadOptions) -> Vec<rows::Way> {
@@ -203,7 +210,7 @@ fn notes(layout: &Layout, pieces: &Pieces<'_>) -> Vec<Note> {
     if layout.above > 0 {
         let comments = match layout.comments_above {
             0 => String::new(),
-            count => format!(", {} of them", plural(count, "comment")),
+            count => format!(", {count} of them comments"),
         };
         let lines = plural(layout.above, "line");
         notes.push(Note::new(format!("{lines} above the names skipped{comments}")));
