@@ -195,6 +195,11 @@ pub trait Effect: Sync {
         self.info().needs.iter().find(absent).copied()
     }
 
+    /// It is computed from the motion of the link. Where one side of the joint is held that motion is the twist itself.
+    fn needs_motion(&self) -> bool {
+        false
+    }
+
     /// The effect that this one is one and the same with in such data, and that stands for both.
     fn same_as(&self, _view: &View) -> Option<&'static str> {
         None
@@ -215,6 +220,12 @@ pub trait Effect: Sync {
             });
             let meant = nearest(need, others).map(|near| format!("; did you mean {near}?"));
             return Some(format!("the run has no column {need}{}", meant.unwrap_or_default()));
+        }
+        if let Some(turns) = view.constants.held_turns.filter(|_| self.needs_motion()) {
+            return Some(format!(
+                "one side of the joint is held and the link turns by {turns:.4} of a turn: its motion is the twist itself, \
+                 which it cannot explain; turn the joint under load"
+            ));
         }
         let still = |need: &&&str| view.find(Signal::named(need)).is_some_and(is_constant);
         if let Some(need) = info.needs.iter().find(still) {

@@ -26,6 +26,11 @@ pub struct Constants {
     pub speeds: Option<f64>,
     /// Ways over which its reversals can be remembered and seen [rad].
     pub reaches: Option<[f64; 2]>,
+    /// One side of the joint is held: the motion of the other one is the twist itself. The turns that the link makes.
+    pub held_turns: Option<f64>,
+    /// RMS by which the response is rounded where it stays within the same steps of its encoders, as that of a joint does that is
+    /// held.
+    pub rounding: f64,
 }
 
 /// The first sample of a recording, and what a memory brings along from before it.
@@ -127,6 +132,14 @@ impl View {
     /// One column from one signal.
     pub fn map(&self, signal: Signal, f: impl Fn(f64) -> f64) -> Vec<f64> {
         self.get(signal).iter().map(|x| f(*x)).collect()
+    }
+
+    /// The mean of a curve over a signal: not the curve at its mean, which differs where it bends within a point.
+    pub fn mean_of(&self, signal: Signal, f: impl Fn(f64) -> f64) -> Vec<f64> {
+        match self.samples.find(signal) {
+            Some(samples) => self.average(samples.iter().map(|x| f(*x)).collect()),
+            None => self.map(signal, f),
+        }
     }
 
     /// One column from two signals.

@@ -7,6 +7,8 @@ use crate::inference::parameter_state::IMPOSSIBLE;
 use crate::report::diagnosis::{Evidence, Imitated, Suggestion, Verdict};
 use crate::report::fit::Parameter;
 use crate::report::maps::{PairMap, Region};
+use crate::residual_analysis::events::Events;
+use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::removal::{RemovalReason, Withdrawn};
 use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, TOLD_LOSS};
@@ -77,6 +79,15 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
                 false => format!(" that {}", unexplained(found)),
             },
             structure(found, fit, shown)
+        ),
+        (_, None) if found.is_rounding() => format!(
+            "The model explains this run: its held-out error is {error}, as the steps of the encoders leave {}, and {floor}.",
+            figure(found.start.prepared.main.view.constants.rounding, &fit.unit)
+        ),
+        // Far above the repeatability it is adequate for one reason only.
+        (_, None) if found.exceeds_floor() && found.is_negligible() => format!(
+            "What the model leaves is negligible beside what was measured: its held-out error is {error}, and {floor}{}.",
+            above(found, fit)
         ),
         (_, None) => {
             format!("The model explains this run: its held-out error is {error}, and {floor}{}.", above(found, fit))
@@ -191,6 +202,24 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
         Some(share) => format!(", {} of it the same in every repeat", percent(share)),
         None => String::new(),
     };
+    if lack_of_fit::structured(&found.maps).is_none()
+        && let Some(event) = found.events.first()
+    {
+        let [from_s, to_s] = Events::span_s(&found.start.prepared.main, event);
+        // Without repeats nobody knows what comes again.
+        let does = match found.start.prepared.main.replicate_pairs.is_empty() {
+            true => "lies far out of what all others scatter by",
+            false => "lies far out of what all others scatter by and does not come again",
+        };
+        let which = match found.events.len() {
+            1 => format!("it shows in one stretch of the run, which {does}:"),
+            count => format!("it shows in {count} stretches of the run, each of which {does}, the largest of"),
+        };
+        return format!(
+            "{which} {} from {from_s:.2} s to {to_s:.2} s (the error that remains is {error}{repeats})",
+            figure(event.mean.abs(), &end.unit)
+        );
+    }
     match shown_over(found, shown) {
         Some((axes, share)) => format!(
             "it shows most over {}, a function of which would take {} off the squared error that remains \
@@ -241,6 +270,10 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
             Some(format!("{blocks} independent stretches of motion are too few to name anything"))
         }
         Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
+        Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => Some(
+            "a few moments hold nearly all that its repeats differ by, so how well it repeats itself is not known"
+                .into(),
+        ),
         Verdict::Adequate | Verdict::MissingEffect => impossible(fits),
         _ => None,
     }

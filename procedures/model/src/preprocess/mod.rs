@@ -285,7 +285,7 @@ fn sample_s(time_s: &[f64]) -> f64 {
     median(time_s.windows(2).step_by(time_s.len().div_ceil(TELLING)).map(|w| w[1] - w[0]))
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     if values.is_empty() {
         return 0.0;

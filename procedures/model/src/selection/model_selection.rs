@@ -191,7 +191,7 @@ fn outside_the_library<'p>(
     options: &Options,
 ) -> Option<(&'p str, RemovalReason)> {
     let whole = axis.and_then(|axis| taken_back(search, maps, axis, prepared, options));
-    let bump = || Some((bump(search, maps, prepared, options)?, RemovalReason::PartialExplanation));
+    let bump = || Some((bump(search, prepared, options)?, RemovalReason::PartialExplanation));
     whole.or_else(bump)
 }
 
