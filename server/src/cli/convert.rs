@@ -37,7 +37,7 @@ pub fn convert(arguments: &Convert) -> Done {
         json_out(&json!({ "file": out, "rows": trace.len(), "columns": names, "left": left, "notes": notes }))?;
     } else {
         println!("{} ({} rows)", out.display(), trace.len());
-        if !out.extension().is_some_and(|end| end == "parquet") {
+        if out.extension().is_none_or(|end| end != "parquet") {
             println!("{}", meta_path_of(out).display());
         }
     }

@@ -43,8 +43,9 @@ pub struct Column {
 }
 
 /// What a column holds, by its first rows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Content {
+    #[default]
     Numbers,
     /// Dates and clocks, read as seconds since this one.
     Stamps(Stamp),

@@ -31,12 +31,6 @@ use source::Pieces;
 /// Bytes of the beginning that decide about the rest.
 const HEAD_BYTES: usize = 256 << 10;
 
-impl Default for Content {
-    fn default() -> Self {
-        Content::Numbers
-    }
-}
-
 /// `bytes`: of the text, where that is known; room is made for so many.
 pub(crate) fn read(
     name: &str,

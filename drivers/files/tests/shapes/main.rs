@@ -35,8 +35,11 @@ fn take(path: &Path, choices: &Choices) -> Result<(RunTable, Vec<Note>), FileErr
     understand(path, &ReadOptions { meta, ..choices.options().unwrap() })?.into_run()
 }
 
-/// The recording of `make.py`: name, values, and how far they may be off as they were written.
-fn truth() -> [(&'static str, fn(f64) -> f64, f64); 4] {
+/// A column: name, value in a row, and how far it may be off as it was written.
+type Truth = (&'static str, fn(f64) -> f64, f64);
+
+/// The recording of `make.py`.
+fn truth() -> [Truth; 4] {
     [
         ("time_s", |i| 0.005 * i, 1e-6),
         ("motor_position_rad", |i| 2.5 * (0.2 * i).sin(), 6e-4),

@@ -11,7 +11,8 @@ pub fn stretches(time_s: &[f64]) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut begin = 0;
     for (i, pair) in time_s.windows(2).enumerate() {
-        if !(pair[1] - pair[0] <= longest) {
+        let step_s = pair[1] - pair[0];
+        if step_s.is_nan() || step_s > longest {
             found.push(begin..i + 1);
             begin = i + 1;
         }

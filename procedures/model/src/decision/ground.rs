@@ -29,6 +29,9 @@ struct Sums {
     yy: f64,
 }
 
+/// Products of columns with each other and with the response.
+type Normal = (Vec<f64>, Vec<f64>);
+
 /// The base without one block.
 struct Fold {
     /// Inverse of the products of the base: a base is solved for hundreds of columns.
@@ -207,10 +210,10 @@ pub struct Added {
     /// Share of the columns that is their own.
     pub visible: f64,
     /// The same without each block, and of that block alone.
-    without: Vec<(Vec<f64>, Vec<f64>)>,
-    held_out: Vec<(Vec<f64>, Vec<f64>)>,
+    without: Vec<Normal>,
+    held_out: Vec<Normal>,
     /// The same of each block beside the whole base.
-    within: Vec<(Vec<f64>, Vec<f64>)>,
+    within: Vec<Normal>,
     diagonal: Vec<f64>,
 }
 
@@ -286,7 +289,7 @@ impl Added {
     /// `ridge` holds the factors near zero; factors of which `allows` says no are zero.
     pub fn gains(&self, ridge: f64, allows: impl Fn(&[f64]) -> bool) -> Vec<Gain> {
         let k = self.size;
-        let gain = |((own, side), (there, side_there)): (&(Vec<f64>, Vec<f64>), &(Vec<f64>, Vec<f64>))| {
+        let gain = |((own, side), (there, side_there)): (&Normal, &Normal)| {
             let mut own = own.clone();
             (0..k).for_each(|a| own[a * k + a] += (ridge + FREE) * self.diagonal[a]);
             let factors = Cholesky::new(&own, k, 1e-12).solve(side);
@@ -352,7 +355,7 @@ impl Products {
     }
 
     /// What the columns have of their own beside a base with these factors for them and for the response.
-    fn projected(&self, along: &[Vec<f64>], factors: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn projected(&self, along: &[Vec<f64>], factors: &[f64]) -> Normal {
         let k = along.len();
         let own = (0..k * k).map(|at| self.jj[at] - dot(&self.jb[at / k], &along[at % k])).collect();
         let side = (0..k).map(|a| self.jy[a] - dot(&self.jb[a], factors)).collect();
@@ -360,7 +363,7 @@ impl Products {
     }
 
     /// The same over rows that had no part in these factors.
-    fn left(&self, base: &Sums, along: &[Vec<f64>], factors: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn left(&self, base: &Sums, along: &[Vec<f64>], factors: &[f64]) -> Normal {
         let k = along.len();
         let inner: Vec<Vec<f64>> = along.iter().map(|a| times(&base.bb, a)).collect();
         let own = (0..k * k).map(|at| {

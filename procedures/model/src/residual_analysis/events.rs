@@ -154,6 +154,9 @@ mod tests {
             segment: vec![0; n],
             repeat: (0..n).map(|i| (i / 500) as i64).collect(),
             settled: false,
+            form_error: None,
+            bandwidths: Vec::new(),
+            solved: Default::default(),
         };
         Events::of(&problem, &residual).find()
     }

@@ -87,9 +87,9 @@ pub fn banned(text: &str) -> Option<&'static str> {
     BANNED.into_iter().find(|phrase| spoken.contains(&format!(" {phrase} ")))
 }
 
-pub fn long_sentences(text: &str) -> Vec<&str> {
-    let sentences = text.split_inclusive([". ", ": ", "; "].map(|end| end));
-    sentences.filter(|sentence| words(sentence).len() > MOST_WORDS).collect()
+pub fn long_sentences(text: &str) -> Vec<String> {
+    let ended = text.replace(": ", ". ").replace("; ", ". ");
+    ended.split(". ").filter(|sentence| words(sentence).len() > MOST_WORDS).map(str::to_owned).collect()
 }
 
 /// In lower case, without code between backticks and without names of arguments between braces: a person sees their values.

@@ -29,8 +29,10 @@ pub struct Case {
     pub answer: Answer,
 }
 
+type Make = fn(&mut Dice) -> Recording;
+
 /// Kinds with what makes their runs.
-const MAKERS: [(Kind, fn(&mut Dice) -> Recording); 4] = [
+const MAKERS: [(Kind, Make); 4] = [
     (Kind::Friction, friction::make),
     (Kind::Encoder, encoder::make),
     (Kind::Stiffness, stiffness::make),

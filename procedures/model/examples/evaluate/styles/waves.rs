@@ -51,11 +51,11 @@ fn scaled(mut values: Vec<f64>) -> Vec<f64> {
 /// First-order lag of a column, from its first value.
 pub fn lag(values: &[f64], share: f64) -> Vec<f64> {
     let mut state = values.first().copied().unwrap_or(0.0);
-    let mut next = |v: &f64| {
+    let next = |v: &f64| {
         state += (v - state) * share;
         state
     };
-    values.iter().map(|v| next(v)).collect()
+    values.iter().map(next).collect()
 }
 
 /// Relays on a triangle of thresholds with a smooth density (Preisach 1935): −1 to 1 over inputs between −1 and 1.
