@@ -124,6 +124,7 @@ impl<'p> Events<'p> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::decision::solved::Solved;
     use crate::preprocess::Reduce;
     use crate::signal::Signals;
     use crate::view::View;
@@ -154,6 +155,9 @@ mod tests {
             segment: vec![0; n],
             repeat: (0..n).map(|i| (i / 500) as i64).collect(),
             settled: false,
+            form_error: None,
+            bandwidths: Vec::new(),
+            solved: Solved::default(),
         };
         Events::of(&problem, &residual).find()
     }
