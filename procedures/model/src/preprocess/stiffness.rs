@@ -74,6 +74,12 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     source.signals.set(Signal::Load, smooth);
     let inputs = [Signal::Velocity, Signal::Load].map(Same::Value);
     let mut prepared = sweeps::prepare(run, source, CHUNK_S, &inputs, options)?;
+    // The legs of a held joint are those of its torque, which may go in steps within one: what remembers is fed with the smooth
+    // torque, all else goes by what was measured.
+    if held_turns.is_some() {
+        let measured = prepared.main.view.average(torque.to_vec());
+        prepared.main.view.points.set(Signal::Load, measured);
+    }
     prepared.main.view.felt = Some(torque.to_vec().into());
     prepared.doubts.extend(zeros_rad.map(|apart| {
         let apart = figure(apart, &prepared.unit());

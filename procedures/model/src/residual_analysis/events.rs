@@ -124,6 +124,7 @@ impl<'p> Events<'p> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::decision::solved::Solved;
     use crate::preprocess::Reduce;
     use crate::signal::Signals;
     use crate::view::View;
@@ -156,7 +157,7 @@ mod tests {
             settled: false,
             form_error: None,
             bandwidths: Vec::new(),
-            solved: Default::default(),
+            solved: Solved::default(),
         };
         Events::of(&problem, &residual).find()
     }
