@@ -171,7 +171,7 @@ impl Way {
         if let Content::Stamps(first) = self.content {
             if let Some(stamp) = stamp::parse(cell) {
                 found.numbers += 1;
-                return (stamp.nanoseconds() - first.nanoseconds()) as f64 * 1e-9;
+                return (i128::from(stamp.nanoseconds()) - i128::from(first.nanoseconds())) as f64 * 1e-9;
             }
         } else if let Some(value) = self.number(cell, row, found) {
             found.numbers += 1;

@@ -68,8 +68,11 @@ fn date(text: &str, at: usize) -> Option<i64> {
     };
     let year = if year < 100 { year + 2000 } else { year };
     let day_ns = utc(format!("{year:04}-{month:02}-{day:02}T00:00:00").parse().ok()?)?;
-    Some(day_ns + clock(text[at + 1..].trim())?)
+    day_ns.checked_add(clock(text[at + 1..].trim())?)
 }
+
+/// A century; a clock that shows more is none.
+const MOST_HOURS: u32 = 876_600;
 
 /// hh:mm:ss.fff, mm:ss.fff, hh:mm:ss:mmm, each also with a comma and with AM or PM.
 fn clock(text: &str) -> Option<i64> {
@@ -79,7 +82,7 @@ fn clock(text: &str) -> Option<i64> {
         _ => (text.strip_suffix('Z').unwrap_or(text), None),
     };
     let parts: Vec<&str> = text.split(':').collect();
-    let whole = |text: &str| text.parse::<u32>().ok().map(i64::from);
+    let whole = |text: &str| text.parse::<u32>().ok().filter(|number| *number <= MOST_HOURS).map(i64::from);
     let (hours, minutes, seconds) = match parts.as_slice() {
         [minutes, seconds] if seconds.contains(['.', ',']) => (0, whole(minutes)?, fraction(seconds)?),
         [hours, minutes] => (whole(hours)?, whole(minutes)?, 0),
@@ -145,7 +148,9 @@ mod tests {
         ] {
             assert_eq!(parse(text.as_bytes()), Some(Stamp::Clock(ms * 1_000_000)), "{text}");
         }
-        for text in ["12", "10.5", "ratio 1:50", "1:2:3:4:5", "2026-13-02 10:00:00", "aa:bb:cc", "10:99:00"] {
+        for text in
+            ["12", "10.5", "ratio 1:50", "1:2:3:4:5", "2026-13-02 10:00:00", "aa:bb:cc", "10:99:00", "4000000000:00"]
+        {
             assert_eq!(parse(text.as_bytes()), None, "{text}");
         }
     }
