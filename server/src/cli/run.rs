@@ -151,9 +151,7 @@ fn say_that_it_goes_on(id: i64) {
         // Without it Ctrl-C ends this command as it ends any other.
         let Ok(runtime) = runtime else { return };
         if runtime.block_on(tokio::signal::ctrl_c()).is_ok() {
-            eprintln!(
-                "\nrun {id} continues: show it with `jointbench runs id:{id}`, end it with `jointbench stop`"
-            );
+            eprintln!("\nrun {id} continues: show it with `jointbench runs id:{id}`, end it with `jointbench stop`");
             std::process::exit(INTERRUPTED);
         }
     });
