@@ -53,7 +53,7 @@ pub struct SpectrumQuery {
     pub to_s: Option<f64>,
 }
 
-/// Amplitude spectrum of a channel of the run, or of what a formula makes of its channels
+/// Amplitude spectrum of a channel of the run, or of a formula over its channels
 #[utoipa::path(get, path = "/runs/{id}/spectrum", operation_id = "spectrum", tag = "samples",
     params(("id" = i64, Path, description = "Run"), SpectrumQuery),
     responses((status = 200, description = "The spectrum of the window", body = SpectrumView), Refusals))]

@@ -119,7 +119,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let mut drifts = vec![(
         drift.is_current_steady(&rule),
         format!("current drift {:.2} %/min", 100.0 * drift.current_share_per_min),
-        format!("limit {:.2} %/min (steady_share_per_min)", 100.0 * rule.current_share_per_min),
+        format!("limit {:.2} %/min, steady_share_per_min", 100.0 * rule.current_share_per_min),
     )];
     if run.column("temperature_c").is_some() {
         let words = ["temperature_drift", "Ṫ", "Drift of the temperature", "°C/min"];
@@ -135,7 +135,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
         drifts.push((
             drift.is_temperature_steady(&rule),
             format!("temperature drift {:.2} K/min", drift.temperature_c_per_min),
-            format!("limit {} K/min (steady_c_per_min)", rule.temperature_c_per_min),
+            format!("limit {} K/min, steady_c_per_min", rule.temperature_c_per_min),
         ));
     }
     let said = |(_, drift, bound): &(bool, String, String)| format!("{drift} ({bound})");

@@ -34,7 +34,7 @@ fn a_warm_up_that_ended_by_itself_is_warm_and_one_that_did_not_says_what_drifts(
         let cut_off = warm_up(json!({"longest_s": 100.0, "sample_rate_hz": 100.0, "steady_share_per_min": 1.0}));
         assert_eq!(cut_off.verdict, Verdict::Inconclusive, "{}", cut_off.summary);
         let says = |word: &str| cut_off.summary.contains(word);
-        assert!(says("more than 0.3 °C/min (steady_c_per_min)") && !says("current"), "{}", cut_off.summary);
+        assert!(says("limit 0.3 K/min, steady_c_per_min") && !says("current"), "{}", cut_off.summary);
     }
 }
 
@@ -134,7 +134,7 @@ fn a_stribeck_part_that_may_be_a_square_of_speed_is_not_identified() {
     assert!(friction.follow_up(&open).is_none(), "half of Coulomb friction is not fed forward");
     let alone = hidden(&["stribeck"]);
     assert_eq!(alone.verdict, Verdict::Identified, "{}", alone.summary);
-    assert!(friction.follow_up(&alone).is_some() && !alone.summary.contains("square"), "{}", alone.summary);
+    assert!(friction.follow_up(&alone).is_some() && !alone.summary.contains("Quadratic drag"), "{}", alone.summary);
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn a_joint_that_breaks_away_in_the_swings_decides_nothing() {
 fn a_warm_up_and_a_cool_down_tell_what_oil_does_and_what_does_not_change() {
     let mut settings = MockSettings::new(Joint::JointA, 21);
     let (_, cold) = found(settings.clone(), "friction_temperature", json!({}));
-    assert!(cold.quantity("c_t").is_none() && cold.summary.contains("neither"), "{}", cold.summary);
+    assert!(cold.quantity("c_t").is_none() && cold.summary.contains("change by less than"), "{}", cold.summary);
 
     settings.effects = vec!["temperature_viscous".into()];
     let (mock, warm) = found(settings, "friction_temperature", json!({}));
