@@ -12,7 +12,7 @@ fn a_port_that_is_in_use_or_gone_says_so() {
     let Address::Serial(path) = mock.address(MockInstrument::Brake).unwrap() else { panic!("a terminal") };
     let why = why_closed(&path).expect("the simulator itself has it open");
     assert!(why.contains("in use by") && why.contains(&std::process::id().to_string()), "{why}");
-    assert!(why_closed("/dev/ttyNOWHERE").unwrap().contains("not there"));
+    assert!(why_closed("/dev/ttyNOWHERE").unwrap().contains("not found"));
     let free = tempfile::NamedTempFile::new().unwrap().into_temp_path();
     assert_eq!(why_closed(free.to_str().unwrap()), None);
 }

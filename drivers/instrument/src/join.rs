@@ -210,8 +210,8 @@ mod tests {
     #[test]
     fn what_does_not_belong_together_is_refused_in_words() {
         for (change, said) in [
-            ((|m| m.gear_ratio = Some(100.0)) as fn(&mut Meta), "its gear_ratio is 100, that of the first 50"),
-            (|m| m.motion = crate::Motion::Linear, "its motion is linear"),
+            ((|m| m.gear_ratio = Some(100.0)) as fn(&mut Meta), "(gear_ratio = 100, first run 50)"),
+            (|m| m.motion = crate::Motion::Linear, "(motion = linear,"),
         ] {
             let (first, second) = two(change);
             let fault = first.join(vec![second]).unwrap_err().to_string();

@@ -180,7 +180,7 @@ mod tests {
         reached.slots.joint.as_mut().unwrap().arm(RadPerSec(10.0), Amperes(1.0)).unwrap();
         let looks = look(&mut reached.slots);
         let why = |wanted| looks.iter().find(|look| look.role == wanted).and_then(|look| look.state.as_ref().err());
-        assert!(why("joint").unwrap().contains("holds torque already"));
+        assert!(why("joint").unwrap().contains("already armed"));
         assert!(why("brake").is_none());
     }
 }

@@ -68,7 +68,7 @@ mod tests {
         };
         let said = line(&port);
         for part in
-            ["closed  /dev/ttyUSB1", "10C4:8056 Lorenz", "likely a torque", "port = \"usb://L7\"", "end it first"]
+            ["closed  /dev/ttyUSB1", "10C4:8056 Lorenz", "probably a torque sensor", "port = \"usb://L7\"", "end it first"]
         {
             assert!(said.contains(part), "{part:?} in {said}");
         }

@@ -50,11 +50,11 @@ name = \"two\"
     let said = mistakes.to_string();
     for expected in [
         "line 2: name \"bench one\"",
-        "line 4: driver \"odrve\" is not known: write \"odrive\" or \"puma\"",
-        "line 8: port \"/dev/ttyUSB0\" has an instrument already",
+        "line 4: unknown driver \"odrve\": write \"odrive\" or \"puma\"",
+        "line 8: port \"/dev/ttyUSB0\" is already used by another instrument",
         "line 9: deadline_ms 0: choose 1 to 10000",
-        "line 11: limits.motor_velocity_rad_s = -3: give a number above 0",
-        "line 15: limits.brake_current_a = NaN: give a number above 0",
+        "line 11: limits.motor_velocity_rad_s = -3: expected a number above 0",
+        "line 15: limits.brake_current_a = NaN: expected a number above 0",
         "line 2: constants.gear_ratio is missing",
         "line 19: bench \"two\" has no joint: add [bench.joint], or [bench.mock]",
     ] {
@@ -97,14 +97,14 @@ channels = []
     let said = parse("bench.toml", text).unwrap_err().to_string();
     for expected in [
         "line 5: port has no serial number: write usb://",
-        "line 8: port names no host and port number: write tcp://host:port",
-        "line 9: range is not for a multimeter: leave it out",
-        "line 11: calibrated = 2999-01-01 is yet to come",
+        "line 8: port has no host or port number: write tcp://host:port",
+        "line 9: range does not apply to a multimeter: remove it",
+        "line 11: calibrated = 2999-01-01 is in the future",
         "line 15: counts_per_turn 3: choose 4 to",
-        "line 18: port \"usb://1\" has an instrument already",
+        "line 18: port \"usb://1\" is already used by another instrument",
         "line 20: status_input 4: choose 0 to 3",
-        "line 22: driver \"pi\" is not known: write \"gcs\"",
-        "line 24: calibrated = 2026-03-31T12:00:00: write the day",
+        "line 22: unknown driver \"pi\": write \"gcs\"",
+        "line 24: calibrated = 2026-03-31T12:00:00: write a date",
         "line 26: channels is empty",
         "line 2: constants.gear_ratio is missing",
     ] {
@@ -119,18 +119,18 @@ fn a_limit_beyond_the_instrument_protects_nothing() {
     let text =
         text.replace("link_torque_nm = ", "link_torque_nm = 1").replace("brake_current_a = ", "brake_current_a = 1");
     let said = parse("bench.toml", &text).unwrap_err().to_string();
-    assert!(said.contains("the torque sensor ends at") && said.contains("the brake is rated for"), "{said}");
+    assert!(said.contains("the range of the torque sensor is") && said.contains("the brake is rated for"), "{said}");
     let said = parse("b.toml", "[[bench]]\nname = \"a\"\n[bench.mock]\njoint = \"z\"\n").unwrap_err().to_string();
-    assert!(said.contains("joint \"z\" is not known") && !said.contains("missing"), "{said}");
+    assert!(said.contains("unknown joint \"z\"") && !said.contains("missing"), "{said}");
 }
 
 #[test]
 fn what_toml_itself_refuses_has_a_line_too() {
     for (text, line, said) in [
         ("[[bench]]\nname = \n", 2, ""),
-        ("[[bench]]\nname = \"a\"\nmok.joint = \"a\"\n", 3, "mok is not known here: did you mean mock?"),
+        ("[[bench]]\nname = \"a\"\nmok.joint = \"a\"\n", 3, "unknown value mok: did you mean mock?"),
         ("[[bench]]\nname = \"a\"\n\n[bench.mock]\njoint = 3\n", 5, "expected a string"),
-        ("", 1, "no bench is described"),
+        ("", 1, "no bench described"),
     ] {
         let mistakes = parse("b.toml", text).unwrap_err();
         assert_eq!(mistakes.mistakes[0].line, line, "{mistakes}");
@@ -151,15 +151,15 @@ ninter = 0
 ";
     let said = parse("bench.toml", text).unwrap_err().to_string();
     for expected in [
-        "line 4: a puma has to give counts_per_turn of its encoder and amperes_per_volt",
-        "line 6: link_encoder is not for driver \"puma\": leave it out",
+        "line 4: a puma requires counts_per_turn of its encoder and amperes_per_volt",
+        "line 6: link_encoder does not apply to driver \"puma\": remove it",
         "line 8: ninter 0: choose 1 to 255",
     ] {
         assert!(said.contains(expected), "{expected:?} in\n{said}");
     }
     let text = text.replace("puma", "odrive");
     let said = parse("bench.toml", &text).unwrap_err().to_string();
-    assert!(said.contains("line 8: ninter is not for driver \"odrive\": leave it out"), "{said}");
+    assert!(said.contains("line 8: ninter does not apply to driver \"odrive\": remove it"), "{said}");
     let mock = "[[bench]]\nname = \"arm\"\n[bench.mock]\njoint = \"puma\"\nload = \"brake_a\"\n";
     let said = parse("bench.toml", mock).unwrap_err().to_string();
     assert!(said.contains("line 5: this joint has no load"), "{said}");
@@ -173,10 +173,10 @@ fn a_bad_day_comes_to_an_instrument_that_can_have_it() {
     };
     let bench = |instrument: &str, trouble: &str| planned(instrument, trouble, "");
     for (instrument, trouble, more, expected) in [
-        ("joint", "current_lost", "", "line 5: \"joint\" never has the trouble \"current_lost\""),
+        ("joint", "current_lost", "", "line 5: \"joint\" cannot have the trouble \"current_lost\""),
         ("stage", "silent", "", "line 5: this bench has no \"stage\""),
-        ("brake", "silent", ", until_s = 2.5", "line 5: until_s = 2.5 is not after from_s = 3"),
-        ("brake", "silnet", "", "line 5: silnet is not known here: did you mean silent?"),
+        ("brake", "silent", ", until_s = 2.5", "line 5: until_s = 2.5 must be later than from_s = 3"),
+        ("brake", "silnet", "", "line 5: unknown value silnet: did you mean silent?"),
     ] {
         let said = planned(instrument, trouble, more).unwrap_err().to_string();
         assert!(said.contains(expected), "{expected} in\n{said}");

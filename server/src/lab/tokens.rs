@@ -237,7 +237,7 @@ mod tests {
             ("hunter2", "7 characters"),
             ("aaaaaaaaaaaaaaaaaaaaaaaa", "1 different"),
             ("0101010101010101", "2 different"),
-            ("correct höorse battery", "not ASCII"),
+            ("correct höorse battery", "non-ASCII"),
         ] {
             let why = weakness(token).unwrap();
             assert!(why.contains(said) && why.contains("openssl rand"), "{token}: {why}");

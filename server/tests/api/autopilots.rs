@@ -111,7 +111,7 @@ fn the_run_that_a_diagnosis_asks_for_is_one_call() {
     let path = format!("/api/v1/diagnoses/{}/experiment", found["id"]);
     let (status, problem) = daemon.post(&path, &json!({"bench": BENCH}).to_string());
     assert_eq!(status, 422, "{problem}");
-    assert!(problem["detail"].as_str().unwrap().contains("its gear ratio is 177.8"), "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("gear ratio = 177.8, in the run 100"), "{problem}");
 
     let (status, none) = daemon.get(&format!("/api/v1/runs/{}/beside", run["id"]));
     assert_eq!((status, none), (200, Value::Null), "no other run of its bench has a model");
@@ -234,14 +234,14 @@ fn what_a_killed_daemon_left_open_is_interrupted_and_not_taken_up() {
     });
     let told = serde_json::to_value(&autopilot).unwrap();
     assert_eq!((&told["state"], &told["runs"]), (&"interrupted".into(), &json!([])), "{told}");
-    assert!(told["reason"].as_str().unwrap().contains("the daemon ended"), "{told}");
+    assert!(told["reason"].as_str().unwrap().contains("the daemon terminated"), "{told}");
 }
 
 #[test]
 fn what_cannot_be_asked_of_an_autopilot_is_refused_before_anything_moves() {
     let daemon = TestDaemon::start();
     for (body, status, said) in [
-        (json!({"bench": "attic"}), 404, "no bench attic"),
+        (json!({"bench": "attic"}), 404, "bench attic does not exist"),
         (json!({"bench": BENCH, "runs": 0}), 422, "runs = 0"),
         (json!({"bench": BENCH, "bench_time_s": 5.0}), 422, "the first run alone"),
         (json!({"bench": BENCH, "parameters": {"top_speed_rad_s": 900}}), 422, "motor velocity"),

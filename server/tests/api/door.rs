@@ -161,7 +161,7 @@ fn a_daemon_that_cannot_start_says_why() {
     let mut taken = settings(data.path(), None);
     taken.listen = running.address().parse().unwrap();
     let error = refused(taken);
-    assert!(error.to_string().contains("is taken"), "{error}");
+    assert!(error.to_string().contains("is in use: stop the other program"), "{error}");
 
     let error = refused(settings(running.data.path(), None));
     assert!(error.to_string().contains("in use by another jointbench"), "{error}");

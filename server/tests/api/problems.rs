@@ -11,8 +11,8 @@ fn every_refusal_is_a_problem_document() {
     let daemon = TestDaemon::start();
     let started = |body: &str| daemon.post("/api/v1/runs", body);
     for (answer, status, kind, said) in [
-        (daemon.get("/api/v1/runs/99"), 404, "not_found", "there is no run 99"),
-        (daemon.get("/api/v1/models/99"), 404, "not_found", "there is no model version 99"),
+        (daemon.get("/api/v1/runs/99"), 404, "not_found", "run 99 does not exist"),
+        (daemon.get("/api/v1/models/99"), 404, "not_found", "model version 99 does not exist"),
         (daemon.get("/api/v1/bench/attic"), 404, "not_found", "bench attic does not exist"),
         (daemon.get("/api/v1/nothing"), 404, "not_found", "openapi.json"),
         (daemon.get("/api"), 404, "not_found", "openapi.json"),

@@ -5,11 +5,12 @@ use crate::door::{FULL, READS};
 use serde_json::Value;
 
 /// What it may ask for that is no GET, by operation.
-const MAY: [&str; 8] = [
+const MAY: [&str; 9] = [
     "check_effect",
     "diagnose",
     "evaluate_model",
     "preview",
+    "preview_import",
     "stop_autopilot",
     "stop_bench",
     "stop_run",
