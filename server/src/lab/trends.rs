@@ -59,7 +59,8 @@ impl Lab {
         let Some(channel) = record.channels.iter().find(|channel| channel.unit() == Some("°C")) else {
             return Ok(None);
         };
-        let view = self.inner.store.view(record.id, Some(std::slice::from_ref(&channel.name)), None, None, STRETCHES).await?;
+        let view =
+            self.inner.store.view(record.id, Some(std::slice::from_ref(&channel.name)), None, None, STRETCHES).await?;
         let middles = view.columns.iter().flat_map(|column| column.min.iter().zip(&column.max));
         let middles: Vec<f64> =
             middles.map(|(low, high)| (low + high) / 2.0).filter(|middle| middle.is_finite()).collect();
