@@ -43,7 +43,7 @@ export async function goToTimes(page) {
 export async function analyse(page) {
 	const panel = page.locator('section', { has: page.getByRole('heading', { name: 'Analysis' }) });
 	await panel.getByRole('button', { name: 'Derived channel' }).click();
-	const formula = panel.getByRole('textbox', { name: 'Derived channel' });
+	const formula = panel.getByRole('combobox', { name: 'Derived channel' });
 	await formula.fill('motor_currant_a * 2');
 	await formula.press('Enter');
 	await panel.getByText('did you mean motor_current_a?').waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'a mistake in a derived channel is not named'));
@@ -100,7 +100,6 @@ export async function shadeMap(page) {
 	await section.getByLabel(/^scale/).selectOption('linear');
 	await page.waitForURL(/shade=value-linear/, { timeout: 5000 }).catch(() => expect(false, 'the address does not keep the colours of the map'));
 	expect((await fills()) !== before, 'the colours of the map do not change with their scale');
-	expect((await section.locator('svg text.cell').count()) > 0, 'no cell of the map says its value');
 	await section.getByLabel(/^colour/).selectOption('errors');
 	await section.getByLabel(/^scale/).selectOption('log');
 }

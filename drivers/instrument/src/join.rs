@@ -228,7 +228,7 @@ mod tests {
         let fault = first.join(vec![brake]).unwrap_err().to_string();
         assert_eq!(
             fault,
-            "of the runs named, number 2 is of kind brake and the first of kind friction: put runs of one kind together"
+            "run number 2 of the list is of kind brake, the first of kind friction: combine only runs of the same kind"
         );
     }
 }

@@ -22,7 +22,7 @@ fn every_refusal_is_a_problem_document() {
         (daemon.get("/api/v1/effects?kind=belt"), 422, "invalid", "friction, encoder"),
         (started("{"), 400, "malformed", "JSON"),
         (started(r#"{"bench": "joint-a-mock"}"#), 400, "malformed", "procedure"),
-        (started(r#"{"bench": "joint-a-mock", "procedure": "dance"}"#), 404, "not_found", "there are friction"),
+        (started(r#"{"bench": "joint-a-mock", "procedure": "dance"}"#), 404, "not_found", "available: friction"),
         (
             started(r#"{"bench": "joint-a-mock", "procedure": "friction", "parameters": {"repeats": 0}}"#),
             422,

@@ -121,7 +121,7 @@ fn a_result_stands_beside_those_of_earlier_runs() {
 #[test]
 fn a_joint_that_was_not_warmed_up_is_a_warning_of_its_result() {
     let daemon = TestDaemon::start();
-    let id = made(&daemon, "friction", json!({ "warm_up_s": 20.0 }));
+    let id = made(&daemon, "friction", json!({ "warm_up_s": 60.0, "load_levels": 1 }));
     let (_, events) = daemon.get(&format!("/api/v1/runs/{id}/events"));
     let told = events.as_array().unwrap().iter().find(|event| event["kind"] == "warning").expect("a warning");
     assert!(told["text"].as_str().unwrap().starts_with("not warmed up: "), "{told}");

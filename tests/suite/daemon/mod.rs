@@ -191,5 +191,5 @@ fn a_port_that_is_taken_is_named() {
     let output = crate::program::run(&["serve", "--listen", &address, "--data", &data.display().to_string()]);
     let said = crate::program::stderr(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("is taken") && said.contains("--listen"), "{said}");
+    assert!(said.contains("is in use") && said.contains("--listen"), "{said}");
 }

@@ -103,7 +103,7 @@ fn a_file_that_will_not_do_is_named() {
     );
     assert!(!folder.join("x.foo").exists(), "nothing is written");
     refused(folder, &["check", "joint-a-mok", "--print"], &["did you mean joint-a-mock?", "puma-mock"]);
-    refused(folder, &["check", "nosuch"], &["there is no such file", "joint-a-mock"]);
+    refused(folder, &["check", "nosuch"], &["file not found", "joint-a-mock"]);
 }
 
 #[test]
