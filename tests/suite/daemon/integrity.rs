@@ -52,6 +52,15 @@ fn a_changed_byte_is_named_and_hides_no_other_run() {
         let imported = run(&["import", table.to_str().expect("UTF-8"), "--data", to_data]);
         assert_eq!(imported.status.code(), Some(0), "{}", stderr(&imported));
     }
+    // The end of an import may be in the write-ahead file only. A restored copy is one whole file.
+    let copy = folder.path().join("lab.db");
+    let copy = copy.to_str().expect("UTF-8");
+    let data = folder.path().join("restored");
+    for (command, place) in [("backup", to_data), ("restore", data.to_str().expect("UTF-8"))] {
+        let done = run(&[command, copy, "--data", place]);
+        assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+    }
+    let to_data = data.to_str().expect("UTF-8");
     assert_eq!(verify(&data).0, Some(0));
 
     let file = data.join("jointbench.db");
