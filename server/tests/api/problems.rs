@@ -42,7 +42,7 @@ fn every_refusal_is_a_problem_document() {
             "not blocked",
         ),
         (daemon.post("/api/v1/runs/1", "{}"), 405, "not_allowed", "POST is not available"),
-        (daemon.post("/api/v1/runs", &"x".repeat(2 << 20)), 413, "too_large", "at most 1048576 bytes"),
+        (daemon.post("/api/v1/runs", &"x".repeat(2 << 20)), 413, "too_large", "exceeds the limit of 1048576 bytes"),
     ] {
         let (found, problem) = answer;
         assert_eq!(found, status, "{problem}");
