@@ -1,4 +1,4 @@
-//! How fast a plain CSV is read, beside polars on the same file in the same run.
+//! Reading speed of a plain CSV, and that of polars on the same file in the same run.
 //!
 //! `cargo bench -p jointbench-files --bench reading -- 1024` makes a file of so many MiB. polars is asked through Python
 //! (`JOINTBENCH_PYTHON`, else python3), since building its crate takes longer than everything else here together. Without
@@ -13,7 +13,7 @@ use std::time::Instant;
 
 const MIB: u64 = 1 << 20;
 const USUAL_MIB: u64 = 256;
-/// The best of so many is told.
+/// Repeats; the fastest counts.
 const TRIES: usize = 3;
 
 /// Reads the file named, as often, and prints the best time.

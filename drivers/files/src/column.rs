@@ -53,7 +53,7 @@ pub struct Found {
     pub has_hundreds: bool,
 }
 
-/// Cells that are told of.
+/// Cells that a note shows as examples.
 const TOLD: usize = 6;
 
 impl Found {
