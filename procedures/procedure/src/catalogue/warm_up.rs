@@ -3,7 +3,7 @@
 use super::legs::{ACCELERATION, Legs, sample_rate, turn_s, within_range_s};
 use super::{Findable, Procedure, findable};
 use crate::findings::{Plateau, Unusable, curve, plateaus, quantity, scatter, settled, verdict};
-use crate::identification::{Axis, Figure, Form, Identification, Verdict};
+use crate::identification::{Axis, Figure, Form, Identification, Series, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Steady};
 use crate::steady::{Drift, SteadyWatch};
@@ -159,37 +159,31 @@ fn over_time(
     points: &[Plateau],
     of: fn(&Plateau) -> (f64, f64),
 ) -> Figure {
+    over_minutes([name, title, label, unit], vec![scatter("fast legs", points.iter().map(of))])
+}
+
+/// `words`: name, title, label and unit.
+fn over_minutes([name, title, label, unit]: [&str; 4], series: Vec<Series>) -> Figure {
     Figure {
         name: name.into(),
         title: title.into(),
         form: Form::Cartesian,
         x: Axis::of("time", "min"),
         y: Axis::of(label, unit),
-        series: vec![scatter("fast legs", points.iter().map(of))],
+        series,
     }
 }
 
 /// A drift at the end of each cycle, between the bounds within which the joint is warm. `words`: name, title, label and unit.
-fn until_steady(
-    [name, title, label, unit]: [&str; 4],
-    watch: &SteadyWatch,
-    bound: f64,
-    of: fn(&Drift) -> f64,
-) -> Figure {
+fn until_steady(words: [&str; 4], watch: &SteadyWatch, bound: f64, of: fn(&Drift) -> f64) -> Figure {
     let points: Vec<(f64, f64)> = watch.drifts().map(|(time_s, drift)| (time_s / 60.0, of(&drift))).collect();
     let ends = [points.first().map_or(0.0, |p| p.0), points.last().map_or(1.0, |p| p.0)];
-    Figure {
-        name: name.into(),
-        title: title.into(),
-        form: Form::Cartesian,
-        x: Axis::of("time", "min"),
-        y: Axis::of(label, unit),
-        series: vec![
-            scatter("over three cycles", points),
-            curve("warm within", ends, 1, |_| bound),
-            curve("warm within", ends, 1, |_| -bound),
-        ],
-    }
+    let series = vec![
+        scatter("over three cycles", points),
+        curve("warm within", ends, 1, |_| bound),
+        curve("warm within", ends, 1, |_| -bound),
+    ];
+    over_minutes(words, series)
 }
 
 /// Whole cycles of warm-up steps that take at most `longest_s`, but one at least.
