@@ -267,14 +267,14 @@ export async function stopByKey(page, base, who, keys) {
 		await page.waitForTimeout(300);
 	};
 	await page.goto(`${base}/?bench=paced`);
-	await page.locator('header .state', { hasText: 'IDLE' }).waitFor({ timeout: 30_000 });
+	await page.locator('header .state', { hasText: 'IDLE' }).first().waitFor({ timeout: 30_000 });
 	await escapeTwice();
 	expect((await state()) === 'idle', `Esc twice of the ${who} stops a bench at rest`);
 	const headers = { 'content-type': 'application/json' };
 	const body = JSON.stringify({ bench: 'paced', procedure: 'friction', parameters: {} });
 	const run = await (await fetch(`${base}/api/v1/runs`, { method: 'POST', headers, body })).json();
 	await page.goto(`${base}/runs/${run.id}`);
-	await page.locator('header .state', { hasText: 'RUNNING' }).waitFor({ timeout: 30_000 });
+	await page.locator('header .state', { hasText: 'RUNNING' }).first().waitFor({ timeout: 30_000 });
 	await page.keyboard.press('?');
 	await page.getByRole('heading', { name: 'Keys' }).waitFor({ timeout: 30_000 });
 	await escapeTwice();

@@ -40,7 +40,7 @@ impl Lab {
                     Err(fault) => return Err(fault),
                 },
             };
-            let temperature_c = self.temperature_of(record).await?;
+            let temperature_c = self.temperature_of(record.id).await?;
             runs.push(TrendRun {
                 run: record.id,
                 created_at: record.created_at.clone(),
@@ -55,12 +55,13 @@ impl Lab {
     }
 
     /// Mean of the run's temperature [°C], from the middles of its stretches.
-    async fn temperature_of(&self, record: &RunRecord) -> Answer<Option<f64>> {
+    async fn temperature_of(&self, run: i64) -> Answer<Option<f64>> {
+        // A run of a list comes without its channels.
+        let record = self.inner.store.run(run).await?;
         let Some(channel) = record.channels.iter().find(|channel| channel.unit() == Some("°C")) else {
             return Ok(None);
         };
-        let view =
-            self.inner.store.view(record.id, Some(std::slice::from_ref(&channel.name)), None, None, STRETCHES).await?;
+        let view = self.inner.store.view(run, Some(std::slice::from_ref(&channel.name)), None, None, STRETCHES).await?;
         let middles = view.columns.iter().flat_map(|column| column.min.iter().zip(&column.max));
         let middles: Vec<f64> =
             middles.map(|(low, high)| (low + high) / 2.0).filter(|middle| middle.is_finite()).collect();

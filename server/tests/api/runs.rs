@@ -116,6 +116,10 @@ fn a_result_stands_beside_those_of_earlier_runs() {
     assert_eq!(earlier(third).1, told, "read where it was worked out");
     assert_eq!(earlier(second).1.as_array().unwrap().len(), 1);
     assert_eq!(earlier(77).0, 404);
+    let (status, trends) = daemon.get("/api/v1/trends?search=procedure:friction");
+    let all = trends["runs"].as_array().unwrap();
+    assert_eq!((status, all.len()), (200, 3), "{trends}");
+    assert!(all.iter().all(|one| one["temperature_c"].as_f64().is_some_and(|c| (15.0..60.0).contains(&c))), "{trends}");
 }
 
 #[test]

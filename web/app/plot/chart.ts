@@ -98,6 +98,7 @@ export function makeChart(
 		[[], ...frame.curves.map(() => [])] as unknown as uPlot.AlignedData,
 		host,
 	);
+	plot.root.role = 'group';
 	plot.root.ariaLabel = `${frame.yTitle} over ${frame.xTitle}`;
 	lines = rulers(plot, frame.xTitle, moved, !frame.cursorsAbove);
 	return {

@@ -50,7 +50,6 @@ const MOVES: Partial<Record<string, [from: number, to: number, Hand]>> = {
 /** The same by keyboard; Home shows all. */
 function keyed(u: uPlot, asked: Asked): void {
 	u.root.tabIndex = 0;
-	u.root.role = 'group';
 	u.root.addEventListener('keydown', (event) => {
 		const { min, max } = u.scales.x!;
 		const move = MOVES[event.key];
