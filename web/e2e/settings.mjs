@@ -42,7 +42,7 @@ export async function applyAndGoBack(page, base, run) {
 	await row.getByText('holds').waitFor({ timeout: PATIENCE_MS });
 	await audit(page, 'settings with a calibration');
 	await page.getByRole('button', { name: 'Take back brake hysteresis' }).click();
-	await page.getByRole('button', { name: 'Use the last complete run' }).click();
+	await page.getByRole('button', { name: 'Use the latest complete run' }).click();
 	await row.getByRole('button', { name: `Go back to it: run ${run}` }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'there is no way back to what was applied'));
 	await page.goto(`${base}/log`);
 	await page.getByText(`brake_hysteresis of run ${run} applied`).filter({ hasText: '(local)' }).waitFor({ timeout: PATIENCE_MS }).catch(() => expect(false, 'the log does not tell who applied what'));
