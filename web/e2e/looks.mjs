@@ -52,7 +52,8 @@ export async function zoomWhileFollowing(page, base) {
 	await page.keyboard.type('walked by');
 	await page.keyboard.press('Enter');
 	await page.locator('li', { hasText: 'walked by' }).waitFor({ timeout: 5000 }).catch(() => expect(false, 'Enter does not keep a note'));
-	await page.locator('ol:focus').waitFor({ timeout: 5000 }).catch(() => expect(false, 'Enter in a note loses the focus'));
+	const focused = () => page.evaluate(() => document.activeElement.outerHTML.slice(0, 80));
+	await page.waitForFunction(() => !document.activeElement.matches('body, textarea'), undefined, { timeout: 5000 }).catch(async () => expect(false, `Enter in a note loses the focus: ${await focused()}`));
 	const box = await plot.boundingBox();
 	const followed = page.url();
 	await page.mouse.move(box.x + box.width * 0.3, box.y + 50);

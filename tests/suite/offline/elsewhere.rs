@@ -168,5 +168,5 @@ fn advice_names_the_axis_of_the_summary_as_a_formula_does() {
     assert!(told.contains("it shows most over motor velocity and link torque, a function"), "{told}");
     assert!(told.contains("as a formula of velocity and load with --own"), "{told}");
     let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv"]));
-    assert!(told.contains("is missing") && !told.contains("as a formula of"), "{told}");
+    assert!(told.contains("missing effects, most") && !told.contains("as a formula of"), "{told}");
 }
