@@ -39,7 +39,18 @@ pub struct Refused<'p> {
     pub least: f64,
 }
 
-impl Refused<'_> {
+impl<'p> Refused<'p> {
+    fn of(evidence: &Evidence<'_, 'p>, alpha: f64) -> Self {
+        Self {
+            effect: evidence.best.id(),
+            gain: evidence.gain,
+            p_value: evidence.p_value,
+            alpha,
+            errors: evidence.errors,
+            least: least_share(evidence.best.effect),
+        }
+    }
+
     /// What it takes, and why it is not named, in words.
     pub fn why(&self) -> String {
         let takes =
@@ -73,6 +84,17 @@ impl<'p> Libraries<'p> {
     }
 }
 
+/// The way from a model to the last one, each step told as soon as it is made.
+struct Path<'a, 'p> {
+    prepared: &'p Prepared,
+    spec: &'p ModelSpec,
+    options: &'a Options,
+    start: TwoStageModel<'p>,
+    advances: Vec<SelectionStep<'p>>,
+    libraries: Libraries<'p>,
+    on_advance: &'a mut dyn FnMut(&SelectionStep),
+}
+
 /// `on_advance` sees every move when it is made.
 pub fn search<'p>(
     prepared: &'p Prepared,
@@ -83,108 +105,111 @@ pub fn search<'p>(
 ) -> Result<ModelSelection<'p>, ModelError> {
     let start = TwoStageModel::new(prepared, spec, options)?;
     let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
-    let mut advances: Vec<SelectionStep<'p>> = Vec::new();
-    let mut ties: Vec<(&'p str, &'p str)> = Vec::new();
+    let mut path = Path { prepared, spec, options, start, advances: Vec::new(), libraries, on_advance };
+    // Of columns that cannot be right every effect is made up.
     let most = if prepared.clashes.void.is_empty() { most.min(MOST_NAMED) } else { 0 };
-    let forms = |library: &CandidateSet| library.candidates.iter().filter(|c| !spec.contains(c.id())).count();
-    let mut refused = Vec::new();
-    let mut dropped: Vec<&'p str> = Vec::new();
     if most > 0
-        && let Some(step) = offset(&start, options)
+        && let Some(step) = offset(&path.start, options)
     {
-        on_advance(&step);
-        advances.push(step);
+        path.push(step);
     }
-    loop {
-        let now = advances.last().map_or(&start, |a| &a.after);
-        let library = libraries.of(&now.main, prepared, spec);
-        let Some(solution) = Solution::of(&now.main) else { break };
-        let all = candidates(now, &solution, library, forms(library), &dropped);
-        let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), options.alpha);
-        let added = advances.iter().filter(|a| a.added.is_some()).count();
-        let best = all.iter().find(passes).filter(|_| added < most);
-        let Some(best) = best else {
-            let large = all.iter().filter(|e| e.gain > LEFT_SHARE);
-            refused = large
-                .map(|e| Refused {
-                    effect: e.best.id(),
-                    gain: e.gain,
-                    p_value: e.p_value,
-                    alpha: options.alpha,
-                    errors: e.errors,
-                    least: least_share(e.best.effect),
-                })
-                .collect();
-            break;
-        };
-        let id = best.best.id();
-        let alike =
-            all.iter().filter(|e| e.id() != id && e.gain > SIMPLER_GAIN * best.gain && is_tie(&best.losses, &e.losses));
-        let alike: Vec<&'p str> = alike.map(|e| e.best.id()).collect();
-        ties.extend(alike.iter().map(|rival| (id, *rival)));
-        let effects = now.effects.iter().cloned().chain([id.to_owned()]).collect();
-        let held_out = best.losses.iter().sum();
-        let rival = ScoredCandidate {
-            term: best.best.term(now.main.problem),
-            share: best.gain,
-            held_out,
-            p_value: best.p_value,
-            losses: best.losses.clone(),
-        };
-        let after = TwoStageModel::decided(prepared, spec, effects)?;
-        let step = SelectionStep { added: Some(rival), removed: None, ties: alike, after };
-        on_advance(&step);
-        advances.push(step);
+    let refused = path.grow(most)?;
+    if let Some(id) = idle(path.end(), spec) {
+        path.remove(id)?;
     }
-    let end = advances.last().map_or(&start, |a| &a.after);
-    if let Some(id) = idle(end, spec) {
-        dropped.push(id);
-        let effects = end.effects.iter().filter(|e| *e != id).cloned().collect();
-        let after = TwoStageModel::decided(prepared, spec, effects)?;
-        let step = SelectionStep { added: None, removed: Some(id), ties: Vec::new(), after };
-        on_advance(&step);
-        advances.push(step);
+    let left = path.left()?;
+    path.told(left, refused)
+}
+
+impl<'p> Path<'_, 'p> {
+    fn end(&self) -> &TwoStageModel<'p> {
+        self.advances.last().map_or(&self.start, |a| &a.after)
     }
-    let end = advances.last().map_or(&start, |a| &a.after);
-    let mut left = Solution::of(&end.main).and_then(|solution| structure::left(&start, end, &solution));
-    // A function of one axis says more than all that was named: nothing of the library is it.
-    if left.as_ref().is_some_and(|left| left.is_all) {
-        let added: Vec<String> = end.effects.iter().filter(|e| !spec.contains(e)).cloned().collect();
-        for id in &added {
-            let end = advances.last().map_or(&start, |a| &a.after);
-            let effects = end.effects.iter().filter(|e| *e != id).cloned().collect();
-            let removed = spec.find(id)?.info().id;
-            let after = TwoStageModel::decided(prepared, spec, effects)?;
-            let step = SelectionStep { added: None, removed: Some(removed), ties: Vec::new(), after };
-            on_advance(&step);
-            advances.push(step);
+
+    fn push(&mut self, advance: SelectionStep<'p>) {
+        (self.on_advance)(&advance);
+        self.advances.push(advance);
+    }
+
+    /// Adds the effect that takes most, as long as one passes. Returns those that take much and do not.
+    fn grow(&mut self, most: usize) -> Result<Vec<Refused<'p>>, ModelError> {
+        loop {
+            let now = self.end();
+            let library = self.libraries.of(&now.main, self.prepared, self.spec);
+            let Some(solution) = Solution::of(&now.main) else { return Ok(Vec::new()) };
+            let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
+            let all = candidates(now, &solution, library, forms);
+            let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), self.options.alpha);
+            let added = self.advances.iter().filter(|a| a.added.is_some()).count();
+            let Some(best) = all.iter().find(passes).filter(|_| added < most) else {
+                let large = all.iter().filter(|e| e.gain > LEFT_SHARE);
+                return Ok(large.map(|e| Refused::of(e, self.options.alpha)).collect());
+            };
+            let id = best.best.id();
+            let rivals = all.iter().filter(|e| e.id() != id && e.gain > SIMPLER_GAIN * best.gain);
+            let ties = rivals.filter(|e| is_tie(&best.losses, &e.losses)).map(|e| e.best.id()).collect();
+            let rival = ScoredCandidate {
+                term: best.best.term(now.main.problem),
+                share: best.gain,
+                held_out: best.losses.iter().sum(),
+                p_value: best.p_value,
+                losses: best.losses.clone(),
+            };
+            let effects = now.effects.iter().cloned().chain([id.to_owned()]).collect();
+            let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+            self.push(SelectionStep { added: Some(rival), removed: None, ties, after });
         }
-        let end = advances.last().map_or(&start, |a| &a.after);
-        left = Solution::of(&end.main).and_then(|solution| structure::left(&start, end, &solution)).or(left);
     }
-    let end = advances.last().map_or(&start, |a| &a.after);
-    let now = end.main.clone();
-    let (mut residual, mut silences) = (now.linear().residual, Vec::new());
-    if let Some(solution) = Solution::of(&now) {
-        silences = limits::silences(end, &solution, libraries.of(&now, prepared, spec), options);
-        residual.clone_from(&solution.residual);
+
+    fn remove(&mut self, id: &'p str) -> Result<(), ModelError> {
+        let effects = self.end().effects.iter().filter(|e| *e != id).cloned().collect();
+        let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+        self.push(SelectionStep { added: None, removed: Some(id), ties: Vec::new(), after });
+        Ok(())
     }
-    ties.retain(|(named, rival)| end.effects.iter().any(|e| e == named) && !end.effects.iter().any(|e| e == rival));
-    let maps = Maps::new(prepared, residual.clone(), options);
-    let decided = Some(Decided { left, refused });
-    Ok(ModelSelection {
-        start,
-        advances,
-        withdrawn: Vec::new(),
-        now,
-        residual,
-        maps,
-        silences,
-        ties,
-        upheld: Vec::new(),
-        open: None,
-        decided,
-    })
+
+    /// What remains. Where a function of one axis says more than all that was named, nothing of the library is it.
+    fn left(&mut self) -> Result<Option<Left>, ModelError> {
+        let of = |path: &Self| {
+            Solution::of(&path.end().main).and_then(|solution| structure::left(&path.start, path.end(), &solution))
+        };
+        let left = of(self);
+        if !left.as_ref().is_some_and(|left| left.is_all) {
+            return Ok(left);
+        }
+        let spec = self.spec;
+        for id in self.end().effects.clone().iter().filter(|e| !spec.contains(e)) {
+            self.remove(spec.find(id)?.info().id)?;
+        }
+        Ok(of(self).or(left))
+    }
+
+    fn told(self, left: Option<Left>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
+        let end = self.end();
+        let now = end.main.clone();
+        let silences = Solution::of(&now).map_or_else(Vec::new, |solution| {
+            limits::silences(end, &solution, self.libraries.of(&now, self.prepared, self.spec), self.options)
+        });
+        let residual = now.linear().residual;
+        let is_in = |id: &str| end.effects.iter().any(|e| e == id);
+        let named = self.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
+        let ties = named.flat_map(|(id, rivals)| rivals.iter().map(move |rival| (id, *rival)));
+        let ties = ties.filter(|(id, rival)| is_in(id) && !is_in(rival)).collect();
+        let maps = Maps::new(self.prepared, residual.clone(), self.options);
+        Ok(ModelSelection {
+            start: self.start,
+            advances: self.advances,
+            withdrawn: Vec::new(),
+            now,
+            residual,
+            maps,
+            silences,
+            ties,
+            upheld: Vec::new(),
+            open: None,
+            decided: Some(Decided { left, refused }),
+        })
+    }
 }
 
 /// What the decision leaves.
@@ -208,9 +233,8 @@ fn candidates<'l, 'p>(
     solution: &Solution,
     library: &'l CandidateSet<'p>,
     forms: usize,
-    dropped: &[&str],
 ) -> Vec<Evidence<'l, 'p>> {
-    let is_out = |id: &str| !now.effects.iter().any(|e| e == id) && !dropped.contains(&id);
+    let is_out = |id: &str| !now.effects.iter().any(|e| e == id);
     let of = |wanted: &dyn Fn(&Regressor) -> bool| -> Vec<&'l Regressor<'p>> {
         library.candidates.iter().filter(|c| is_out(c.id()) && wanted(c)).collect()
     };
