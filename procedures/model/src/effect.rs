@@ -205,6 +205,11 @@ pub trait Effect: Sync {
         None
     }
 
+    /// The effect whose formula this one corrects: it is sought beside that one only (marginality, Nelder 1977).
+    fn corrects(&self) -> Option<&'static str> {
+        None
+    }
+
     /// What there would have to be to see, or why there is nothing.
     fn unseen(&self) -> &str {
         self.info().looks

@@ -67,9 +67,13 @@ mod tests {
             closed: Some("in use by screen (process 7); end it first".into()),
         };
         let said = line(&port);
-        for part in
-            ["closed  /dev/ttyUSB1", "10C4:8056 Lorenz", "probably a torque sensor", "port = \"usb://L7\"", "end it first"]
-        {
+        for part in [
+            "closed  /dev/ttyUSB1",
+            "10C4:8056 Lorenz",
+            "probably a torque sensor",
+            "port = \"usb://L7\"",
+            "end it first",
+        ] {
             assert!(said.contains(part), "{part:?} in {said}");
         }
     }

@@ -156,6 +156,9 @@ fn an_imported_model_brings_its_own_effects_along() {
     let another = out.replace("abs(load)", "load");
     let (status, problem) = import(&another);
     assert_eq!(status, 422, "{problem}");
-    assert!(problem["detail"].as_str().unwrap().contains("differs from effect rub of this daemon (tau = a * tanh"), "{problem}");
+    assert!(
+        problem["detail"].as_str().unwrap().contains("differs from effect rub of this daemon (tau = a * tanh"),
+        "{problem}"
+    );
     assert_eq!(own(), [(json!("rub"), json!(1))]);
 }

@@ -4,7 +4,7 @@ use crate::decision::ground::{Added, Gain, Ground};
 use crate::effect::Regime;
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
-use crate::thresholds::UNMISTAKABLE_SHARE;
+use crate::thresholds::DECISION_SHARE;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
@@ -49,8 +49,8 @@ struct Trial<'l, 'p> {
 
 /// The evidence for each effect of the candidates, the one that takes most first. `forms`: how many were tried in all.
 ///
-/// An effect of settled motion has to show beside reversals and rests: forms of which most lies in the rows that are `near` one
-/// are none.
+/// An effect of settled motion has to show beside reversals and rests: outside the rows that are `near` one it takes the practical
+/// share too.
 pub fn evidence<'l, 'p>(
     ground: &Ground,
     candidates: &[&'l Regressor<'p>],
@@ -72,12 +72,18 @@ fn trial<'l, 'p>(ground: &Ground, form: &'l Regressor<'p>, near: &[bool]) -> Opt
     if !is_possible(&added.factors()) {
         return None;
     }
-    let is_settled = form.effect.regime() == Regime::SteadyState && form.effect.wave().is_none();
-    if is_settled && ground.share_in(&form.columns, near) > UNMISTAKABLE_SHARE {
+    let is_settled = form.effect.regime() == Regime::SteadyState;
+    if is_settled && !shows_outside(ground, form, &added.factors(), near) {
         return None;
     }
     let chance = chance(added.wald(), added.size, ground.blocks.len());
     Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
+}
+
+/// It takes its share of what is left in the rows that are no reversal and no rest too, where there are any.
+fn shows_outside(ground: &Ground, form: &Regressor, factors: &[f64], near: &[bool]) -> bool {
+    let (taken, left) = ground.taken_outside(&form.columns, factors, near);
+    left == 0.0 || taken > DECISION_SHARE * left
 }
 
 /// What a form would add, where it is none of what the model has.

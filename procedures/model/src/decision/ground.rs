@@ -47,6 +47,8 @@ pub struct Ground {
     base: Vec<Vec<f64>>,
     scale: Vec<f64>,
     response: Vec<f64>,
+    /// Weighted residual of the base.
+    left: Vec<f64>,
     each: Vec<Sums>,
     folds: Vec<Fold>,
     whole: Fold,
@@ -94,7 +96,11 @@ impl Ground {
         let folds: Vec<Fold> = each.par_iter().map(|sums| all.without(sums).fold(&penalty)).collect();
         let losses = each.iter().zip(&folds).map(|(sums, fold)| sums.loss(&fold.factors)).collect();
         let whole = all.fold(&penalty);
-        Self { blocks, weight: weight.to_vec(), base, scale, response, each, folds, whole, ridge, losses }
+        let mut left = response.clone();
+        for (base, factor) in base.iter().zip(&whole.factors) {
+            left.iter_mut().zip(base).for_each(|(e, b)| *e -= factor * b);
+        }
+        Self { blocks, weight: weight.to_vec(), base, scale, response, left, each, folds, whole, ridge, losses }
     }
 
     pub fn loss(&self) -> f64 {
@@ -111,19 +117,26 @@ impl Ground {
         self.folds.iter().map(|fold| fold.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect())
     }
 
-    /// Share of the squared size of what some columns have of their own that lies in these rows.
-    pub fn share_in(&self, columns: &[Vec<f32>], rows: &[bool]) -> f64 {
-        let (mut inside, mut whole) = (0.0, 0.0);
-        for column in columns {
-            let mut own: Vec<f64> = column.iter().zip(&self.weight).map(|(v, w)| f64::from(*v) * w).collect();
-            let side: Vec<f64> = self.base.iter().map(|b| dot(b, &own)).collect();
-            for (base, factor) in self.base.iter().zip(times(&self.whole.inverse, &side)) {
-                own.iter_mut().zip(base).for_each(|(o, b)| *o -= factor * b);
-            }
-            whole += dot(&own, &own);
-            inside += own.iter().zip(rows).filter(|(_, is_in)| **is_in).map(|(o, _)| o * o).sum::<f64>();
+    /// Weighted squared error that columns with these factors take off the rows that are not `near`, and what is left there
+    /// without them.
+    pub fn taken_outside(&self, columns: &[Vec<f32>], factors: &[f64], near: &[bool]) -> (f64, f64) {
+        let weighted = |values: &[f32]| values.iter().zip(&self.weight).map(|(v, w)| f64::from(*v) * w).collect();
+        let mut sum = vec![0.0; self.response.len()];
+        for (column, factor) in columns.iter().zip(factors) {
+            let own: Vec<f64> = self.rest(weighted(column));
+            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += factor * own);
         }
-        inside / whole.max(f64::MIN_POSITIVE)
+        let outside = sum.iter().zip(&self.left).zip(near).filter(|(_, near)| !**near).map(|(pair, _)| pair);
+        outside.fold((0.0, 0.0), |(taken, left), (own, e)| (taken + own * (2.0 * e - own), left + e * e))
+    }
+
+    /// What a column has beside the base.
+    fn rest(&self, mut own: Vec<f64>) -> Vec<f64> {
+        let side: Vec<f64> = self.base.iter().map(|b| dot(b, &own)).collect();
+        for (base, factor) in self.base.iter().zip(times(&self.whole.inverse, &side)) {
+            own.iter_mut().zip(base).for_each(|(o, b)| *o -= factor * b);
+        }
+        own
     }
 
     /// What columns would add, beside the base.

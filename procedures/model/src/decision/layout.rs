@@ -1,11 +1,11 @@
 //! A set of effects as a model of a run that is judged sample by sample: one model, in whatever order they came together.
 
-use crate::decision::evidence::{chance, visible};
+use crate::decision::evidence::{ONE_ERROR, errors, visible};
 use crate::decision::solution::Solution;
 use crate::effect::Effect;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::linear_model::{LinearModel, Relative, Term, allows};
-use crate::thresholds::{ALPHA, DECISION_SHARE};
+use crate::thresholds::DECISION_SHARE;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -46,8 +46,8 @@ pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &Can
     model
 }
 
-/// Gives an effect of several like parts, which entered last with one, those that take enough of held-out data as well. Returns
-/// its parts.
+/// Gives an effect of several like parts, which entered last with one, those that take enough of held-out data as well: they are
+/// a matter of its form, as which shape it has. Returns its parts.
 fn extend<'l, 'p>(
     model: &mut LinearModel<'p>,
     chosen: &'l Regressor<'p>,
@@ -61,9 +61,9 @@ fn extend<'l, 'p>(
         let judged = forms.par_iter().filter(|form| !parts.iter().any(|part| std::ptr::eq(*part, **form)));
         let judged = judged.filter_map(|form| {
             let added = visible(&solution.ground, form)?;
-            let gain: f64 = added.gains(0.0, |_| true).iter().map(|gain| gain.held_out).sum();
-            let chance = chance(added.wald(), added.size, solution.ground.blocks.len()) * forms.len() as f64;
-            (gain > DECISION_SHARE * solution.ground.loss() && chance < ALPHA).then_some((gain, *form))
+            let gains: Vec<f64> = added.gains(0.0, |_| true).iter().map(|gain| gain.held_out).collect();
+            let gain: f64 = gains.iter().sum();
+            (gain > DECISION_SHARE * solution.ground.loss() && errors(&gains) > ONE_ERROR).then_some((gain, *form))
         });
         let Some((_, next)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
         let shape = last.shape.iter().chain(&next.shape).copied().collect();

@@ -43,12 +43,9 @@ pub fn form_error(model: &LinearModel, unit: &str) -> (Vec<FormErrorTerm>, Optio
         return (Vec::new(), None);
     };
     let mut terms = Vec::new();
-    let mut sum = vec![0.0; model.problem.rows()];
-    let mut add = |column: &[f64], factor: f64| sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
     for (at, factor) in &solution.error {
         let column = &form_error.columns[*at];
         let place = form_error.columns[..*at].iter().filter(|other| other.lives == column.lives).count();
-        add(&column.values, *factor);
         terms.push(FormErrorTerm {
             name: column.lives.name().into(),
             form: String::new(),
@@ -58,15 +55,14 @@ pub fn form_error(model: &LinearModel, unit: &str) -> (Vec<FormErrorTerm>, Optio
     }
     let mut factors = solution.relatives.iter();
     for relative in model.relatives.iter() {
-        let linear: Vec<f64> = factors.by_ref().take(relative.columns.len()).copied().collect();
-        relative.columns.iter().zip(&linear).for_each(|(column, factor)| add(column, *factor));
         terms.push(FormErrorTerm {
             name: relative.effect.info().id.into(),
             form: relative.form.name.into(),
             shape: relative.shape.clone(),
-            linear,
+            linear: factors.by_ref().take(relative.columns.len()).copied().collect(),
         });
     }
+    let sum = solution.form_error(model);
     let (size, whole) = (rms(&sum), rms(&model.problem.target));
     let said = format!(
         "beside its effects the fit holds {} RMS ({} of the torque) where the errors of formulas live: the way since a reversal, \

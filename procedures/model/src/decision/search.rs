@@ -20,7 +20,7 @@ use crate::selection::advance::SelectionStep;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
-use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, LEFT_SHARE, SIMPLER_GAIN, UNMISTAKABLE_SHARE};
+use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIMPLER_GAIN, UNMISTAKABLE_SHARE};
 use crate::words::percent;
 use crate::{Effect, ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
@@ -114,7 +114,7 @@ pub fn search<'p>(
         path.push(step);
     }
     let refused = path.grow(most)?;
-    if let Some(id) = idle(path.end(), spec) {
+    while let Some(id) = idle(path.end(), spec) {
         path.remove(id)?;
     }
     let left = path.left()?;
@@ -141,13 +141,22 @@ impl<'p> Path<'_, 'p> {
             let all = candidates(now, &solution, library, forms);
             let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), self.options.alpha);
             let added = self.advances.iter().filter(|a| a.added.is_some()).count();
-            let Some(best) = all.iter().find(passes).filter(|_| added < most) else {
+            let mut named = None;
+            let passing: Vec<&Evidence> = all.iter().filter(passes).filter(|_| added < most).collect();
+            for e in in_turn(&passing) {
+                let effects = now.effects.iter().cloned().chain([e.id().to_owned()]).collect();
+                let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+                if follows(now, &solution, &after) {
+                    named = Some((e, after));
+                    break;
+                }
+            }
+            let Some((best, after)) = named else {
                 let large = all.iter().filter(|e| e.gain > LEFT_SHARE);
                 return Ok(large.map(|e| Refused::of(e, self.options.alpha)).collect());
             };
             let id = best.best.id();
-            let rivals = all.iter().filter(|e| e.id() != id && e.gain > SIMPLER_GAIN * best.gain);
-            let ties = rivals.filter(|e| is_tie(&best.losses, &e.losses)).map(|e| e.best.id()).collect();
+            let ties = all.iter().filter(|e| e.id() != id && is_rival(best, e)).map(|e| e.best.id()).collect();
             let rival = ScoredCandidate {
                 term: best.best.term(now.main.problem),
                 share: best.gain,
@@ -155,8 +164,6 @@ impl<'p> Path<'_, 'p> {
                 p_value: best.p_value,
                 losses: best.losses.clone(),
             };
-            let effects = now.effects.iter().cloned().chain([id.to_owned()]).collect();
-            let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
             self.push(SelectionStep { added: Some(rival), removed: None, ties, after });
         }
     }
@@ -235,8 +242,10 @@ fn candidates<'l, 'p>(
     forms: usize,
 ) -> Vec<Evidence<'l, 'p>> {
     let is_out = |id: &str| !now.effects.iter().any(|e| e == id);
+    let is_sought = |id: &str| is_out(id) && library.candidates.iter().any(|c| c.id() == id);
     let of = |wanted: &dyn Fn(&Regressor) -> bool| -> Vec<&'l Regressor<'p>> {
-        library.candidates.iter().filter(|c| is_out(c.id()) && wanted(c)).collect()
+        let is_wanted = |c: &&Regressor<'p>| is_out(c.id()) && wanted(c) && !c.effect.corrects().is_some_and(is_sought);
+        library.candidates.iter().filter(is_wanted).collect()
     };
     let near: Vec<bool> = match now.main.problem.form_error.as_deref() {
         Some(form_error) => form_error.turn_s.iter().map(|turn_s| *turn_s < form_error.near_s).collect(),
@@ -257,6 +266,30 @@ fn candidates<'l, 'p>(
     all.extend(evidence(&solution.ground, &inertia, &near, forms));
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all
+}
+
+/// An effect that changes the direction of all others explains what free elements explain in its place: a torque that comes late
+/// bends around reversals as well, and no direction follows it.
+fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> bool {
+    let Some(form_error) = after.main.problem.form_error.as_deref() else { return true };
+    std::ptr::eq(now.main.problem, after.main.problem)
+        || Solution::weighted(&after.main, form_error, solution.weight.clone(), None).ground.loss()
+            < FLOOR_RATIO.powi(2) * solution.ground.loss()
+}
+
+/// The largest gain first; of those that tie with it the surest.
+fn in_turn<'e, 'l, 'p>(passing: &[&'e Evidence<'l, 'p>]) -> Vec<&'e Evidence<'l, 'p>> {
+    let mut in_turn = passing.to_vec();
+    if let Some(first) = passing.first() {
+        let ties = passing.iter().take_while(|e| is_rival(first, e)).count();
+        in_turn[..ties].sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    }
+    in_turn
+}
+
+/// Takes about as much, block by block.
+fn is_rival(best: &Evidence, other: &Evidence) -> bool {
+    other.gain > SIMPLER_GAIN * best.gain && is_tie(&best.losses, &other.losses)
 }
 
 /// The model projected out without one kind of form error.

@@ -111,6 +111,18 @@ impl Solution {
         }
     }
 
+    /// What the columns beside the effects come to at the rows.
+    pub fn form_error(&self, model: &LinearModel) -> Vec<f64> {
+        let mut sum = vec![0.0; model.problem.rows()];
+        let mut add = |column: &[f64], factor: f64| sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        if let Some(form_error) = model.problem.form_error.as_deref() {
+            self.error.iter().for_each(|(at, factor)| add(&form_error.columns[*at].values, *factor));
+        }
+        let columns = model.relatives.iter().flat_map(|relative| &relative.columns);
+        columns.zip(&self.relatives).for_each(|(column, factor)| add(column, *factor));
+        sum
+    }
+
     /// As any model's.
     pub fn linear(&self, model: &LinearModel) -> Linear {
         let mut next = self.factors.iter().copied();

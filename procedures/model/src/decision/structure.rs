@@ -3,18 +3,17 @@
 use crate::decision::evidence::errors;
 use crate::decision::functions::{Functions, functions};
 use crate::decision::ground::{Ground, ranges};
-use crate::decision::solution::{Solution, beside, effect_columns};
+use crate::decision::solution::{DELAY, Solution, beside, effect_columns};
 use crate::linear::basis::dot;
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
+use crate::preprocess::form_error::Lives;
 use crate::preprocess::friction::bristles::quantile;
-use crate::regression::linear_model::LinearModel;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::signal::Signal;
 use crate::thresholds::{LEFT_ERRORS, LEFT_SHARE, TIME_ERRORS};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// Strengths with which functions are held near zero.
 const RIDGES: [f64; 3] = [1e-3, 1e-2, 1e-1];
@@ -85,13 +84,18 @@ fn sized(gains: &[f64], ground: &Ground) -> (f64, f64) {
 
 /// One function beside the given model predicts held-out data clearly better than the whole last model does.
 fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> bool {
-    let mut plain: LinearModel = end.main.clone();
-    plain.terms.retain(|term| start.effects.iter().any(|e| e == term.id()));
-    plain.relatives = Arc::default();
-    let mut columns = effect_columns(&plain);
+    let plain = &start.main;
+    let mut columns = effect_columns(plain);
     let Some(form_error) = plain.problem.form_error.as_deref() else { return false };
-    let beside = beside(&plain, form_error, |_| false);
+    // What an added effect is no error of a formula any more.
+    let is_added = |id: &str| end.main.contains(id) && !plain.contains(id);
+    let beside = beside(plain, form_error, |lives| match lives {
+        Lives::Jerk => is_added(DELAY),
+        Lives::Bristle => !std::ptr::eq(plain.problem, end.main.problem),
+        Lives::Snap | Lives::LoadRate => false,
+    });
     columns.extend(beside.error.into_iter().map(|(_, column)| column));
+    columns.extend(beside.relatives);
     let ridge = Some(solution.ground.ridge);
     let ground = Ground::new(&columns, &plain.response(), &solution.weight, &plain.problem.block, ridge);
     let with: Vec<f64> = ground.losses.iter().zip(taken(&ground, axis)).map(|(loss, gain)| loss - gain).collect();

@@ -46,7 +46,11 @@ fn check_form_error(fit: &Fit, term: &FormErrorTerm) -> Result<(), ModelError> {
     };
     let counts = (term.linear.len(), term.shape.len());
     let is_of = |form: &Form| form.name == term.form && (form.linear.len(), form.shape.len()) == counts;
-    if forms.iter().any(is_of) { Ok(()) } else { fault("has a form or a number of values that the effect does not have") }
+    if forms.iter().any(is_of) {
+        Ok(())
+    } else {
+        fault("has a form or a number of values that the effect does not have")
+    }
 }
 
 /// The run that was fitted could not show the effect: all of its parameters stand at zero, with nothing around them.

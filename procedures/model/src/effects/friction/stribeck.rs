@@ -89,4 +89,8 @@ impl Effect for Stribeck {
     fn exponent_parameter(&self) -> Option<&'static str> {
         Some("delta")
     }
+
+    fn corrects(&self) -> Option<&'static str> {
+        Some("coulomb")
+    }
 }

@@ -57,6 +57,9 @@ pub struct Joint {
     pub last_s: f64,
 }
 
+/// Inertia beyond the gear of a joint without a load, as a share of its own.
+const FREE_END: f64 = 0.02;
+
 impl Joint {
     pub fn draw(load: Load, plan: &Plan, dice: &mut Dice) -> Self {
         let (name, gears, low, high): (_, &[f64], _, _) = *dice.pick(&[
@@ -100,6 +103,11 @@ impl Joint {
         if self.load == Load::None { self.motor_inertia + self.link_inertia } else { self.motor_inertia }
     }
 
+    /// What the torque of the motor moves beside what a sensor in the link feels.
+    fn felt_inertia(&self) -> f64 {
+        if self.load == Load::None { (1.0 + FREE_END) * self.inertia() } else { self.inertia() }
+    }
+
     pub fn scale(&self) -> Scale {
         let heaviest = self.arm.max(self.brake).max(0.5 * self.dry);
         Scale {
@@ -115,7 +123,7 @@ impl Joint {
     pub fn plant(&self, start: f64, damped: f64) -> Plant {
         // Without a load link and motor are one mass: the gear has nothing to bend against.
         let (inertia, link_inertia) = match self.load {
-            Load::None => (self.inertia(), 0.02 * self.inertia()),
+            Load::None => (self.inertia(), FREE_END * self.inertia()),
             _ => (self.motor_inertia, self.link_inertia),
         };
         let reduced = inertia * link_inertia / (inertia + link_inertia);
@@ -156,7 +164,7 @@ impl Joint {
         let hides = |ids: &[&str]| ids.iter().any(|id| plan.hides(id));
         let speed = ["stribeck", "viscous_sublinear", "viscous_quadratic", "speed_hump", "presliding"];
         let shared = hides(&speed) || hides(&["stribeck_load", "stick_spot_time", "driving_asymmetry", "bump_angle"]);
-        let mut truth = BTreeMap::from([("inertia.j".to_owned(), self.inertia())]);
+        let mut truth = BTreeMap::from([("inertia.j".to_owned(), self.felt_inertia())]);
         if !shared && !hides(&["temperature_coulomb", "load_linear", "load_quadratic"]) {
             truth.insert("coulomb.tau_c".into(), self.dry);
         }
