@@ -195,8 +195,18 @@ pub trait Effect: Sync {
         self.info().needs.iter().find(absent).copied()
     }
 
+    /// It is computed from the motion of the link. Where one side of the joint is held that motion is the twist itself.
+    fn needs_motion(&self) -> bool {
+        false
+    }
+
     /// The effect that this one is one and the same with in such data, and that stands for both.
     fn same_as(&self, _view: &View) -> Option<&'static str> {
+        None
+    }
+
+    /// The effect whose formula this one corrects: it is sought beside that one only (marginality, Nelder 1977).
+    fn corrects(&self) -> Option<&'static str> {
         None
     }
 
@@ -216,6 +226,12 @@ pub trait Effect: Sync {
             let meant = nearest(need, others).map(|near| format!("; did you mean {near}?"));
             return Some(format!("the run has no column {need}{}", meant.unwrap_or_default()));
         }
+        if let Some(turns) = view.constants.held_turns.filter(|_| self.needs_motion()) {
+            return Some(format!(
+                "one side of the joint is held and the link turns by {turns:.4} of a turn: its motion is the twist itself, \
+                 which it cannot explain; turn the joint under load"
+            ));
+        }
         let still = |need: &&&str| view.find(Signal::named(need)).is_some_and(is_constant);
         if let Some(need) = info.needs.iter().find(still) {
             return Some(format!("{need} never changes"));
@@ -225,9 +241,6 @@ pub trait Effect: Sync {
                 "the motion goes one way only, where it is one and the same with {other}, which stands for both; measure the \
                  other direction as well"
             ));
-        }
-        if self.regime() == Regime::Hysteresis && view.constants.turns_left_out {
-            return Some("no contact shows that bends before it slips: rests and reversals are left out".into());
         }
         if self.forms(view).is_empty() { Some(format!("it would not show: {}", self.unseen())) } else { None }
     }

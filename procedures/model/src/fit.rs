@@ -1,5 +1,6 @@
 //! Fitting a model to a run, and holding a fit against another run.
 
+use crate::decision::report::{form_error, presliding};
 use crate::inference::confounding;
 use crate::inference::intervals::intervals;
 use crate::linear::basis::dot;
@@ -62,6 +63,11 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
             });
         }
     }
+    if let Some((term, found)) = presliding(assembly, &parameters) {
+        terms.push(term);
+        parameters.extend(found);
+    }
+    let (form_error, said) = form_error(main, &prepared.unit());
     parameters.extend(assembly.hidden.iter().flat_map(|h| unseen(assembly, &h.effect, &h.why)));
     let order = |effect: &str| assembly.effects.iter().position(|e| e == effect);
     parameters.sort_by_key(|p| order(&p.effect));
@@ -69,6 +75,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
 
     let target = &prepared.main.target;
     let mut notes: Vec<String> = prepared.clashes.all().chain(&prepared.doubts).cloned().collect();
+    notes.extend(said);
     notes.extend(assembly.hidden.iter().map(|h| format!("{} is not visible in this data: {}", h.effect, h.why)));
     if assembly.effects.iter().any(|e| e == "direction_offset") {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
@@ -77,11 +84,6 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         let note = "the motion goes one way only (less than a tenth of a trajectory the other way is left out): Coulomb \
                     friction and an offset cannot be told apart, and tau_c is both together; measure the other direction \
                     as well";
-        notes.push(note.into());
-    }
-    if prepared.main.view.constants.turns_left_out {
-        let note = "rests and reversals are left out: a joint that sticks holds whatever the torque asks for, and no contact \
-                    shows that bends before it slips";
         notes.push(note.into());
     }
     notes.extend(parameters.iter().find(|p| p.effect == "inertia").and_then(|p| another_inertia(p, prepared)));
@@ -106,6 +108,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         notes,
         preparation: prepared.about.clone(),
         terms,
+        form_error,
         scope: Some(scope),
     };
     export::measure(&mut fit, &prepared.main)?;
@@ -178,7 +181,7 @@ fn unseen(assembly: &TwoStageModel, id: &str, why: &str) -> Vec<Parameter> {
 /// Holds a fit against a run that took no part in it. The run is prepared as the first one was.
 pub fn evaluate(fit: &Fit, run: &RunTable) -> Result<Evaluation, ModelError> {
     let prepared = prepare_alike(fit, run)?;
-    let predicted = predict(fit, &prepared.main)?;
+    let predicted = predict(fit, prepared.judged(&fit.effects))?;
     let target = &prepared.main.target;
     let sse: f64 = target.iter().zip(&predicted).map(|(y, p)| (y - p).powi(2)).sum();
     let settled = prepared.main.view.chunks.iter().map(|c| c.len()).sum::<usize>() as f64;

@@ -3,6 +3,7 @@
 mod allocator;
 pub mod channels;
 mod compare;
+mod decision;
 mod diagnosis;
 pub mod effect;
 pub mod effects;

@@ -1,6 +1,8 @@
 //! What a fit predicts on a run that is prepared as the fitted one was.
 
-use crate::preprocess::{Prepared, Problem, prepare};
+use crate::decision::solution::PRESLIDING;
+use crate::preprocess::{Prepared, Problem, prepare_with};
+use crate::regression::linear_model::columns;
 use crate::report::fit::Fit;
 use crate::user_effects::find_with_own;
 use crate::view::View;
@@ -19,12 +21,34 @@ pub(crate) fn prepare_alike(fit: &Fit, run: &RunTable) -> Result<Prepared, Model
         chunk_s: about.chunk_s,
         ..Options::default()
     };
-    prepare(run, &options)
+    prepare_with(run, &options, about.bristles.as_ref())
 }
 
 /// What a fit predicts at the rows of a problem.
 pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
-    predict_on(fit, &problem.view, problem.rows(), |column| problem.reduce.apply(column))
+    let Some(form_error) = problem.form_error.as_deref() else {
+        return predict_on(fit, &problem.view, problem.rows(), |column| problem.reduce.apply(column));
+    };
+    // Contacts that bend are in the direction already.
+    let mut sampled = Fit { terms: Vec::new(), ..fit.clone() };
+    sampled.terms.extend(fit.terms.iter().filter(|term| term.effect != PRESLIDING).cloned());
+    let mut predicted = predict_on(&sampled, &problem.view, problem.rows(), |column| problem.reduce.apply(column))?;
+    let mut add = |column: &[f64], factor: f64| predicted.iter_mut().zip(column).for_each(|(p, c)| *p += factor * c);
+    for term in &fit.form_error {
+        let beside = form_error.columns.iter().filter(|column| column.lives.name() == term.name);
+        match find_with_own(fit.kind, &fit.own, &term.name) {
+            Ok(effect) => {
+                let columns = columns(effect, &term.form, &term.shape, problem);
+                columns.iter().zip(&term.linear).for_each(|(column, factor)| add(column, *factor));
+            }
+            Err(_) => {
+                let place = term.shape.first().map_or(0, |place| *place as usize);
+                let column = beside.skip(place).zip(&term.linear).next();
+                column.into_iter().for_each(|(column, factor)| add(&column.values, *factor));
+            }
+        }
+    }
+    Ok(predicted)
 }
 
 /// The same at the points of a view, each column reduced to rows.

@@ -28,7 +28,7 @@ pub fn residuals(run: &RunTable, fit: &Fit, options: &Options) -> Result<Residua
         repeat: Vec::new(),
         piece: Vec::new(),
     };
-    append(&mut set, &prepared, &prepared.main, fit, false)?;
+    append(&mut set, &prepared, prepared.judged(&fit.effects), fit, false)?;
     if let Some(moving) = &prepared.moving {
         append(&mut set, &prepared, moving, fit, true)?;
     }

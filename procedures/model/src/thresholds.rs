@@ -35,10 +35,13 @@ macro_rules! thresholds {
 
 thresholds! {
     ALPHA = 0.05, "probability", "family-wise error of everything that is named or shown (`Options::alpha`)", "convention; `evaluate --part null` measures 0.4 %";
-    PRACTICAL_SHARE = 0.02, "share of squared error", "smallest share of the remaining error that is worth a name (`Options::practical_share`)", "`evaluate --part power`";
+    PRACTICAL_SHARE = 0.02, "share of squared error", "smallest share of the remaining error that is worth a name (`Options::practical_share`), or shows in a map", "`evaluate --part power`";
     FLIPS = 499.0, "sign flips", "permutations of the max-T test (`Options::flips`)", "smallest p-value 0.002";
+    DECISION_SHARE = 0.03, "share of held-out squared error", "smallest share that an effect must take where samples are judged", "`score_cases`: flat from 2 to 5 %";
+    LEFT_SHARE = 0.1, "share of held-out squared error", "a function of an axis, a line in time or neighbouring seconds that take more are structure", "nulls of `score_cases`";
+    LEFT_ERRORS = 2.0, "standard errors over blocks", "and surely so", "nulls of `score_cases`";
+    TIME_ERRORS = 3.0, "standard errors", "the same of neighbouring seconds", "nulls of `score_cases`";
     FORMULA_ERROR = 0.002, "share of squared error", "of what an effect explains, its formula may leave this share (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
-    HYSTERESIS_FORMULA_ERROR = 0.17, "share of squared error", "the same of an effect with a memory", "simulated joints leave 2 to 17 % around reversals";
     UNMISTAKABLE_SHARE = 0.5, "share of squared error", "an effect that takes this share of what is left is no remainder of another formula", "`evaluate --part hidden,null`";
     PERIODIC_SHARE = 0.04, "share of squared error", "a wave that is sought among many orders takes at least this share", "`evaluate --part hidden,null`";
     MANY_ORDERS = 30.0, "orders", "so many orders are many", "`evaluate --part hidden,null`";
@@ -53,10 +56,8 @@ thresholds! {
     MOST_EXCHANGES = 2.0, "exchanges", "added effects that may be swapped for others", "`evaluate --part hidden,null`";
     STAND_IN_LOSS = 0.9, "ratio of held-out squared errors", "a candidate above this ratio to a model that was given up only stands in for it", "`evaluate --part hidden,null`";
     BIASED_COEFFICIENT = 0.25, "share of coefficient", "a coefficient that moves by this share with an effect is biased without it", "mock joint A, seeds 17001 to 17012";
-    BIAS_TOLERANCE = 0.1, "share of squared column", "below this share of its own an effect looks like the model", "mock joint A, seeds 17001 to 17012";
+    BIAS_TOLERANCE = 0.1, "share of squared column", "below this share of its own an effect looks like the model, or is a function of the axis", "mock joint A, seeds 17001 to 17012";
     HYSTERESIS_SHARE = 0.72, "share of squared error", "an effect with a memory explains this share around reversals", "simulated joints: 83 to 98 %, nothing else above 63 %";
-    HYSTERESIS_SWING = 0.5, "share of Coulomb friction", "contacts that bend turn this share of the dry friction on their way", "`--test sticks`";
-    REST_SPEED = 0.003, "share of peak speed", "below this share a joint rests", "`--test sticks`";
     DELAY_HALF_WIDTHS = 2.0, "half widths of the 95 % interval", "a delay lies so far from zero", "519 joints without a delay: none; 13 with 9 to 14 ms: at least 2.6";
     DELAY_ROWS = 1.5, "rows", "a delay is longer than this: of which moment of its row a reading is is unknown", "seven mock runs, 0.9 to 1.1 rows late";
     DELAY_POWER = 0.43, "half widths of the 95 % interval", "added to the delay threshold for 80 % power", "z₀.₈ / z₀.₉₇₅";
@@ -68,10 +69,10 @@ thresholds! {
     WHOLE_EXPLANATION = 0.7, "share of what any function of the axis explains", "an effect that explains less is only a part of what is missing", "`--test humps`";
     PERIODS_SEEN = 2.0, "periods", "a wave that was seen less often is a curve over the angle", "`--test waves`";
     WHOLE_CURVE = 0.98, "share of what any function of the axis explains", "the bound for such a wave", "`--test waves`";
-    FUNCTION_TOLERANCE = 0.1, "share of squared column", "a column with less of its own is a function of the axis", "`--test humps`";
     SAMPLES_FOLLOW_RAD = 1.0, "rad", "a wave that advances further from sample to sample is not followed", "`--test beats`";
     REPEATABLE_SHARE = 0.6, "share of squared error", "more in common to all repeats is structure", "`evaluate --part hidden,null`";
-    FLOOR_RATIO = 1.5, "ratio of RMS", "a validation error beyond this multiple of the noise floor is structure", "`evaluate --part hidden,null`";
+    FLOOR_RATIO = 1.3, "ratio of RMS", "a validation error beyond this multiple of the noise floor is structure", "`evaluate --part hidden,null`";
+    EVENT_ERRORS = 7.0, "standard deviations", "a stretch that lies so far out of what stretches of its length scatter by is an event", "runs of encoder, stiffness and brake with nothing hidden: at most 5.8; readings that jump: 7.4 to 51";
     NEGLIGIBLE_RMS = 0.002, "share of RMS of the response", "what is left below this is negligible (encoders excepted)", "`evaluate --part hidden,null`";
     FLOOR_INTERVAL_RATIO = 3.0, "ratio", "a noise floor with a wider interval is only about", "`--test repeats`";
     SCATTER_BAND = 0.3, "share of alpha", "error probability of a band that calls scatter structure", "220 null runs with coloured noise";
@@ -84,17 +85,15 @@ thresholds! {
     FOLD_COVERAGE = 0.05, "share of squared column", "folds without a fold that hold less do not decide its coefficient", "`--test loops`";
     COMPONENT_OWN_SHARE = 0.8, "share of gain", "a component that keeps this share beside another effect explains something else", "`evaluate --part hidden,null`";
     BETTER_FORM = 0.01, "share of squared error a parameter", "another form must take this share for each parameter more", "`evaluate --part hidden,null`";
-    SHOWN_SHARE = 0.02, "share of held-out squared error", "a map that removes less shows nothing", "presentation";
     SECOND_AXIS_GAIN = 1.1, "ratio", "a second axis is named where both show this much more", "presentation";
     NOTHING_IN_COMMON = 0.01, "share of squared error", "less in common to all repeats is nothing", "presentation";
     TOLD_LOSS = 0.99, "ratio of held-out RMS", "a rejected effect is told where it would lower the error to this ratio", "presentation";
     STRONG_P_VALUE = 0.01, "probability", "a larger p-value is weak evidence", "convention";
     SMALL_REDUCTION = 0.05, "share of held-out RMS", "a smaller reduction is small", "presentation";
     MASKED_RATIO = 2.0, "ratio", "effects whose joint gain exceeds this multiple of the single one mask each other", "`evaluate --part hidden,null`";
-    TRADE_OFF_CORRELATION = 0.95, "correlation", "parameters that are correlated more trade off", "presentation";
+    TRADE_OFF_CORRELATION = 0.95, "correlation", "parameters that are correlated more trade off, and time that moves so with the temperature is confounded with it", "presentation";
     WIDE_INTERVAL = 10.0, "ratio", "a nonlinear parameter with a wider interval is not identified", "`--example coverage`";
     COLUMN_CORRELATION = 0.9, "correlation", "a column that moves with the temperature may be the cause as well", "presentation";
-    TIME_CORRELATION = 0.95, "correlation", "time that moves with the temperature is confounded with it", "`--test together`";
     RANGE_MARGIN = 0.02, "share of range", "so far beyond the fitted range is not beyond", "presentation";
     BEYOND_SHARE = 0.01, "share of points", "fewer points beyond are not told", "presentation";
     SEPARATED_Z = 4.0, "standard deviations", "models are separated where their predictions lie this far apart", "`--test next_run`";

@@ -20,10 +20,17 @@ pub struct Constants {
     pub slides: bool,
     /// Torque once per link turn that the measured load does not hold, about: factors of cos and sin [Nm].
     pub weight: Option<[f64; 2]>,
-    /// Rests and reversals of a trajectory are left out, because nothing bends there before it slips.
-    pub turns_left_out: bool,
-    /// Moments of which a row tells, after that of the motion in the model [s]: from the position's to the velocity's.
-    pub of_row_s: Option<[f64; 2]>,
+    /// Of a run that is judged sample by sample: waves as fast as this pass whole, and none that is twice as fast [Hz].
+    pub followed_hz: Option<f64>,
+    /// Its fastest speed but for what stands out [rad/s].
+    pub speeds: Option<f64>,
+    /// Ways over which its reversals can be remembered and seen [rad].
+    pub reaches: Option<[f64; 2]>,
+    /// One side of the joint is held: the motion of the other one is the twist itself. The turns that the link makes.
+    pub held_turns: Option<f64>,
+    /// RMS by which the response is rounded where it stays within the same steps of its encoders, as that of a joint does that is
+    /// held.
+    pub rounding: f64,
 }
 
 /// The first sample of a recording, and what a memory brings along from before it.
@@ -127,6 +134,14 @@ impl View {
         self.get(signal).iter().map(|x| f(*x)).collect()
     }
 
+    /// The mean of a curve over a signal: not the curve at its mean, which differs where it bends within a point.
+    pub fn mean_of(&self, signal: Signal, f: impl Fn(f64) -> f64) -> Vec<f64> {
+        match self.samples.find(signal) {
+            Some(samples) => self.average(samples.iter().map(|x| f(*x)).collect()),
+            None => self.map(signal, f),
+        }
+    }
+
     /// One column from two signals.
     pub fn map2(&self, a: Signal, b: Signal, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         self.get(a).iter().zip(self.get(b)).map(|(a, b)| f(*a, *b)).collect()
@@ -154,19 +169,32 @@ impl View {
         let mut cos = Vec::with_capacity(angle.len());
         let mut sin = Vec::with_capacity(angle.len());
         let steps = self.samples.find(signal);
+        let speed = self.swiftness(signal);
         for (i, a) in angle.iter().enumerate() {
             let fade = match (self.chunks.get(i), steps) {
                 (Some(chunk), Some(samples)) if chunk.len() > 1 => {
                     let step = (samples[chunk.end - 1] - samples[chunk.start]) / (chunk.len() - 1) as f64;
                     dirichlet(chunk.len() as f64, order * step)
                 }
-                _ => 1.0,
+                _ => speed.as_ref().map_or(1.0, |speed| (2.0 - order * speed[i]).clamp(0.0, 1.0)),
             };
             let (s, c) = (order * a).sin_cos();
             cos.push(c * fade);
             sin.push(s * fade);
         }
         [cos, sin]
+    }
+
+    /// Turns for each second, in units of what is followed. `None` where points are means over what passes.
+    fn swiftness(&self, angle: Signal) -> Option<Vec<f64>> {
+        let followed = self.constants.followed_hz?;
+        let values = self.get(angle);
+        let last = values.len().saturating_sub(1);
+        let step = |i: usize| {
+            let (low, high) = (i.saturating_sub(1), (i + 1).min(last));
+            (values[high] - values[low]).abs() / ((high - low).max(1) as f64 * self.sample_s)
+        };
+        Some((0..values.len()).map(|i| step(i) / (TAU * followed)).collect())
     }
 }
 

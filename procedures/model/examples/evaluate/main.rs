@@ -14,6 +14,7 @@ mod removed;
 mod score;
 mod show;
 mod speed;
+mod styles;
 
 use clap::Parser;
 use options::Asked;
@@ -60,6 +61,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     if asked.wants("detectable") {
         detectable::measure(&asked)?;
     }
+    if asked.wants("styles") {
+        styles::measure(&asked)?;
+    }
     if asked.wants("speed") {
         speed::measure(asked.case)?;
     }
@@ -68,6 +72,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Every case of a folder against its answer.
 fn answered(folder: &Path, asked: &Asked) -> Result<(), Box<dyn Error>> {
+    if styles::is_written(folder) {
+        return styles::evaluate(folder, asked);
+    }
     let mut table = Table::new("Hidden effects, measurements with a known answer", asked.quiet);
     for case in score::practice(folder)?.into_iter().filter(|c| asked.takes(c.family, &c.name)) {
         table.judge(&case)?;

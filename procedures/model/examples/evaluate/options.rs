@@ -4,14 +4,15 @@ use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
 
-const PARTS: [&str; 8] = ["hidden", "removed", "practice", "measured", "null", "power", "detectable", "speed"];
+const PARTS: [&str; 9] =
+    ["hidden", "removed", "practice", "measured", "null", "power", "detectable", "speed", "styles"];
 
 /// Measures the diagnosis, as docs/diagnosis.md reports it.
 ///
 /// hidden: machines with hidden effects, simulated here. removed: one effect taken out of their complete models.
 /// practice: measurements with a known answer from beside the repository. measured: measurements made by others, beside
 /// what is asked of each. null: runs with nothing hidden. power: weak effects. detectable: effects of the size from which
-/// they are said to be found. speed: seconds and memory.
+/// they are said to be found. speed: seconds and memory. styles: excitations and laws of a second generator.
 #[derive(Parser)]
 #[command(name = "evaluate")]
 pub struct Asked {
@@ -21,7 +22,7 @@ pub struct Asked {
     /// Rounds over all effects of all families
     #[arg(long, default_value_t = 3)]
     pub rounds: u64,
-    /// Null runs, and runs for each weak or just detectable effect: a tenth of it
+    /// Null runs, runs of each kind of `styles`, and runs for each weak or just detectable effect: a tenth of it
     #[arg(long, default_value_t = 400)]
     pub count: u64,
     /// Number of the first round, null run or weak effect: other numbers are other machines and other noise
@@ -36,6 +37,9 @@ pub struct Asked {
     /// One case of `speed`, in this process
     #[arg(long, hide = true)]
     pub case: Option<usize>,
+    /// Write the cases of `styles` as folders into this one instead of scoring them
+    #[arg(long)]
+    pub write: Option<PathBuf>,
     /// Tables only
     #[arg(long)]
     pub quiet: bool,

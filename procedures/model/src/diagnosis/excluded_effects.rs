@@ -1,5 +1,6 @@
 //! What became of the effects that are not in the last model: each is silent, invisible or left out, and none is forgotten.
 
+use crate::decision::search::Refused;
 use crate::effect::{Effect, Form, Regime, ShapeSearch};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Invisible, LeftOut, Silent};
@@ -33,10 +34,12 @@ impl ExcludedEffects {
             let tied = ties.iter().find(|(_, rival)| *rival == id);
             let tied = tied
                 .map(|(named, _)| format!("{named} is in the model in its place, and this run cannot tell them apart"));
-            let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words());
+            let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words().to_owned());
+            let refused = selected.decided.iter().flat_map(|decided| &decided.refused).find(|r| r.effect == id);
+            let tried = tried.or_else(|| refused.map(Refused::why));
             let silence = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
-            if let Some(why) = tried.or_else(|| given(effect, end)) {
-                others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or_else(|| why.into()) });
+            if let Some(why) = tried.or_else(|| given(effect, end).map(String::from)) {
+                others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or(why) });
             } else if silence.is_some_and(|silence| silence.detectable_rms > largest) {
                 others.invisible.push(Invisible { effect: id.into(), why: TOO_LARGE.into() });
             } else if let Some(silence) = silence {
@@ -76,6 +79,20 @@ fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
     }
 }
 
+/// What a run would have to hold that tells an effect from the others.
+fn excitation(effect: &dyn Effect) -> &'static str {
+    let needs = |column: &str| effect.info().needs.contains(&column);
+    match effect.regime() {
+        Regime::Hysteresis => "slow reversals over many steps of the encoder",
+        Regime::Transient => "swifter changes of the speed",
+        Regime::SteadyState if effect.wave().is_some() => "more of a turn of that angle, slowly, in both directions",
+        Regime::SteadyState if needs("temperature_c") => "the same motion at another temperature",
+        Regime::SteadyState if needs("link_torque_nm") => "the same speeds under other loads",
+        Regime::SteadyState if needs("link_position_rad") => "more of a turn of the link",
+        Regime::SteadyState => "more speeds, in both directions, that come again at other times",
+    }
+}
+
 fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
     const ALIKE: &str = "in this data it looks like what the model has already, which takes its place";
     const RAMP: &str = "settled motion does not show it, and on ramps, where the signals of different instruments are not \
@@ -89,7 +106,9 @@ fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
         _ => Some(&prepared.main.view),
     };
     match view {
-        Some(view) => effect.hidden(view).unwrap_or_else(|| ALIKE.into()),
+        Some(view) => {
+            effect.hidden(view).unwrap_or_else(|| format!("{ALIKE}: to tell them takes {}", excitation(effect)))
+        }
         None => "the run has no slow reversals that could show it".into(),
     }
 }

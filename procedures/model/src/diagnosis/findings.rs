@@ -1,11 +1,13 @@
 //! What a selection found: the evidence for each effect, what was not found, and the verdict.
 
+use crate::decision::search::Decided;
 use crate::diagnosis::excluded_effects::ExcludedEffects;
 use crate::preprocess::Prepared;
 use crate::regression::cross_validation::held_out_rms;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Imitated, Invisible, LeftOut, NoiseFloor, Silent, Verdict};
+use crate::residual_analysis::events::{Event, Events};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, noise_floor};
 use crate::selection::advance::SelectionStep;
@@ -24,6 +26,8 @@ pub struct Findings<'p> {
     pub maps: Maps,
     /// What shows in them is what whole stretches of motion scatter by.
     scatters: bool,
+    /// What happened once and never again.
+    pub events: Vec<Event>,
     pub floor: NoiseFloor,
     pub end_held_out_rms: f64,
     /// Effects of the last model, and what this run cannot tell them from.
@@ -32,6 +36,8 @@ pub struct Findings<'p> {
     pub upheld: Vec<Imitated>,
     /// One that may be there as well.
     pub open: Option<Imitated>,
+    /// What one decision leaves, where the run is judged sample by sample.
+    pub decided: Option<Decided<'p>>,
 }
 
 impl<'p> Findings<'p> {
@@ -45,12 +51,32 @@ impl<'p> Findings<'p> {
     ) -> Result<Self, ModelError> {
         let selected = ModelSelection::new(prepared, spec, options, most, on_advance)?;
         let others = ExcludedEffects::of(&selected);
-        let floor = noise_floor::noise_floor(prepared, &selected.residual, selected.now.contains("hysteresis"));
-        let scatters =
-            lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
+        // The reversals of a joint are events of every repeat.
+        let events = match prepared.kind {
+            Kind::Friction => Vec::new(),
+            _ => Events::of(&prepared.main, &selected.residual).find(),
+        };
+        let remembers = selected.now.contains("hysteresis");
+        let floor = noise_floor::noise_floor(prepared, &selected.residual, remembers, &events);
+        let scatters = selected.decided.is_none()
+            && lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
         let end_held_out_rms = held_out_rms(&selected.end().main);
-        let ModelSelection { start, advances, withdrawn, maps, ties, upheld, open, .. } = selected;
-        Ok(Self { start, advances, withdrawn, others, maps, scatters, floor, end_held_out_rms, ties, upheld, open })
+        let ModelSelection { start, advances, withdrawn, maps, ties, upheld, open, decided, .. } = selected;
+        Ok(Self {
+            start,
+            advances,
+            withdrawn,
+            others,
+            maps,
+            scatters,
+            events,
+            floor,
+            end_held_out_rms,
+            ties,
+            upheld,
+            open,
+            decided,
+        })
     }
 
     pub fn end(&self) -> &TwoStageModel<'p> {
@@ -84,8 +110,12 @@ impl<'p> Findings<'p> {
 
     /// Verdict on the last model.
     pub fn end_verdict(&self) -> Verdict {
+        if let Some(decided) = &self.decided {
+            let shows = decided.left.is_some() && !self.is_negligible();
+            return if shows { Verdict::UnexplainedStructure } else { Verdict::Adequate };
+        }
         let shows = lack_of_fit::structured(&self.maps).is_some() && !self.scatters;
-        if (shows || self.repeats_itself()) && !self.is_negligible() {
+        if (shows || self.repeats_itself() || !self.events.is_empty()) && !self.is_negligible() && !self.is_rounding() {
             Verdict::UnexplainedStructure
         } else {
             Verdict::Adequate
@@ -95,10 +125,21 @@ impl<'p> Findings<'p> {
     /// Most of what is left is the same in every repeat, or the model is far from predicting what was held out: no
     /// noise, whether or not a map shows where it comes from. A floor without an interval is too little known to accuse.
     fn repeats_itself(&self) -> bool {
-        let held_out = self.end_held_out_rms;
         let surely = self.floor.repeatable_ci95.is_some_and(|[least, _]| least > STRUCTURE_SHARE);
         self.floor.repeatable_share.is_some_and(|share| share > REPEATABLE_SHARE) && surely
-            || self.floor.rms.filter(|_| self.floor.ci95.is_some()).is_some_and(|floor| held_out > FLOOR_RATIO * floor)
+            || self.floor.ci95.is_some() && self.exceeds_floor()
+    }
+
+    /// The model is far from predicting what was held out as well as the run repeats itself.
+    pub fn exceeds_floor(&self) -> bool {
+        let rounding = self.start.prepared.main.view.constants.rounding;
+        self.floor.rms.is_some_and(|floor| self.end_held_out_rms > FLOOR_RATIO * floor.hypot(rounding))
+    }
+
+    /// What is left is what the readings are rounded by, however much of it repeats.
+    pub fn is_rounding(&self) -> bool {
+        let rounding = self.start.prepared.main.view.constants.rounding;
+        self.floor.rms.is_some_and(|floor| floor < rounding) && !self.exceeds_floor()
     }
 
     /// RMS of what whole stretches of motion differ by, where that is what shows over an axis.
@@ -107,7 +148,7 @@ impl<'p> Findings<'p> {
     }
 
     /// What is left is small beside what was measured, however much of it repeats.
-    fn is_negligible(&self) -> bool {
+    pub fn is_negligible(&self) -> bool {
         let main = &self.end().main;
         let response = main.response();
         let mean = response.iter().sum::<f64>() / response.len() as f64;
@@ -128,6 +169,11 @@ impl<'p> Findings<'p> {
                 seen.push(id);
                 ranked.push((advance, importance(end, id)));
             }
+        }
+        if self.decided.is_some() {
+            // In the order in which they came, each with what it took then.
+            let taken = |advance: &SelectionStep| advance.added.as_ref().map_or(0.0, |rival| rival.share);
+            return ranked.into_iter().rev().map(|(advance, _)| (advance, taken(advance))).collect();
         }
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         ranked

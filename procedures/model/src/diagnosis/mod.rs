@@ -182,6 +182,8 @@ fn suggestions(
             format!("Around reversals it takes {} off the squared error.", percent(rival.share))
         } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
             format!("The error hardly misses it, but without it {}.", narrative::elsewhere(upheld, false))
+        } else if found.decided.is_some() {
+            format!("It takes {} off the squared error of data that had no part in its fit.", percent(importance))
         } else {
             let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
             let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };
@@ -203,7 +205,7 @@ fn suggestions(
             bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
             p_value: rival.p_value,
             evidence: Evidence::of(rival.p_value, reduction, reduction_ci95, together),
-            p_at_most: rival.p_value * (options.flips + 1) as f64 <= 1.001,
+            p_at_most: found.decided.is_none() && rival.p_value * (options.flips + 1) as f64 <= 1.001,
             error_reduction_together: together,
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
             confounded_with,

@@ -1,14 +1,17 @@
 //! A diagnosis in plain sentences.
 
+use crate::decision::structure::Left;
 use crate::diagnosis::findings::Findings;
 use crate::effect::{Effect, Regime};
 use crate::inference::parameter_state::IMPOSSIBLE;
 use crate::report::diagnosis::{Evidence, Imitated, Suggestion, Verdict};
 use crate::report::fit::Parameter;
 use crate::report::maps::{PairMap, Region};
+use crate::residual_analysis::events::Events;
+use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::removal::{RemovalReason, Withdrawn};
-use crate::thresholds::{NOTHING_IN_COMMON, SECOND_AXIS_GAIN, SHOWN_SHARE, TOLD_LOSS};
+use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, TOLD_LOSS};
 use crate::words::{figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
@@ -76,6 +79,15 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
                 false => format!(" that {}", unexplained(found)),
             },
             structure(found, fit, shown)
+        ),
+        (_, None) if found.is_rounding() => format!(
+            "The model explains this run: its held-out error is {error}, as the steps of the encoders leave {}, and {floor}.",
+            figure(found.start.prepared.main.view.constants.rounding, &fit.unit)
+        ),
+        // Far above the repeatability it is adequate for one reason only.
+        (_, None) if found.exceeds_floor() && found.is_negligible() => format!(
+            "What the model leaves is negligible beside what was measured: its held-out error is {error}, and {floor}{}.",
+            above(found, fit)
         ),
         (_, None) => {
             format!("The model explains this run: its held-out error is {error}, and {floor}{}.", above(found, fit))
@@ -190,6 +202,24 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
         Some(share) => format!(", {} of it the same in every repeat", percent(share)),
         None => String::new(),
     };
+    if lack_of_fit::structured(&found.maps).is_none()
+        && let Some(event) = found.events.first()
+    {
+        let [from_s, to_s] = Events::span_s(&found.start.prepared.main, event);
+        // Without repeats nobody knows what comes again.
+        let does = match found.start.prepared.main.replicate_pairs.is_empty() {
+            true => "lies far out of what all others scatter by",
+            false => "lies far out of what all others scatter by and does not come again",
+        };
+        let which = match found.events.len() {
+            1 => format!("it shows in one stretch of the run, which {does}:"),
+            count => format!("it shows in {count} stretches of the run, each of which {does}, the largest of"),
+        };
+        return format!(
+            "{which} {} from {from_s:.2} s to {to_s:.2} s (the error that remains is {error}{repeats})",
+            figure(event.mean.abs(), &end.unit)
+        );
+    }
     match shown_over(found, shown) {
         Some((axes, share)) => format!(
             "it shows most over {}, a function of which would take {} off the squared error that remains \
@@ -203,12 +233,17 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
 
 /// The columns over which what is left shows most, and what a function of them would take off it. `None` where none does.
 pub fn shown_over(found: &Findings, shown: Option<&PairMap>) -> Option<(Vec<String>, f64)> {
+    if let Some(decided) = &found.decided {
+        let prepared = found.start.prepared;
+        let named = |left: &Left| left.over.iter().map(|signal| prepared.column_name(*signal).to_owned()).collect();
+        return decided.left.as_ref().map(|left| (named(left), left.share));
+    }
     let pair = shown.map(|s| (vec![s.x.clone(), s.y.clone()], s.removable_share));
     let axis = found.maps.shows_over();
     // A second axis cuts the first one's bins: what shows over one alone can be more, and is said more shortly.
     let pair = pair.filter(|(_, both)| axis.as_ref().is_none_or(|(_, alone)| *both > SECOND_AXIS_GAIN * alone));
     let most = pair.or(axis);
-    most.filter(|(_, share)| *share > SHOWN_SHARE)
+    most.filter(|(_, share)| *share > PRACTICAL_SHARE)
 }
 
 /// Why no region is named where the model fails, in a sentence of its own. `maps` is what was looked at.
@@ -235,6 +270,10 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
             Some(format!("{blocks} independent stretches of motion are too few to name anything"))
         }
         Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
+        Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => Some(
+            "a few moments hold nearly all that its repeats differ by, so how well it repeats itself is not known"
+                .into(),
+        ),
         Verdict::Adequate | Verdict::MissingEffect => impossible(fits),
         _ => None,
     }
@@ -256,9 +295,10 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
 
 /// What is said of structure, where something that was left out might be it.
 fn unexplained(found: &Findings) -> &'static str {
-    match left_out(found).next() {
-        Some(_) => "no effect of the library is sure to explain",
-        None => "no effect of the library explains",
+    let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());
+    match left_out(found).next().is_some() || is_refused {
+        true => "no effect of the library is sure to explain",
+        false => "no effect of the library explains",
     }
 }
 
@@ -298,5 +338,7 @@ fn taken_back(found: &Findings, unit: &str) -> String {
         let explains = if borrowing.len() > 1 { "they explain" } else { "it explains" };
         format!(" Taken back: {}, because {explains} nothing beside the structure that remains.", list(&borrowing))
     });
-    open.into_iter().chain(half).chain(borrowing).collect()
+    let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_rival(r.effect));
+    let refused = refused.map(|refused| format!(" Left out: {}: {}.", refused.effect, refused.why()));
+    open.into_iter().chain(half).chain(borrowing).chain(refused).collect()
 }

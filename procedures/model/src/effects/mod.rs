@@ -51,6 +51,9 @@ fn speed_range(view: &View) -> Option<(f64, f64)> {
 /// Lengths over which a reversal can be remembered and seen: from a thousandth of the motion between two reversals, or
 /// three steps of the encoder, to the longest of these motions but for a tenth. `None` where the motion never turns.
 fn reversal_range(view: &View) -> Option<(f64, f64)> {
+    if view.constants.followed_hz.is_some() {
+        return view.constants.reaches.map(|[low, high]| (low, high)).filter(|(low, high)| low < high);
+    }
     let position = view.samples.find(Signal::Position)?;
     let direction = view.samples.find(Signal::Direction)?;
     let mut turns = vec![position[0]];
@@ -79,11 +82,26 @@ fn reversal_range(view: &View) -> Option<(f64, f64)> {
 /// at the slowest motion cannot be told from lower ones and are left out.
 fn harmonic_form(view: &View, angle: Signal, orders: RangeInclusive<u32>) -> Vec<Form<'static>> {
     let Some(samples) = view.samples.find(angle).filter(|_| !view.constants.slides) else { return Vec::new() };
+    if let Some(followed_hz) = view.constants.followed_hz {
+        return whole_orders(orders, highest_followed(samples, view.sample_s, followed_hz), "harmonic", &["a", "b"]);
+    }
     let mut steps: Vec<f64> = samples.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
     steps.sort_by(f64::total_cmp);
     let Some(slow) = steps.get(steps.len() / 10) else { return Vec::new() };
     let highest = std::f64::consts::PI / slow;
     whole_orders(orders, highest, "harmonic", &["a", "b"])
+}
+
+/// Orders of an angle of which a filter leaves something in more than a fiftieth of the run.
+fn highest_followed(angle: &[f64], sample_s: f64, followed_hz: f64) -> f64 {
+    const OF_RUN: f64 = 0.02;
+    let mut steps: Vec<f64> = angle.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    if steps.is_empty() {
+        return 0.0;
+    }
+    let at = (OF_RUN * steps.len() as f64) as usize;
+    let slow = *steps.select_nth_unstable_by(at, f64::total_cmp).1;
+    4.0 * std::f64::consts::PI * followed_hz * sample_s / slow.max(f64::MIN_POSITIVE)
 }
 
 /// A wave whose order is known.

@@ -3,6 +3,7 @@
 //! T-optimality (Atkinson and Fedorov 1975): the run is best on which the rival, with its parameters chosen anew to fit
 //! everything known, still cannot follow the other model.
 
+use crate::decision::solution::Solution;
 use crate::linear::basis::dot;
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
@@ -48,7 +49,7 @@ impl Noise {
         }
         let g = groups.len().max(1) as f64;
         let row = squares / free.max(1.0);
-        let block = (between / g - row * shares / g).max(0.0);
+        let block = (between / g - row * shares / g).max(0.0) + form_error(model);
         let size = (dot(&problem.target, &problem.target) / problem.rows().max(1) as f64).sqrt();
         Self { block: block.sqrt(), row: row.sqrt().max(1e-9 * size).max(f64::MIN_POSITIVE) }
     }
@@ -67,6 +68,12 @@ impl Noise {
             .collect();
         column.iter().zip(&problem.block).map(|(x, b)| (x - lost[*b]) / self.row).collect()
     }
+}
+
+/// Mean square of what the formulas of a model err by: elsewhere it is another, and all points of a stretch have it in common.
+fn form_error(model: &LinearModel) -> f64 {
+    let errs = Solution::of(model).map_or_else(Vec::new, |solution| solution.form_error(model));
+    dot(&errs, &errs) / errs.len().max(1) as f64
 }
 
 fn push(groups: &mut Vec<((usize, usize), Vec<f64>)>, key: (usize, usize), value: f64) {

@@ -1,5 +1,6 @@
 //! A run that has not been made, at the points at which it would be judged.
 
+use crate::decision::solved::Solved;
 use crate::experiment_design::separation::predict;
 use crate::experiment_design::{Choice, Stretch};
 use crate::preprocess::sweeps::brake_torque_of_current;
@@ -60,6 +61,9 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
         segment: vec![0; rows],
         repeat: vec![0; rows],
         settled: true,
+        form_error: None,
+        bandwidths: Vec::new(),
+        solved: Solved::default(),
     };
     // What the drive is follows from the response, and a part of the response may follow from it.
     problem.view.points.set(Signal::Drive, vec![0.0; rows]);

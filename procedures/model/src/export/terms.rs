@@ -1,7 +1,8 @@
 //! Whether a term of a file is one that its effect can have.
 
 use crate::effect::{Effect, Form, ShapeSearch};
-use crate::report::fit::{Fit, ParameterState, Term};
+use crate::effects::find;
+use crate::report::fit::{Fit, FormErrorTerm, ParameterState, Term};
 use crate::signal::{Signal, Signals};
 use crate::view::View;
 use crate::words::list;
@@ -28,7 +29,28 @@ pub fn check(fit: &Fit, effects: &[&dyn Effect]) -> Result<(), ModelError> {
             _ => return fault(format!("has {} terms: one is expected", terms.len())),
         }
     }
-    Ok(())
+    fit.form_error.iter().try_for_each(|term| check_form_error(fit, term))
+}
+
+/// A column where formulas err. Of another form of an effect it has as many values as that form.
+fn check_form_error(fit: &Fit, term: &FormErrorTerm) -> Result<(), ModelError> {
+    let fault = |what: &str| Err(ModelError::BadFile(format!("form_error {} {what}", term.name)));
+    if !term.linear.iter().chain(&term.shape).all(|value| value.is_finite()) {
+        return fault("has a value that is not finite");
+    }
+    let own = fit.own.iter().find(|own| own.id() == term.name);
+    let forms: Vec<Form> = match (own, find(fit.kind, &term.name)) {
+        (Some(own), _) => vec![own.form(&View::default())],
+        (None, Ok(effect)) => forms(effect, term.linear.len()),
+        (None, Err(_)) => return Ok(()),
+    };
+    let counts = (term.linear.len(), term.shape.len());
+    let is_of = |form: &Form| form.name == term.form && (form.linear.len(), form.shape.len()) == counts;
+    if forms.iter().any(is_of) {
+        Ok(())
+    } else {
+        fault("has a form or a number of values that the effect does not have")
+    }
 }
 
 /// The run that was fitted could not show the effect: all of its parameters stand at zero, with nothing around them.

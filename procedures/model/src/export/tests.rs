@@ -92,6 +92,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             cutoff_hz: None,
             velocity_lag_s: None,
             decimation: 1,
+            bristles: None,
             chunk_s: None,
             samples: ROWS,
             rows: ROWS,
@@ -100,6 +101,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
             repeats_from: "none".into(),
         },
         terms,
+        form_error: Vec::new(),
         scope: Some(Scope {
             motion: Motion::Rotary,
             load_scale: 50.0,

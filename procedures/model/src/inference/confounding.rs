@@ -3,7 +3,7 @@
 use crate::linear::basis::dot;
 use crate::preprocess::Prepared;
 use crate::signal::Signal;
-use crate::thresholds::{COLUMN_CORRELATION, TIME_CORRELATION};
+use crate::thresholds::{COLUMN_CORRELATION, TRADE_OFF_CORRELATION};
 use crate::{Effect, OwnEffect};
 
 /// The column of the effects that are asked about.
@@ -46,7 +46,7 @@ fn is_of_temperature(effect: &dyn Effect) -> bool {
 }
 
 fn drift(prepared: &Prepared) -> Option<f64> {
-    correlation(Signal::Time, prepared).filter(|r| r.abs() > TIME_CORRELATION)
+    correlation(Signal::Time, prepared).filter(|r| r.abs() > TRADE_OFF_CORRELATION)
 }
 
 /// With the temperature, over the points that are judged. `None` where one of them never changes.

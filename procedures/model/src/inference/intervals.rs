@@ -24,6 +24,9 @@ pub struct Intervals {
 /// with Student's t at the number of pieces that a parameter really rests on: a Stribeck speed is decided by the few
 /// slowest segments, however many fast ones there are (Carter, Schnepel, Steigerwald 2017).
 pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
+    if let Some(found) = crate::decision::intervals::intervals(terms, motion) {
+        return found;
+    }
     let linear = terms.linear();
     let slopes = terms.slopes(&linear.factors);
     let mut columns = terms.columns();

@@ -1,5 +1,10 @@
 //! Cholesky factors of scaled, symmetric positive definite systems.
 
+use crate::linear::basis::dot;
+
+/// Longer rows are multiplied in whole registers.
+const LONG: usize = 32;
+
 /// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
 #[derive(Debug, Clone)]
 pub struct Cholesky {
@@ -28,8 +33,12 @@ impl Cholesky {
                 if i == j {
                     sum += ridge;
                 }
-                for k in 0..j {
-                    sum -= l[i * n + k] * l[j * n + k];
+                if j < LONG {
+                    for k in 0..j {
+                        sum -= l[i * n + k] * l[j * n + k];
+                    }
+                } else {
+                    sum -= dot(&l[i * n..i * n + j], &l[j * n..j * n + j]);
                 }
                 if i == j {
                     if sum > (least[i] * scale[i].powi(2)).max(1e-10) {
@@ -46,6 +55,32 @@ impl Cholesky {
             }
         }
         Self { n, l, scale, dead }
+    }
+
+    /// The inverse of the matrix, row by row; columns that depend on others are zero in it.
+    pub fn inverse(&self) -> Vec<f64> {
+        let n = self.n;
+        // Rows of the inverse of L.
+        let mut lower = vec![0.0; n * n];
+        for i in (0..n).filter(|i| !self.dead[*i]) {
+            let mut row = vec![0.0; i + 1];
+            for k in (0..i).filter(|k| !self.dead[*k]) {
+                let factor = self.l[i * n + k];
+                row.iter_mut().zip(&lower[k * n..=k * n + k]).for_each(|(r, l)| *r -= factor * l);
+            }
+            row[i] += 1.0;
+            row.iter().enumerate().for_each(|(j, r)| lower[i * n + j] = r / self.l[i * n + i]);
+        }
+        let mut inverse = vec![0.0; n * n];
+        for k in 0..n {
+            for i in 0..=k {
+                let factor = lower[k * n + i];
+                let row = &lower[k * n..=k * n + k];
+                inverse[i * n..=i * n + k].iter_mut().zip(row).for_each(|(sum, l)| *sum += factor * l);
+            }
+        }
+        (0..n * n).for_each(|at| inverse[at] *= self.scale[at / n] * self.scale[at % n]);
+        inverse
     }
 
     pub fn is_dependent(&self, i: usize) -> bool {
@@ -85,5 +120,28 @@ impl Cholesky {
         }
         x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
         x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_inverse_solves_as_the_factors_do() {
+        let n = 40;
+        let column = |a: usize| -> Vec<f64> {
+            (0..90).map(|i| ((a * 37 + i * 13) as f64 * 0.7).sin() + 0.1 * a as f64).collect()
+        };
+        let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
+        let gram: Vec<f64> = (0..n * n)
+            .map(|at| dot(&columns[at / n], &columns[at % n]) + if at / n == at % n { 1.0 } else { 0.0 })
+            .collect();
+        let side: Vec<f64> = (0..n).map(|a| (a as f64).cos()).collect();
+        let factored = Cholesky::new(&gram, n, 0.0);
+        let (solved, inverse) = (factored.solve(&side), factored.inverse());
+        for (row, x) in inverse.chunks(n).zip(solved) {
+            assert!((dot(row, &side) - x).abs() < 1e-9 * x.abs().max(1.0));
+        }
     }
 }

@@ -6,6 +6,7 @@ pub(crate) mod basis;
 pub(crate) mod cholesky;
 pub(crate) mod condition;
 pub(crate) mod gram;
+pub(crate) mod non_negative;
 
 pub use crate::linear::augmented_gram::AugmentedGrams;
 pub use crate::linear::basis::{Basis, dot};

@@ -1,5 +1,6 @@
 //! Samples in model quantities, and their means over chunks.
 
+use crate::decision::solved::Solved;
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::{blocks, replicates, segments};
 use crate::preprocess::{Problem, Reduce, residual_acceleration};
@@ -192,6 +193,9 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         segment,
         repeat,
         settled,
+        form_error: None,
+        bandwidths: Vec::new(),
+        solved: Solved::default(),
     };
     replicates::believe(&mut problem, &of, inputs);
     problem

@@ -7,6 +7,7 @@ pub(crate) mod current_dwells;
 pub(crate) mod design;
 pub(crate) mod encoder;
 pub mod filter;
+pub(crate) mod form_error;
 pub(crate) mod friction;
 pub(crate) mod independent_blocks;
 pub(crate) mod initial_hysteresis_state;
@@ -16,13 +17,15 @@ pub(crate) mod stiffness;
 pub(crate) mod sweeps;
 pub(crate) mod unknown_columns;
 
+use crate::decision::solved::Solved;
 use crate::effect::Regime;
 use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::checks::{metadata, unit_mismatch};
 pub use crate::preprocess::design::replicates::Unlike;
 pub use crate::preprocess::design::segments::stretches;
-use crate::preprocess::filter::LowPass;
-use crate::report::fit::{GivenConstant, Preparation};
+use crate::preprocess::filter::{ABREAST, LowPass};
+use crate::preprocess::form_error::FormError;
+use crate::report::fit::{Bristles, GivenConstant, Preparation};
 use crate::signal::Signal;
 pub use crate::signal::may_cause;
 use crate::view::View;
@@ -59,6 +62,12 @@ pub struct Problem {
     pub repeat: Vec<i64>,
     /// Speed and load are constant within a block: what they seem to change there is their sensors' noise.
     pub settled: bool,
+    /// Where the errors of formulas live, of a run that is judged sample by sample.
+    pub form_error: Option<Arc<FormError>>,
+    /// The same run at other corners of its filter: what they differ by nobody knows better.
+    pub bandwidths: Vec<Problem>,
+    /// Models of it that were solved last.
+    pub(crate) solved: Solved,
 }
 
 impl Problem {
@@ -72,8 +81,8 @@ impl Problem {
 pub enum Reduce {
     /// Points are rows.
     Same,
-    /// Every recording is filtered and every n-th sample kept, but for rows that are left out.
-    Decimate { filter: Option<LowPass>, every: usize, skip: usize, starts: Vec<usize>, left_out: Vec<bool> },
+    /// Every recording is filtered, its ends continued by `pad` samples, and some samples are kept.
+    Pick { filter: LowPass, pad: usize, rows: Arc<[usize]>, starts: Arc<[usize]> },
 }
 
 impl Reduce {
@@ -82,24 +91,18 @@ impl Reduce {
     }
 
     pub fn apply_all(&self, columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-        let Reduce::Decimate { filter, every, skip, starts, left_out } = self else { return columns };
+        let Reduce::Pick { filter, pad, rows, starts } = self else { return columns };
         let points = columns.first().map_or(0, Vec::len);
-        let mut rows = vec![Vec::new(); columns.len()];
-        for (start, end) in starts.iter().zip(starts.iter().skip(1).chain([&points])) {
-            let recording: Vec<&[f64]> = columns.iter().map(|c| &c[*start..*end]).collect();
-            let filtered = filter.as_ref().map(|filter| filter.each_both_ways(&recording, 12 * every));
-            for (column, rows) in rows.iter_mut().enumerate() {
-                let values = filtered.as_ref().map_or(recording[column], |f| &f[column]);
-                rows.extend((*skip..values.len().saturating_sub(*skip)).step_by(*every).map(|i| values[i]));
+        let filtered = |some: &[Vec<f64>]| {
+            let mut whole = vec![Vec::with_capacity(points); some.len()];
+            for (start, end) in starts.iter().zip(starts.iter().skip(1).chain([&points])) {
+                let recording: Vec<&[f64]> = some.iter().map(|c| &c[*start..*end]).collect();
+                let smooth = filter.each_both_ways(&recording, *pad);
+                whole.iter_mut().zip(smooth).for_each(|(whole, part)| whole.extend(part));
             }
-        }
-        if !left_out.is_empty() {
-            for rows in &mut rows {
-                let mut out = left_out.iter();
-                rows.retain(|_| out.next() == Some(&false));
-            }
-        }
-        rows
+            whole.iter().map(|column| rows.iter().map(|row| column[*row]).collect()).collect::<Vec<Vec<f64>>>()
+        };
+        columns.chunks(ABREAST).flat_map(filtered).collect()
     }
 }
 
@@ -118,6 +121,8 @@ pub struct Prepared {
     pub baseline: Vec<String>,
     /// What most effects are judged on.
     pub main: Problem,
+    /// The same with a direction that bends before it slips: beside an effect of such contacts.
+    pub bristled: Option<Problem>,
     /// Ramps and reversals, where the main problem holds settled motion only.
     pub moving: Option<Problem>,
     /// The slow part of the same: what came before a reversal matters there.
@@ -133,7 +138,16 @@ pub struct Prepared {
     pub about: Preparation,
 }
 
+/// The effect beside which the direction bends.
+pub(crate) const BENDS: &str = "presliding";
+
 impl Prepared {
+    /// What a model of these effects is judged on.
+    pub fn judged(&self, effects: &[String]) -> &Problem {
+        let bends = effects.iter().any(|effect| effect == BENDS);
+        self.bristled.as_ref().filter(|_| bends).unwrap_or(&self.main)
+    }
+
     /// Effects that the main problem can judge: of settled motion those alone that show there.
     pub fn regimes(&self) -> &'static [Regime] {
         match self.about.residual {
@@ -196,6 +210,15 @@ pub fn attention(run: &RunTable) -> Vec<String> {
 
 /// Prepares a run. Deterministic; cost linear in the rows.
 pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
+    prepare_with(run, options, None)
+}
+
+/// The same with bristles that another run has told.
+pub(crate) fn prepare_with(
+    run: &RunTable,
+    options: &Options,
+    bristles: Option<&Bristles>,
+) -> Result<Prepared, ModelError> {
     options.check()?;
     if run.len() < SHORTEST {
         return Err(ModelError::TooFewSamples { usable: run.len(), needed: SHORTEST, what: "samples" });
@@ -207,7 +230,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         }
     }
     let (prepared, response) = match run.kind() {
-        Kind::Friction => (friction::prepare(run, options)?, "motor_current_a"),
+        Kind::Friction => (friction::prepare(run, options, bristles)?, "motor_current_a"),
         Kind::Encoder => (encoder::prepare(run, options)?, "test_position_rad − reference_position_rad"),
         Kind::Stiffness => (stiffness::prepare(run, options)?, "motor_position_rad / gear_ratio − link_position_rad"),
         Kind::Brake => (brake::prepare(run, options)?, "brake_torque_nm"),
@@ -262,7 +285,7 @@ fn sample_s(time_s: &[f64]) -> f64 {
     median(time_s.windows(2).step_by(time_s.len().div_ceil(TELLING)).map(|w| w[1] - w[0]))
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     if values.is_empty() {
         return 0.0;

@@ -28,23 +28,24 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     let repeat = segments::integers(run, "repeat");
     let zeros_rad = repeat.as_deref().and_then(|repeat| own_zeros(&mut target, repeat));
     let cutoff_hz = crate::preprocess::cutoff_hz(options, step_s)?;
-    let measured = run.column("link_velocity_rad_s");
-    let velocity = measured.map_or_else(
-        || {
-            let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
-            let slope =
-                |range: std::ops::Range<usize>, q: &[f64]| filter::derivative(&time_s[range], &smooth.both_ways(q, 12));
-            filter::by_recording(link, &segments::runs(run), slope)
-        },
-        <[f64]>::to_vec,
-    );
-    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let mut signals = Signals::new(run.len());
     signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
-    signals.set(Signal::Direction, segments::direction(&velocity, 0.01 * fastest));
-    signals.set(Signal::Link, link.to_vec());
-    signals.set(Signal::Position, column("motor_position_rad").to_vec());
-    signals.set(Signal::Velocity, velocity);
+    let held_turns = held_turns(&target, link);
+    let rounding = match held_turns {
+        Some(_) => {
+            encoder_step(column("motor_position_rad"), torque).hypot(gear * encoder_step(link, torque))
+                / gear
+                / 12f64.sqrt()
+        }
+        None => 0.0,
+    };
+    let derived_velocity = match held_turns {
+        Some(_) => {
+            signals.set(Signal::Direction, segments::trend(torque));
+            false
+        }
+        None => motion(&mut signals, run, cutoff_hz, step_s),
+    };
     for (name, signal) in [("temperature_c", Signal::Temperature), ("repeat", Signal::Repeat)] {
         if let Some(values) = run.column(name) {
             signals.set(signal, values.to_vec());
@@ -60,9 +61,9 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         cutoff_hz,
         segment: segments::numbered(run),
         repeat,
-        derived_velocity: measured.is_none(),
+        derived_velocity,
         time_s,
-        constants: Constants::default(),
+        constants: Constants { held_turns, rounding, ..Constants::default() },
     };
     let mut smooth = torque.to_vec();
     let chunk = source.chunk(CHUNK_S);
@@ -73,12 +74,82 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     source.signals.set(Signal::Load, smooth);
     let inputs = [Signal::Velocity, Signal::Load].map(Same::Value);
     let mut prepared = sweeps::prepare(run, source, CHUNK_S, &inputs, options)?;
+    // The legs of a held joint are those of its torque, which may go in steps within one: what remembers is fed with the smooth
+    // torque, all else goes by what was measured.
+    if held_turns.is_some() {
+        let measured = prepared.main.view.average(torque.to_vec());
+        prepared.main.view.points.set(Signal::Load, measured);
+    }
     prepared.main.view.felt = Some(torque.to_vec().into());
     prepared.doubts.extend(zeros_rad.map(|apart| {
         let apart = figure(apart, &prepared.unit());
         format!("motor and link have another zero in every repeat, {apart} RMS apart, as encoders do that are set to zero before each: it is taken off")
     }));
     Ok(prepared)
+}
+
+/// The turns of the link where one side of the joint is held. A joint that turns moves farther than it twists, on both sides:
+/// of one that is held the twist is the motion of the other side, and no function of that motion explains it.
+pub fn held_turns(twist: &[f64], link: &[f64]) -> Option<f64> {
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        high - low
+    };
+    let of_link = range(&mut link.iter().copied());
+    let of_motor = range(&mut twist.iter().zip(link).map(|(t, q)| t + q));
+    (of_link.min(of_motor) < range(&mut twist.iter().copied())).then_some(of_link / std::f64::consts::TAU)
+}
+
+/// The step in which an encoder counts [rad], a power of two in a turn: the readings lie on its multiples, and the torque that
+/// moves the angle does not stop there. Zero where no step shows.
+fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
+    /// Of readings on multiples with a noise of a fifth of a step, and of angles that lie anywhere.
+    const ON: f64 = 0.5;
+    const ANYWHERE: f64 = 0.25;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (middle, centre) = (mean(angle), mean(torque));
+    let product =
+        |f: &dyn Fn(f64, f64) -> f64| angle.iter().zip(torque).map(|(a, t)| f(a - middle, t - centre)).sum::<f64>();
+    let slope = product(&|a, t| a * t) / product(&|_, t| t * t);
+    let moved: Vec<f64> = torque.iter().map(|t| slope * (t - centre)).collect();
+    let on_multiples = |values: &[f64], step: f64| {
+        let (sin, cos) = values
+            .iter()
+            .map(|v| (std::f64::consts::TAU * v / step).sin_cos())
+            .fold((0.0, 0.0), |s, v| (s.0 + v.0, s.1 + v.1));
+        sin.hypot(cos) / values.len() as f64
+    };
+    let range = |values: &[f64]| {
+        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        high - low
+    };
+    let goes = range(&moved);
+    let mut steps =
+        (8..=24).map(|bits| std::f64::consts::TAU / f64::from(1u32 << bits)).filter(|step| 2.0 * step < goes);
+    let is_counted = |step: &f64| on_multiples(angle, *step) > ON && on_multiples(&moved, *step) < ANYWHERE;
+    steps.find(is_counted).unwrap_or(0.0)
+}
+
+/// The motion of a joint that turns. True where its velocity came from the position.
+fn motion(signals: &mut Signals, run: &RunTable, cutoff_hz: f64, step_s: f64) -> bool {
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let (time_s, link) = (column("time_s"), column("link_position_rad"));
+    let measured = run.column("link_velocity_rad_s");
+    let velocity = measured.map_or_else(
+        || {
+            let smooth = filter::LowPass::butterworth(4, 2.0 * cutoff_hz * step_s);
+            let slope =
+                |range: std::ops::Range<usize>, q: &[f64]| filter::derivative(&time_s[range], &smooth.both_ways(q, 12));
+            filter::by_recording(link, &segments::runs(run), slope)
+        },
+        <[f64]>::to_vec,
+    );
+    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    signals.set(Signal::Direction, segments::direction(&velocity, 0.01 * fastest));
+    signals.set(Signal::Link, link.to_vec());
+    signals.set(Signal::Position, column("motor_position_rad").to_vec());
+    signals.set(Signal::Velocity, velocity);
+    measured.is_none()
 }
 
 /// Takes off each repeat's mean beside that of all, where these lie farther apart than everything that happens within the repeats,
@@ -101,18 +172,35 @@ fn own_zeros(twist: &mut [f64], repeat: &[i64]) -> Option<f64> {
     })
 }
 
-/// Most Chebyshev polynomials of one leg.
+/// Most Chebyshev polynomials of one stretch.
 const ORDERS: [usize; 5] = [3, 5, 8, 11, 15];
 
-/// One smooth curve for a leg: Chebyshev polynomials of the square root of the time since the reversal, which follow a
-/// fast beginning and a slow end, as many as the leg asks for (Schwarz 1978). Noise in the torque would feed hysteresis
-/// and sign terms; a filter across the reversal would blur what those terms live from.
+/// The torque of a leg without its sensor's noise, which would feed hysteresis and sign terms; a filter across the reversal would
+/// blur what those terms live from. One smooth curve where it leaves nothing but noise, else one for each half of the leg, and
+/// the torque as it was measured where no curve follows it.
 fn smooth_leg(values: &[f64]) -> Vec<f64> {
+    let Some(curve) = curve(values) else { return values.to_vec() };
+    let left: Vec<f64> = values.iter().zip(&curve).map(|(v, c)| v - c).collect();
+    if is_noise(&left) {
+        return curve;
+    }
+    let (early, late) = values.split_at(values.len() / 2);
+    [smooth_leg(early), smooth_leg(late)].concat()
+}
+
+/// Neighbours resemble each other no more than those of white noise do by chance (von Neumann 1941).
+fn is_noise(left: &[f64]) -> bool {
+    const CHANCE: f64 = 3.0;
+    let square: f64 = left.iter().map(|v| v * v).sum();
+    let next: f64 = left.windows(2).map(|w| w[0] * w[1]).sum();
+    next <= CHANCE * square / (left.len() as f64).sqrt()
+}
+
+/// Chebyshev polynomials of the square root of the time since the stretch began, which follow a fast beginning and a slow end,
+/// as many as it asks for (Schwarz 1978). `None` for a stretch too short for any.
+fn curve(values: &[f64]) -> Option<Vec<f64>> {
     let n = values.len();
     let most = (n / 12).min(ORDERS[ORDERS.len() - 1]);
-    if most < ORDERS[0] {
-        return values.to_vec();
-    }
     let terms = |i: usize| {
         let x = 2.0 * ((i as f64 + 0.5) / n as f64).sqrt() - 1.0;
         let mut t = vec![1.0, x];
@@ -122,7 +210,7 @@ fn smooth_leg(values: &[f64]) -> Vec<f64> {
         t
     };
     let all: Vec<Vec<f64>> = (0..n).map(terms).collect();
-    let curve = |order: usize| {
+    let fitted = |order: usize| {
         let p = order + 1;
         let mut gram = vec![0.0; p * p];
         let mut side = vec![0.0; p];
@@ -137,8 +225,8 @@ fn smooth_leg(values: &[f64]) -> Vec<f64> {
         let sse: f64 = fit.iter().zip(values).map(|(f, v)| (f - v).powi(2)).sum();
         (n as f64 * sse.max(1e-300).ln() + p as f64 * (n as f64).ln(), fit)
     };
-    let curves = ORDERS.into_iter().filter(|o| *o <= most).map(curve);
-    curves.min_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(|| values.to_vec(), |c| c.1)
+    let curves = ORDERS.into_iter().filter(|o| *o <= most).map(fitted);
+    curves.min_by(|a, b| a.0.total_cmp(&b.0)).map(|c| c.1)
 }
 
 #[cfg(test)]
@@ -166,5 +254,26 @@ mod tests {
         let noisy: Vec<f64> = (0..300).map(|i| truth(i) + 0.03 * (i as f64 * 2.1).sin()).collect();
         let worst = smooth_leg(&noisy).iter().enumerate().map(|(i, v)| (v - truth(i)).abs()).fold(0.0, f64::max);
         assert!(worst < 0.025, "{worst}");
+    }
+
+    #[test]
+    fn the_step_of_an_encoder_shows_in_its_noisy_readings() {
+        let torque: Vec<f64> = (0..4000i32).map(|i| 0.02 * f64::from((i % 2000 - 1000).abs()) - 10.0).collect();
+        let step = std::f64::consts::TAU / 262_144.0;
+        let noise = |i: usize| 0.1 * step * (12.9898 * i as f64).sin();
+        let counted = |t: &f64| (3.2e-6 * t / step).round() * step;
+        let read: Vec<f64> = torque.iter().enumerate().map(|(i, t)| counted(t) + noise(i)).collect();
+        let found = encoder_step(&read, &torque);
+        assert!((found / step - 1.0).abs() < 1e-9, "{found}");
+        let smooth: Vec<f64> = torque.iter().enumerate().map(|(i, t)| 3.2e-6 * t + noise(i)).collect();
+        assert_eq!(encoder_step(&smooth, &torque), 0.0);
+    }
+
+    #[test]
+    fn a_torque_that_goes_up_and_down_within_a_leg_is_not_altered() {
+        let torque: Vec<f64> =
+            (0..4000).map(|i| 10.0 * (0.02 * f64::from(i)).sin() + 0.02 * (2.1 * f64::from(i)).sin()).collect();
+        let worst = smooth_leg(&torque).iter().zip(&torque).map(|(s, t)| (s - t).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.05, "{worst}");
     }
 }

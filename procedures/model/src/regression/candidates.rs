@@ -52,6 +52,11 @@ impl<'e> CandidateSet<'e> {
         Self::of(spec, problem, regimes, |effect| one_grows || is_in(effect))
     }
 
+    /// Only the forms of these effects.
+    pub fn only(spec: &'e ModelSpec, problem: &Problem, regimes: &[Regime], effects: &[&str]) -> Self {
+        Self::of(spec, problem, regimes, |effect| effects.contains(&effect.info().id))
+    }
+
     fn of(spec: &'e ModelSpec, problem: &Problem, regimes: &[Regime], wanted: impl Fn(&dyn Effect) -> bool) -> Self {
         let mut library =
             Self { kind: spec.kind, effects: spec.known().collect(), candidates: Vec::new(), invisible: Vec::new() };

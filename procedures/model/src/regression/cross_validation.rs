@@ -1,10 +1,14 @@
 //! The error of a model on folds that were left out of its fit.
 
+use crate::decision::solution::Solution;
 use crate::linear::gram::BlockGrams;
 use crate::regression::linear_model::LinearModel;
 
 /// Held-out squared error of each fold.
 pub fn held_out(terms: &LinearModel) -> Vec<f64> {
+    if let Some(solution) = Solution::of(terms) {
+        return solution.held_out(terms);
+    }
     let linear = terms.linear();
     let problem = terms.problem;
     BlockGrams::new(&terms.columns(), &linear.residual, &problem.fold, problem.folds).held_out()

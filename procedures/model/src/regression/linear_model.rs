@@ -1,5 +1,6 @@
 //! A model at work: effects with their forms, shapes and columns at the rows of a problem.
 
+use crate::decision::solution::Solution;
 use crate::effect::{Columns, Effect, Form, ShapeSearch};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::cholesky::Cholesky;
@@ -70,7 +71,20 @@ pub struct LinearModel<'p> {
     pub problem: &'p Problem,
     /// Sum of what enters with a factor of one.
     pub given: Vec<f64>,
+    /// The effects that do.
+    pub offsets: Vec<&'p dyn Effect>,
     pub terms: Vec<Term<'p>>,
+    /// Other forms of the effects, where they stand beside the model.
+    pub relatives: Arc<Vec<Relative<'p>>>,
+}
+
+/// A form of an effect beside the one that the model has.
+#[derive(Clone)]
+pub struct Relative<'e> {
+    pub effect: &'e dyn Effect,
+    pub form: Arc<Form<'e>>,
+    pub shape: Vec<f64>,
+    pub columns: Columns,
 }
 
 /// The least squares solution of a model: factors of every term's columns and what they leave.
@@ -82,7 +96,13 @@ pub struct Linear {
 
 impl<'p> LinearModel<'p> {
     pub fn new(problem: &'p Problem) -> Self {
-        Self { problem, given: vec![0.0; problem.rows()], terms: Vec::new() }
+        Self {
+            problem,
+            given: vec![0.0; problem.rows()],
+            offsets: Vec::new(),
+            terms: Vec::new(),
+            relatives: Arc::default(),
+        }
     }
 
     pub fn contains(&self, id: &str) -> bool {
@@ -93,6 +113,9 @@ impl<'p> LinearModel<'p> {
     pub fn without(&self, id: &str) -> Self {
         let mut less = self.clone();
         less.terms.retain(|t| t.id() != id);
+        if less.relatives.iter().any(|r| r.effect.info().id == id) {
+            less.relatives = Arc::new(less.relatives.iter().filter(|r| r.effect.info().id != id).cloned().collect());
+        }
         less.refine();
         less
     }
@@ -103,6 +126,7 @@ impl<'p> LinearModel<'p> {
         for column in columns(effect, "linear", &[], self.problem) {
             less.given.iter_mut().zip(column).for_each(|(g, c)| *g -= c);
         }
+        less.offsets.retain(|offset| offset.info().id != effect.info().id);
         less.refine();
         less
     }
@@ -128,6 +152,9 @@ impl<'p> LinearModel<'p> {
     }
 
     pub fn linear(&self) -> Linear {
+        if let Some(solution) = Solution::of(self) {
+            return solution.linear(self);
+        }
         let columns = self.columns();
         let response = self.response();
         let basis = Basis::of(self.terms.iter().flat_map(|t| &t.columns));
@@ -178,7 +205,8 @@ impl<'p> LinearModel<'p> {
     pub fn refine(&mut self) {
         let moves = |t: &Term| t.form.shape.iter().any(|s| s.search != ShapeSearch::Whole);
         let free: Vec<usize> = (0..self.terms.len()).filter(|i| moves(&self.terms[*i])).collect();
-        if free.is_empty() {
+        // Where other forms stand beside an effect its own need not move.
+        if free.is_empty() || self.problem.form_error.is_some() {
             return;
         }
         let fixed = (0..self.terms.len()).filter(|i| !free.contains(i)).flat_map(|i| &self.terms[i].columns);

@@ -1,5 +1,6 @@
 //! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
 
+use crate::decision::solution::PRESLIDING;
 use crate::effect::Regime;
 use crate::preprocess::{Prepared, Problem};
 use crate::regression::candidates::CandidateSet;
@@ -40,6 +41,9 @@ impl<'p> TwoStageModel<'p> {
         if spec.kind != prepared.kind {
             return Err(ModelError::WrongKind { run: prepared.kind, model: spec.kind });
         }
+        if prepared.main.form_error.is_some() {
+            return Self::decided(prepared, spec, effects);
+        }
         let mut assembly = Self {
             prepared,
             spec,
@@ -60,6 +64,7 @@ impl<'p> TwoStageModel<'p> {
             } else if effect.is_offset() {
                 let given = columns(effect, "linear", &[], assembly.main.problem);
                 add(&mut assembly.main.given, &given, &[1.0]);
+                assembly.main.offsets.push(effect);
             } else if !assembly.is_apart(effect) {
                 settled.push(effect.info().id);
             }
@@ -74,6 +79,34 @@ impl<'p> TwoStageModel<'p> {
                 break;
             }
         }
+        Ok(assembly)
+    }
+
+    /// The same of a run that is judged sample by sample.
+    pub fn decided(prepared: &'p Prepared, spec: &'p ModelSpec, effects: Vec<String>) -> Result<Self, ModelError> {
+        let main = LinearModel::new(prepared.judged(&effects));
+        let mut assembly =
+            Self { prepared, spec, effects, main, moving: None, wavering: Vec::new(), hidden: Vec::new() };
+        let mut laid: Vec<&dyn Effect> = Vec::new();
+        let view = &prepared.main.view;
+        for id in &assembly.effects {
+            let effect = spec.find(id)?;
+            if let Some(own) = spec.own.iter().find(|own| own.id() == id) {
+                own.check(view)?;
+            }
+            if let Some(why) = effect.hidden(view) {
+                assembly.hidden.push(Invisible { effect: id.clone(), why });
+            } else if effect.is_offset() {
+                let given = columns(effect, "linear", &[], assembly.main.problem);
+                add(&mut assembly.main.given, &given, &[1.0]);
+                assembly.main.offsets.push(effect);
+            } else if id != PRESLIDING {
+                laid.push(effect);
+            }
+        }
+        let ids: Vec<&str> = laid.iter().map(|effect| effect.info().id).collect();
+        let library = CandidateSet::only(spec, assembly.main.problem, prepared.regimes(), &ids);
+        assembly.main = crate::decision::layout::lay(&assembly.main, &laid, &library);
         Ok(assembly)
     }
 

@@ -44,6 +44,9 @@ pub struct Fit {
     pub preparation: Preparation,
     /// The same parameters as the effects hold them, to compute the model again.
     pub terms: Vec<Term>,
+    /// What stands beside the effects where samples are judged: the run shows it, and no effect of the model says it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub form_error: Vec<FormErrorTerm>,
     /// `None` in fits of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scope: Option<Scope>,
@@ -105,6 +108,9 @@ pub struct Preparation {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_lag_s: Option<f64>,
     pub decimation: usize,
+    /// The direction of motion as contacts feel it. `None` where it is the sign of the velocity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bristles: Option<Bristles>,
     /// Length of a chunk. A row of a long run in steps is the mean of several neighbours.
     pub chunk_s: Option<f64>,
     pub samples: usize,
@@ -116,6 +122,43 @@ pub struct Preparation {
     pub segments_from: String,
     /// Where the repeats came from: `column`, `found` or `none`.
     pub repeats_from: String,
+}
+
+/// A direction that turns over a way: contacts that slip at ±1 and contacts that yield exponentially, weighed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Bristles {
+    /// Reaches of the contacts that slip, the shortest first; those that yield have the same but for the shortest [rad].
+    pub reaches_rad: Vec<f64>,
+    /// Shares of the ones that slip, then of the ones that yield.
+    pub weights: Vec<f64>,
+    /// Without bristles the direction turns within this speed [rad/s].
+    pub band_rad_s: f64,
+}
+
+impl Bristles {
+    /// The one contact that stands for all: its form in the library and its reach, with the ends of what has weight.
+    pub(crate) fn single(&self) -> Option<(&'static str, f64, [f64; 2])> {
+        const NONE: f64 = 0.05;
+        let n = self.reaches_rad.len();
+        let reach = |at: usize| self.reaches_rad.get(if at < n { at } else { at + 1 - n }).copied();
+        let form = |at: usize| if at < n { "stop" } else { "dahl" };
+        let best = (0..self.weights.len()).max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b]))?;
+        let ends = (0..self.weights.len()).filter(|at| self.weights[*at] > NONE).filter_map(reach);
+        let ends = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], r| [low.min(r), high.max(r)]);
+        Some((form(best), reach(best)?, ends))
+    }
+}
+
+/// A column beside the effects of a model, where the errors of their formulas live.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FormErrorTerm {
+    /// `bristle`, `jerk`, `snap` or `load_rate`; or the effect of which it is another form.
+    pub name: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub form: String,
+    /// Of another form its shape, else the place of the column.
+    pub shape: Vec<f64>,
+    pub linear: Vec<f64>,
 }
 
 /// One effect of the model, as numbers.

@@ -12,8 +12,8 @@ pub use crate::report::diagnosis::{
     Verdict,
 };
 pub use crate::report::fit::{
-    Evaluation, Fit, GivenConstant, MeanCurve, Parameter, ParameterState, Preparation, ResidualKind, Scope,
-    SignalRange, Term, TradeOff,
+    Bristles, Evaluation, Fit, FormErrorTerm, GivenConstant, MeanCurve, Parameter, ParameterState, Preparation,
+    ResidualKind, Scope, SignalRange, Term, TradeOff,
 };
 pub use crate::report::maps::{AxisMap, MapBin, MapCell, PairMap, Region, ResidualMaps};
 pub use crate::report::residuals::{Axis, ResidualSet};

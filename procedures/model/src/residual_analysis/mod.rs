@@ -1,5 +1,6 @@
 //! What a model leaves: over which axes it shows, how much of it is noise, and whether it is a lack of fit.
 
+pub(crate) mod events;
 pub(crate) mod lack_of_fit;
 pub(crate) mod maps;
 pub(crate) mod noise_floor;

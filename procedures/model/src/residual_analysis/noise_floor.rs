@@ -3,6 +3,7 @@
 use crate::preprocess::independent_blocks::pieces;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::diagnosis::NoiseFloor;
+use crate::residual_analysis::events::Event;
 use crate::thresholds::FLOOR_INTERVAL_RATIO;
 use crate::words::{figure, spoken};
 use jointbench_instrument::Kind;
@@ -15,11 +16,13 @@ const FEWEST: usize = 8;
 ///
 /// Pure error of pairs, σ² = Σ (e_a − e_b)²/2 over their number; the mean product of the same pairs is what repeats
 /// itself, whatever the noise within a repeat remembers. What came there on different ways is equal only in a model that
-/// `remembers`.
-pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool) -> NoiseFloor {
+/// `remembers`. `events` do not come again: what they differ by is no repeatability.
+pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool, events: &[Event]) -> NoiseFloor {
     let problem = &prepared.main;
     let is_equal = |replicate_pairs: &(usize, usize)| remembers || !problem.different_history.contains(replicate_pairs);
-    let replicate_pairs: Vec<(usize, usize)> = problem.replicate_pairs.iter().copied().filter(is_equal).collect();
+    let is_quiet = |row: usize| !events.iter().any(|event| event.rows.contains(&row));
+    let counts = |pair: &(usize, usize)| is_equal(pair) && is_quiet(pair.0) && is_quiet(pair.1);
+    let replicate_pairs: Vec<(usize, usize)> = problem.replicate_pairs.iter().copied().filter(counts).collect();
     if replicate_pairs.len() < FEWEST {
         return NoiseFloor { source: unknown(prepared), ..NoiseFloor::default() };
     }

@@ -33,7 +33,7 @@ fn silences<'p>(
 ) -> Vec<DetectionLimit<'p>> {
     let ground = PartialRegression::of(end);
     let n = end.problem.rows() as f64;
-    let least = bar.least_share(end, ground.energy) * ground.energy;
+    let least = bar.least_share(ground.energy) * ground.energy;
     let is_out = |id| !end.contains(id) && !withdrawn.contains(&id);
     let candidates: Vec<&Regressor> = library.candidates.iter().filter(|c| is_out(c.id())).collect();
     let looked_for: Vec<Tested> = candidates.into_par_iter().filter_map(|c| Tested::new(c, &ground)).collect();

@@ -67,7 +67,7 @@ pub fn step<'p>(
         return None;
     }
 
-    let least_share = bar.least_share(now, energy);
+    let least_share = bar.least_share(energy);
     let worth_it: Vec<(Term, f64)> = best
         .par_iter()
         .map(|b| {

@@ -1,5 +1,6 @@
 //! From a model to the model that is left when nothing more can be named: steady state first, then ramps, then reversals.
 
+use crate::decision::search::{self, Decided};
 use crate::inference::intervals::intervals;
 use crate::preprocess::Prepared;
 use crate::regression::candidates::CandidateSet;
@@ -39,6 +40,8 @@ pub struct ModelSelection<'p> {
     pub upheld: Vec<Imitated>,
     /// One that may be there as well.
     pub open: Option<Imitated>,
+    /// What one decision leaves, where the run is judged sample by sample.
+    pub decided: Option<Decided<'p>>,
 }
 
 /// The steps so far, each told as soon as it is made.
@@ -84,6 +87,9 @@ impl<'p> ModelSelection<'p> {
         most: usize,
         on_advance: &mut dyn FnMut(&SelectionStep),
     ) -> Result<Self, ModelError> {
+        if prepared.main.form_error.is_some() {
+            return search::search(prepared, spec, options, most, on_advance);
+        }
         let start = TwoStageModel::new(prepared, spec, options)?;
         let library = CandidateSet::new(spec, &prepared.main, prepared.regimes());
         // Of columns that cannot be right every effect is made up.
@@ -112,7 +118,7 @@ impl<'p> ModelSelection<'p> {
         let silences = search.silences();
         let Path { start, advances, .. } = path;
         let now = search.now;
-        Ok(Self { start, advances, withdrawn, now, residual, maps, silences, ties, upheld, open })
+        Ok(Self { start, advances, withdrawn, now, residual, maps, silences, ties, upheld, open, decided: None })
     }
 
     pub fn end(&self) -> &TwoStageModel<'p> {
@@ -185,7 +191,7 @@ fn outside_the_library<'p>(
     options: &Options,
 ) -> Option<(&'p str, RemovalReason)> {
     let whole = axis.and_then(|axis| taken_back(search, maps, axis, prepared, options));
-    let bump = || Some((bump(search, maps, prepared, options)?, RemovalReason::PartialExplanation));
+    let bump = || Some((bump(search, prepared, options)?, RemovalReason::PartialExplanation));
     whole.or_else(bump)
 }
 

@@ -6,7 +6,6 @@ use crate::regression::cross_validation::held_out;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
-use crate::selection::acceptance::formula_error::left_by_memory;
 use crate::selection::equivalence::is_tie;
 use crate::selection::floating_search::FloatingSearch;
 use crate::selection::forward_step::ScoredCandidate;
@@ -44,7 +43,7 @@ impl<'p> FloatingSearch<'_, 'p> {
             }
         }
         let (present, sse) = (held_out(&self.now), self.now.linear().sse);
-        let (remainder, least_share) = (left_by_memory(&self.now), self.bar().least_share(&self.now, sse));
+        let least_share = self.bar().least_share(sse);
         let is_at_edge = self.added().any(Term::is_at_edge);
         let imitated = alike.into_par_iter().filter_map(|(_, candidate)| {
             let mut near = self.now.clone();
@@ -61,8 +60,7 @@ impl<'p> FloatingSearch<'_, 'p> {
             // edge.
             let share = 1.0 - linear.sse / sse;
             let is_remainder = (self.options.practical_share..least_share).contains(&share) && !is_at_edge;
-            let is_refused = is_remainder || share * sse < remainder;
-            if !is_possible || is_refused || !self.is_wrong_beside(&with) || !decides(&with, &term) {
+            if !is_possible || is_remainder || !self.is_wrong_beside(&with) || !decides(&with, &term) {
                 return None;
             }
             // Its score counts beside the shapes that the others have with it: without it they imitate it.

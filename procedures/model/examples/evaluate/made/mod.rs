@@ -119,11 +119,11 @@ fn without(run: &RunTable, column: &str) -> RunTable {
 }
 
 /// A table from its columns. The simulations write what a table accepts.
-fn table(meta: Meta, names: Vec<String>, columns: Vec<Vec<f64>>) -> RunTable {
+pub fn table(meta: Meta, names: Vec<String>, columns: Vec<Vec<f64>>) -> RunTable {
     let channels = names.into_iter().map(Channel::new).collect();
     RunTable::new(meta, Trace::from_columns(channels, columns)).expect("a simulated run is a valid table")
 }
 
-fn rounded(value: f64, step: f64) -> f64 {
+pub fn rounded(value: f64, step: f64) -> f64 {
     (value / step).round() * step
 }

@@ -39,6 +39,10 @@ impl Effect for Cogging {
         forms
     }
 
+    fn wave(&self) -> Option<Signal> {
+        Some(Signal::Position)
+    }
+
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let mut columns = view.harmonic(Signal::Position, shape[0]);
         if form == "excited" {

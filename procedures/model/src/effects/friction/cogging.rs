@@ -34,10 +34,11 @@ impl Effect for Cogging {
 
     /// None where the motor stayed at a few places: what errs about the middle of a swing is a wave over them.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        if view.turned(Signal::Position) < LEAST_TURNED {
-            return Vec::new();
-        }
-        let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Position, 1..=120);
+        let mut forms = match view.constants.followed_hz {
+            Some(_) => crate::effects::harmonic_form(view, Signal::Position, 1..=40),
+            None if view.turned(Signal::Position) < LEAST_TURNED => Vec::new(),
+            None => crate::effects::repeated_harmonic_form(view, Signal::Position, 1..=120),
+        };
         forms.iter_mut().for_each(|f| f.name = crate::effects::SEVERAL_HARMONICS);
         forms
     }

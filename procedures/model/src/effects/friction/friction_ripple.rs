@@ -31,6 +31,12 @@ impl Effect for FrictionRipple {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        // Beside what the way since a reversal and the speed explain, a wave that was hardly there once is one.
+        if view.constants.followed_hz.is_some() {
+            const SEEN: f64 = 0.8;
+            let first = (SEEN / view.turns(Signal::Link)).ceil().clamp(1.0, 25.0) as u32;
+            return crate::effects::harmonic_form(view, Signal::Link, first..=24);
+        }
         let mut forms = crate::effects::repeated_harmonic_form(view, Signal::Link, 1..=60);
         let with_speed =
             forms.iter().map(|f| Form { name: "with_speed", linear: vec!["a", "b", "a_v", "b_v"], ..f.clone() });

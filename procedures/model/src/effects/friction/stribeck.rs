@@ -43,6 +43,9 @@ fn fade(column: &mut [f64], velocity_rad_s: &[f64], per_speed: f64, delta: f64) 
 
 /// Speeds and exponents that this data can tell apart: between its slowest motion and a third of its fastest.
 pub(crate) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)> {
+    if let Some(fastest) = view.constants.speeds {
+        return Some(sampled(fastest));
+    }
     let (slow, fast) = crate::effects::speed_range(view)?;
     let (low, high) = (slow * 0.7, fast / 3.0);
     if high < 2.0 * low {
@@ -55,6 +58,18 @@ pub(crate) fn search(view: &View) -> Option<(Vec<Shape<'static>>, Vec<Vec<f64>>)
     let speeds = crate::effects::log_grid(low, high, 6);
     let grid = speeds.iter().flat_map(|s| [vec![*s, 0.9], vec![*s, 1.8]]).collect();
     Some((shape, grid))
+}
+
+/// The same where samples are judged: also what fades within a reversal, of which other forms stand beside the model.
+fn sampled(fastest: f64) -> (Vec<Shape<'static>>, Vec<Vec<f64>>) {
+    const SPEEDS: [f64; 2] = [0.002, 0.5];
+    let [low, high] = SPEEDS.map(|share| share * fastest);
+    let shape = vec![
+        Shape { name: "omega_s", min: low, max: high, search: ShapeSearch::Smooth },
+        Shape { name: "delta", min: 0.5, max: 3.0, search: ShapeSearch::Smooth },
+    ];
+    let speeds = crate::effects::log_grid(low, high, 10);
+    (shape, speeds.iter().flat_map(|s| [0.5, 1.0, 2.0].map(|delta| vec![*s, delta])).collect())
 }
 
 impl Effect for Stribeck {
@@ -73,5 +88,9 @@ impl Effect for Stribeck {
 
     fn exponent_parameter(&self) -> Option<&'static str> {
         Some("delta")
+    }
+
+    fn corrects(&self) -> Option<&'static str> {
+        Some("coulomb")
     }
 }

@@ -31,4 +31,8 @@ impl Effect for TemperatureCoulomb {
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.map2(Signal::Temperature, Signal::Direction, |t, d| (t - 25.0) * d)]
     }
+
+    fn corrects(&self) -> Option<&'static str> {
+        Some("coulomb")
+    }
 }

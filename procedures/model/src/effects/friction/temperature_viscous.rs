@@ -31,4 +31,8 @@ impl Effect for TemperatureViscous {
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.map2(Signal::Temperature, Signal::Velocity, |t, w| (t - 25.0) * w)]
     }
+
+    fn corrects(&self) -> Option<&'static str> {
+        Some("viscous")
+    }
 }

@@ -35,4 +35,8 @@ impl Effect for ViscousAsymmetry {
     fn same_as(&self, view: &View) -> Option<&'static str> {
         view.goes_one_way().then_some("viscous")
     }
+
+    fn corrects(&self) -> Option<&'static str> {
+        Some("viscous")
+    }
 }

@@ -24,12 +24,27 @@ static INFO: EffectInfo = EffectInfo {
     needs: &[],
 };
 
+/// Forms where samples are judged: also those that flatten within a reversal.
+fn sampled(fastest: f64) -> Vec<Form<'static>> {
+    const LIMITS: [f64; 2] = [0.007, 0.5];
+    let shape = vec![Shape { name: "alpha", min: 0.15, max: 0.85, search: ShapeSearch::Smooth }];
+    let grid = [0.15, 0.3, 0.5, 0.7, 0.85].map(|alpha| vec![alpha]).to_vec();
+    let power = Form { name: "power", linear: vec!["c_alpha"], shape, grid };
+    let [low, high] = LIMITS.map(|share| share * fastest);
+    let shape = vec![Shape { name: "omega_l", min: low, max: high, search: ShapeSearch::Smooth }];
+    let grid = crate::effects::log_grid(low, high, 8).into_iter().map(|w| vec![w]).collect();
+    vec![power, Form { name: "limited", linear: vec!["tau_l"], shape, grid }]
+}
+
 impl Effect for ViscousSublinear {
     fn info(&self) -> EffectInfo<'_> {
         INFO
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
+        if let Some(fastest) = view.constants.speeds {
+            return sampled(fastest);
+        }
         let Some((slow, fast)) = crate::effects::speed_range(view).filter(|(slow, fast)| *fast >= 3.0 * slow) else {
             return Vec::new();
         };

@@ -32,6 +32,6 @@ impl Effect for Backlash {
     }
 
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
-        vec![view.map(Signal::Load, |t| (t / shape[0]).tanh())]
+        vec![view.mean_of(Signal::Load, |t| (t / shape[0]).tanh())]
     }
 }

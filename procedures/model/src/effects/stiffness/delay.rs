@@ -28,6 +28,10 @@ impl Effect for Delay {
         vec![Form::linear(&["t_d"])]
     }
 
+    fn needs_motion(&self) -> bool {
+        true
+    }
+
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.get(Signal::Velocity).to_vec()]
     }

@@ -28,6 +28,10 @@ impl Effect for DirectionalOffset {
         vec![Form::linear(&["beta_0"])]
     }
 
+    fn needs_motion(&self) -> bool {
+        true
+    }
+
     fn columns(&self, _: &str, _: &[f64], view: &View) -> Columns {
         vec![view.get(Signal::Direction).to_vec()]
     }

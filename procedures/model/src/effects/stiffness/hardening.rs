@@ -46,11 +46,10 @@ impl Effect for Hardening {
 
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         vec![match form {
-            "cubic" => view.map(Signal::Load, |t| t * t * t),
-            "root" => view.map(Signal::Load, |t| ((1.0 + t.abs() / shape[0]).sqrt() - 1.0) * t.signum()),
-            _ => {
-                view.map(Signal::Load, |t| t / (shape[0].powf(shape[1]) + t.abs().powf(shape[1])).powf(1.0 / shape[1]))
-            }
+            "cubic" => view.mean_of(Signal::Load, |t| t * t * t),
+            "root" => view.mean_of(Signal::Load, |t| ((1.0 + t.abs() / shape[0]).sqrt() - 1.0) * t.signum()),
+            _ => view
+                .mean_of(Signal::Load, |t| t / (shape[0].powf(shape[1]) + t.abs().powf(shape[1])).powf(1.0 / shape[1])),
         }]
     }
 }

@@ -36,6 +36,10 @@ impl Effect for TransmissionError {
         Some(Signal::Link)
     }
 
+    fn needs_motion(&self) -> bool {
+        true
+    }
+
     fn columns(&self, _: &str, shape: &[f64], view: &View) -> Columns {
         view.harmonic(Signal::Link, shape[0]).into()
     }

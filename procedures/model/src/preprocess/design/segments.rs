@@ -45,6 +45,39 @@ pub fn direction(velocity: &[f64], band: f64) -> Vec<f64> {
         .collect()
 }
 
+/// Rising or falling: it turns where the signal has come back from its last extreme by more than its own noise does.
+pub fn trend(values: &[f64]) -> Vec<f64> {
+    /// Beyond so many standard deviations a sample is no noise, among as many as a run has.
+    const NOISE: f64 = 6.0;
+    /// Median of |x − 2y + z| of white noise, in its standard deviations.
+    const SECOND_DIFFERENCE: f64 = 0.6745 * 2.449;
+    let every = values.len().div_ceil(crate::preprocess::TELLING);
+    let bends = values.windows(3).step_by(every).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs());
+    let depth = NOISE * crate::preprocess::median(bends) / SECOND_DIFFERENCE;
+    let (mut low, mut high) = (0, 0);
+    let mut sign = 0.0;
+    let mut trend = vec![0.0; values.len()];
+    let mut from = 0;
+    for (i, v) in values.iter().enumerate() {
+        low = if *v < values[low] { i } else { low };
+        high = if *v > values[high] { i } else { high };
+        // Up to the extreme it went on as before.
+        let turned = if sign <= 0.0 && v - values[low] > depth {
+            Some((1.0, low))
+        } else if sign >= 0.0 && values[high] - v > depth {
+            Some((-1.0, high))
+        } else {
+            None
+        };
+        if let Some((next, at)) = turned {
+            trend[from..at].fill(if sign == 0.0 { next } else { sign });
+            (sign, from, low, high) = (next, at, i, i);
+        }
+    }
+    trend[from..].fill(sign);
+    trend
+}
+
 /// The direction of a run that goes the other way in less than a tenth of its samples, if at all.
 pub fn main_direction(direction: &[f64]) -> Option<f64> {
     const FEW: f64 = 0.1;
@@ -69,13 +102,6 @@ pub fn without_swings(direction: Vec<f64>, position: &[f64], starts: &[usize]) -
         deepest = deepest.max(reached - ahead * q);
     }
     if deepest < SHORT * way { vec![ahead; direction.len()] } else { direction }
-}
-
-/// The rows of a way back, with those beside them, where filters see both ways.
-pub fn way_back(direction: &[f64], ahead: f64) -> Vec<bool> {
-    const BESIDE: usize = 3;
-    let near = |i: usize| i.saturating_sub(BESIDE)..(i + BESIDE + 1).min(direction.len());
-    (0..direction.len()).map(|i| direction[near(i)].contains(&-ahead)).collect()
 }
 
 /// The integers of a column, where the run has it.
@@ -128,6 +154,15 @@ pub fn period(signal: &[f64]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_signal_turns_at_its_extremes_and_not_in_its_noise() {
+        let triangle = |i: usize| if i % 200 < 100 { i % 200 } else { 200 - i % 200 } as f64;
+        let noise = |i: usize| 0.8 * (12.9898 * i as f64).sin();
+        let legs = stretches(&trend(&(0..800).map(|i| triangle(i) + noise(i)).collect::<Vec<_>>()));
+        assert_eq!(legs.len(), 8, "{legs:?}");
+        assert!(legs.iter().all(|leg| leg.len().abs_diff(100) < 5), "{legs:?}");
+    }
 
     #[test]
     fn swings_on_the_way_are_no_motion_the_other_way() {

@@ -1,51 +1,43 @@
 //! Friction runs: motor torque k_m·i_q over motion, load and temperature.
 
-pub(crate) mod reversals;
+pub(crate) mod bristles;
+pub(crate) mod layout;
+pub(crate) mod signals;
 pub(crate) mod steady_state;
 pub(crate) mod trajectory;
 pub(crate) mod unmeasured_gravity;
-pub(crate) mod velocity_delay;
+pub(crate) mod work_rate;
 
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::segments;
-use crate::preprocess::{Prepared, TELLING, filter, median, sample_s};
+use crate::preprocess::{BENDS, Prepared, TELLING, filter, median, sample_s};
+use crate::report::fit::Bristles;
 use crate::signal::{Signal, Signals};
 use crate::view::Constants;
 use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
 
-pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError> {
-    let (samples, _) = read(run, options, Velocity::AsMeasured)?;
+pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -> Result<Prepared, ModelError> {
+    if options.residual == Some(ResidualKind::Raw) {
+        return trajectory::prepare(run, options, bristles);
+    }
+    let samples = read(run, options)?;
     let plateaus = steady_state::find(&samples, run.meta().gear_ratio.unwrap_or(1.0), options);
     let settled: usize = plateaus.iter().map(|p| p.len()).sum();
     // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
     // many steps does not take them away.
     let in_steps = settled * 2 > run.len()
         || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
-    let kind = options.residual.unwrap_or(if in_steps { ResidualKind::PlateauMean } else { ResidualKind::Raw });
-    match kind {
-        ResidualKind::PlateauMean => steady_state::prepare(run, samples, plateaus, options),
-        // Of settled motion a lag takes nothing. What is judged sample by sample has to be of one moment.
-        ResidualKind::Raw => {
-            let (samples, velocity_lag_s) = read(run, options, Velocity::Aligned)?;
-            let mut prepared = trajectory::prepare(run, samples, options)?;
-            prepared.about.velocity_lag_s = velocity_lag_s;
-            Ok(prepared)
-        }
+    // Where contacts are known to bend, ramps and reversals say as much as settled motion, and more of it.
+    let bends = run.meta().baseline.iter().any(|effect| effect == BENDS);
+    match options.residual {
+        None if !in_steps || bends => trajectory::prepare(run, options, bristles),
+        _ => steady_state::prepare(run, samples, plateaus, options),
     }
 }
 
-/// What becomes of a measured velocity.
-#[derive(Clone, Copy, PartialEq)]
-enum Velocity {
-    AsMeasured,
-    /// Moved to the moments of the position.
-    Aligned,
-}
-
-/// With the lag that the velocity had, where it was moved.
-fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, Option<f64>), ModelError> {
+fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
     let column = |name: &str| run.column(name).unwrap_or_default();
     let km = run
         .meta()
@@ -66,26 +58,11 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
 
     let measured = run.column("motor_velocity_rad_s");
     let motion = || {
-        let (velocity, smooth_velocity, lag_s, of_row_s) = match measured {
-            Some(v) if wanted == Velocity::Aligned => {
-                let torque = smoothed(column("motor_current_a"));
-                let load = run.column("link_torque_nm").map(&smoothed);
-                // A current is mostly of the moments of the position. Where it clearly is of those of the velocity, that stays.
-                let left = |v: &[f64]| velocity_delay::left(&torque, v, &slope(v), load.as_deref());
-                let measured = smoothed(v);
-                let lag_s = velocity_delay::of(&time_s, &measured, &slope(&smoothed(position)), &starts, cutoff_hz);
-                let moved = lag_s.map(|lag_s| (velocity_delay::moved(&time_s, v, &starts, lag_s), lag_s));
-                let moved = moved.map(|(v, lag_s)| (smoothed(&v), v, lag_s));
-                let at_most = (1.0 + options.practical_share) * left(&measured);
-                match moved.filter(|(smooth, _, _)| left(smooth) < at_most) {
-                    Some((smooth, v, lag_s)) => (v, smooth, Some(lag_s), Some([0.0, lag_s])),
-                    None => (v.to_vec(), measured, None, lag_s.map(|lag_s| [-lag_s, 0.0])),
-                }
-            }
-            Some(v) => (v.to_vec(), smoothed(v), None, None),
+        let (velocity, smooth_velocity) = match measured {
+            Some(v) => (v.to_vec(), smoothed(v)),
             None => {
                 let v = slope(&smoothed(position));
-                (v.clone(), v, None, None)
+                (v.clone(), v)
             }
         };
         let slopes = || {
@@ -101,13 +78,12 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
             segments::without_swings(direction, position, &starts)
         };
         let ((jerk, acceleration), direction) = rayon::join(slopes, ways);
-        let signals = [
+        [
             (Signal::Velocity, velocity),
             (Signal::Acceleration, acceleration),
             (Signal::Jerk, jerk),
             (Signal::Direction, direction),
-        ];
-        (signals, lag_s, of_row_s)
+        ]
     };
     let beside = || {
         let gear = run.meta().gear_ratio.unwrap_or(1.0);
@@ -129,10 +105,10 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
         let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
         (signals, torque_nm, segments::numbered(run), segments::integers(run, "repeat"))
     };
-    let ((of_motion, lag_s, of_row_s), (mut signals, target, segment, repeat)) = rayon::join(motion, beside);
+    let (of_motion, (mut signals, target, segment, repeat)) = rayon::join(motion, beside);
     of_motion.into_iter().for_each(|(signal, values)| signals.set(signal, values));
     let slides = run.meta().motion == Motion::Linear;
-    let source = Source {
+    Ok(Source {
         signals,
         target: target.into(),
         step_s,
@@ -142,15 +118,9 @@ fn read(run: &RunTable, options: &Options, wanted: Velocity) -> Result<(Source, 
         segment,
         repeat,
         derived_velocity: measured.is_none(),
-        constants: Constants {
-            slides,
-            of_row_s,
-            rotor_inertia: run.meta().rotor_inertia_kg_m2,
-            ..Constants::default()
-        },
+        constants: Constants { slides, rotor_inertia: run.meta().rotor_inertia_kg_m2, ..Constants::default() },
         time_s,
-    };
-    Ok((source, lag_s))
+    })
 }
 
 /// The motor torque as load, direction, speed and acceleration explain it: the measured one without its own noise, which

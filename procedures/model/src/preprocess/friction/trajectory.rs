@@ -1,168 +1,103 @@
-//! Trajectories: filtered and decimated samples.
+//! Trajectories: filtered and decimated samples, of motion that is never cut.
 //!
-//! Parallel filtering after Gautier 1997: the response and every column pass the same zero-phase filter before one of n
-//! samples is kept. The defaults are those of Janot, Gautier and Brunot 2019 at any sample rate.
+//! Parallel filtering after Gautier 1997. Two filters with zero phase: a light one on all signals before anything nonlinear
+//! is made of them, and a lower one on every finished column and on the torque, before one of n samples is kept. Motion comes
+//! from the position alone, so that nothing lags behind it.
 
-use crate::preprocess::chunks::Source;
-use crate::preprocess::design::replicates::Same;
-use crate::preprocess::design::{blocks, replicates, segments};
-use crate::preprocess::filter::{LowPass, by_recording, derivative};
-use crate::preprocess::friction::{reversals, unmeasured_gravity};
-use crate::preprocess::{Prepared, Problem, Reduce};
-use crate::report::fit::Preparation;
+use crate::preprocess::friction::bristles;
+use crate::preprocess::friction::layout::Layout;
+use crate::preprocess::friction::signals::{Work, filtered, read};
+use crate::preprocess::friction::unmeasured_gravity;
+use crate::preprocess::{Prepared, median, sample_s};
+use crate::report::fit::{Bristles, Preparation};
 use crate::signal::Signal;
 use crate::view::{Constants, View};
 use crate::{ModelError, Options, ResidualKind};
-use jointbench_instrument::RunTable;
-use std::collections::HashSet;
-use std::sync::Arc;
+use jointbench_instrument::{Motion, RunTable};
 
-/// Of a trajectory of more rows than these some are taken.
-const MOST_ROWS: usize = 12_000;
+/// Corner of the filter of finished columns [Hz]: bearings, gears and drives of joints resonate above it.
+const CUTOFF_HZ: f64 = 6.0;
+/// Corners that an interval has to hold for as well, as shares of that.
+const OTHER_CUTOFFS: [f64; 2] = [0.5, 5.0 / 3.0];
+/// Share of the work rate that the corner stays below.
+const MOST_OF_RATE: f64 = 0.2;
+/// Rows for each period of the corner.
+const ROWS: f64 = 4.0;
+/// Of a longer run fewer are kept, down to two for each period.
+const MOST_ROWS: f64 = 12_000.0;
+/// The direction turns within so many times the noise of the velocity, or this share of the fastest.
+const NOISES: f64 = 2.0;
+const LEAST_SPEED: f64 = 1e-4;
 
-/// Where more rows than this share lie beside a reversal, what is left without them is no trajectory.
-const MOST_NEAR_REVERSALS: f64 = 0.5;
-
-/// Rows for each second that the defaults aim at.
-const ROWS_HZ: f64 = 100.0;
-
-pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result<Prepared, ModelError> {
-    let every = options.decimation.unwrap_or(((1.0 / samples.step_s / ROWS_HZ).round() as usize).max(1));
-    // What the response keeps of fast changes, the acceleration has to keep as well: one filter for all columns, the lower of
-    // the two, unless hardly anything is left beside the reversals. The slope of a position has been smoothed before, because
-    // its steps would be all that is left of it.
-    let decimating_hz = 0.4 / (every as f64 * samples.step_s);
-    let filtered_hz = if every == 1 { samples.cutoff_hz } else { samples.cutoff_hz.min(decimating_hz) };
-    let reach = (1.0 / (filtered_hz * samples.step_s)).ceil() as usize;
-    let are_few =
-        |near: &Vec<bool>| (near.iter().filter(|n| **n).count() as f64) < MOST_NEAR_REVERSALS * near.len() as f64;
-    let near = reversals::near(&samples, reach).filter(are_few);
-    let smooths = near.is_some() && !samples.derived_velocity && (every == 1 || samples.cutoff_hz < decimating_hz);
-    let filter = match smooths {
-        true => Some(LowPass::butterworth(4, 2.0 * samples.cutoff_hz * samples.step_s)),
-        false => (every > 1).then(|| LowPass::chebyshev(8, 0.05, 0.8 / every as f64)),
+pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> Result<Prepared, ModelError> {
+    let mut work = read(run)?;
+    let rate_hz = 1.0 / work.even.step_s;
+    let cutoff_hz = corner(options, rate_hz)?;
+    let whole = work.torque.len() as f64 * work.even.step_s * cutoff_hz;
+    let rows = ROWS.min((MOST_ROWS / whole).max(2.0));
+    let every = match options.decimation {
+        Some(every) => (every as f64 / work.even.every as f64).round(),
+        None => (rate_hz / (rows * cutoff_hz)).round(),
     };
-    // The first and last samples of a recording are where filters and derivatives guess.
-    let skip = (50.min(run.len() / (20 * samples.starts.len().max(1)))).max(1);
-    let starts = samples.starts.clone();
-    let pick = |values: &[f64]| {
-        by_recording(values, &starts, |_, v| {
-            (skip..v.len().saturating_sub(skip)).step_by(every).map(|i| v[i]).collect()
-        })
+    let every = (every as usize).max(1);
+    let velocity = work.signals.find(Signal::Velocity).unwrap_or_default().to_vec();
+    let band = given.map_or_else(|| noise(&velocity, &work, cutoff_hz), |given| given.band_rad_s);
+    let direction = match work.turns.is_empty() {
+        true => vec![velocity.iter().sum::<f64>().signum(); velocity.len()],
+        false => velocity.iter().map(|w| (w / band).tanh()).collect(),
     };
-    let velocity = pick(samples.signals.find(Signal::Velocity).unwrap_or_default());
-    let direction = samples.signals.find(Signal::Direction).unwrap_or_default();
-    let mut rests = standstill(&velocity);
-    if let Some(ahead) = segments::main_direction(direction).filter(|ahead| direction.contains(&-ahead)) {
-        // Too little to tell anything of that way from what its haste brings.
-        let back = segments::way_back(&pick(direction), ahead);
-        rests = if rests.is_empty() { back } else { rests.iter().zip(back).map(|(r, b)| *r || b).collect() };
-        let one_way = vec![ahead; direction.len()];
-        samples.signals.set(Signal::Direction, one_way);
-    }
-    let weight = unmeasured_gravity::unmeasured(&samples.signals, &samples.target);
-    let drive = crate::preprocess::friction::drive(&samples.signals, &samples.target);
-    samples.signals.set(Signal::Drive, drive);
-    if smooths {
-        set_slopes(&mut samples);
-    }
-    let points = &samples.signals;
-    let mut view = View::new(points.clone(), points.clone(), Vec::new(), starts.clone(), samples.step_s);
-    view.constants = Constants { weight, ..samples.constants };
-    let mut reduce = Reduce::Decimate { filter, every, skip, starts: starts.clone(), left_out: Vec::new() };
-    if let Some(near) = near {
-        let near = pick(&near.into_iter().map(f64::from).collect::<Vec<_>>());
-        if !reversals::bend(&view, &samples.target, &reduce, &near) {
-            view.constants.turns_left_out = true;
-            rests = near.iter().enumerate().map(|(i, near)| *near > 0.0 || rests.get(i) == Some(&true)).collect();
-        }
-    }
-    let velocity = without(velocity, &rests);
-    let run_of: Vec<usize> =
-        without(pick(&run_number(run.len(), &samples.runs)), &rests).into_iter().map(|n| n as usize).collect();
-    let whole = |values: &Option<Vec<i64>>, left_out: &[bool]| -> Option<Vec<i64>> {
-        values.as_ref().map(|v| {
-            let v: Vec<f64> = v.iter().map(|x| *x as f64).collect();
-            without(pick(&v), left_out).into_iter().map(|x| x as i64).collect()
-        })
+    work.signals.set(Signal::Direction, direction);
+    work.set_stills(band);
+    let drive = crate::preprocess::friction::drive(&work.signals, &work.torque);
+    work.signals.set(Signal::Drive, drive);
+    let position = work.signals.find(Signal::Position).unwrap_or_default();
+    let reaches = match given {
+        Some(given) => given.reaches_rad.clone(),
+        None => bristles::reaches(position, &work.even.starts, &work.turns, work.encoder_step),
     };
-    let within_a_run = |r: &Vec<i64>| (1..r.len()).any(|i| r[i] != r[i - 1] && run_of[i] == run_of[i - 1]);
-    let (repeat, phase, repeats_from) = match whole(&samples.repeat, &rests).filter(within_a_run) {
-        Some(repeat) => {
-            let phase = phases(&repeat);
-            (repeat, phase, "column")
-        }
-        None => periods(&velocity, &run_of, starts.len() == samples.runs.len()),
-    };
-    // The same moments of every repeat, so that these can still be held against each other.
-    let thin = phase.len().div_ceil(MOST_ROWS).max(1);
-    let is_taken = |row: usize| phase[row].is_multiple_of(thin);
-    let left_out = thinned(rests, phase.len(), is_taken);
-    let taken: Vec<usize> = (0..phase.len()).filter(|row| is_taken(*row)).collect();
-    let repeat: Vec<i64> = taken.iter().map(|row| repeat[*row]).collect();
-    let run_of: Vec<usize> = taken.iter().map(|row| run_of[*row]).collect();
-    let phase: Vec<usize> = taken.iter().map(|row| phase[*row]).collect();
-    if let Reduce::Decimate { left_out: out, .. } = &mut reduce {
-        out.clone_from(&left_out);
+    let states = bristles::states(position, &work.even.starts, &reaches);
+    let layout = Layout::new(&work, &states, cutoff_hz, every, run);
+    if layout.rows.len() < 24 {
+        return Err(ModelError::TooFewSamples { usable: layout.rows.len(), needed: 24, what: "filtered rows" });
     }
-    let target = reduce.apply(samples.target.to_vec());
-    if target.len() < 24 {
-        return Err(ModelError::TooFewSamples { usable: target.len(), needed: 24, what: "filtered rows" });
-    }
-    // A recording is forgotten between two blocks, and a stroke is the least that holds one experience of friction.
-    let direction = samples.signals.find(Signal::Direction).unwrap_or_default().to_vec();
-    let mut stroke = 0usize;
-    let strokes: Vec<f64> = (0..run.len())
-        .map(|i| {
-            if i > 0 && (direction[i] != direction[i - 1] || starts.contains(&i)) {
-                stroke += 1;
-            }
-            stroke as f64
+    let mut bristles = Bristles { reaches_rad: reaches, weights: Vec::new(), band_rad_s: band };
+    bristles.weights = given.map_or_else(|| layout.weights(&work, &run.meta().baseline), |given| given.weights.clone());
+    let mut view =
+        View::new(work.signals.clone(), work.signals.clone(), Vec::new(), work.even.starts.clone(), work.even.step_s);
+    view.constants = constants(&work, &bristles, cutoff_hz, run);
+    let others: Vec<Layout> = (OTHER_CUTOFFS.map(|share| share * cutoff_hz).into_iter())
+        .filter(|other_hz| *other_hz < MOST_OF_RATE * rate_hz)
+        .map(|other_hz| {
+            Layout::new(&work, &states, other_hz, (rate_hz / (rows * other_hz)).round().max(1.0) as usize, run)
         })
         .collect();
-    let group: Vec<usize> = without(pick(&strokes), &left_out).into_iter().map(|s| s as usize).collect();
-    // A motion that never turns has no strokes: it says as much in pieces of half of that.
-    let never_turns = starts.len() == 1 && stroke == 0;
-    let (block, blocks) = blocks::blocks(&group, if never_turns { 32 } else { 16 });
-    let folds = blocks.clamp(1, 8);
-    let fold: Vec<usize> = block.iter().map(|b| b % folds).collect();
-
-    // Trajectories of different runs are not repeats of each other.
-    let replicate_pairs = blocks::replicate_pairs(&run_of, &phase, &repeat, 0);
-    let segment = whole(&samples.segment, &left_out).unwrap_or_else(|| group.iter().map(|g| *g as i64).collect());
+    let problem = |view: &View| {
+        let mut main = layout.problem(&work, view);
+        main.bandwidths = others.iter().map(|layout| layout.problem(&work, view)).collect();
+        main
+    };
+    let main = problem(&view);
+    let bristled = (!states.is_empty()).then(|| {
+        let mut view = view.clone();
+        let felt = bristles::felt(&states, &bristles);
+        view.points.set(Signal::Direction, felt.clone());
+        view.samples.set(Signal::Direction, felt);
+        problem(&view)
+    });
     let about = Preparation {
         residual: ResidualKind::Raw,
-        sample_rate_hz: 1.0 / samples.step_s,
-        cutoff_hz: Some(samples.cutoff_hz),
+        sample_rate_hz: 1.0 / sample_s(run.column("time_s").unwrap_or_default()),
+        cutoff_hz: Some(cutoff_hz),
         velocity_lag_s: None,
-        decimation: every,
+        decimation: every * work.even.every,
         chunk_s: None,
         samples: run.len(),
-        rows: target.len(),
-        blocks,
-        segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
-        repeats_from: repeats_from.into(),
+        rows: main.rows(),
+        blocks: main.blocks,
+        segments_from: if layout.segment.is_some() { "column" } else { "found" }.into(),
+        repeats_from: layout.repeats_from.into(),
+        bristles: Some(bristles),
     };
-    let mut main = Problem {
-        view,
-        target,
-        sampled: Arc::default(),
-        reduce,
-        block,
-        blocks,
-        fold,
-        folds,
-        replicate_pairs,
-        different_history: HashSet::new(),
-        different_angle: HashSet::new(),
-        unlike: None,
-        segment,
-        repeat,
-        settled: false,
-    };
-    let of = main.repeat.clone();
-    let inputs = [Signal::Velocity, Signal::Link, Signal::Load].map(Same::Value);
-    replicates::believe(&mut main, &of, &inputs);
     Ok(Prepared {
         kind: run.kind(),
         motion: run.meta().motion,
@@ -172,80 +107,42 @@ pub fn prepare(run: &RunTable, mut samples: Source, options: &Options) -> Result
         clashes: crate::preprocess::checks::unit_mismatch::clashes(run),
         doubts: crate::preprocess::checks::metadata::doubts(run),
         main,
+        bristled,
         moving: None,
         memory: None,
         about,
     })
 }
 
-/// Acceleration and jerk of a velocity that the filter of all columns has yet to smooth.
-fn set_slopes(samples: &mut Source) {
-    let slope =
-        |values: &[f64]| by_recording(values, &samples.starts, |range, v| derivative(&samples.time_s[range], v));
-    let acceleration = slope(samples.signals.find(Signal::Velocity).unwrap_or_default());
-    let jerk = slope(&acceleration);
-    samples.signals.set(Signal::Acceleration, acceleration);
-    samples.signals.set(Signal::Jerk, jerk);
-}
-
-/// The rows that are not left out. Nothing is where `left_out` is empty.
-fn without(mut rows: Vec<f64>, left_out: &[bool]) -> Vec<f64> {
-    let mut out = left_out.iter();
-    rows.retain(|_| left_out.is_empty() || out.next() == Some(&false));
-    rows
-}
-
-/// Leaves out of the `moving` rows those that are not taken, beside those in which the axis rests.
-fn thinned(mut rests: Vec<bool>, moving: usize, is_taken: impl Fn(usize) -> bool) -> Vec<bool> {
-    if (0..moving).all(&is_taken) {
-        return rests;
+/// What was asked for, or the usual corner where the rate allows it.
+fn corner(options: &Options, rate_hz: f64) -> Result<f64, ModelError> {
+    let highest_hz = 0.45 * rate_hz;
+    match options.cutoff_hz {
+        Some(cutoff_hz) if cutoff_hz > highest_hz => Err(ModelError::BadOption {
+            option: "cutoff_hz",
+            why: format!("the run is judged at {rate_hz:.0} samples in a second: expected at most {highest_hz:.0} Hz"),
+        }),
+        Some(cutoff_hz) => Ok(cutoff_hz),
+        None => Ok(CUTOFF_HZ.min(MOST_OF_RATE * rate_hz)),
     }
-    if rests.is_empty() {
-        rests = vec![false; moving];
+}
+
+fn constants(work: &Work, bristles: &Bristles, cutoff_hz: f64, run: &RunTable) -> Constants {
+    let ends = bristles.reaches_rad.first().zip(bristles.reaches_rad.last());
+    Constants {
+        slides: run.meta().motion == Motion::Linear,
+        rotor_inertia: run.meta().rotor_inertia_kg_m2,
+        weight: unmeasured_gravity::unmeasured(&work.signals, &work.torque),
+        followed_hz: Some(2.0 * cutoff_hz),
+        speeds: Some(work.fastest),
+        reaches: ends.map(|(low, high)| [low.max(10.0 * work.encoder_step).min(*high), *high]),
+        ..Constants::default()
     }
-    let mut row = 0..;
-    rests.iter_mut().filter(|rests| !**rests).zip(&mut row).for_each(|(out, row)| *out = !is_taken(row));
-    rests
 }
 
-/// The number of the run of every sample.
-fn run_number(samples: usize, runs: &[usize]) -> Vec<f64> {
-    (0..samples).map(|i| (runs.partition_point(|s| *s <= i) - 1) as f64).collect()
-}
-
-/// Repeat and phase of every row by the period of each run's motion, where `whole` runs were recorded without a gap.
-fn periods(velocity: &[f64], run_of: &[usize], whole: bool) -> (Vec<i64>, Vec<usize>, &'static str) {
-    let (mut repeat, mut phase) = (Vec::new(), Vec::new());
-    let mut from = "none";
-    let runs = segments::stretches(run_of);
-    for rows in runs {
-        let first = repeat.last().map_or(0, |last| last + 1);
-        let found = if whole { segments::period(&velocity[rows.clone()]) } else { None };
-        if found.is_some() {
-            from = "found";
-        }
-        let period = found.unwrap_or(rows.len());
-        repeat.extend((0..rows.len()).map(|i| first + (i / period) as i64));
-        phase.extend((0..rows.len()).map(|i| i % period));
-    }
-    (repeat, phase, from)
-}
-
-/// Rows in which the axis rests, where it rests for more than a tenth of the run: friction at rest is whatever the load
-/// asks for, and no static effect can say how much. Empty where nothing is left out.
-fn standstill(velocity: &[f64]) -> Vec<bool> {
-    let fastest = velocity.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let rests: Vec<bool> = velocity.iter().map(|v| v.abs() < 0.01 * fastest).collect();
-    if rests.iter().filter(|r| **r).count() * 10 > velocity.len() { rests } else { Vec::new() }
-}
-
-/// Rows since the repeat began.
-fn phases(repeat: &[i64]) -> Vec<usize> {
-    let mut phase = 0;
-    (0..repeat.len())
-        .map(|i| {
-            phase = if i > 0 && repeat[i] == repeat[i - 1] { phase + 1 } else { 0 };
-            phase
-        })
-        .collect()
+/// What the velocity has between the two corners.
+fn noise(velocity: &[f64], work: &Work, cutoff_hz: f64) -> f64 {
+    let smooth = filtered(velocity, &work.even, cutoff_hz, 2);
+    let apart = median(velocity.iter().zip(&smooth).map(|(fast, slow)| (fast - slow).abs()));
+    (NOISES * 1.4826 * apart).max(LEAST_SPEED * work.fastest).max(f64::MIN_POSITIVE)
 }

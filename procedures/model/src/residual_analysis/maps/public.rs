@@ -17,7 +17,7 @@ use jointbench_instrument::RunTable;
 pub fn maps(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualMaps, ModelError> {
     options.check()?;
     let prepared = prepare_alike(fit, run)?;
-    let predicted = predict(fit, &prepared.main)?;
+    let predicted = predict(fit, prepared.judged(&fit.effects))?;
     let residual: Vec<f64> = prepared.main.target.iter().zip(predicted).map(|(y, p)| y - p).collect();
     let mut maps = Maps::new(&prepared, residual, options);
     let axis = |part: &str| maps.scales.iter().find(|s| s.name.contains(part));

@@ -14,15 +14,6 @@ impl AcceptanceThreshold<'_> {
         with.terms.push(term.clone());
         let (was, is) = (now.linear().factors, with.linear().factors);
         let mut changes = now.terms.iter().zip(was.iter().zip(&is));
-        changes.all(|(t, (was, is))| !t.allows(was) || t.allows(is)) && !is_of_its_row(&with, &is)
-    }
-}
-
-/// Its delay leaves the torque between the moments of its row's position and velocity: it is as late as the row is long.
-fn is_of_its_row(with: &LinearModel, factors: &[Vec<f64>]) -> bool {
-    let factor = |id| with.terms.iter().position(|t| t.id() == id).and_then(|at| factors[at].first());
-    match (with.problem.view.constants.of_row_s, factor("signal_delay"), factor("inertia")) {
-        (Some([a, b]), Some(k_j), Some(j)) => (a.min(b)..=a.max(b)).contains(&(-k_j / j)),
-        _ => false,
+        changes.all(|(t, (was, is))| !t.allows(was) || t.allows(is))
     }
 }

@@ -1,9 +1,7 @@
 //! An effect is named only where it explains more than the formulas of the other effects may leave.
 
 use crate::Options;
-use crate::effect::Regime;
-use crate::regression::linear_model::LinearModel;
-use crate::thresholds::{FORMULA_ERROR, HYSTERESIS_FORMULA_ERROR, UNMISTAKABLE_SHARE};
+use crate::thresholds::{FORMULA_ERROR, UNMISTAKABLE_SHARE};
 use jointbench_instrument::Kind;
 
 /// What an effect must explain to be worth a name.
@@ -21,18 +19,11 @@ fn form_error(kind: Kind) -> f64 {
     if kind == Kind::Encoder { 0.0 } else { FORMULA_ERROR }
 }
 
-/// What the formulas of effects with a memory may leave of what they explain, squared.
-pub fn left_by_memory(now: &LinearModel) -> f64 {
-    let remembering = now.terms.iter().filter(|term| term.effect.regime() == Regime::Hysteresis);
-    let explained = remembering.map(|term| now.without(term.id()).linear().sse - now.linear().sse);
-    HYSTERESIS_FORMULA_ERROR * explained.sum::<f64>()
-}
-
 impl AcceptanceThreshold<'_> {
     /// The least share of the squared error `energy` that an effect must take beside a model: what the formulas of its
     /// effects may leave is none.
-    pub fn least_share(&self, now: &LinearModel, energy: f64) -> f64 {
-        let remainder = form_error(self.kind) * (self.plain - energy).max(0.0) + left_by_memory(now);
+    pub fn least_share(&self, energy: f64) -> f64 {
+        let remainder = form_error(self.kind) * (self.plain - energy).max(0.0);
         self.options.practical_share.max((remainder / energy).min(UNMISTAKABLE_SHARE))
     }
 }

@@ -5,7 +5,6 @@ use crate::effect::Regime;
 use crate::linear::basis::dot;
 use crate::preprocess::{Prepared, Problem};
 use crate::regression::linear_model::Term;
-use crate::residual_analysis::lack_of_fit::structured;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::floating_search::FloatingSearch;
 use crate::thresholds::{PERIODS_SEEN, WHOLE_CURVE, WHOLE_EXPLANATION};
@@ -24,14 +23,9 @@ pub fn half_explained<'p>(
     least_whole(search, of_axes, axis, prepared, options)
 }
 
-/// A wave over a part of a turn of which less than two periods were seen, where any function of its angle would take more, or
-/// structure remains over the angle beside it: a bump at this place. A weak one leaves nothing that could be called structure.
-pub fn bump<'p>(
-    search: &FloatingSearch<'_, 'p>,
-    maps: &Maps,
-    prepared: &Prepared,
-    options: &Options,
-) -> Option<&'p str> {
+/// A wave over a part of a turn of which less than two periods were seen, where any function of its angle would take more: a
+/// bump at this place. A weak one leaves nothing that could be called structure.
+pub fn bump<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared, options: &Options) -> Option<&'p str> {
     let view = &search.now.problem.view;
     let is_open = |term: &&Term<'p>| {
         let turns = term.effect.wave().map(|angle| view.turns(angle));
@@ -39,8 +33,7 @@ pub fn bump<'p>(
     };
     let open = search.added().find(is_open)?;
     let axis = prepared.column_name(open.effect.wave()?);
-    let remains = (structured(maps) == Some(axis)).then_some(open.id());
-    remains.or_else(|| least_whole(search, search.added().filter(is_open), axis, prepared, options))
+    least_whole(search, search.added().filter(is_open), axis, prepared, options)
 }
 
 /// The effect that takes least of what any function of the axis would take, where that is too little.

@@ -7,7 +7,7 @@ use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::alone;
 use crate::residual_analysis::maps::Maps;
 use crate::selection::floating_search::FloatingSearch;
-use crate::thresholds::FUNCTION_TOLERANCE;
+use crate::thresholds::BIAS_TOLERANCE;
 
 /// An added effect that lives on what shows over an axis that is not its own: beside any function of that axis there is
 /// nothing that it explains. A wave whose mean changes from step to step follows any curve over the speed a little.
@@ -22,7 +22,7 @@ pub fn borrowing<'p>(search: &FloatingSearch<'_, 'p>, maps: &Maps, axis: &str, o
         let left = basis.rest(&without.response());
         let ground = PartialRegression::new(basis, left, search.now.problem);
         let own = ground.own(&term.columns);
-        own.visible > FUNCTION_TOLERANCE
+        own.visible > BIAS_TOLERANCE
             && (own.share < options.practical_share || alone(term, &ground, options) > options.alpha)
     };
     search.added().filter(|term| term.effect.regime() != Regime::Hysteresis).find(is_borrowed).map(Term::id)

@@ -58,7 +58,8 @@ pub fn undecided<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) -> Op
         let doubt = Doubt::of(term, &search.now, &parameters, prepared);
         let more = held_out(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
         let goes = match doubt.of_factors && doubt.of_shape {
-            true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE,
+            // Of two that this run cannot tell apart not the one of which it decides nothing.
+            true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE || !search.stand_ins(term).is_empty(),
             false if doubt.of_size => more < NEEDED_WITHOUT_SIZE,
             false => (search.unmodelled_structure || doubt.is_there()) && more < NEEDED_WHERE_OPEN,
         };

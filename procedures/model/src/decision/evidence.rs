@@ -1,0 +1,132 @@
+//! What speaks for an effect: what it takes off data that had no part in choosing its form and its factors.
+
+use crate::decision::ground::{Added, Gain, Ground};
+use crate::effect::Regime;
+use crate::regression::candidates::Regressor;
+use crate::regression::linear_model::allows;
+use crate::thresholds::DECISION_SHARE;
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
+
+/// A candidate with less than this share of its own looks like the model.
+const LEAST_VISIBLE: f64 = 1e-5;
+
+/// The rule of one standard error (Breiman and others 1984, ch. 3).
+pub const ONE_ERROR: f64 = 1.0;
+
+/// The evidence for one effect beside a model.
+pub struct Evidence<'l, 'p> {
+    /// The form that explains most of the whole run.
+    pub best: &'l Regressor<'p>,
+    /// Share of the held-out squared error that the effect takes away.
+    pub gain: f64,
+    /// The gain in its standard errors over blocks.
+    pub errors: f64,
+    /// How often chance would bring any form of the library as far.
+    pub p_value: f64,
+    /// Held-out squared error of each block with the effect.
+    pub losses: Vec<f64>,
+}
+
+impl Evidence<'_, '_> {
+    pub fn id(&self) -> &str {
+        self.best.id()
+    }
+
+    /// It takes more than a share, surely, and by more than the scatter of its gain.
+    pub fn passes(&self, share: f64, alpha: f64) -> bool {
+        self.gain > share && self.p_value < alpha && self.errors > ONE_ERROR
+    }
+}
+
+/// One form beside the base.
+struct Trial<'l, 'p> {
+    form: &'l Regressor<'p>,
+    taken: f64,
+    gains: Vec<Gain>,
+    chance: f64,
+}
+
+/// The evidence for each effect of the candidates, the one that takes most first. `forms`: how many were tried in all.
+///
+/// An effect of settled motion has to show beside reversals and rests: outside the rows that are `near` one it takes the practical
+/// share too.
+pub fn evidence<'l, 'p>(
+    ground: &Ground,
+    candidates: &[&'l Regressor<'p>],
+    near: &[bool],
+    forms: usize,
+) -> Vec<Evidence<'l, 'p>> {
+    let trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ground, form, near)).collect();
+    let mut all: Vec<Evidence> = trials
+        .chunk_by(|a, b| a.form.id() == b.form.id())
+        .filter_map(|forms_of_one| of_effect(ground, forms_of_one, forms))
+        .collect();
+    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    all
+}
+
+fn trial<'l, 'p>(ground: &Ground, form: &'l Regressor<'p>, near: &[bool]) -> Option<Trial<'l, 'p>> {
+    let added = visible(ground, form)?;
+    let is_possible = |factors: &[f64]| allows(form.effect, &form.form, factors);
+    if !is_possible(&added.factors()) {
+        return None;
+    }
+    let is_settled = form.effect.regime() == Regime::SteadyState;
+    if is_settled && !shows_outside(ground, form, &added.factors(), near) {
+        return None;
+    }
+    let chance = chance(added.wald(), added.size, ground.blocks.len());
+    Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
+}
+
+/// It takes its share of what is left in the rows that are no reversal and no rest too, where there are any.
+fn shows_outside(ground: &Ground, form: &Regressor, factors: &[f64], near: &[bool]) -> bool {
+    let (taken, left) = ground.taken_outside(&form.columns, factors, near);
+    left == 0.0 || taken > DECISION_SHARE * left
+}
+
+/// What a form would add, where it is none of what the model has.
+pub fn visible(ground: &Ground, form: &Regressor) -> Option<Added> {
+    let added = ground.added(&form.columns);
+    (added.visible > LEAST_VISIBLE).then_some(added)
+}
+
+/// The form is chosen by the rest for every block that it is judged on.
+fn of_effect<'l, 'p>(ground: &Ground, trials: &[Trial<'l, 'p>], forms: usize) -> Option<Evidence<'l, 'p>> {
+    let best = trials.iter().max_by(|a, b| a.taken.total_cmp(&b.taken))?;
+    let of_block = |block: usize| {
+        let chosen = trials.iter().map(|t| t.gains[block]).max_by(|a, b| a.fitted.total_cmp(&b.fitted));
+        chosen.map_or(0.0, |gain| gain.held_out)
+    };
+    let gains: Vec<f64> = (0..ground.blocks.len()).map(of_block).collect();
+    Some(Evidence {
+        best: best.form,
+        gain: gains.iter().sum::<f64>() / ground.loss().max(f64::MIN_POSITIVE),
+        errors: errors(&gains),
+        p_value: (best.chance * forms as f64).min(1.0),
+        losses: ground.losses.iter().zip(&gains).map(|(loss, gain)| loss - gain).collect(),
+    })
+}
+
+/// A mean in its standard errors.
+pub fn errors(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    mean / (square / (n - 1.0) / n).sqrt().max(f64::MIN_POSITIVE)
+}
+
+/// How often chance alone makes a Wald statistic of so many factors that large, with the scatter of so many blocks: Student's
+/// t, or Hotelling's T² for several factors.
+pub fn chance(wald: f64, factors: usize, blocks: usize) -> f64 {
+    let (k, g) = (factors as f64, blocks as f64);
+    let none = |law: Result<f64, _>| law.unwrap_or(1.0);
+    match factors {
+        1 => none(StudentsT::new(0.0, 1.0, g - 1.0).map(|law| 2.0 * law.sf(wald.max(0.0).sqrt()))),
+        _ => {
+            let law = FisherSnedecor::new(k, (g - k).max(1.0));
+            law.map_or(1.0, |law| law.sf(wald.max(0.0) * (g - k) / ((g - 1.0) * k)))
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Parameters of a model that is judged sample by sample, with 95 % intervals: leave one block out, and other corners of the
+//! filter.
+
+use crate::decision::solution::Solution;
+use crate::effect::ShapeSearch;
+use crate::inference::intervals::Intervals;
+use crate::inference::parameter_state::{self, Slot};
+use crate::preprocess::Problem;
+use crate::regression::linear_model::{LinearModel, Relative, Term, columns};
+use crate::report::fit::{Parameter, ParameterState, TradeOff};
+use crate::thresholds::TRADE_OFF_CORRELATION;
+use jointbench_instrument::Motion;
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::sync::Arc;
+
+/// Half of a 95 % interval in standard deviations over corners.
+const OF_CORNERS: f64 = 2.05;
+
+/// Parameters of the terms with 95 % intervals.
+///
+/// Half an interval is the larger one of a jackknife over blocks at each corner of the filter, with Student's t, and beside it
+/// what the estimate differs by from corner to corner. What a parameter of shape may be lies between its neighbours on the
+/// grid.
+pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
+    let solution = Solution::of(model)?;
+    let replicates = factors_without(&solution);
+    let blocks = replicates.len() as f64;
+    let t = StudentsT::new(0.0, 1.0, blocks - 1.0).map_or(2.0, |law| law.inverse_cdf(0.975));
+    let others: Vec<(Vec<f64>, Vec<f64>)> = model
+        .problem
+        .bandwidths
+        .par_iter()
+        .filter_map(|problem| {
+            let other = Solution::of(&at_corner(model, problem))?;
+            let spread = spread(&factors_without(&other));
+            Some((other.factors.clone(), spread))
+        })
+        .collect();
+    let own = spread(&replicates);
+    let half_width = |k: usize| {
+        let error = others.iter().map(|(_, spread)| spread[k]).fold(own[k], f64::max);
+        let estimates: Vec<f64> = std::iter::once(solution.factors[k]).chain(others.iter().map(|o| o.0[k])).collect();
+        (t * error).hypot(OF_CORNERS * deviation(&estimates))
+    };
+    let mut parameters = Vec::new();
+    let mut names = Vec::new();
+    for term in &model.terms {
+        let info = term.effect.info();
+        for name in &term.form.linear {
+            let k = names.len();
+            names.push(format!("{}.{name}", info.id));
+            let (value, half) = (solution.factors[k], half_width(k));
+            let slot = Slot {
+                effect: info.id,
+                name,
+                unit: motion.label(info.unit(name)),
+                value,
+                possible: info.bounds(name),
+                shape: None,
+            };
+            let ci95 = [value - half, value + half];
+            let (mut state, mut note) = parameter_state::judge(&slot, ci95, half == 0.0 && value == 0.0);
+            if solution.bound.contains(&k) {
+                state = ParameterState::AtBound;
+                note = Some("lies at the edge of what is possible: the run would have it beyond by chance".into());
+            }
+            parameters.push(Parameter {
+                effect: info.id.into(),
+                name: (*name).into(),
+                value,
+                unit: slot.unit,
+                ci95,
+                state,
+                note,
+            });
+        }
+        parameters.extend(shapes(term, motion));
+    }
+    parameter_state::know_the_small(&mut parameters);
+    Some(Intervals { parameters, trade_offs: trade_offs(&replicates, &names) })
+}
+
+/// Factors of the effects without each block in turn.
+fn factors_without(solution: &Solution) -> Vec<Vec<f64>> {
+    let size = solution.factors.len();
+    solution.ground.replicates().map(|all| all[..size].to_vec()).collect()
+}
+
+/// The same model at another corner of the filter.
+fn at_corner<'p>(model: &LinearModel<'p>, problem: &'p Problem) -> LinearModel<'p> {
+    let mut other = LinearModel::new(problem);
+    for effect in &model.offsets {
+        for column in columns(*effect, "linear", &[], problem) {
+            other.given.iter_mut().zip(column).for_each(|(g, c)| *g += c);
+        }
+    }
+    other.offsets.clone_from(&model.offsets);
+    let term = |term: &Term<'p>| Term::new(term.effect, term.form.clone(), term.shape.clone(), problem);
+    other.terms = model.terms.iter().map(term).collect();
+    let relative =
+        |r: &Relative<'p>| Relative { columns: columns(r.effect, r.form.name, &r.shape, problem), ..r.clone() };
+    other.relatives = Arc::new(model.relatives.par_iter().map(relative).collect());
+    other
+}
+
+/// Standard error of each factor: jackknife over blocks.
+fn spread(replicates: &[Vec<f64>]) -> Vec<f64> {
+    let groups = replicates.len() as f64;
+    let of = |k: usize| {
+        let mean = replicates.iter().map(|r| r[k]).sum::<f64>() / groups;
+        ((groups - 1.0) / groups * replicates.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>()).sqrt()
+    };
+    (0..replicates.first().map_or(0, Vec::len)).map(of).collect()
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0)).sqrt()
+}
+
+/// Parameters of the shape of a term.
+fn shapes(term: &Term, motion: Motion) -> Vec<Parameter> {
+    let info = term.effect.info();
+    let of = |(k, shape): (usize, &crate::effect::Shape)| {
+        let value = term.shape[k];
+        let mut tried: Vec<f64> = term.form.grid.iter().map(|point| point[k]).collect();
+        tried.sort_by(f64::total_cmp);
+        let below = tried.iter().rev().find(|v| **v < value).copied().unwrap_or(shape.min.min(value));
+        let above = tried.iter().find(|v| **v > value).copied().unwrap_or(shape.max.max(value));
+        let whole = shape.search == ShapeSearch::Whole;
+        let ci95 = if whole { [value, value] } else { [below, above] };
+        let unit = motion.label(info.unit(shape.name));
+        let slot = Slot {
+            effect: info.id,
+            name: shape.name,
+            unit,
+            value,
+            possible: (shape.min, shape.max),
+            shape: Some(*shape),
+        };
+        let (state, note) = if whole { (ParameterState::Ok, None) } else { parameter_state::judge(&slot, ci95, false) };
+        Parameter { effect: info.id.into(), name: shape.name.into(), value, unit: slot.unit, ci95, state, note }
+    };
+    term.form.shape.iter().enumerate().map(of).collect()
+}
+
+fn trade_offs(replicates: &[Vec<f64>], names: &[String]) -> Vec<TradeOff> {
+    let n = replicates.len() as f64;
+    let mean = |k: usize| replicates.iter().map(|r| r[k]).sum::<f64>() / n;
+    let means: Vec<f64> = (0..names.len()).map(mean).collect();
+    let product = |a: usize, b: usize| replicates.iter().map(|r| (r[a] - means[a]) * (r[b] - means[b])).sum::<f64>();
+    let mut out = Vec::new();
+    for a in 0..names.len() {
+        for b in 0..a {
+            let correlation = product(a, b) / (product(a, a) * product(b, b)).sqrt();
+            if correlation.abs() > TRADE_OFF_CORRELATION {
+                out.push(TradeOff { first: names[b].clone(), second: names[a].clone(), correlation });
+            }
+        }
+    }
+    out
+}

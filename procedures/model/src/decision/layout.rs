@@ -1,0 +1,96 @@
+//! A set of effects as a model of a run that is judged sample by sample: one model, in whatever order they came together.
+
+use crate::decision::evidence::{ONE_ERROR, errors, visible};
+use crate::decision::solution::Solution;
+use crate::effect::Effect;
+use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::linear_model::{LinearModel, Relative, Term, allows};
+use crate::thresholds::DECISION_SHARE;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Lays effects out beside what `bare` takes as given: those of one form first, then always the one that explains most. The
+/// other forms of an effect stand beside it, held near zero: no grid is too coarse then.
+pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &CandidateSet<'p>) -> LinearModel<'p> {
+    let problem = bare.problem;
+    let mut model = LinearModel { terms: Vec::new(), relatives: Arc::default(), ..bare.clone() };
+    let forms_of = |effect: &dyn Effect| -> Vec<&Regressor<'p>> {
+        library.candidates.iter().filter(|c| c.id() == effect.info().id).collect()
+    };
+    let mut open: Vec<Vec<&Regressor<'p>>> = Vec::new();
+    for effect in effects {
+        match &forms_of(*effect)[..] {
+            [] => {}
+            [only] => model.terms.push(only.term(problem)),
+            several => open.push(several.to_vec()),
+        }
+    }
+    while !open.is_empty() {
+        let best: Vec<(f64, usize)> = match Solution::of(&model) {
+            Some(solution) => open.iter().map(|forms| most_telling(&solution, forms)).collect(),
+            None => open.iter().map(|_| (0.0, 0)).collect(),
+        };
+        let most = (0..open.len()).max_by(|a, b| best[*a].0.total_cmp(&best[*b].0)).unwrap_or(0);
+        let forms = open.remove(most);
+        let chosen = forms[best[most].1];
+        model.terms.push(chosen.term(problem));
+        let parts = extend(&mut model, chosen, &forms);
+        let is_part = |form: &Regressor| parts.iter().any(|part| std::ptr::eq(*part, form));
+        let others = forms.iter().filter(|form| !is_part(form)).map(|form| relative(form));
+        let relatives = model.relatives.iter().cloned().chain(others).collect();
+        model.relatives = Arc::new(relatives);
+    }
+    // In the order of the library, whichever came first.
+    let place = |term: &Term| library.effects.iter().position(|effect| effect.info().id == term.id());
+    model.terms.sort_by_key(place);
+    model
+}
+
+/// Gives an effect of several like parts, which entered last with one, those that take enough of held-out data as well: they are
+/// a matter of its form, as which shape it has. Returns its parts.
+fn extend<'l, 'p>(
+    model: &mut LinearModel<'p>,
+    chosen: &'l Regressor<'p>,
+    forms: &[&'l Regressor<'p>],
+) -> Vec<&'l Regressor<'p>> {
+    let mut parts = vec![chosen];
+    while let Some(last) = model.terms.last().cloned()
+        && let Some((_, longer)) = last.effect.extended(&last.form)
+        && let Some(solution) = Solution::of(model)
+    {
+        let judged = forms.par_iter().filter(|form| !parts.iter().any(|part| std::ptr::eq(*part, **form)));
+        let judged = judged.filter_map(|form| {
+            let added = visible(&solution.ground, form)?;
+            let gains: Vec<f64> = added.gains(0.0, |_| true).iter().map(|gain| gain.held_out).collect();
+            let gain: f64 = gains.iter().sum();
+            (gain > DECISION_SHARE * solution.ground.loss() && errors(&gains) > ONE_ERROR).then_some((gain, *form))
+        });
+        let Some((_, next)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        let shape = last.shape.iter().chain(&next.shape).copied().collect();
+        model.terms.pop();
+        model.terms.push(Term::new(last.effect, longer, shape, model.problem));
+        parts.push(next);
+    }
+    parts
+}
+
+/// The form that takes most of what a model leaves, and what it takes. What is physically possible comes first.
+fn most_telling(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
+    let taken = |form: &&Regressor| {
+        let added = visible(&solution.ground, form)?;
+        let possible = allows(form.effect, &form.form, &added.factors());
+        Some((possible, added.taken()))
+    };
+    let taken: Vec<Option<(bool, f64)>> = forms.par_iter().map(taken).collect();
+    let order = |at: &usize| taken[*at].unwrap_or((false, f64::NEG_INFINITY));
+    let best = (0..forms.len()).max_by(|a, b| {
+        let (a, b) = (order(a), order(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    best.map_or((0.0, 0), |at| (order(&at).1, at))
+}
+
+fn relative<'p>(form: &Regressor<'p>) -> Relative<'p> {
+    let columns = form.columns.iter().map(|c| c.iter().map(|v| f64::from(*v)).collect()).collect();
+    Relative { effect: form.effect, form: form.form.clone(), shape: form.shape.clone(), columns }
+}

@@ -1,0 +1,69 @@
+//! What was looked for and not found, and how large it would have been.
+
+use crate::Options;
+use crate::decision::evidence::visible;
+use crate::decision::ground::Ground;
+use crate::decision::search::{least_share, without};
+use crate::decision::solution::{DELAY, Solution, effect_factor};
+use crate::effect::Regime;
+use crate::preprocess::form_error::Lives;
+use crate::preprocess::friction::bristles::quantile;
+use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::selection::detection_limit::DetectionLimit;
+use crate::thresholds::{DELAY_ROWS, DETECTION_POWER};
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// The smallest size of each effect that is not in the model which would have been named with 80 % power, in the middle of its
+/// forms.
+pub fn silences<'p>(
+    end: &TwoStageModel<'p>,
+    solution: &Solution,
+    library: &CandidateSet<'p>,
+    options: &Options,
+) -> Vec<DetectionLimit<'p>> {
+    let is_out = |id: &str| !end.effects.iter().any(|e| e == id);
+    let open: Vec<&Regressor<'p>> = library.candidates.iter().filter(|c| is_out(c.id())).collect();
+    let blocks = solution.ground.blocks.len() as f64;
+    let chance = options.alpha / (2.0 * open.len().max(1) as f64);
+    let critical = StudentsT::new(0.0, 1.0, blocks - 1.0).map_or(3.0, |law| law.inverse_cdf(1.0 - chance));
+    let late = without(end, solution, Lives::Jerk);
+    let bent = without(end, solution, Lives::Bristle);
+    let size = |form: &&Regressor<'p>| {
+        let ground = match form.effect.regime() {
+            Regime::Hysteresis => &bent,
+            _ if form.id() == DELAY => &late,
+            _ => &solution.ground,
+        };
+        Some((form.id(), smallest(form, ground, critical, end, solution)?))
+    };
+    let sizes: Vec<(&'p str, f64)> = open.par_iter().filter_map(size).collect();
+    let of_effect = |forms: &[(&'p str, f64)]| DetectionLimit {
+        effect: forms[0].0,
+        detectable_rms: quantile(forms.iter().map(|f| f.1), 0.5),
+    };
+    sizes.chunk_by(|a, b| a.0 == b.0).map(of_effect).collect()
+}
+
+/// RMS of the smallest effect of a form that would have been named.
+fn smallest(form: &Regressor, ground: &Ground, critical: f64, end: &TwoStageModel, solution: &Solution) -> Option<f64> {
+    let added = visible(ground, form)?;
+    let scatter = added.scatter(&added.factors());
+    let share = least_share(form.effect);
+    let least = share / (1.0 - share) * ground.loss();
+    let delay = || {
+        let form_error = end.main.problem.form_error.as_deref()?;
+        Some(effect_factor(&end.main, solution, "inertia")?.abs() * DELAY_ROWS * form_error.sample_s)
+    };
+    let bound = if form.id() == DELAY { delay()? } else { 0.0 };
+    let k = added.size;
+    let of_column = |(at, own): (usize, f64)| {
+        let error = scatter[at * k + at].sqrt() / own;
+        let factor = (critical * error).max((least / own).sqrt()).max(bound) + DETECTION_POWER * error;
+        let column = &form.columns[at];
+        let square = column.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>() / column.len().max(1) as f64;
+        factor * square.sqrt()
+    };
+    added.squares().enumerate().map(of_column).reduce(f64::min).filter(|rms| rms.is_finite())
+}

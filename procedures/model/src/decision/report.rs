@@ -1,0 +1,74 @@
+//! What a fit tells of a model that is judged sample by sample, beside its effects.
+
+use crate::decision::solution::{PRESLIDING, Solution, rms};
+use crate::effects;
+use crate::regression::linear_model::LinearModel;
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::fit::{FormErrorTerm, Parameter, ParameterState, Term};
+use crate::words::{figure, percent};
+use jointbench_instrument::Kind;
+
+/// Contacts that bend, as one of the library's forms, of the dry friction that they turn: the direction of all friction is theirs.
+pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Term, Vec<Parameter>)> {
+    let is_in = model.effects.iter().any(|e| e == PRESLIDING) && !model.hidden.iter().any(|h| h.effect == PRESLIDING);
+    let bristles = model.prepared.about.bristles.as_ref().filter(|_| is_in)?;
+    let (form, reach, ends) = bristles.single()?;
+    let dry = parameters.iter().find(|p| p.effect == "coulomb");
+    let (value, ci95) = dry.map_or((0.0, [0.0, 0.0]), |dry| (dry.value, dry.ci95));
+    let info = effects::find(Kind::Friction, PRESLIDING).ok()?.info();
+    let parameter = |name: &'static str, value, ci95, state| Parameter {
+        effect: PRESLIDING.into(),
+        name: name.into(),
+        value,
+        unit: model.prepared.motion.label(info.unit(name)),
+        ci95,
+        state,
+        note: None,
+    };
+    let state = if dry.is_some() { ParameterState::Ok } else { ParameterState::Unidentified };
+    let term = Term {
+        effect: PRESLIDING.into(),
+        form: form.into(),
+        shape: vec![reach],
+        linear: vec![value],
+        names: vec!["tau_p".into(), "theta_p".into()],
+    };
+    let all = vec![parameter("tau_p", value, ci95, state), parameter("theta_p", reach, ends, ParameterState::Ok)];
+    Some((term, all))
+}
+
+/// The columns beside the effects with their factors, and what they come to in a sentence.
+pub fn form_error(model: &LinearModel, unit: &str) -> (Vec<FormErrorTerm>, Option<String>) {
+    let (Some(solution), Some(form_error)) = (Solution::of(model), model.problem.form_error.as_deref()) else {
+        return (Vec::new(), None);
+    };
+    let mut terms = Vec::new();
+    for (at, factor) in &solution.error {
+        let column = &form_error.columns[*at];
+        let place = form_error.columns[..*at].iter().filter(|other| other.lives == column.lives).count();
+        terms.push(FormErrorTerm {
+            name: column.lives.name().into(),
+            form: String::new(),
+            shape: vec![place as f64],
+            linear: vec![*factor],
+        });
+    }
+    let mut factors = solution.relatives.iter();
+    for relative in model.relatives.iter() {
+        terms.push(FormErrorTerm {
+            name: relative.effect.info().id.into(),
+            form: relative.form.name.into(),
+            shape: relative.shape.clone(),
+            linear: factors.by_ref().take(relative.columns.len()).copied().collect(),
+        });
+    }
+    let sum = solution.form_error(model);
+    let (size, whole) = (rms(&sum), rms(&model.problem.target));
+    let said = format!(
+        "beside its effects the fit holds {} RMS ({} of the torque) where the errors of formulas live: the way since a reversal, \
+         jerk, snap and other forms of its effects; an exported model has only the effects",
+        figure(size, unit),
+        percent(size / whole.max(f64::MIN_POSITIVE))
+    );
+    (terms, Some(said))
+}

@@ -1,0 +1,372 @@
+//! From a model to the one that is left when nothing more can be named, by one decision: an effect is named where what it
+//! takes off held-out data is more than a share of what is left, is significant and exceeds its own standard error.
+//!
+//! Size ranks, significance only gates. What shows only where everything else is imperfect too, around reversals and on
+//! ramps, has to take most of what is left.
+
+use crate::decision::evidence::{Evidence, ONE_ERROR, errors, evidence};
+use crate::decision::ground::Ground;
+use crate::decision::limits;
+use crate::decision::solution::{DELAY, PRESLIDING, Solution, beside, effect_columns, effect_factor};
+use crate::decision::structure::{self, Left};
+use crate::effect::Regime;
+use crate::preprocess::Prepared;
+use crate::preprocess::form_error::Lives;
+use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::linear_model::LinearModel;
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::residual_analysis::maps::Maps;
+use crate::selection::advance::SelectionStep;
+use crate::selection::equivalence::is_tie;
+use crate::selection::forward_step::ScoredCandidate;
+use crate::selection::model_selection::ModelSelection;
+use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIMPLER_GAIN, UNMISTAKABLE_SHARE};
+use crate::words::percent;
+use crate::{Effect, ModelError, ModelSpec, Options};
+use std::cell::OnceCell;
+
+/// Effects that are added at most.
+const MOST_NAMED: usize = 4;
+
+/// An effect that takes much, and was not named.
+pub struct Refused<'p> {
+    pub effect: &'p str,
+    pub gain: f64,
+    pub p_value: f64,
+    pub alpha: f64,
+    pub errors: f64,
+    /// What it would have to take.
+    pub least: f64,
+}
+
+impl<'p> Refused<'p> {
+    fn of(evidence: &Evidence<'_, 'p>, alpha: f64) -> Self {
+        Self {
+            effect: evidence.best.id(),
+            gain: evidence.gain,
+            p_value: evidence.p_value,
+            alpha,
+            errors: evidence.errors,
+            least: least_share(evidence.best.effect),
+        }
+    }
+
+    /// What it takes, and why it is not named, in words.
+    pub fn why(&self) -> String {
+        let takes =
+            format!("it would take {} off the squared error of data that had no part in its fit", percent(self.gain));
+        match () {
+            () if self.p_value >= self.alpha => {
+                format!("{takes}, which chance does with a probability of {:.2}", self.p_value)
+            }
+            () if self.errors <= ONE_ERROR => format!("{takes}, in a few stretches of the run alone"),
+            () if self.gain <= self.least => format!(
+                "{takes}, and shows only around reversals and on ramps, where every formula errs: there it takes {} to name it",
+                percent(self.least)
+            ),
+            () => format!("{takes}, beside as many effects as are added at most"),
+        }
+    }
+}
+
+/// The libraries of a run: beside a direction that turns at once, and beside one that bends.
+struct Libraries<'p> {
+    plain: OnceCell<CandidateSet<'p>>,
+    bristled: OnceCell<CandidateSet<'p>>,
+}
+
+impl<'p> Libraries<'p> {
+    /// The one beside the direction of a model.
+    fn of(&self, model: &LinearModel<'p>, prepared: &'p Prepared, spec: &'p ModelSpec) -> &CandidateSet<'p> {
+        let is_plain = std::ptr::eq(model.problem, &prepared.main);
+        let known = if is_plain { &self.plain } else { &self.bristled };
+        known.get_or_init(|| CandidateSet::new(spec, model.problem, prepared.regimes()))
+    }
+}
+
+/// The way from a model to the last one, each step told as soon as it is made.
+struct Path<'a, 'p> {
+    prepared: &'p Prepared,
+    spec: &'p ModelSpec,
+    options: &'a Options,
+    start: TwoStageModel<'p>,
+    advances: Vec<SelectionStep<'p>>,
+    libraries: Libraries<'p>,
+    on_advance: &'a mut dyn FnMut(&SelectionStep),
+}
+
+/// `on_advance` sees every move when it is made.
+pub fn search<'p>(
+    prepared: &'p Prepared,
+    spec: &'p ModelSpec,
+    options: &Options,
+    most: usize,
+    on_advance: &mut dyn FnMut(&SelectionStep),
+) -> Result<ModelSelection<'p>, ModelError> {
+    let start = TwoStageModel::new(prepared, spec, options)?;
+    let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
+    let mut path = Path { prepared, spec, options, start, advances: Vec::new(), libraries, on_advance };
+    // Of columns that cannot be right every effect is made up.
+    let most = if prepared.clashes.void.is_empty() { most.min(MOST_NAMED) } else { 0 };
+    if most > 0
+        && let Some(step) = offset(&path.start, options)
+    {
+        path.push(step);
+    }
+    let refused = path.grow(most)?;
+    while let Some(id) = idle(path.end(), spec) {
+        path.remove(id)?;
+    }
+    let left = path.left()?;
+    path.told(left, refused)
+}
+
+impl<'p> Path<'_, 'p> {
+    fn end(&self) -> &TwoStageModel<'p> {
+        self.advances.last().map_or(&self.start, |a| &a.after)
+    }
+
+    fn push(&mut self, advance: SelectionStep<'p>) {
+        (self.on_advance)(&advance);
+        self.advances.push(advance);
+    }
+
+    /// Adds the effect that takes most, as long as one passes. Returns those that take much and do not.
+    fn grow(&mut self, most: usize) -> Result<Vec<Refused<'p>>, ModelError> {
+        loop {
+            let now = self.end();
+            let library = self.libraries.of(&now.main, self.prepared, self.spec);
+            let Some(solution) = Solution::of(&now.main) else { return Ok(Vec::new()) };
+            let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
+            let all = candidates(now, &solution, library, forms);
+            let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), self.options.alpha);
+            let added = self.advances.iter().filter(|a| a.added.is_some()).count();
+            let mut named = None;
+            let passing: Vec<&Evidence> = all.iter().filter(passes).filter(|_| added < most).collect();
+            for e in in_turn(&passing) {
+                let effects = now.effects.iter().cloned().chain([e.id().to_owned()]).collect();
+                let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+                if follows(now, &solution, &after) {
+                    named = Some((e, after));
+                    break;
+                }
+            }
+            let Some((best, after)) = named else {
+                let large = all.iter().filter(|e| e.gain > LEFT_SHARE);
+                return Ok(large.map(|e| Refused::of(e, self.options.alpha)).collect());
+            };
+            let id = best.best.id();
+            let ties = all.iter().filter(|e| e.id() != id && is_rival(best, e)).map(|e| e.best.id()).collect();
+            let rival = ScoredCandidate {
+                term: best.best.term(now.main.problem),
+                share: best.gain,
+                held_out: best.losses.iter().sum(),
+                p_value: best.p_value,
+                losses: best.losses.clone(),
+            };
+            self.push(SelectionStep { added: Some(rival), removed: None, ties, after });
+        }
+    }
+
+    fn remove(&mut self, id: &'p str) -> Result<(), ModelError> {
+        let effects = self.end().effects.iter().filter(|e| *e != id).cloned().collect();
+        let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+        self.push(SelectionStep { added: None, removed: Some(id), ties: Vec::new(), after });
+        Ok(())
+    }
+
+    /// What remains. Where a function of one axis says more than all that was named, nothing of the library is it.
+    fn left(&mut self) -> Result<Option<Left>, ModelError> {
+        let of = |path: &Self| {
+            Solution::of(&path.end().main).and_then(|solution| structure::left(&path.start, path.end(), &solution))
+        };
+        let left = of(self);
+        if !left.as_ref().is_some_and(|left| left.is_all) {
+            return Ok(left);
+        }
+        let spec = self.spec;
+        for id in self.end().effects.clone().iter().filter(|e| !spec.contains(e)) {
+            self.remove(spec.find(id)?.info().id)?;
+        }
+        Ok(of(self).or(left))
+    }
+
+    fn told(self, left: Option<Left>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
+        let end = self.end();
+        let now = end.main.clone();
+        let silences = Solution::of(&now).map_or_else(Vec::new, |solution| {
+            limits::silences(end, &solution, self.libraries.of(&now, self.prepared, self.spec), self.options)
+        });
+        let residual = now.linear().residual;
+        let is_in = |id: &str| end.effects.iter().any(|e| e == id);
+        let named = self.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
+        let ties = named.flat_map(|(id, rivals)| rivals.iter().map(move |rival| (id, *rival)));
+        let ties = ties.filter(|(id, rival)| is_in(id) && !is_in(rival)).collect();
+        let maps = Maps::new(self.prepared, residual.clone(), self.options);
+        Ok(ModelSelection {
+            start: self.start,
+            advances: self.advances,
+            withdrawn: Vec::new(),
+            now,
+            residual,
+            maps,
+            silences,
+            ties,
+            upheld: Vec::new(),
+            open: None,
+            decided: Some(Decided { left, refused }),
+        })
+    }
+}
+
+/// What the decision leaves.
+pub struct Decided<'p> {
+    /// Structure that no effect takes.
+    pub left: Option<Left>,
+    pub refused: Vec<Refused<'p>>,
+}
+
+/// What shows only where all formulas err has to take most of what is left.
+pub fn least_share(effect: &dyn Effect) -> f64 {
+    match effect.regime() {
+        Regime::SteadyState => DECISION_SHARE,
+        _ => UNMISTAKABLE_SHARE,
+    }
+}
+
+/// The evidence for every effect that is not in the model, the one that takes most first.
+fn candidates<'l, 'p>(
+    now: &TwoStageModel<'p>,
+    solution: &Solution,
+    library: &'l CandidateSet<'p>,
+    forms: usize,
+) -> Vec<Evidence<'l, 'p>> {
+    let is_out = |id: &str| !now.effects.iter().any(|e| e == id);
+    let is_sought = |id: &str| is_out(id) && library.candidates.iter().any(|c| c.id() == id);
+    let of = |wanted: &dyn Fn(&Regressor) -> bool| -> Vec<&'l Regressor<'p>> {
+        let is_wanted = |c: &&Regressor<'p>| is_out(c.id()) && wanted(c) && !c.effect.corrects().is_some_and(is_sought);
+        library.candidates.iter().filter(is_wanted).collect()
+    };
+    let near: Vec<bool> = match now.main.problem.form_error.as_deref() {
+        Some(form_error) => form_error.turn_s.iter().map(|turn_s| *turn_s < form_error.near_s).collect(),
+        None => Vec::new(),
+    };
+    let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
+    let mut all = evidence(&solution.ground, &of(&regime(Regime::SteadyState)), &near, forms);
+    // What is form error of all others is judged without it.
+    let late = of(&|c| c.id() == DELAY);
+    if !late.is_empty() && is_late(now, solution) {
+        all.extend(evidence(&without(now, solution, Lives::Jerk), &late, &near, forms));
+    }
+    let bent = of(&regime(Regime::Hysteresis));
+    if !bent.is_empty() {
+        all.extend(evidence(&without(now, solution, Lives::Bristle), &bent, &near, forms));
+    }
+    let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
+    all.extend(evidence(&solution.ground, &inertia, &near, forms));
+    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    all
+}
+
+/// An effect that changes the direction of all others explains what free elements explain in its place: a torque that comes late
+/// bends around reversals as well, and no direction follows it.
+fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> bool {
+    let Some(form_error) = after.main.problem.form_error.as_deref() else { return true };
+    std::ptr::eq(now.main.problem, after.main.problem)
+        || Solution::weighted(&after.main, form_error, solution.weight.clone(), None).ground.loss()
+            < FLOOR_RATIO.powi(2) * solution.ground.loss()
+}
+
+/// The largest gain first; of those that tie with it the surest.
+fn in_turn<'e, 'l, 'p>(passing: &[&'e Evidence<'l, 'p>]) -> Vec<&'e Evidence<'l, 'p>> {
+    let mut in_turn = passing.to_vec();
+    if let Some(first) = passing.first() {
+        let ties = passing.iter().take_while(|e| is_rival(first, e)).count();
+        in_turn[..ties].sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    }
+    in_turn
+}
+
+/// Takes about as much, block by block.
+fn is_rival(best: &Evidence, other: &Evidence) -> bool {
+    other.gain > SIMPLER_GAIN * best.gain && is_tie(&best.losses, &other.losses)
+}
+
+/// The model projected out without one kind of form error.
+pub fn without(now: &TwoStageModel, solution: &Solution, lives: Lives) -> Ground {
+    let model = &now.main;
+    let mut columns = effect_columns(model);
+    if let Some(form_error) = model.problem.form_error.as_deref() {
+        let beside = beside(model, form_error, |other| other == lives);
+        columns.extend(beside.error.into_iter().map(|(_, column)| column));
+        columns.extend(beside.relatives);
+    }
+    // Weights make least of the very rows that such an effect is about.
+    let even = vec![1.0; model.problem.rows()];
+    Ground::new(&columns, &model.response(), &even, &model.problem.block, Some(solution.ground.ridge))
+}
+
+/// The torque is later or earlier than the motion by more than a sample: of which moment of it a reading is nobody knows.
+fn is_late(now: &TwoStageModel, solution: &Solution) -> bool {
+    let model = &now.main;
+    let Some(form_error) = model.problem.form_error.as_deref() else { return false };
+    let inertia = effect_factor(model, solution, "inertia");
+    let jerk = solution.error.iter().find(|(at, _)| form_error.columns[*at].lives == Lives::Jerk).map(|(_, f)| *f);
+    let (Some(inertia), Some(jerk)) = (inertia, jerk) else { return false };
+    (jerk / inertia).abs() > DELAY_ROWS * form_error.sample_s
+}
+
+/// The added effect without which the others predict held-out data as well, where there is one beside others.
+fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
+    let added: Vec<&'p str> =
+        end.effects.iter().filter(|e| !spec.contains(e)).filter_map(|e| Some(spec.find(e).ok()?.info().id)).collect();
+    let form_error = end.main.problem.form_error.as_deref()?;
+    if added.len() < 2 {
+        return None;
+    }
+    // Other forms of the others would imitate it.
+    let mut plain = end.main.clone();
+    plain.relatives = Default::default();
+    let weight = Solution::of(&plain)?.weight.clone();
+    let loss = |model: &LinearModel, is_late: bool| {
+        if !is_late {
+            return Solution::weighted(model, form_error, weight.clone(), None).ground.loss();
+        }
+        let mut columns = effect_columns(model);
+        let beside = beside(model, form_error, |lives| lives == Lives::Jerk);
+        columns.extend(beside.error.into_iter().map(|(_, column)| column));
+        Ground::new(&columns, &model.response(), &weight, &model.problem.block, None).loss()
+    };
+    let whole = loss(&plain, false);
+    let without = |id: &'p str| {
+        let mut less = plain.clone();
+        less.terms.retain(|term| term.id() != id);
+        (id, loss(&less, id == DELAY) / whole - 1.0)
+    };
+    let judged = added.into_iter().filter(|id| *id != PRESLIDING && plain.contains(id)).map(without);
+    judged.filter(|(_, loss)| *loss < DECISION_SHARE).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
+}
+
+/// The power balance, where the model lacks it and the run shows it.
+fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionStep<'p>> {
+    let problem = start.main.problem;
+    let is_out = |id: &str| !start.effects.iter().any(|e| e == id);
+    let missing = |e: &&dyn Effect| e.is_offset() && is_out(e.info().id) && e.hidden(&problem.view).is_none();
+    let effect = start.spec.known().find(missing)?;
+    let form = effect.forms(&problem.view).into_iter().next()?;
+    let term = crate::regression::linear_model::Term::new(effect, form, Vec::new(), problem);
+    let effects: Vec<String> = start.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
+    let after = TwoStageModel::decided(start.prepared, start.spec, effects).ok()?;
+    let (was, is) = (Solution::of(&start.main)?, Solution::of(&after.main)?);
+    let (was, is) = (was.held_out(&start.main), is.held_out(&after.main));
+    let gains: Vec<f64> = was.iter().zip(&is).map(|(was, is)| was - is).collect();
+    let gain = gains.iter().sum::<f64>() / was.iter().sum::<f64>();
+    let standard_errors = errors(&gains);
+    let p_value = crate::decision::evidence::chance(standard_errors.powi(2), 1, gains.len());
+    if gain < DECISION_SHARE || p_value > options.alpha {
+        return None;
+    }
+    let held_out = is.iter().sum();
+    let rival = ScoredCandidate { term, share: gain, held_out, p_value, losses: is };
+    Some(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after })
+}

@@ -1,0 +1,225 @@
+//! A model on a run that is judged sample by sample: effects, and beside them where the errors of their formulas live.
+
+use crate::decision::ground::{BaseColumn, Ground, fitted};
+use crate::decision::weights::weights;
+use crate::effects;
+use crate::preprocess::form_error::{FormError, Lives};
+use crate::regression::linear_model::{Linear, LinearModel, Relative};
+use jointbench_instrument::Kind;
+use std::sync::Arc;
+
+/// Strength with which columns are held near zero before the weights are known.
+const FIRST_RIDGE: f64 = 1e-4;
+/// How often the weights are made anew.
+const REWEIGHTED: usize = 2;
+
+/// The effect that jerk itself is, and the one that moves the load.
+pub const DELAY: &str = "signal_delay";
+pub const PRESLIDING: &str = "presliding";
+
+/// Columns beside a model.
+pub struct Beside<'a> {
+    pub error: Vec<(usize, BaseColumn<'a>)>,
+    pub relatives: Vec<BaseColumn<'a>>,
+}
+
+/// What stands beside the effects of a model: all form error but what an effect of it is, or what `leaves_out` says, and other
+/// forms of its effects.
+pub fn beside<'a>(model: &'a LinearModel, form_error: &'a FormError, leaves_out: impl Fn(Lives) -> bool) -> Beside<'a> {
+    let passes_load = model.given.iter().any(|g| *g != 0.0);
+    let is_out = |lives: Lives| match lives {
+        Lives::Jerk => model.contains(DELAY),
+        Lives::LoadRate => !passes_load,
+        Lives::Bristle | Lives::Snap => false,
+    };
+    let columns = form_error.columns.iter().enumerate().filter(|(_, c)| !is_out(c.lives) && !leaves_out(c.lives));
+    let error =
+        columns.map(|(at, c)| (at, BaseColumn { values: &c.values, scale: c.scale, shrinks: c.lives.shrinks() }));
+    let relatives = model.relatives.iter().flat_map(|relative: &Relative| &relative.columns);
+    let relative = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), shrinks: true };
+    Beside { error: error.collect(), relatives: relatives.map(relative).collect() }
+}
+
+pub fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// The columns of the effects of a model.
+pub fn effect_columns<'a>(model: &'a LinearModel) -> Vec<BaseColumn<'a>> {
+    let column = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), shrinks: false };
+    model.terms.iter().flat_map(|term| &term.columns).map(column).collect()
+}
+
+/// A model with its factors, and what it was projected out of.
+pub struct Solution {
+    pub ground: Ground,
+    pub weight: Vec<f64>,
+    /// Factors of the effects, of the form error by its place, and of other forms.
+    pub factors: Vec<f64>,
+    pub error: Vec<(usize, f64)>,
+    pub relatives: Vec<f64>,
+    pub residual: Vec<f64>,
+    /// Factors that are held at zero, beyond which they are impossible.
+    pub bound: Vec<usize>,
+}
+
+impl Solution {
+    /// `None` of a run that is not judged this way.
+    pub fn of(model: &LinearModel) -> Option<Arc<Self>> {
+        let form_error = model.problem.form_error.as_deref()?;
+        let make = || Self::weighted(model, form_error, weighed(model, form_error), None);
+        // Of a user's effect the name does not say all.
+        match model
+            .terms
+            .iter()
+            .map(|term| term.id())
+            .chain(model.offsets.iter().map(|e| e.info().id))
+            .all(is_of_library)
+        {
+            true => Some(model.problem.solved.of(name(model), make)),
+            false => Some(Arc::new(make())),
+        }
+    }
+
+    pub fn weighted(model: &LinearModel, form_error: &FormError, weight: Vec<f64>, ridge: Option<f64>) -> Self {
+        let response = model.response();
+        let beside = beside(model, form_error, |_| false);
+        let mut columns = effect_columns(model);
+        let own = columns.len();
+        columns.extend(beside.error.iter().map(|(_, column)| *column));
+        columns.extend(beside.relatives.iter().copied());
+        let nothing = vec![0.0; response.len()];
+        let mut bound = Vec::new();
+        let mut ground = Ground::new(&columns, &response, &weight, &model.problem.block, ridge);
+        while let Some(at) = beyond(model, &ground) {
+            bound.push(at);
+            columns[at].values = &nothing;
+            ground = Ground::new(&columns, &response, &weight, &model.problem.block, Some(ground.ridge));
+        }
+        let all = ground.factors();
+        let residual = left(&columns, &all, &response);
+        let (factors, rest) = all.split_at(own);
+        let (error, relatives) = rest.split_at(beside.error.len());
+        Self {
+            factors: factors.to_vec(),
+            error: beside.error.iter().map(|(at, _)| *at).zip(error.iter().copied()).collect(),
+            relatives: relatives.to_vec(),
+            residual,
+            weight,
+            ground,
+            bound,
+        }
+    }
+
+    /// What the columns beside the effects come to at the rows.
+    pub fn form_error(&self, model: &LinearModel) -> Vec<f64> {
+        let mut sum = vec![0.0; model.problem.rows()];
+        let mut add = |column: &[f64], factor: f64| sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        if let Some(form_error) = model.problem.form_error.as_deref() {
+            self.error.iter().for_each(|(at, factor)| add(&form_error.columns[*at].values, *factor));
+        }
+        let columns = model.relatives.iter().flat_map(|relative| &relative.columns);
+        columns.zip(&self.relatives).for_each(|(column, factor)| add(column, *factor));
+        sum
+    }
+
+    /// As any model's.
+    pub fn linear(&self, model: &LinearModel) -> Linear {
+        let mut next = self.factors.iter().copied();
+        let factors = model.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
+        let sse = self.residual.iter().map(|e| e * e).sum();
+        Linear { factors, residual: self.residual.clone(), sse }
+    }
+
+    /// Squared error of each block, as the others predict it.
+    pub fn held_out(&self, model: &LinearModel) -> Vec<f64> {
+        let Some(form_error) = model.problem.form_error.as_deref() else { return Vec::new() };
+        let response = model.response();
+        let beside = beside(model, form_error, |_| false);
+        let mut columns = effect_columns(model);
+        columns.extend(beside.error.iter().map(|(_, column)| *column));
+        columns.extend(beside.relatives);
+        let replicates = self.ground.replicates().zip(&self.ground.blocks);
+        let loss = |(factors, rows): (Vec<f64>, &std::ops::Range<usize>)| {
+            let mut left = response[rows.clone()].to_vec();
+            for (column, factor) in columns.iter().zip(factors) {
+                left.iter_mut().zip(&column.values[rows.clone()]).for_each(|(e, x)| *e -= factor * x);
+            }
+            left.iter().map(|e| e * e).sum()
+        };
+        replicates.map(loss).collect()
+    }
+}
+
+/// The factor that lies furthest below zero of those that cannot be negative, where it does by chance: what is surely negative
+/// contradicts physics, and has to be told.
+fn beyond(model: &LinearModel, ground: &Ground) -> Option<usize> {
+    const CHANCE: f64 = 2.0;
+    let names =
+        model.terms.iter().flat_map(|term| term.form.linear.iter().map(move |name| term.effect.info().bounds(name).0));
+    let factors = ground.factors();
+    let below: Vec<usize> =
+        names.enumerate().filter(|(at, least)| *least == 0.0 && factors[*at] < 0.0).map(|(at, _)| at).collect();
+    if below.is_empty() {
+        return None;
+    }
+    let replicates: Vec<Vec<f64>> = ground.replicates().collect();
+    let groups = replicates.len() as f64;
+    let errors = |at: &usize| {
+        let square: f64 = replicates.iter().map(|r| (r[*at] - factors[*at]).powi(2)).sum();
+        factors[*at] / ((groups - 1.0) / groups * square).sqrt().max(f64::MIN_POSITIVE)
+    };
+    below.into_iter().filter(|at| errors(at) > -CHANCE).min_by(|a, b| errors(a).total_cmp(&errors(b)))
+}
+
+/// Weights of the rows, from what the model leaves.
+pub fn weighed(model: &LinearModel, form_error: &FormError) -> Vec<f64> {
+    let mut weight = vec![1.0; model.problem.rows()];
+    let response = model.response();
+    let beside = beside(model, form_error, |_| false);
+    let mut columns = effect_columns(model);
+    columns.extend(beside.error.into_iter().map(|(_, column)| column));
+    columns.extend(beside.relatives);
+    for _ in 0..REWEIGHTED {
+        let factors = fitted(&columns, &response, &weight, FIRST_RIDGE);
+        weight = weights(form_error, &left(&columns, &factors, &response));
+    }
+    weight
+}
+
+fn is_of_library(id: &str) -> bool {
+    effects::find(Kind::Friction, id).is_ok()
+}
+
+/// What a model is made of.
+fn name(model: &LinearModel) -> String {
+    let mut name = String::new();
+    model.offsets.iter().for_each(|effect| name.push_str(effect.info().id));
+    for term in &model.terms {
+        name.push_str(&format!("+{} {} {:?}", term.id(), term.form.name, term.shape));
+    }
+    for relative in model.relatives.iter() {
+        name.push_str(&format!("~{} {} {:?}", relative.effect.info().id, relative.form.name, relative.shape));
+    }
+    name
+}
+
+fn left(columns: &[BaseColumn], factors: &[f64], response: &[f64]) -> Vec<f64> {
+    let mut left = response.to_vec();
+    for (column, factor) in columns.iter().zip(factors) {
+        left.iter_mut().zip(column.values).for_each(|(e, x)| *e -= factor * x);
+    }
+    left
+}
+
+/// The first factor of an effect.
+pub fn effect_factor(model: &LinearModel, solution: &Solution, id: &str) -> Option<f64> {
+    let mut at = 0;
+    for term in &model.terms {
+        if term.id() == id {
+            return solution.factors.get(at).copied();
+        }
+        at += term.columns.len();
+    }
+    None
+}

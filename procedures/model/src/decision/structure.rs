@@ -1,0 +1,182 @@
+//! What no effect of the library takes: functions of an axis, a line in time, what neighbouring moments have in common.
+
+use crate::decision::evidence::errors;
+use crate::decision::functions::{Functions, functions};
+use crate::decision::ground::{Ground, ranges};
+use crate::decision::solution::{DELAY, Solution, beside, effect_columns};
+use crate::linear::basis::dot;
+use crate::linear::cholesky::Cholesky;
+use crate::preprocess::Problem;
+use crate::preprocess::form_error::Lives;
+use crate::preprocess::friction::bristles::quantile;
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::signal::Signal;
+use crate::thresholds::{LEFT_ERRORS, LEFT_SHARE, TIME_ERRORS};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Strengths with which functions are held near zero.
+const RIDGES: [f64; 3] = [1e-3, 1e-2, 1e-1];
+/// Residuals count up to so many robust standard deviations where time is looked at.
+const MOST_DEVIATIONS: f64 = 6.0;
+/// Lines are sought up to this frequency [Hz], in so many steps between two of a spectrum.
+const FASTEST_LINE_HZ: f64 = 2.0;
+const LINE_STEPS: i32 = 4;
+/// Neighbouring means are over this time [s].
+const MEANS_S: f64 = 1.0;
+
+/// Structure that remains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Left {
+    /// Signals over which it shows.
+    pub over: Vec<Signal>,
+    /// Share of the held-out squared error that a function of them would take.
+    pub share: f64,
+    /// A function of them takes more from the given model than all effects that were added.
+    pub is_all: bool,
+}
+
+/// What remains, where it is more than chance. `end` is the last model of a search that began at `start`.
+pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> Option<Left> {
+    let model = &end.main;
+    let ground = &solution.ground;
+    let all = functions(model.problem);
+    let judged: Vec<(f64, f64)> =
+        all.par_iter().map(|axis| taken(ground, axis)).map(|gains| sized(&gains, ground)).collect();
+    let axes = all.iter().zip(&judged).map(|(axis, (share, surely))| (Some(axis), axis.over.clone(), *share, *surely));
+    let shows = |share: f64, surely: f64, least: f64| share > LEFT_SHARE && surely > least;
+    let mut found: Vec<(Option<&Functions>, Vec<Signal>, f64)> =
+        axes.filter(|a| shows(a.2, a.3, LEFT_ERRORS)).map(|(axis, over, share, _)| (axis, over, share)).collect();
+    let weighted = clipped(&solution.residual, &solution.weight);
+    let row_s = model.problem.form_error.as_deref().map_or(1.0, |e| e.row_s);
+    let (share, surely) = line(&weighted, model.problem, row_s);
+    if shows(share, surely, LEFT_ERRORS) {
+        found.push((None, vec![Signal::Time], share));
+    }
+    let direction = model.problem.reduce.apply(model.problem.view.get(Signal::Direction).to_vec());
+    for (share, surely) in neighbours(&weighted, &direction, row_s) {
+        if shows(share, surely, TIME_ERRORS) {
+            found.push((None, vec![Signal::Time], share));
+        }
+    }
+    let (axis, over, share) = found.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let grew = start.effects.len() < end.effects.len();
+    let is_all = axis.filter(|_| grew).is_some_and(|axis| explains_all(axis, start, end, solution));
+    Some(Left { over, share, is_all })
+}
+
+fn taken(ground: &Ground, axis: &Functions) -> Vec<f64> {
+    if axis.columns.is_empty() {
+        return vec![0.0; ground.blocks.len()];
+    }
+    let scale = |c: &Vec<f32>| c.iter().map(|v| v * v).sum::<f32>() > 0.0;
+    let columns: Vec<&Vec<f32>> = axis.columns.iter().filter(|c| scale(c)).collect();
+    let added = ground.added(&columns);
+    let of = |ridge: &f64| added.gains(*ridge, |_| true).iter().map(|gain| gain.held_out).collect::<Vec<f64>>();
+    let all = RIDGES.iter().map(of);
+    all.max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum())).unwrap_or_default()
+}
+
+/// Gains of blocks as a share of the error, and in their own standard errors.
+fn sized(gains: &[f64], ground: &Ground) -> (f64, f64) {
+    (gains.iter().sum::<f64>() / ground.loss().max(f64::MIN_POSITIVE), errors(gains))
+}
+
+/// One function beside the given model predicts held-out data clearly better than the whole last model does.
+fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> bool {
+    let plain = &start.main;
+    let mut columns = effect_columns(plain);
+    let Some(form_error) = plain.problem.form_error.as_deref() else { return false };
+    // What an added effect is no error of a formula any more.
+    let is_added = |id: &str| end.main.contains(id) && !plain.contains(id);
+    let beside = beside(plain, form_error, |lives| match lives {
+        Lives::Jerk => is_added(DELAY),
+        Lives::Bristle => !std::ptr::eq(plain.problem, end.main.problem),
+        Lives::Snap | Lives::LoadRate => false,
+    });
+    columns.extend(beside.error.into_iter().map(|(_, column)| column));
+    columns.extend(beside.relatives);
+    let ridge = Some(solution.ground.ridge);
+    let ground = Ground::new(&columns, &plain.response(), &solution.weight, &plain.problem.block, ridge);
+    let with: Vec<f64> = ground.losses.iter().zip(taken(&ground, axis)).map(|(loss, gain)| loss - gain).collect();
+    let better: Vec<f64> = solution.ground.losses.iter().zip(&with).map(|(end, with)| end - with).collect();
+    with.iter().sum::<f64>() < (1.0 - LEFT_SHARE) * solution.ground.loss() && errors(&better) > LEFT_ERRORS
+}
+
+/// A weighted residual without what stands far out.
+fn clipped(residual: &[f64], weight: &[f64]) -> Vec<f64> {
+    let weighted: Vec<f64> = residual.iter().zip(weight).map(|(e, w)| e * w).collect();
+    let most = MOST_DEVIATIONS * 1.4826 * quantile(weighted.iter().map(|e| e.abs()), 0.5);
+    weighted.into_iter().map(|e| e.clamp(-most, most)).collect()
+}
+
+/// Held-out gain of the strongest line in time, and its standard errors.
+fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
+    let blocks = ranges(&problem.block);
+    let whole_s = values.len() as f64 * row_s;
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let moments: Vec<f64> = (0..values.len()).map(|i| i as f64 * row_s).collect();
+    let power = |hz: f64| {
+        let (turn, mut c, mut s) = (TAU * hz * row_s, 0.0, 0.0);
+        // One step of a rotation for each row.
+        let (sin, cos) = turn.sin_cos();
+        let (mut x, mut y) = (1.0, 0.0);
+        for v in values {
+            c += (v - mean) * x;
+            s += (v - mean) * y;
+            (x, y) = (x * cos - y * sin, x * sin + y * cos);
+        }
+        c * c + s * s
+    };
+    let highest = (FASTEST_LINE_HZ.min(0.5 / row_s) * whole_s) as usize;
+    let powers: Vec<f64> = (2..highest.max(2)).into_par_iter().map(|k| power(k as f64 / whole_s)).collect();
+    let Some(strongest) = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b])) else { return (0.0, 0.0) };
+    let square: f64 = dot(values, values);
+    let tried = (-LINE_STEPS..=LINE_STEPS).map(|step| {
+        let hz = ((strongest + 2) as f64 + 0.5 * f64::from(step) / f64::from(LINE_STEPS)) / whole_s;
+        let waves: [Vec<f64>; 2] = [
+            moments.iter().map(|t| (TAU * hz * t).cos()).collect(),
+            moments.iter().map(|t| (TAU * hz * t).sin()).collect(),
+        ];
+        let sums: Vec<[f64; 5]> = blocks
+            .iter()
+            .map(|rows| {
+                let [c, s] = waves.each_ref().map(|wave| &wave[rows.clone()]);
+                let y = &values[rows.clone()];
+                [dot(c, c), dot(c, s), dot(s, s), dot(c, y), dot(s, y)]
+            })
+            .collect();
+        let all = sums.iter().fold([0.0; 5], |a, b| std::array::from_fn(|k| a[k] + b[k]));
+        let gains = sums.iter().map(|own| {
+            let rest: [f64; 5] = std::array::from_fn(|k| all[k] - own[k]);
+            let factors = Cholesky::new(&[rest[0], rest[1], rest[1], rest[2]], 2, 1e-9).solve(&rest[3..]);
+            let there = [own[0] * factors[0] + own[1] * factors[1], own[1] * factors[0] + own[2] * factors[1]];
+            2.0 * (factors[0] * own[3] + factors[1] * own[4]) - dot(&factors, &there)
+        });
+        let gains: Vec<f64> = gains.collect();
+        (gains.iter().sum::<f64>() / square.max(f64::MIN_POSITIVE), errors(&gains))
+    });
+    tried.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
+}
+
+/// Covariance of neighbouring means of a residual and of one that changes sign with the direction, as a share of its variance,
+/// and its standard errors.
+fn neighbours(values: &[f64], direction: &[f64], row_s: f64) -> [(f64, f64); 2] {
+    let length = ((MEANS_S / row_s).round() as usize).max(1);
+    let of = |values: Vec<f64>| {
+        let means: Vec<f64> = values.chunks_exact(length).map(|c| c.iter().sum::<f64>() / length as f64).collect();
+        let n = means.len().max(1) as f64;
+        let mean = means.iter().sum::<f64>() / n;
+        let about: Vec<f64> = means.iter().map(|m| m - mean).collect();
+        let product = if about.len() > 1 { dot(&about[1..], &about[..about.len() - 1]) } else { 0.0 };
+        let middle = values.iter().sum::<f64>() / values.len() as f64;
+        let variance = values.iter().map(|v| (v - middle).powi(2)).sum::<f64>() / values.len() as f64;
+        let pairs = (n - 1.0).max(1.0);
+        (
+            product / pairs / variance.max(f64::MIN_POSITIVE),
+            product / dot(&about, &about).max(f64::MIN_POSITIVE) * n.sqrt(),
+        )
+    };
+    let turned = values.iter().zip(direction).map(|(v, d)| if *d < 0.0 { -v } else { *v }).collect();
+    [of(values.to_vec()), of(turned)]
+}

@@ -1,0 +1,53 @@
+//! Weights of rows by how a model errs with the time to the nearest reversal, the acceleration and the jerk.
+//!
+//! Nothing is cut out: where a model errs more, a row counts less.
+
+use crate::linear::cholesky::Cholesky;
+use crate::preprocess::form_error::FormError;
+use crate::preprocess::friction::bristles::quantile;
+
+/// Weights stay within these, the middle one being 1.
+const LEAST: f64 = 0.2;
+const MOST: f64 = 3.0;
+/// What is added to times [s], and to sizes as a share of the largest, before logarithms are taken.
+const SOON_S: f64 = 0.05;
+const LATE_S: f64 = 2.0;
+const STILL: f64 = 0.05;
+/// The same to squared errors, as a share of the middle one.
+const EXACT: f64 = 1e-3;
+
+/// One over the standard deviation of a residual, as a smooth function of how swift the motion is.
+pub fn weights(form_error: &FormError, residual: &[f64]) -> Vec<f64> {
+    let middle = quantile(residual.iter().map(|e| e * e), 0.5);
+    let floor = (EXACT * middle).max(f64::MIN_POSITIVE);
+    let sizes: Vec<f64> = residual.iter().map(|e| (e * e + floor).ln()).collect();
+    let swift = form_error.swift.each_ref().map(|size| {
+        let still = STILL * size.iter().fold(0.0f64, |most, v| most.max(*v)) + 1e-12;
+        size.iter().map(|v| (v + still).ln()).collect::<Vec<f64>>()
+    });
+    let turn: Vec<f64> = form_error.turn_s.iter().map(|t| (t.min(LATE_S) + SOON_S).ln()).collect();
+    let one = vec![1.0; residual.len()];
+    let columns = [&one, &turn, &swift[0], &swift[1]];
+    let expected = regressed(&columns, &sizes);
+    let usual = quantile(expected.iter().copied(), 0.5);
+    expected.into_iter().map(|e| (-0.5 * (e - usual)).exp().clamp(LEAST, MOST)).collect()
+}
+
+/// What least squares make of values by some columns. The first column is constant.
+fn regressed(columns: &[&Vec<f64>], values: &[f64]) -> Vec<f64> {
+    let n = values.len().max(1) as f64;
+    let means: Vec<f64> = columns.iter().map(|c| c.iter().sum::<f64>() / n).collect();
+    let about = |k: usize, row: usize| if k == 0 { 1.0 } else { columns[k][row] - means[k] };
+    let p = columns.len();
+    let (mut gram, mut side) = (vec![0.0; p * p], vec![0.0; p]);
+    for (row, value) in values.iter().enumerate() {
+        for a in 0..p {
+            side[a] += about(a, row) * value;
+            for b in 0..p {
+                gram[a * p + b] += about(a, row) * about(b, row);
+            }
+        }
+    }
+    let factors = Cholesky::new(&gram, p, 1e-9).solve(&side);
+    (0..values.len()).map(|row| (0..p).map(|k| factors[k] * about(k, row)).sum()).collect()
+}

@@ -1,0 +1,145 @@
+//! The direction of motion as contacts feel it: a state that turns over a way, not in an instant.
+//!
+//! Elements that slip at ±1 (stops) and ones that yield exponentially (Dahl) with reaches from the encoder's step to a
+//! quarter of the usual way between two reversals. What the torque shows at reversals weighs them.
+
+use crate::hysteresis_operators::{dahl, stop};
+use crate::linear::basis::{Basis, dot};
+use crate::linear::non_negative::non_negative;
+use crate::preprocess::TELLING;
+use crate::report::fit::Bristles;
+use crate::view::Start;
+
+/// Reaches that are tried.
+const REACHES: usize = 9;
+/// The longest, as a share of the usual way between two reversals.
+const LONGEST: f64 = 0.25;
+/// The shortest, in steps of the encoder, as a share of the usual way and of the longest.
+const STEPS: f64 = 3.0;
+const LEAST_OF_WAY: f64 = 1e-5;
+const LEAST_OF_LONGEST: f64 = 1e-4;
+/// A way back counts from so many steps of the encoder, and from this share of the whole range.
+const TURN_STEPS: f64 = 6.0;
+const TURN_SHARE: f64 = 1e-3;
+/// The usual way is longer than this share of all.
+const USUAL: f64 = 0.75;
+
+/// What a share of the values is below.
+pub fn quantile(values: impl IntoIterator<Item = f64>, share: f64) -> f64 {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    let at = (share * values.len().saturating_sub(1) as f64).round() as usize;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(at, f64::total_cmp).1 }
+}
+
+/// The step of the encoder: hardly any two neighbouring samples of a moving joint are nearer.
+pub fn encoder_step(position: &[f64]) -> f64 {
+    let every = position.len().div_ceil(TELLING);
+    let steps = position.windows(2).step_by(every).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 1e-7);
+    quantile(steps, 0.01).max(1e-7)
+}
+
+/// Samples at which a position turns by more than the encoder's noise, recording by recording.
+pub fn turns(position: &[f64], starts: &[usize], step: f64) -> Vec<usize> {
+    let (low, high) = position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    let depth = (TURN_STEPS * step).max(TURN_SHARE * (high - low));
+    let mut turns = Vec::new();
+    for (start, end) in starts.iter().zip(starts.iter().skip(1).chain([&position.len()])) {
+        zigzag(&position[*start..*end], depth).into_iter().for_each(|turn| turns.push(start + turn));
+    }
+    turns
+}
+
+fn zigzag(x: &[f64], depth: f64) -> Vec<usize> {
+    let mut turns = Vec::new();
+    let (mut way, mut low, mut high) = (0.0, 0, 0);
+    for i in 0..x.len() {
+        if way >= 0.0 && x[i] > x[high] {
+            high = i;
+        }
+        if way <= 0.0 && x[i] < x[low] {
+            low = i;
+        }
+        if way >= 0.0 && x[high] - x[i] > depth {
+            if way > 0.0 {
+                turns.push(high);
+            }
+            (way, low) = (-1.0, i);
+        } else if way <= 0.0 && x[i] - x[low] > depth {
+            if way < 0.0 {
+                turns.push(low);
+            }
+            (way, high) = (1.0, i);
+        }
+    }
+    turns
+}
+
+/// Reaches that reversals of this motion can tell. None where it never turns.
+pub fn reaches(position: &[f64], starts: &[usize], turns: &[usize], step: f64) -> Vec<f64> {
+    if turns.is_empty() {
+        return Vec::new();
+    }
+    let ends = starts.iter().copied().chain(starts.iter().skip(1).map(|s| s - 1)).chain([position.len() - 1]);
+    let mut stations: Vec<usize> = turns.iter().copied().chain(ends).collect();
+    stations.sort_unstable();
+    let way = quantile(stations.windows(2).map(|w| (position[w[1]] - position[w[0]]).abs()), USUAL);
+    let shortest = (STEPS * step).max(LEAST_OF_WAY * way);
+    let longest = (LONGEST * way).max(8.0 * shortest);
+    crate::effects::log_grid(shortest.max(LEAST_OF_LONGEST * longest), longest, REACHES)
+}
+
+/// States of all elements: stops, then those that yield, of which the shortest is left out.
+pub fn states(position: &[f64], starts: &[usize], reaches: &[f64]) -> Vec<Vec<f64>> {
+    let starts: Vec<Start> = starts.iter().copied().map(Start::from).collect();
+    let stops = reaches.iter().map(|reach| stop(position, *reach, &starts));
+    let yielding = reaches.iter().skip(1).map(|reach| dahl(position, *reach, &starts));
+    stops.chain(yielding).collect()
+}
+
+/// Shares of the elements that explain most of what `free` columns leave of a torque; `elements` are their states at the rows.
+pub fn weights(elements: &[Vec<f64>], free: &[Vec<f64>], torque: &[f64]) -> Vec<f64> {
+    let basis = Basis::of(free);
+    let own: Vec<Vec<f64>> = elements.iter().map(|state| basis.rest(state)).collect();
+    let gram: Vec<f64> = own.iter().flat_map(|a| own.iter().map(|b| dot(a, b))).collect();
+    let left = basis.rest(torque);
+    let side: Vec<f64> = own.iter().map(|a| dot(a, &left)).collect();
+    let mut weights = non_negative(&gram, &side);
+    let all: f64 = weights.iter().sum();
+    match all > 0.0 {
+        true => weights.iter_mut().for_each(|w| *w /= all),
+        false => weights.iter_mut().take(1).for_each(|w| *w = 1.0),
+    }
+    weights
+}
+
+/// The direction that elements of these weights feel.
+pub fn felt(states: &[Vec<f64>], bristles: &Bristles) -> Vec<f64> {
+    let mut felt = vec![0.0; states.first().map_or(0, Vec::len)];
+    for (state, weight) in states.iter().zip(&bristles.weights).filter(|(_, weight)| **weight > 0.0) {
+        felt.iter_mut().zip(state).for_each(|(sum, z)| *sum += weight * z);
+    }
+    felt
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_position_turns_where_it_goes_back_by_more_than_noise() {
+        let x: Vec<f64> = (0..1000).map(|i| (f64::from(i) * 0.02).sin() + 1e-4 * f64::from(i % 2)).collect();
+        let found = turns(&x, &[0], 1e-4);
+        assert_eq!(found.len(), 6, "{found:?}");
+        assert!(found.iter().all(|i| x[*i].abs() > 0.999));
+    }
+
+    #[test]
+    fn the_elements_of_a_contact_are_found() {
+        let x: Vec<f64> = (0..4000).map(|i| (f64::from(i) * 0.01).sin() * (1.0 + f64::from(i) * 1e-4)).collect();
+        let reaches = reaches(&x, &[0], &turns(&x, &[0], 1e-5), 1e-5);
+        let states = states(&x, &[0], &reaches);
+        let torque: Vec<f64> = (0..x.len()).map(|i| 0.3 * states[5][i] + 0.1 * states[14][i] + 0.02 * x[i]).collect();
+        let found = weights(&states, &[x], &torque);
+        assert!((found[5] - 0.75).abs() < 0.02 && (found[14] - 0.25).abs() < 0.02, "{found:?}");
+    }
+}

@@ -1,0 +1,171 @@
+//! Events that do not come again: a sensor that jumps for a while, grit that passes once.
+//!
+//! No function of any axis predicts them, and in the difference of two repeats they look like noise. What tells them is that a
+//! few moments lie far out of what all the others scatter by, and that no repeat of the same moment does.
+
+use crate::preprocess::Problem;
+use crate::signal::Signal;
+use crate::thresholds::EVENT_ERRORS;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Lengths of events that are looked for, in rows.
+const LENGTHS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+/// A stretch that is shorter than so many of its lengths has no scatter of its own.
+const STRETCHES: usize = 16;
+/// Rows on each side of a reversal that belong to it.
+const BESIDE: usize = 2;
+/// More of them are no events.
+const MOST: usize = 40;
+/// Median of the size of a normal figure, in standard deviations.
+const MEDIAN: f64 = 0.6745;
+
+/// A stretch of rows, and what a model leaves there.
+#[derive(Debug, Clone)]
+pub struct Event {
+    pub rows: Range<usize>,
+    pub mean: f64,
+}
+
+/// What a model leaves, with the moments that repeat each row.
+pub struct Events<'p> {
+    problem: &'p Problem,
+    residual: Vec<f64>,
+    /// Rows that belong to no event, or to one that is known.
+    is_out: Vec<bool>,
+    repeats: HashMap<usize, Vec<usize>>,
+}
+
+impl<'p> Events<'p> {
+    pub fn of(problem: &'p Problem, residual: &[f64]) -> Self {
+        let mut repeats: HashMap<usize, Vec<usize>> = HashMap::new();
+        for (a, b) in &problem.replicate_pairs {
+            repeats.entry(*a).or_default().push(*b);
+            repeats.entry(*b).or_default().push(*a);
+        }
+        // What shows at a reversal belongs to it.
+        let direction = problem.view.get(Signal::Direction);
+        let mut is_out = vec![false; residual.len()];
+        for row in (1..direction.len().min(residual.len())).filter(|row| direction[*row] != direction[row - 1]) {
+            is_out[row.saturating_sub(BESIDE)..(row + BESIDE).min(residual.len())].fill(true);
+        }
+        Self { problem, residual: residual.to_vec(), is_out, repeats }
+    }
+
+    /// The events, the largest first.
+    pub fn find(mut self) -> Vec<Event> {
+        let scale = |length: usize| Some((length, self.scale(length)?));
+        let scales: Vec<(usize, f64)> = LENGTHS.into_iter().filter_map(scale).collect();
+        let mut found = Vec::new();
+        for _ in 0..MOST {
+            let farthest = scales.iter().filter_map(|(length, scale)| self.farthest(*length, *scale));
+            let Some((z, rows, mean)) = farthest.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            if z < EVENT_ERRORS {
+                break;
+            }
+            let beside = rows.start.saturating_sub(rows.len())..(rows.end + rows.len()).min(self.residual.len());
+            self.is_out[beside].fill(true);
+            if !self.comes_again(&rows, mean) && !self.begins(&rows) {
+                found.push(Event { rows, mean });
+            }
+        }
+        found
+    }
+
+    /// It lies nearer to the beginning of a recording than it is long.
+    fn begins(&self, rows: &Range<usize>) -> bool {
+        let chunk = |row: usize| self.problem.view.chunks.get(row).map_or(row, |chunk| chunk.start);
+        let mut starts = self.problem.view.starts.iter().map(|start| start.at);
+        let before = chunk(rows.start.saturating_sub(rows.len()));
+        starts.any(|start| (before..=chunk(rows.start)).contains(&start))
+    }
+
+    /// First rows and means of all stretches of a length that hold no row that is out.
+    fn means(&self, length: usize) -> impl Iterator<Item = (usize, f64)> {
+        let (mut sum, mut out) = (0.0, 0usize);
+        let next = move |last: usize| {
+            (sum, out) = (sum + self.residual[last], out + usize::from(self.is_out[last]));
+            let first = (last + 1).checked_sub(length)?;
+            let found = (out == 0).then_some((first, sum / length as f64));
+            (sum, out) = (sum - self.residual[first], out - usize::from(self.is_out[first]));
+            found
+        };
+        (0..self.residual.len()).filter_map(next)
+    }
+
+    /// What stretches of a length scatter by, whatever a few of them do. `None` where they are too few.
+    fn scale(&self, length: usize) -> Option<f64> {
+        let sizes: Vec<f64> = self.means(length).map(|(_, mean)| mean.abs()).collect();
+        let scale = crate::preprocess::median(sizes.iter().copied()) / MEDIAN;
+        (STRETCHES * length < sizes.len() && scale > 0.0).then_some(scale)
+    }
+
+    fn farthest(&self, length: usize, scale: f64) -> Option<(f64, Range<usize>, f64)> {
+        let (at, mean) = self.means(length).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        Some((mean.abs() / scale, at..at + length, mean))
+    }
+
+    /// At least half of it is there in the moments that repeat it.
+    fn comes_again(&self, rows: &Range<usize>, mean: f64) -> bool {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for other in rows.clone().filter_map(|row| self.repeats.get(&row)).flatten() {
+            (sum, count) = (sum + self.residual[*other], count + 1.0);
+        }
+        count > 0.0 && sum / count / mean > 0.5
+    }
+
+    /// From when to when [s].
+    pub fn span_s(problem: &Problem, event: &Event) -> [f64; 2] {
+        let time = problem.view.get(Signal::Time);
+        [time[event.rows.start], time[event.rows.end - 1]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decision::solved::Solved;
+    use crate::preprocess::Reduce;
+    use crate::signal::Signals;
+    use crate::view::View;
+    use std::collections::HashSet;
+
+    /// Two repeats of 500 rows with a swing in the middle, whose second one jumps.
+    fn found(again: f64) -> Vec<Event> {
+        let n = 1000;
+        let noise = |i: usize| (12.9898 * i as f64).sin() * (78.233 * i as f64).cos();
+        let swing = |i: usize, size: f64| if (200..210).contains(&i) { size } else { 0.0 };
+        let residual: Vec<f64> =
+            (0..n).map(|i| noise(i) + swing(i % 500, if i < 500 { again } else { 12.0 })).collect();
+        let mut signals = Signals::new(n);
+        signals.set(Signal::Time, (0..n).map(|i| 0.01 * i as f64).collect());
+        let problem = Problem {
+            view: View::new(signals.clone(), signals, Vec::new(), vec![0], 0.01),
+            target: residual.clone(),
+            sampled: Vec::new().into(),
+            reduce: Reduce::Same,
+            block: vec![0; n],
+            blocks: 1,
+            fold: vec![0; n],
+            folds: 1,
+            replicate_pairs: (0..500).map(|i| (i, i + 500)).collect(),
+            different_history: HashSet::new(),
+            different_angle: HashSet::new(),
+            unlike: None,
+            segment: vec![0; n],
+            repeat: (0..n).map(|i| (i / 500) as i64).collect(),
+            settled: false,
+            form_error: None,
+            bandwidths: Vec::new(),
+            solved: Solved::default(),
+        };
+        Events::of(&problem, &residual).find()
+    }
+
+    #[test]
+    fn what_happens_once_is_an_event_and_what_comes_again_is_none() {
+        let once = found(0.0);
+        assert!(matches!(&once[..], [one] if (695..710).contains(&one.rows.start)), "{once:?}");
+        assert!(found(12.0).is_empty());
+    }
+}
