@@ -81,11 +81,11 @@ fn ended_by(control: Control) -> (RunState, Vec<String>, f64) {
 fn a_stop_unloads_the_brake_and_an_abort_tells_what_it_leaves() {
     let (state, notes, stopped_nm) = ended_by(Control::Stop);
     assert_eq!(state, RunState::Stopped);
-    assert!(!notes.iter().any(|note| note.contains("demagnetise")), "{notes:?}");
+    assert!(!notes.iter().any(|note| note.contains("Demagnetise")), "{notes:?}");
 
     let (state, notes, aborted_nm) = ended_by(Control::Abort);
     assert_eq!(state, RunState::Aborted);
     // The current that has magnetised the rotor, not what was left of it when somebody looked.
-    assert!(notes.iter().any(|note| note.contains("fell from 0.480 A with the drive off: demagnetise")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.contains("fell from 0.480 A with the drive off. Demagnetise")), "{notes:?}");
     assert!(stopped_nm < 0.05 * aborted_nm && aborted_nm > 0.5, "{stopped_nm} and {aborted_nm} Nm");
 }

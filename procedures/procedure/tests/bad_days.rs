@@ -138,7 +138,7 @@ fn without_its_supply_a_run_fails_and_says_what_could_not_be_read_back() {
 fn what_is_measured_and_must_not_be_ends_a_run_too() {
     let cases = [
         (MockInstrument::Joint, Trouble::OverTemperature, "temperature"),
-        (MockInstrument::Brake, Trouble::CurrentLost, "does not hold"),
+        (MockInstrument::Brake, Trouble::CurrentLost, "the supply does not reach"),
     ];
     check_all(cases, &[Safe::SafeVerified]);
 }

@@ -266,7 +266,7 @@ mod tests {
         let preview = Compensation.plan(json!({}).as_object().unwrap(), &bench).unwrap().preview(&bench);
         let refused: Vec<_> = preview.checks.iter().filter(|check| !check.ok).collect();
         assert_eq!(refused.len(), 1, "{refused:?}");
-        assert!(refused[0].detail.contains("no motor current beside a velocity") && refused[0].cure.is_some());
+        assert!(refused[0].detail.contains("does not support motor current feed-forward") && refused[0].cure.is_some());
     }
 
     #[test]
@@ -304,6 +304,6 @@ mod tests {
     #[test]
     fn friction_that_falls_towards_standstill_is_refused() {
         let fault = Compensation.plan(json!({"tau_h_nm": 0.02}).as_object().unwrap(), &joint_a()).unwrap_err();
-        assert!(fault.to_string().contains("tau_h_nm is below"), "{fault}");
+        assert!(fault.to_string().contains("tau_h_nm must not be below tau_c_nm"), "{fault}");
     }
 }

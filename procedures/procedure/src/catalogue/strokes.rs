@@ -207,8 +207,8 @@ mod tests {
     #[test]
     fn what_cannot_be_held_is_refused_with_a_cure() {
         for (given, said) in [
-            (json!({"low_speed_rad_s": 200.0}), "low_speed_rad_s = 200 is above"),
-            (json!({"travel_rad": 0.1}), "raise travel_rad"),
+            (json!({"low_speed_rad_s": 200.0}), "low_speed_rad_s = 200 must be below"),
+            (json!({"travel_rad": 0.1}), "increase travel_rad"),
         ] {
             let fault = plan(given).unwrap_err().to_string();
             assert!(fault.contains(said), "{fault}");

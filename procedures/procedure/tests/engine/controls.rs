@@ -18,7 +18,7 @@ fn stop_unloads_the_brake_while_turning() {
         let done = play_controlled(&[(at_s, Control::Stop)]);
         done.check_safe(RunState::Stopped).check_no_cogging();
         assert_eq!(done.end.reason.as_deref(), Some("stopped by the operator"));
-        assert!(!done.ledger.notes().iter().any(|note| note.contains("demagnetise")), "{:?}", done.ledger.notes());
+        assert!(!done.ledger.notes().iter().any(|note| note.contains("Demagnetise")), "{:?}", done.ledger.notes());
     }
 }
 
@@ -38,12 +38,12 @@ fn abort_comes_to_rest_within_its_ramp() {
         let brake = done.world.commands(|call| matches!(call, Call::SetCurrent(_) | Call::Disarm));
         let held = brake.iter().take_while(|(_, call)| *call != Call::Disarm).last();
         let told = match held {
-            Some((_, Call::SetCurrent(a))) if *a > 0.0 => format!("fell from {a:.3} A with the drive off: demagnetise"),
+            Some((_, Call::SetCurrent(a))) if *a > 0.0 => format!("fell from {a:.3} A with the drive off. Demagnetise"),
             _ => String::new(),
         };
         let falls = brake.iter().filter(|(sent_s, call)| *sent_s > 100.0 + at_s + 0.1 && *call != Call::Disarm).count();
         let notes = done.ledger.notes().join("; ");
-        assert!(notes.contains(&told) && told.is_empty() != notes.contains("demagnetise"), "step {step}: {notes}");
+        assert!(notes.contains(&told) && told.is_empty() != notes.contains("Demagnetise"), "step {step}: {notes}");
         assert_eq!(falls, if told.is_empty() { 0 } else { 5 }, "step {step}: {brake:?}");
     }
 }
@@ -151,5 +151,5 @@ fn a_creeping_plan_is_stopped_without_speeding_up() {
     assert!(done.end.duration_s < 6.0, "{} s", done.end.duration_s);
     let fastest = done.world.commands(|call| matches!(call, Call::SetVelocity(v) if v.abs() > 4.0));
     assert!(fastest.is_empty(), "{fastest:?}");
-    assert!(done.ledger.notes().iter().any(|note| note.contains("demagnetise")));
+    assert!(done.ledger.notes().iter().any(|note| note.contains("Demagnetise")));
 }

@@ -28,7 +28,11 @@ fn a_warm_up_ends_when_the_joint_is_steady() {
     done.check_safe(RunState::Completed);
     // 20 °C/min · exp(−t/60 s) falls below the bound of 0.3 °C/min at 252 s.
     assert!((252.0..300.0).contains(&done.end.duration_s), "{} of {} s", done.end.duration_s, plan.duration_s());
-    assert!(done.ledger.notes().iter().any(|note| note.starts_with("warm:")), "{:?}", done.ledger.notes());
+    assert!(
+        done.ledger.notes().iter().any(|note| note.starts_with("Steady state reached: ")),
+        "{:?}",
+        done.ledger.notes()
+    );
 }
 
 #[test]

@@ -142,7 +142,7 @@ fn strokes_draw_a_line_through_each_direction() {
     assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.summary);
     let advice = found.advice.unwrap();
     assert!(
-        advice.contains("no significant linear effect in positive motion (r² 0.") && advice.contains("diagnose"),
+        advice.contains("no significant linear effect in positive motion (r² 0.") && advice.contains("Diagnose"),
         "{advice}"
     );
 }

@@ -154,10 +154,10 @@ fn a_bench_without_brake_can_do_with_one_load() {
     let mut facts = joint_a();
     (facts.has_brake, facts.has_torque_sensor) = (false, false);
     let refused = Friction.plan(&Map::new(), &facts).unwrap_err();
-    assert_eq!(refused.to_string(), "bench a has no brake: choose load_levels = 1, or connect it");
+    assert_eq!(refused.to_string(), "bench a has no brake: set load_levels = 1, or connect it");
     let arm = BenchFacts { amperes_per_volt: Some(1.0), ..facts.clone() };
     let refused = Friction.plan(&Map::new(), &arm).unwrap_err();
-    assert_eq!(refused.to_string(), "bench a has no brake: puma_friction is the procedure for an arm's axis");
+    assert_eq!(refused.to_string(), "bench a has no brake: use puma_friction for the axis of an arm");
     let free = plan(json!({"load_levels": 1}), &facts);
     assert_eq!(free.top_brake_current_a(), 0.0);
     assert!(free.preview(&facts).is_allowed());
@@ -168,7 +168,7 @@ fn a_bench_without_brake_can_do_with_one_load() {
 fn speeds_that_contradict_are_refused() {
     let given = json!({"top_speed_rad_s": 20.0});
     let refused = Friction.plan(given.as_object().unwrap(), &joint_a()).unwrap_err();
-    assert!(refused.to_string().contains("raise top_speed_rad_s"), "{refused}");
+    assert!(refused.to_string().contains("increase top_speed_rad_s"), "{refused}");
 }
 
 proptest::proptest! {

@@ -46,7 +46,7 @@ fn what_cannot_be_measured_is_refused_with_its_cure() {
     let refusal = |given: serde_json::Value, facts: &BenchFacts| {
         PumaFriction.plan(given.as_object().unwrap(), facts).unwrap_err().to_string()
     };
-    assert!(refusal(json!({}), &joint_a()).contains("bench a does not read motor current as volts"));
-    assert!(refusal(json!({"top_speed_rad_s": 0.1}), &puma()).contains("not well above lowest_speed_rad_s"));
-    assert!(refusal(json!({"arc_rad": 0.03}), &puma()).contains("is not held on this arc"));
+    assert!(refusal(json!({}), &joint_a()).contains("bench a does not measure the motor current as shunt voltage"));
+    assert!(refusal(json!({"top_speed_rad_s": 0.1}), &puma()).contains("is too close to lowest_speed_rad_s"));
+    assert!(refusal(json!({"arc_rad": 0.03}), &puma()).contains("cannot be held on this arc"));
 }
