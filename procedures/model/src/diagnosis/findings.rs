@@ -13,7 +13,7 @@ use crate::residual_analysis::{lack_of_fit, noise_floor};
 use crate::selection::advance::SelectionStep;
 use crate::selection::model_selection::ModelSelection;
 use crate::selection::removal::Withdrawn;
-use crate::thresholds::{FLOOR_RATIO, NEGLIGIBLE_RMS, REPEATABLE_SHARE, STRUCTURE_SHARE};
+use crate::thresholds::{FLOOR_RATIO, REPEATABLE_SHARE, STRUCTURE_SHARE};
 use crate::{ModelError, ModelSpec, Options};
 use jointbench_instrument::Kind;
 
@@ -149,11 +149,7 @@ impl<'p> Findings<'p> {
 
     /// What is left is small beside what was measured, however much of it repeats.
     pub fn is_negligible(&self) -> bool {
-        let main = &self.end().main;
-        let response = main.response();
-        let mean = response.iter().sum::<f64>() / response.len() as f64;
-        let spread = (response.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / response.len() as f64).sqrt();
-        self.start.prepared.kind != Kind::Encoder && self.end_held_out_rms < NEGLIGIBLE_RMS * spread
+        self.end().main.is_negligible(self.end_held_out_rms, self.start.prepared.kind)
     }
 
     /// Added effects that are still there, the most important first: by what the last model loses without them, so

@@ -5,6 +5,8 @@ use crate::effect::{Columns, Effect, Form, ShapeSearch};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
+use crate::thresholds::NEGLIGIBLE_RMS;
+use jointbench_instrument::Kind;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -140,6 +142,14 @@ impl<'p> LinearModel<'p> {
             }
         }
         held
+    }
+
+    /// An error of this RMS is negligible beside what was measured. An encoder's own errors are what is measured.
+    pub fn is_negligible(&self, rms: f64, kind: Kind) -> bool {
+        let response = self.response();
+        let mean = response.iter().sum::<f64>() / response.len() as f64;
+        let spread = (response.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / response.len() as f64).sqrt();
+        kind != Kind::Encoder && rms < NEGLIGIBLE_RMS * spread
     }
 
     /// The response without what is given.

@@ -46,6 +46,9 @@ pub fn step<'p>(
     let ground = PartialRegression::of(now);
     let PartialRegression { basis, residual, energy, .. } = &ground;
     let energy = *energy;
+    if now.is_negligible((energy / problem.rows() as f64).sqrt(), bar.kind) {
+        return None;
+    }
     let is_open = |id| !now.contains(id) && !withdrawn.contains(&id);
     let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
     let gains: Vec<Orthogonalized> = open.par_iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();

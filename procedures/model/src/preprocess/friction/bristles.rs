@@ -1,7 +1,7 @@
 //! The direction of motion as contacts feel it: a state that turns over a way, not in an instant.
 //!
 //! Elements that slip at ±1 (stops) and ones that yield exponentially (Dahl) with reaches from the encoder's step to a
-//! quarter of the usual way between two reversals. What the torque shows at reversals weighs them.
+//! usual way between two reversals or a turn. What the torque shows at reversals weighs them.
 
 use crate::hysteresis_operators::{dahl, stop};
 use crate::linear::basis::{Basis, dot};
@@ -9,11 +9,12 @@ use crate::linear::non_negative::non_negative;
 use crate::preprocess::TELLING;
 use crate::report::fit::Bristles;
 use crate::view::Start;
+use std::f64::consts::TAU;
 
 /// Reaches that are tried.
 const REACHES: usize = 9;
-/// The longest, as a share of the usual way between two reversals.
-const LONGEST: f64 = 0.25;
+/// The longest of contacts that turn [rad]: after a turn they are others.
+const TURN: f64 = TAU;
 /// The shortest, in steps of the encoder, as a share of the usual way and of the longest.
 const STEPS: f64 = 3.0;
 const LEAST_OF_WAY: f64 = 1e-5;
@@ -75,7 +76,7 @@ fn zigzag(x: &[f64], depth: f64) -> Vec<usize> {
 }
 
 /// Reaches that reversals of this motion can tell. None where it never turns.
-pub fn reaches(position: &[f64], starts: &[usize], turns: &[usize], step: f64) -> Vec<f64> {
+pub fn reaches(position: &[f64], starts: &[usize], turns: &[usize], step: f64, slides: bool) -> Vec<f64> {
     if turns.is_empty() {
         return Vec::new();
     }
@@ -84,7 +85,7 @@ pub fn reaches(position: &[f64], starts: &[usize], turns: &[usize], step: f64) -
     stations.sort_unstable();
     let way = quantile(stations.windows(2).map(|w| (position[w[1]] - position[w[0]]).abs()), USUAL);
     let shortest = (STEPS * step).max(LEAST_OF_WAY * way);
-    let longest = (LONGEST * way).max(8.0 * shortest);
+    let longest = if slides { way } else { way.min(TURN) }.max(8.0 * shortest);
     crate::effects::log_grid(shortest.max(LEAST_OF_LONGEST * longest), longest, REACHES)
 }
 
@@ -136,7 +137,7 @@ mod tests {
     #[test]
     fn the_elements_of_a_contact_are_found() {
         let x: Vec<f64> = (0..4000).map(|i| (f64::from(i) * 0.01).sin() * (1.0 + f64::from(i) * 1e-4)).collect();
-        let reaches = reaches(&x, &[0], &turns(&x, &[0], 1e-5), 1e-5);
+        let reaches = reaches(&x, &[0], &turns(&x, &[0], 1e-5), 1e-5, false);
         let states = states(&x, &[0], &reaches);
         let torque: Vec<f64> = (0..x.len()).map(|i| 0.3 * states[5][i] + 0.1 * states[14][i] + 0.02 * x[i]).collect();
         let found = weights(&states, &[x], &torque);

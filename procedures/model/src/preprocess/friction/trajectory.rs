@@ -53,7 +53,10 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
     let position = work.signals.find(Signal::Position).unwrap_or_default();
     let reaches = match given {
         Some(given) => given.reaches_rad.clone(),
-        None => bristles::reaches(position, &work.even.starts, &work.turns, work.encoder_step),
+        None => {
+            let slides = run.meta().motion == Motion::Linear;
+            bristles::reaches(position, &work.even.starts, &work.turns, work.encoder_step, slides)
+        }
     };
     let states = bristles::states(position, &work.even.starts, &reaches);
     let layout = Layout::new(&work, &states, cutoff_hz, every, run);
