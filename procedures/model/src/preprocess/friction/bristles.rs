@@ -1,7 +1,7 @@
 //! The direction of motion as contacts feel it: a state that turns over a way, not in an instant.
 //!
 //! Elements that slip at ±1 (stops) and ones that yield exponentially (Dahl) with reaches from the encoder's step to a
-//! usual way between two reversals or a turn. What the torque shows at reversals weighs them.
+//! quarter of the range of the motion, or of a turn. What the torque shows at reversals weighs them.
 
 use crate::hysteresis_operators::{dahl, stop};
 use crate::linear::basis::{Basis, dot};
@@ -13,17 +13,16 @@ use std::f64::consts::TAU;
 
 /// Reaches that are tried.
 const REACHES: usize = 9;
-/// The longest of contacts that turn [rad]: after a turn they are others.
+/// The longest, as a share of the range of the motion. Of contacts that turn a turn [rad] is all of it: they come again.
+const LONGEST: f64 = 0.25;
 const TURN: f64 = TAU;
-/// The shortest, in steps of the encoder, as a share of the usual way and of the longest.
+/// The shortest, in steps of the encoder, as a share of the range and of the longest.
 const STEPS: f64 = 3.0;
-const LEAST_OF_WAY: f64 = 1e-5;
+const LEAST_OF_RANGE: f64 = 1e-5;
 const LEAST_OF_LONGEST: f64 = 1e-4;
 /// A way back counts from so many steps of the encoder, and from this share of the whole range.
 const TURN_STEPS: f64 = 6.0;
 const TURN_SHARE: f64 = 1e-3;
-/// The usual way is longer than this share of all.
-const USUAL: f64 = 0.75;
 
 /// What a share of the values is below.
 pub fn quantile(values: impl IntoIterator<Item = f64>, share: f64) -> f64 {
@@ -76,16 +75,14 @@ fn zigzag(x: &[f64], depth: f64) -> Vec<usize> {
 }
 
 /// Reaches that reversals of this motion can tell. None where it never turns.
-pub fn reaches(position: &[f64], starts: &[usize], turns: &[usize], step: f64, slides: bool) -> Vec<f64> {
+pub fn reaches(position: &[f64], turns: &[usize], step: f64, slides: bool) -> Vec<f64> {
     if turns.is_empty() {
         return Vec::new();
     }
-    let ends = starts.iter().copied().chain(starts.iter().skip(1).map(|s| s - 1)).chain([position.len() - 1]);
-    let mut stations: Vec<usize> = turns.iter().copied().chain(ends).collect();
-    stations.sort_unstable();
-    let way = quantile(stations.windows(2).map(|w| (position[w[1]] - position[w[0]]).abs()), USUAL);
-    let shortest = (STEPS * step).max(LEAST_OF_WAY * way);
-    let longest = if slides { way } else { way.min(TURN) }.max(8.0 * shortest);
+    let (low, high) = position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    let range = if slides { high - low } else { TURN.min(high - low) };
+    let shortest = (STEPS * step).max(LEAST_OF_RANGE * range);
+    let longest = (LONGEST * range).max(8.0 * shortest);
     crate::effects::log_grid(shortest.max(LEAST_OF_LONGEST * longest), longest, REACHES)
 }
 
@@ -137,7 +134,7 @@ mod tests {
     #[test]
     fn the_elements_of_a_contact_are_found() {
         let x: Vec<f64> = (0..4000).map(|i| (f64::from(i) * 0.01).sin() * (1.0 + f64::from(i) * 1e-4)).collect();
-        let reaches = reaches(&x, &[0], &turns(&x, &[0], 1e-5), 1e-5, false);
+        let reaches = reaches(&x, &turns(&x, &[0], 1e-5), 1e-5, false);
         let states = states(&x, &[0], &reaches);
         let torque: Vec<f64> = (0..x.len()).map(|i| 0.3 * states[5][i] + 0.1 * states[14][i] + 0.02 * x[i]).collect();
         let found = weights(&states, &[x], &torque);

@@ -55,7 +55,7 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
         Some(given) => given.reaches_rad.clone(),
         None => {
             let slides = run.meta().motion == Motion::Linear;
-            bristles::reaches(position, &work.even.starts, &work.turns, work.encoder_step, slides)
+            bristles::reaches(position, &work.turns, work.encoder_step, slides)
         }
     };
     let states = bristles::states(position, &work.even.starts, &reaches);
