@@ -154,7 +154,8 @@ impl Solution {
 /// The factor that lies furthest below zero of those that cannot be negative, where it does by chance: what is surely negative
 /// contradicts physics, and has to be told.
 fn beyond(model: &LinearModel, ground: &Ground) -> Option<usize> {
-    const CHANCE: f64 = 2.0;
+    /// Standard errors that chance makes of a few factors in hardly any run.
+    const CHANCE: f64 = 3.0;
     let names =
         model.terms.iter().flat_map(|term| term.form.linear.iter().map(move |name| term.effect.info().bounds(name).0));
     let factors = ground.factors();

@@ -69,13 +69,21 @@ fn an_encoder_has_waves_over_the_turn_and_over_the_pole_pair_and_a_play() {
 fn a_stiff_joint_lacks_nothing_and_a_soft_one_hardens() {
     assert_eq!(found(Joint::JointA, "stiffness", json!({"load_levels": 4})), Vec::<String>::new());
     // With as many loads as the procedure takes unasked, whatever its formula left over would be named.
-    assert_eq!(found(Joint::JointB, "stiffness", json!({})), ["hardening"]);
+    // A delay of its sensors is named beside it.
+    assert_eq!(found(Joint::JointB, "stiffness", json!({})), ["delay", "hardening"]);
 }
 
 #[test]
 fn a_joint_that_starts_from_rest_shows_its_contacts_and_nothing_that_stands_for_them() {
     for joint in [Joint::JointA, Joint::JointB] {
-        assert_eq!(found(joint, "presliding", json!({})), ["presliding"], "{joint:?}");
+        // It takes 49 % there of joint B, where half is asked for: it is told, and not named.
+        let rest = run(joint, &[], "presliding", json!({}));
+        match joint {
+            Joint::JointA => assert_eq!(shown(&rest), ["presliding"]),
+            _ => {
+                assert!(diagnosis(&rest).summary.contains("presliding: it would take"), "{}", diagnosis(&rest).summary)
+            }
+        }
         // The drive tells the speed 2 ms later than the angle, and slow friction is no delay either.
         assert_eq!(shown(&run(joint, &["stribeck"], "presliding", json!({}))), ["presliding"], "{joint:?}");
         let breakaway = run(joint, &[], "breakaway", json!({}));
@@ -90,7 +98,7 @@ fn teeth_on_the_way_from_rest_are_told_without_what_is_impossible() {
     // A Stribeck effect of −20 mNm had stayed when what made it possible was dropped beside it.
     let run = seeded(9314, Joint::JointB, &["cogging"], "breakaway", json!({}));
     let found: Vec<String> = diagnosis(&run).suggestions.into_iter().map(|s| s.effect).collect();
-    assert_eq!(found[0], "cogging", "{found:?}");
+    assert!(found.contains(&"cogging".to_owned()), "{found:?}");
     assert!(!found.contains(&"stribeck".to_owned()), "{found:?}");
 }
 
