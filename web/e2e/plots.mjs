@@ -91,7 +91,7 @@ export async function followTrend(page, base) {
 	await panel.waitFor({ state: 'detached' });
 }
 
-/** Colours the residual map by its values on a linear scale; the cells say what they are. */
+/** Colours the residual map by its values on a linear scale. */
 export async function shadeMap(page) {
 	const section = page.locator('section', { has: page.getByRole('heading', { name: 'Where the model is wrong' }) });
 	const fills = () => section.getByRole('application').locator('path').evaluateAll((cells) => cells.map((cell) => cell.getAttribute('fill')).join());

@@ -206,7 +206,7 @@ await tell('walk', async () => {
 	expect(name === `run-${run + 1}.csv` && /^time_s,/.test(table), `the run leaves as ${name}: ${table.slice(0, 60)}`);
 	expect(report.includes(`Run ${run + 1}`) && report.includes('SIMULATED'), `the report does not name its run: ${report.slice(0, 200)}`);
 	const brought = await bringBack(page, where.base, run + 1, table);
-	expect(new RegExp(`samples are (those of|identical to those of) run #${run + 1}`).test(brought.said), `a copy is not told: ${brought.said}`);
+	expect(new RegExp(`samples are those of run #${run + 1}: a copy`).test(brought.said), `a copy is not told: ${brought.said}`);
 	expect(/of a simulated bench/.test(brought.said), `the copy of a simulated run is not called simulated: ${brought.said}`);
 	expect(/another unit or sign/.test(brought.said), `a current in milliampere is not told: ${brought.said}`);
 	expect(brought.verdict === 'contradiction' && brought.effects.length === 0, `columns contradict each other, but the page says ${brought.verdict} and offers ${brought.effects.join(', ')}`);
