@@ -1,7 +1,7 @@
 //! Fitting a model to a run, and holding a fit against another run.
 
-use crate::decision::report::{form_error, presliding};
 use crate::inference::confounding;
+use crate::inference::form_error::{form_error, presliding};
 use crate::inference::intervals::intervals;
 use crate::linear::basis::dot;
 use crate::linear::condition;

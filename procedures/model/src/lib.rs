@@ -3,7 +3,6 @@
 mod allocator;
 pub mod channels;
 mod compare;
-mod decision;
 mod diagnosis;
 pub mod effect;
 pub mod effects;

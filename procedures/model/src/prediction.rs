@@ -1,8 +1,8 @@
 //! What a fit predicts on a run that is prepared as the fitted one was.
 
-use crate::decision::solution::PRESLIDING;
 use crate::preprocess::{Prepared, Problem, prepare_with};
 use crate::regression::linear_model::columns;
+use crate::regression::solution::PRESLIDING;
 use crate::report::fit::Fit;
 use crate::user_effects::find_with_own;
 use crate::view::View;

@@ -1,11 +1,11 @@
 //! What became of the effects that are not in the last model: each is silent, invisible or left out, and none is forgotten.
 
-use crate::decision::search::Refused;
 use crate::effect::{Effect, Form, Regime, ShapeSearch};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Invisible, LeftOut, Silent};
 use crate::selection::detection_limit::DetectionLimit;
 use crate::selection::model_selection::ModelSelection;
+use crate::selection::refused::Refused;
 use crate::selection::{hysteresis_stage, ramp_stage};
 
 const TOO_LARGE: &str = "only one that is larger than all that was measured would have been seen";

@@ -1,6 +1,5 @@
 //! What a selection found: the evidence for each effect, what was not found, and the verdict.
 
-use crate::decision::search::Decided;
 use crate::diagnosis::excluded_effects::ExcludedEffects;
 use crate::preprocess::Prepared;
 use crate::regression::cross_validation::held_out_rms;
@@ -10,8 +9,10 @@ use crate::report::diagnosis::{Imitated, Invisible, LeftOut, NoiseFloor, Silent,
 use crate::residual_analysis::events::{Event, Events};
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, noise_floor};
+use crate::selection;
 use crate::selection::advance::SelectionStep;
 use crate::selection::model_selection::ModelSelection;
+use crate::selection::refused::Decided;
 use crate::selection::removal::Withdrawn;
 use crate::thresholds::{FLOOR_RATIO, REPEATABLE_SHARE, STRUCTURE_SHARE};
 use crate::{ModelError, ModelSpec, Options};
@@ -49,7 +50,7 @@ impl<'p> Findings<'p> {
         most: usize,
         on_advance: &mut dyn FnMut(&SelectionStep),
     ) -> Result<Self, ModelError> {
-        let selected = ModelSelection::new(prepared, spec, options, most, on_advance)?;
+        let selected = selection::search(prepared, spec, options, most, on_advance)?;
         let others = ExcludedEffects::of(&selected);
         // The reversals of a joint are events of every repeat.
         let events = match prepared.kind {

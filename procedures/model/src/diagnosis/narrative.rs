@@ -1,6 +1,5 @@
 //! A diagnosis in plain sentences.
 
-use crate::decision::structure::Left;
 use crate::diagnosis::findings::Findings;
 use crate::effect::{Effect, Regime};
 use crate::inference::parameter_state::IMPOSSIBLE;
@@ -10,6 +9,7 @@ use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::events::Events;
 use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
+use crate::residual_analysis::structure::Left;
 use crate::selection::removal::{RemovalReason, Withdrawn};
 use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, TOLD_LOSS};
 use crate::words::{figure, list, percent, spoken_axis};

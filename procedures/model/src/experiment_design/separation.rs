@@ -3,11 +3,11 @@
 //! T-optimality (Atkinson and Fedorov 1975): the run is best on which the rival, with its parameters chosen anew to fit
 //! everything known, still cannot follow the other model.
 
-use crate::decision::solution::Solution;
 use crate::linear::basis::dot;
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::solution::Solution;
 
 /// Scatter of a measurement: what all points of a block have in common, and what each has for itself.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! A run that has not been made, at the points at which it would be judged.
 
-use crate::decision::solved::Solved;
 use crate::experiment_design::separation::predict;
 use crate::experiment_design::{Choice, Stretch};
+use crate::preprocess::memo::Memo;
 use crate::preprocess::sweeps::brake_torque_of_current;
 use crate::preprocess::{Prepared, Problem, Reduce};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -63,7 +63,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
         settled: true,
         form_error: None,
         bandwidths: Vec::new(),
-        solved: Solved::default(),
+        memo: Memo::default(),
     };
     // What the drive is follows from the response, and a part of the response may follow from it.
     problem.view.points.set(Signal::Drive, vec![0.0; rows]);

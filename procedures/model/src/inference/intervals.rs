@@ -1,6 +1,7 @@
 //! Parameters with intervals that survive autocorrelation and segment scatter: a jackknife over independent pieces.
 
-use crate::inference::parameter_state::Slot;
+use crate::inference::block_intervals;
+use crate::inference::parameter_state::{Intervals, Slot};
 use crate::inference::{changepoint, drag_remanence, harmonic_order, parameter_state};
 use crate::thresholds::TRADE_OFF_CORRELATION;
 
@@ -13,18 +14,13 @@ use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use jointbench_instrument::Motion;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-pub struct Intervals {
-    pub parameters: Vec<Parameter>,
-    pub trade_offs: Vec<TradeOff>,
-}
-
 /// Parameters of the terms with 95 % intervals.
 ///
 /// Delete-one-piece jackknife of the linearised model about the full estimate (CV3 of MacKinnon, Nielsen, Webb 2023),
 /// with Student's t at the number of pieces that a parameter really rests on: a Stribeck speed is decided by the few
 /// slowest segments, however many fast ones there are (Carter, Schnepel, Steigerwald 2017).
 pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
-    if let Some(found) = crate::decision::intervals::intervals(terms, motion) {
+    if let Some(found) = block_intervals::intervals(terms, motion) {
         return found;
     }
     let linear = terms.linear();

@@ -1,8 +1,10 @@
 //! How well a fitted model knows its parameters, and where it holds.
 
+pub(crate) mod block_intervals;
 pub(crate) mod changepoint;
 pub(crate) mod confounding;
 pub(crate) mod drag_remanence;
+pub(crate) mod form_error;
 pub(crate) mod harmonic_order;
 pub(crate) mod intervals;
 pub(crate) mod parameter_state;

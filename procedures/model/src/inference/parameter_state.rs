@@ -1,9 +1,15 @@
 //! What an interval means, said plainly.
 
 use crate::effect::{Shape, ShapeSearch};
-use crate::report::fit::{Parameter, ParameterState};
+use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use crate::thresholds::WIDE_INTERVAL;
 use crate::words::figure;
+
+/// What a fit knows of its parameters.
+pub struct Intervals {
+    pub parameters: Vec<Parameter>,
+    pub trade_offs: Vec<TradeOff>,
+}
 
 /// One parameter of the linearised model.
 pub struct Slot<'a> {

@@ -1,8 +1,10 @@
 //! Linear least squares: an orthonormal basis for selection, Gram matrices of blocks for everything that is repeated
 //! many times, and the condition of the columns by QR for the fit that is shown.
 
+pub(crate) mod added_columns;
 pub(crate) mod augmented_gram;
 pub(crate) mod basis;
+pub(crate) mod blocked_ridge;
 pub(crate) mod cholesky;
 pub(crate) mod condition;
 pub(crate) mod gram;

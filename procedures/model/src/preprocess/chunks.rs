@@ -1,8 +1,8 @@
 //! Samples in model quantities, and their means over chunks.
 
-use crate::decision::solved::Solved;
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::{blocks, replicates, segments};
+use crate::preprocess::memo::Memo;
 use crate::preprocess::{Problem, Reduce, residual_acceleration};
 use crate::signal::{Signal, Signals};
 use crate::view::{Constants, View};
@@ -195,7 +195,7 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
         settled,
         form_error: None,
         bandwidths: Vec::new(),
-        solved: Solved::default(),
+        memo: Memo::default(),
     };
     replicates::believe(&mut problem, &of, inputs);
     problem

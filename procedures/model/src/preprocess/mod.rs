@@ -12,12 +12,12 @@ pub(crate) mod friction;
 pub(crate) mod independent_blocks;
 pub(crate) mod initial_hysteresis_state;
 pub(crate) mod loading_history;
+pub(crate) mod memo;
 pub(crate) mod residual_acceleration;
 pub(crate) mod stiffness;
 pub(crate) mod sweeps;
 pub(crate) mod unknown_columns;
 
-use crate::decision::solved::Solved;
 use crate::effect::Regime;
 use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::checks::{metadata, unit_mismatch};
@@ -25,6 +25,7 @@ pub use crate::preprocess::design::replicates::Unlike;
 pub use crate::preprocess::design::segments::stretches;
 use crate::preprocess::filter::{ABREAST, LowPass};
 use crate::preprocess::form_error::FormError;
+use crate::preprocess::memo::Memo;
 use crate::report::fit::{Bristles, GivenConstant, Preparation};
 use crate::signal::Signal;
 pub use crate::signal::may_cause;
@@ -66,8 +67,8 @@ pub struct Problem {
     pub form_error: Option<Arc<FormError>>,
     /// The same run at other corners of its filter: what they differ by nobody knows better.
     pub bandwidths: Vec<Problem>,
-    /// Models of it that were solved last.
-    pub(crate) solved: Solved,
+    /// Solutions of models of it that were asked for last.
+    pub(crate) memo: Memo,
 }
 
 impl Problem {

@@ -1,8 +1,8 @@
 //! The error of a model on folds that were left out of its fit.
 
-use crate::decision::solution::Solution;
 use crate::linear::gram::BlockGrams;
 use crate::regression::linear_model::LinearModel;
+use crate::regression::solution::Solution;
 
 /// Held-out squared error of each fold.
 pub fn held_out(terms: &LinearModel) -> Vec<f64> {

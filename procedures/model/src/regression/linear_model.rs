@@ -1,6 +1,5 @@
 //! A model at work: effects with their forms, shapes and columns at the rows of a problem.
 
-use crate::decision::solution::Solution;
 use crate::effect::{Columns, Effect, Form, ShapeSearch};
 use crate::linear::basis::{Basis, dot};
 use crate::linear::cholesky::Cholesky;
@@ -31,7 +30,7 @@ impl<'e> Term<'e> {
     }
 
     /// Shape parameters that are refined continuously.
-    fn free(&self) -> impl Iterator<Item = usize> {
+    pub(in crate::regression) fn free(&self) -> impl Iterator<Item = usize> {
         let free: Vec<usize> = (0..self.shape.len()).filter(|i| self.form.shape[*i].is_smooth()).collect();
         free.into_iter()
     }
@@ -161,47 +160,6 @@ impl<'p> LinearModel<'p> {
         self.terms.iter().flat_map(|t| t.columns.iter().map(Vec::as_slice)).collect()
     }
 
-    pub fn linear(&self) -> Linear {
-        if let Some(solution) = Solution::of(self) {
-            return solution.linear(self);
-        }
-        let columns = self.columns();
-        let response = self.response();
-        let basis = Basis::of(self.terms.iter().flat_map(|t| &t.columns));
-        let residual = basis.rest(&response);
-        let p = columns.len();
-        let mut gram = vec![0.0; p * p];
-        for a in 0..p {
-            for b in 0..=a {
-                gram[a * p + b] = dot(columns[a], columns[b]);
-                gram[b * p + a] = gram[a * p + b];
-            }
-        }
-        let explained: Vec<f64> = response.iter().zip(&residual).map(|(y, e)| y - e).collect();
-        let side: Vec<f64> = columns.iter().map(|c| dot(c, &explained)).collect();
-        let flat = Cholesky::new(&gram, p, 0.0).solve(&side);
-        let mut next = flat.into_iter();
-        let factors = self.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
-        let sse = dot(&residual, &residual);
-        Linear { factors, residual, sse }
-    }
-
-    /// Columns of the model and the directions in which its shape parameters would move it: what a new effect must
-    /// explain more than.
-    pub fn tangent(&self) -> Basis {
-        let mut basis = Basis::of(self.terms.iter().flat_map(|t| &t.columns));
-        if self.terms.iter().all(|t| t.free().next().is_none()) {
-            return basis;
-        }
-        let linear = self.linear();
-        for (term, factors) in self.terms.iter().zip(&linear.factors) {
-            for slope in slopes(term, factors, self.problem) {
-                basis.push(&slope);
-            }
-        }
-        basis
-    }
-
     /// Slopes of the model in every free shape parameter, term by term.
     pub fn slopes(&self, factors: &[Vec<f64>]) -> Vec<(usize, usize, Vec<f64>)> {
         let mut out = Vec::new();
@@ -234,7 +192,7 @@ impl<'p> LinearModel<'p> {
 /// becomes as a row is linear, so that their sum becomes rows once.
 ///
 /// [`Shape::moved`]: crate::effect::Shape::moved
-fn slopes(term: &Term, factors: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
+pub(in crate::regression) fn slopes(term: &Term, factors: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
     const STEP: f64 = 1e-4;
     let slope = |k: usize| {
         let at = |sign: f64| {

@@ -1,12 +1,12 @@
 //! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
 
-use crate::decision::solution::PRESLIDING;
 use crate::effect::Regime;
 use crate::preprocess::{Prepared, Problem};
 use crate::regression::candidates::CandidateSet;
 use crate::regression::canonical_fit::{enter, lay};
 use crate::regression::hysteresis_form::form_of;
 use crate::regression::linear_model::{LinearModel, Term, columns};
+use crate::regression::solution::PRESLIDING;
 use crate::report::diagnosis::Invisible;
 use crate::{Effect, ModelError, ModelSpec, Options};
 
@@ -106,7 +106,7 @@ impl<'p> TwoStageModel<'p> {
         }
         let ids: Vec<&str> = laid.iter().map(|effect| effect.info().id).collect();
         let library = CandidateSet::only(spec, assembly.main.problem, prepared.regimes(), &ids);
-        assembly.main = crate::decision::layout::lay(&assembly.main, &laid, &library);
+        assembly.main = crate::regression::layout::lay(&assembly.main, &laid, &library);
         Ok(assembly)
     }
 

@@ -124,8 +124,8 @@ impl<'p> Events<'p> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::decision::solved::Solved;
     use crate::preprocess::Reduce;
+    use crate::preprocess::memo::Memo;
     use crate::signal::Signals;
     use crate::view::View;
     use std::collections::HashSet;
@@ -157,7 +157,7 @@ mod tests {
             settled: false,
             form_error: None,
             bandwidths: Vec::new(),
-            solved: Solved::default(),
+            memo: Memo::default(),
         };
         Events::of(&problem, &residual).find()
     }

@@ -2,8 +2,10 @@
 
 pub(crate) mod acceptance;
 pub(crate) mod advance;
+pub(crate) mod block_limits;
 pub(crate) mod detection_limit;
 pub(crate) mod equivalence;
+pub(crate) mod evidence_search;
 pub(crate) mod floating_search;
 pub(crate) mod forward_step;
 pub(crate) mod hysteresis_stage;
@@ -12,4 +14,26 @@ pub(crate) mod offset_terms;
 pub(crate) mod omitted_variable_bias;
 pub(crate) mod pruning;
 pub(crate) mod ramp_stage;
+pub(crate) mod refused;
 pub(crate) mod removal;
+pub(crate) mod staged_search;
+
+use crate::preprocess::Prepared;
+use crate::selection::advance::SelectionStep;
+use crate::selection::model_selection::ModelSelection;
+use crate::{ModelError, ModelSpec, Options};
+
+/// Searches for at most `most` missing effects: by evidence where samples are judged, else in stages. `on_advance` sees every move
+/// when it is made.
+pub(crate) fn search<'p>(
+    prepared: &'p Prepared,
+    spec: &'p ModelSpec,
+    options: &Options,
+    most: usize,
+    on_advance: &mut dyn FnMut(&SelectionStep),
+) -> Result<ModelSelection<'p>, ModelError> {
+    match prepared.main.form_error {
+        Some(_) => evidence_search::search(prepared, spec, options, most, on_advance),
+        None => staged_search::search(prepared, spec, options, most, on_advance),
+    }
+}

@@ -1,6 +1,5 @@
 //! Rows of a trajectory at one corner of its filter, and what stands beside every model there.
 
-use crate::decision::solved::Solved;
 use crate::linear::basis::dot;
 use crate::preprocess::design::replicates::{Same, are_apart};
 use crate::preprocess::design::{blocks, replicates, segments};
@@ -9,6 +8,7 @@ use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
 use crate::preprocess::friction::bristles;
 use crate::preprocess::friction::signals::{Work, pad};
 use crate::preprocess::friction::work_rate::Even;
+use crate::preprocess::memo::Memo;
 use crate::preprocess::{Problem, Reduce};
 use crate::signal::Signal;
 use crate::view::View;
@@ -127,7 +127,7 @@ impl Layout {
             settled: false,
             form_error: Some(Arc::new(self.form_error(work, view))),
             bandwidths: Vec::new(),
-            solved: Solved::default(),
+            memo: Memo::default(),
         };
         let of = problem.repeat.clone();
         replicates::believe(&mut problem, &of, &[Signal::Velocity, Signal::Load].map(Same::Value));

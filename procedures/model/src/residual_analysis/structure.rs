@@ -1,15 +1,16 @@
 //! What no effect of the library takes: functions of an axis, a line in time, what neighbouring moments have in common.
 
-use crate::decision::evidence::errors;
-use crate::decision::functions::{Functions, functions};
-use crate::decision::ground::{Ground, ranges};
-use crate::decision::solution::{DELAY, Solution, beside, effect_columns};
+use crate::linear::added_columns::Added;
 use crate::linear::basis::dot;
+use crate::linear::blocked_ridge::{BlockedRidge, ranges};
 use crate::linear::cholesky::Cholesky;
 use crate::preprocess::Problem;
 use crate::preprocess::form_error::Lives;
 use crate::preprocess::friction::bristles::quantile;
+use crate::regression::evidence::errors;
+use crate::regression::solution::{DELAY, Solution, beside, effect_columns};
 use crate::regression::two_stage_model::TwoStageModel;
+use crate::residual_analysis::functions::{Functions, functions};
 use crate::signal::Signal;
 use crate::thresholds::{LEFT_ERRORS, LEFT_SHARE, TIME_ERRORS};
 use rayon::prelude::*;
@@ -39,10 +40,10 @@ pub struct Left {
 /// What remains, where it is more than chance. `end` is the last model of a search that began at `start`.
 pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> Option<Left> {
     let model = &end.main;
-    let ground = &solution.ground;
+    let ridge = &solution.ridge;
     let all = functions(model.problem);
     let judged: Vec<(f64, f64)> =
-        all.par_iter().map(|axis| taken(ground, axis)).map(|gains| sized(&gains, ground)).collect();
+        all.par_iter().map(|axis| taken(ridge, axis)).map(|gains| sized(&gains, ridge)).collect();
     let axes = all.iter().zip(&judged).map(|(axis, (share, surely))| (Some(axis), axis.over.clone(), *share, *surely));
     let shows = |share: f64, surely: f64, least: f64| share > LEFT_SHARE && surely > least;
     let mut found: Vec<(Option<&Functions>, Vec<Signal>, f64)> =
@@ -65,21 +66,21 @@ pub fn left(start: &TwoStageModel, end: &TwoStageModel, solution: &Solution) -> 
     Some(Left { over, share, is_all })
 }
 
-fn taken(ground: &Ground, axis: &Functions) -> Vec<f64> {
+fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
     if axis.columns.is_empty() {
-        return vec![0.0; ground.blocks.len()];
+        return vec![0.0; ridge.blocks.len()];
     }
     let scale = |c: &Vec<f32>| c.iter().map(|v| v * v).sum::<f32>() > 0.0;
     let columns: Vec<&Vec<f32>> = axis.columns.iter().filter(|c| scale(c)).collect();
-    let added = ground.added(&columns);
-    let of = |ridge: &f64| added.gains(*ridge, |_| true).iter().map(|gain| gain.held_out).collect::<Vec<f64>>();
+    let added = Added::new(ridge, &columns);
+    let of = |strength: &f64| added.gains(*strength, |_| true).iter().map(|gain| gain.held_out).collect::<Vec<f64>>();
     let all = RIDGES.iter().map(of);
     all.max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum())).unwrap_or_default()
 }
 
 /// Gains of blocks as a share of the error, and in their own standard errors.
-fn sized(gains: &[f64], ground: &Ground) -> (f64, f64) {
-    (gains.iter().sum::<f64>() / ground.loss().max(f64::MIN_POSITIVE), errors(gains))
+fn sized(gains: &[f64], ridge: &BlockedRidge) -> (f64, f64) {
+    (gains.iter().sum::<f64>() / ridge.loss().max(f64::MIN_POSITIVE), errors(gains))
 }
 
 /// One function beside the given model predicts held-out data clearly better than the whole last model does.
@@ -96,11 +97,11 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
     });
     columns.extend(beside.error.into_iter().map(|(_, column)| column));
     columns.extend(beside.relatives);
-    let ridge = Some(solution.ground.ridge);
-    let ground = Ground::new(&columns, &plain.response(), &solution.weight, &plain.problem.block, ridge);
-    let with: Vec<f64> = ground.losses.iter().zip(taken(&ground, axis)).map(|(loss, gain)| loss - gain).collect();
-    let better: Vec<f64> = solution.ground.losses.iter().zip(&with).map(|(end, with)| end - with).collect();
-    with.iter().sum::<f64>() < (1.0 - LEFT_SHARE) * solution.ground.loss() && errors(&better) > LEFT_ERRORS
+    let strength = Some(solution.ridge.strength);
+    let ridge = BlockedRidge::new(&columns, &plain.response(), &solution.weight, &plain.problem.block, strength);
+    let with: Vec<f64> = ridge.losses.iter().zip(taken(&ridge, axis)).map(|(loss, gain)| loss - gain).collect();
+    let better: Vec<f64> = solution.ridge.losses.iter().zip(&with).map(|(end, with)| end - with).collect();
+    with.iter().sum::<f64>() < (1.0 - LEFT_SHARE) * solution.ridge.loss() && errors(&better) > LEFT_ERRORS
 }
 
 /// A weighted residual without what stands far out.

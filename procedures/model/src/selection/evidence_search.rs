@@ -4,70 +4,29 @@
 //! Size ranks, significance only gates. What shows only where everything else is imperfect too, around reversals and on
 //! ramps, has to take most of what is left.
 
-use crate::decision::evidence::{Evidence, ONE_ERROR, errors, evidence};
-use crate::decision::ground::Ground;
-use crate::decision::limits;
-use crate::decision::solution::{DELAY, PRESLIDING, Solution, beside, effect_columns, effect_factor};
-use crate::decision::structure::{self, Left};
 use crate::effect::Regime;
+use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::Prepared;
 use crate::preprocess::form_error::Lives;
 use crate::regression::candidates::{CandidateSet, Regressor};
-use crate::regression::linear_model::LinearModel;
+use crate::regression::evidence::{Evidence, chance, errors, evidence};
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::solution::{DELAY, PRESLIDING, Solution, beside, effect_columns, effect_factor, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::maps::Maps;
+use crate::residual_analysis::structure::{self, Left};
 use crate::selection::advance::SelectionStep;
+use crate::selection::block_limits;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
-use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIMPLER_GAIN, UNMISTAKABLE_SHARE};
-use crate::words::percent;
+use crate::selection::refused::{Decided, Refused, least_share};
+use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIMPLER_GAIN};
 use crate::{Effect, ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
 
 /// Effects that are added at most.
 const MOST_NAMED: usize = 4;
-
-/// An effect that takes much, and was not named.
-pub struct Refused<'p> {
-    pub effect: &'p str,
-    pub gain: f64,
-    pub p_value: f64,
-    pub alpha: f64,
-    pub errors: f64,
-    /// What it would have to take.
-    pub least: f64,
-}
-
-impl<'p> Refused<'p> {
-    fn of(evidence: &Evidence<'_, 'p>, alpha: f64) -> Self {
-        Self {
-            effect: evidence.best.id(),
-            gain: evidence.gain,
-            p_value: evidence.p_value,
-            alpha,
-            errors: evidence.errors,
-            least: least_share(evidence.best.effect),
-        }
-    }
-
-    /// What it takes, and why it is not named, in words.
-    pub fn why(&self) -> String {
-        let takes =
-            format!("it would take {} off the squared error of data that had no part in its fit", percent(self.gain));
-        match () {
-            () if self.p_value >= self.alpha => {
-                format!("{takes}, which chance does with a probability of {:.2}", self.p_value)
-            }
-            () if self.errors <= ONE_ERROR => format!("{takes}, in a few stretches of the run alone"),
-            () if self.gain <= self.least => format!(
-                "{takes}, and shows only around reversals and on ramps, where every formula errs: there it takes {} to name it",
-                percent(self.least)
-            ),
-            () => format!("{takes}, beside as many effects as are added at most"),
-        }
-    }
-}
 
 /// The libraries of a run: beside a direction that turns at once, and beside one that bends.
 struct Libraries<'p> {
@@ -195,7 +154,7 @@ impl<'p> Path<'_, 'p> {
         let end = self.end();
         let now = end.main.clone();
         let silences = Solution::of(&now).map_or_else(Vec::new, |solution| {
-            limits::silences(end, &solution, self.libraries.of(&now, self.prepared, self.spec), self.options)
+            block_limits::silences(end, &solution, self.libraries.of(&now, self.prepared, self.spec), self.options)
         });
         let residual = now.linear().residual;
         let is_in = |id: &str| end.effects.iter().any(|e| e == id);
@@ -219,21 +178,6 @@ impl<'p> Path<'_, 'p> {
     }
 }
 
-/// What the decision leaves.
-pub struct Decided<'p> {
-    /// Structure that no effect takes.
-    pub left: Option<Left>,
-    pub refused: Vec<Refused<'p>>,
-}
-
-/// What shows only where all formulas err has to take most of what is left.
-pub fn least_share(effect: &dyn Effect) -> f64 {
-    match effect.regime() {
-        Regime::SteadyState => DECISION_SHARE,
-        _ => UNMISTAKABLE_SHARE,
-    }
-}
-
 /// The evidence for every effect that is not in the model, the one that takes most first.
 fn candidates<'l, 'p>(
     now: &TwoStageModel<'p>,
@@ -252,18 +196,18 @@ fn candidates<'l, 'p>(
         None => Vec::new(),
     };
     let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
-    let mut all = evidence(&solution.ground, &of(&regime(Regime::SteadyState)), &near, forms);
+    let mut all = evidence(&solution.ridge, &of(&regime(Regime::SteadyState)), &near, forms);
     // What is form error of all others is judged without it.
     let late = of(&|c| c.id() == DELAY);
     if !late.is_empty() && is_late(now, solution) {
-        all.extend(evidence(&without(now, solution, Lives::Jerk), &late, &near, forms));
+        all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &late, &near, forms));
     }
     let bent = of(&regime(Regime::Hysteresis));
     if !bent.is_empty() {
-        all.extend(evidence(&without(now, solution, Lives::Bristle), &bent, &near, forms));
+        all.extend(evidence(&without(&now.main, solution, Lives::Bristle), &bent, &near, forms));
     }
     let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
-    all.extend(evidence(&solution.ground, &inertia, &near, forms));
+    all.extend(evidence(&solution.ridge, &inertia, &near, forms));
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all
 }
@@ -273,8 +217,8 @@ fn candidates<'l, 'p>(
 fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> bool {
     let Some(form_error) = after.main.problem.form_error.as_deref() else { return true };
     std::ptr::eq(now.main.problem, after.main.problem)
-        || Solution::weighted(&after.main, form_error, solution.weight.clone(), None).ground.loss()
-            < FLOOR_RATIO.powi(2) * solution.ground.loss()
+        || Solution::weighted(&after.main, form_error, solution.weight.clone(), None).ridge.loss()
+            < FLOOR_RATIO.powi(2) * solution.ridge.loss()
 }
 
 /// The largest gain first; of those that tie with it the surest.
@@ -290,20 +234,6 @@ fn in_turn<'e, 'l, 'p>(passing: &[&'e Evidence<'l, 'p>]) -> Vec<&'e Evidence<'l,
 /// Takes about as much, block by block.
 fn is_rival(best: &Evidence, other: &Evidence) -> bool {
     other.gain > SIMPLER_GAIN * best.gain && is_tie(&best.losses, &other.losses)
-}
-
-/// The model projected out without one kind of form error.
-pub fn without(now: &TwoStageModel, solution: &Solution, lives: Lives) -> Ground {
-    let model = &now.main;
-    let mut columns = effect_columns(model);
-    if let Some(form_error) = model.problem.form_error.as_deref() {
-        let beside = beside(model, form_error, |other| other == lives);
-        columns.extend(beside.error.into_iter().map(|(_, column)| column));
-        columns.extend(beside.relatives);
-    }
-    // Weights make least of the very rows that such an effect is about.
-    let even = vec![1.0; model.problem.rows()];
-    Ground::new(&columns, &model.response(), &even, &model.problem.block, Some(solution.ground.ridge))
 }
 
 /// The torque is later or earlier than the motion by more than a sample: of which moment of it a reading is nobody knows.
@@ -330,12 +260,12 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     let weight = Solution::of(&plain)?.weight.clone();
     let loss = |model: &LinearModel, is_late: bool| {
         if !is_late {
-            return Solution::weighted(model, form_error, weight.clone(), None).ground.loss();
+            return Solution::weighted(model, form_error, weight.clone(), None).ridge.loss();
         }
         let mut columns = effect_columns(model);
         let beside = beside(model, form_error, |lives| lives == Lives::Jerk);
         columns.extend(beside.error.into_iter().map(|(_, column)| column));
-        Ground::new(&columns, &model.response(), &weight, &model.problem.block, None).loss()
+        BlockedRidge::new(&columns, &model.response(), &weight, &model.problem.block, None).loss()
     };
     let whole = loss(&plain, false);
     let without = |id: &'p str| {
@@ -354,7 +284,7 @@ fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionS
     let missing = |e: &&dyn Effect| e.is_offset() && is_out(e.info().id) && e.hidden(&problem.view).is_none();
     let effect = start.spec.known().find(missing)?;
     let form = effect.forms(&problem.view).into_iter().next()?;
-    let term = crate::regression::linear_model::Term::new(effect, form, Vec::new(), problem);
+    let term = Term::new(effect, form, Vec::new(), problem);
     let effects: Vec<String> = start.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
     let after = TwoStageModel::decided(start.prepared, start.spec, effects).ok()?;
     let (was, is) = (Solution::of(&start.main)?, Solution::of(&after.main)?);
@@ -362,7 +292,7 @@ fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionS
     let gains: Vec<f64> = was.iter().zip(&is).map(|(was, is)| was - is).collect();
     let gain = gains.iter().sum::<f64>() / was.iter().sum::<f64>();
     let standard_errors = errors(&gains);
-    let p_value = crate::decision::evidence::chance(standard_errors.powi(2), 1, gains.len());
+    let p_value = chance(standard_errors.powi(2), 1, gains.len());
     if gain < DECISION_SHARE || p_value > options.alpha {
         return None;
     }

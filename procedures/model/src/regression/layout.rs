@@ -1,10 +1,10 @@
 //! A set of effects as a model of a run that is judged sample by sample: one model, in whatever order they came together.
 
-use crate::decision::evidence::{ONE_ERROR, errors, visible};
-use crate::decision::solution::Solution;
 use crate::effect::Effect;
 use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::evidence::{ONE_ERROR, errors, visible};
 use crate::regression::linear_model::{LinearModel, Relative, Term, allows};
+use crate::regression::solution::Solution;
 use crate::thresholds::DECISION_SHARE;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -60,10 +60,10 @@ fn extend<'l, 'p>(
     {
         let judged = forms.par_iter().filter(|form| !parts.iter().any(|part| std::ptr::eq(*part, **form)));
         let judged = judged.filter_map(|form| {
-            let added = visible(&solution.ground, form)?;
+            let added = visible(&solution.ridge, form)?;
             let gains: Vec<f64> = added.gains(0.0, |_| true).iter().map(|gain| gain.held_out).collect();
             let gain: f64 = gains.iter().sum();
-            (gain > DECISION_SHARE * solution.ground.loss() && errors(&gains) > ONE_ERROR).then_some((gain, *form))
+            (gain > DECISION_SHARE * solution.ridge.loss() && errors(&gains) > ONE_ERROR).then_some((gain, *form))
         });
         let Some((_, next)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
         let shape = last.shape.iter().chain(&next.shape).copied().collect();
@@ -77,7 +77,7 @@ fn extend<'l, 'p>(
 /// The form that takes most of what a model leaves, and what it takes. What is physically possible comes first.
 fn most_telling(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
     let taken = |form: &&Regressor| {
-        let added = visible(&solution.ground, form)?;
+        let added = visible(&solution.ridge, form)?;
         let possible = allows(form.effect, &form.form, &added.factors());
         Some((possible, added.taken()))
     };

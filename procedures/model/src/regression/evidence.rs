@@ -1,7 +1,8 @@
 //! What speaks for an effect: what it takes off data that had no part in choosing its form and its factors.
 
-use crate::decision::ground::{Added, Gain, Ground};
 use crate::effect::Regime;
+use crate::linear::added_columns::{Added, Gain};
+use crate::linear::blocked_ridge::BlockedRidge;
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
 use crate::thresholds::DECISION_SHARE;
@@ -52,60 +53,60 @@ struct Trial<'l, 'p> {
 /// An effect of settled motion has to show beside reversals and rests: outside the rows that are `near` one it takes the practical
 /// share too.
 pub fn evidence<'l, 'p>(
-    ground: &Ground,
+    ridge: &BlockedRidge,
     candidates: &[&'l Regressor<'p>],
     near: &[bool],
     forms: usize,
 ) -> Vec<Evidence<'l, 'p>> {
-    let trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ground, form, near)).collect();
+    let trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ridge, form, near)).collect();
     let mut all: Vec<Evidence> = trials
         .chunk_by(|a, b| a.form.id() == b.form.id())
-        .filter_map(|forms_of_one| of_effect(ground, forms_of_one, forms))
+        .filter_map(|forms_of_one| of_effect(ridge, forms_of_one, forms))
         .collect();
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all
 }
 
-fn trial<'l, 'p>(ground: &Ground, form: &'l Regressor<'p>, near: &[bool]) -> Option<Trial<'l, 'p>> {
-    let added = visible(ground, form)?;
+fn trial<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, near: &[bool]) -> Option<Trial<'l, 'p>> {
+    let added = visible(ridge, form)?;
     let is_possible = |factors: &[f64]| allows(form.effect, &form.form, factors);
     if !is_possible(&added.factors()) {
         return None;
     }
     let is_settled = form.effect.regime() == Regime::SteadyState;
-    if is_settled && !shows_outside(ground, form, &added.factors(), near) {
+    if is_settled && !shows_outside(ridge, form, &added.factors(), near) {
         return None;
     }
-    let chance = chance(added.wald(), added.size, ground.blocks.len());
+    let chance = chance(added.wald(), added.size, ridge.blocks.len());
     Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
 }
 
 /// It takes its share of what is left in the rows that are no reversal and no rest too, where there are any.
-fn shows_outside(ground: &Ground, form: &Regressor, factors: &[f64], near: &[bool]) -> bool {
-    let (taken, left) = ground.taken_outside(&form.columns, factors, near);
+fn shows_outside(ridge: &BlockedRidge, form: &Regressor, factors: &[f64], near: &[bool]) -> bool {
+    let (taken, left) = ridge.taken_outside(&form.columns, factors, near);
     left == 0.0 || taken > DECISION_SHARE * left
 }
 
 /// What a form would add, where it is none of what the model has.
-pub fn visible(ground: &Ground, form: &Regressor) -> Option<Added> {
-    let added = ground.added(&form.columns);
+pub fn visible(ridge: &BlockedRidge, form: &Regressor) -> Option<Added> {
+    let added = Added::new(ridge, &form.columns);
     (added.visible > LEAST_VISIBLE).then_some(added)
 }
 
 /// The form is chosen by the rest for every block that it is judged on.
-fn of_effect<'l, 'p>(ground: &Ground, trials: &[Trial<'l, 'p>], forms: usize) -> Option<Evidence<'l, 'p>> {
+fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usize) -> Option<Evidence<'l, 'p>> {
     let best = trials.iter().max_by(|a, b| a.taken.total_cmp(&b.taken))?;
     let of_block = |block: usize| {
         let chosen = trials.iter().map(|t| t.gains[block]).max_by(|a, b| a.fitted.total_cmp(&b.fitted));
         chosen.map_or(0.0, |gain| gain.held_out)
     };
-    let gains: Vec<f64> = (0..ground.blocks.len()).map(of_block).collect();
+    let gains: Vec<f64> = (0..ridge.blocks.len()).map(of_block).collect();
     Some(Evidence {
         best: best.form,
-        gain: gains.iter().sum::<f64>() / ground.loss().max(f64::MIN_POSITIVE),
+        gain: gains.iter().sum::<f64>() / ridge.loss().max(f64::MIN_POSITIVE),
         errors: errors(&gains),
         p_value: (best.chance * forms as f64).min(1.0),
-        losses: ground.losses.iter().zip(&gains).map(|(loss, gain)| loss - gain).collect(),
+        losses: ridge.losses.iter().zip(&gains).map(|(loss, gain)| loss - gain).collect(),
     })
 }
 

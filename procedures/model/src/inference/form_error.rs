@@ -1,8 +1,8 @@
 //! What a fit tells of a model that is judged sample by sample, beside its effects.
 
-use crate::decision::solution::{PRESLIDING, Solution, rms};
 use crate::effects;
 use crate::regression::linear_model::LinearModel;
+use crate::regression::solution::{PRESLIDING, Solution, rms};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{FormErrorTerm, Parameter, ParameterState, Term};
 use crate::words::{figure, percent};

@@ -1,10 +1,10 @@
 //! A model on a run that is judged sample by sample: effects, and beside them where the errors of their formulas live.
 
-use crate::decision::ground::{BaseColumn, Ground, fitted};
-use crate::decision::weights::weights;
 use crate::effects;
+use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{FormError, Lives};
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
+use crate::regression::weights::weights;
 use jointbench_instrument::Kind;
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ pub fn effect_columns<'a>(model: &'a LinearModel) -> Vec<BaseColumn<'a>> {
 
 /// A model with its factors, and what it was projected out of.
 pub struct Solution {
-    pub ground: Ground,
+    pub ridge: BlockedRidge,
     pub weight: Vec<f64>,
     /// Factors of the effects, of the form error by its place, and of other forms.
     pub factors: Vec<f64>,
@@ -76,12 +76,12 @@ impl Solution {
             .chain(model.offsets.iter().map(|e| e.info().id))
             .all(is_of_library)
         {
-            true => Some(model.problem.solved.of(name(model), make)),
+            true => Some(model.problem.memo.of(name(model), make)),
             false => Some(Arc::new(make())),
         }
     }
 
-    pub fn weighted(model: &LinearModel, form_error: &FormError, weight: Vec<f64>, ridge: Option<f64>) -> Self {
+    pub fn weighted(model: &LinearModel, form_error: &FormError, weight: Vec<f64>, strength: Option<f64>) -> Self {
         let response = model.response();
         let beside = beside(model, form_error, |_| false);
         let mut columns = effect_columns(model);
@@ -90,13 +90,13 @@ impl Solution {
         columns.extend(beside.relatives.iter().copied());
         let nothing = vec![0.0; response.len()];
         let mut bound = Vec::new();
-        let mut ground = Ground::new(&columns, &response, &weight, &model.problem.block, ridge);
-        while let Some(at) = beyond(model, &ground) {
+        let mut ridge = BlockedRidge::new(&columns, &response, &weight, &model.problem.block, strength);
+        while let Some(at) = beyond(model, &ridge) {
             bound.push(at);
             columns[at].values = &nothing;
-            ground = Ground::new(&columns, &response, &weight, &model.problem.block, Some(ground.ridge));
+            ridge = BlockedRidge::new(&columns, &response, &weight, &model.problem.block, Some(ridge.strength));
         }
-        let all = ground.factors();
+        let all = ridge.factors();
         let residual = left(&columns, &all, &response);
         let (factors, rest) = all.split_at(own);
         let (error, relatives) = rest.split_at(beside.error.len());
@@ -106,7 +106,7 @@ impl Solution {
             relatives: relatives.to_vec(),
             residual,
             weight,
-            ground,
+            ridge,
             bound,
         }
     }
@@ -139,7 +139,7 @@ impl Solution {
         let mut columns = effect_columns(model);
         columns.extend(beside.error.iter().map(|(_, column)| *column));
         columns.extend(beside.relatives);
-        let replicates = self.ground.replicates().zip(&self.ground.blocks);
+        let replicates = self.ridge.replicates().zip(&self.ridge.blocks);
         let loss = |(factors, rows): (Vec<f64>, &std::ops::Range<usize>)| {
             let mut left = response[rows.clone()].to_vec();
             for (column, factor) in columns.iter().zip(factors) {
@@ -153,18 +153,18 @@ impl Solution {
 
 /// The factor that lies furthest below zero of those that cannot be negative, where it does by chance: what is surely negative
 /// contradicts physics, and has to be told.
-fn beyond(model: &LinearModel, ground: &Ground) -> Option<usize> {
+fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<usize> {
     /// Standard errors that chance makes of a few factors in hardly any run.
     const CHANCE: f64 = 3.0;
     let names =
         model.terms.iter().flat_map(|term| term.form.linear.iter().map(move |name| term.effect.info().bounds(name).0));
-    let factors = ground.factors();
+    let factors = ridge.factors();
     let below: Vec<usize> =
         names.enumerate().filter(|(at, least)| *least == 0.0 && factors[*at] < 0.0).map(|(at, _)| at).collect();
     if below.is_empty() {
         return None;
     }
-    let replicates: Vec<Vec<f64>> = ground.replicates().collect();
+    let replicates: Vec<Vec<f64>> = ridge.replicates().collect();
     let groups = replicates.len() as f64;
     let errors = |at: &usize| {
         let square: f64 = replicates.iter().map(|r| (r[*at] - factors[*at]).powi(2)).sum();
@@ -223,4 +223,17 @@ pub fn effect_factor(model: &LinearModel, solution: &Solution, id: &str) -> Opti
         at += term.columns.len();
     }
     None
+}
+
+/// The model projected out without one kind of form error.
+pub fn without(model: &LinearModel, solution: &Solution, lives: Lives) -> BlockedRidge {
+    let mut columns = effect_columns(model);
+    if let Some(form_error) = model.problem.form_error.as_deref() {
+        let beside = beside(model, form_error, |other| other == lives);
+        columns.extend(beside.error.into_iter().map(|(_, column)| column));
+        columns.extend(beside.relatives);
+    }
+    // Weights make least of the very rows that such an effect is about.
+    let even = vec![1.0; model.problem.rows()];
+    BlockedRidge::new(&columns, &model.response(), &even, &model.problem.block, Some(solution.ridge.strength))
 }

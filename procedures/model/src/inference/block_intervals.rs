@@ -1,12 +1,11 @@
 //! Parameters of a model that is judged sample by sample, with 95 % intervals: leave one block out, and other corners of the
 //! filter.
 
-use crate::decision::solution::Solution;
 use crate::effect::ShapeSearch;
-use crate::inference::intervals::Intervals;
-use crate::inference::parameter_state::{self, Slot};
+use crate::inference::parameter_state::{self, Intervals, Slot};
 use crate::preprocess::Problem;
 use crate::regression::linear_model::{LinearModel, Relative, Term, columns};
+use crate::regression::solution::Solution;
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use crate::thresholds::TRADE_OFF_CORRELATION;
 use jointbench_instrument::Motion;
@@ -84,7 +83,7 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
 /// Factors of the effects without each block in turn.
 fn factors_without(solution: &Solution) -> Vec<Vec<f64>> {
     let size = solution.factors.len();
-    solution.ground.replicates().map(|all| all[..size].to_vec()).collect()
+    solution.ridge.replicates().map(|all| all[..size].to_vec()).collect()
 }
 
 /// The same model at another corner of the filter.

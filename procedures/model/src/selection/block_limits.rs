@@ -1,16 +1,16 @@
 //! What was looked for and not found, and how large it would have been.
 
 use crate::Options;
-use crate::decision::evidence::visible;
-use crate::decision::ground::Ground;
-use crate::decision::search::{least_share, without};
-use crate::decision::solution::{DELAY, Solution, effect_factor};
 use crate::effect::Regime;
+use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::form_error::Lives;
 use crate::preprocess::friction::bristles::quantile;
 use crate::regression::candidates::{CandidateSet, Regressor};
+use crate::regression::evidence::visible;
+use crate::regression::solution::{DELAY, Solution, effect_factor, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::detection_limit::DetectionLimit;
+use crate::selection::refused::least_share;
 use crate::thresholds::{DELAY_ROWS, DETECTION_POWER};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -25,18 +25,18 @@ pub fn silences<'p>(
 ) -> Vec<DetectionLimit<'p>> {
     let is_out = |id: &str| !end.effects.iter().any(|e| e == id);
     let open: Vec<&Regressor<'p>> = library.candidates.iter().filter(|c| is_out(c.id())).collect();
-    let blocks = solution.ground.blocks.len() as f64;
+    let blocks = solution.ridge.blocks.len() as f64;
     let chance = options.alpha / (2.0 * open.len().max(1) as f64);
     let critical = StudentsT::new(0.0, 1.0, blocks - 1.0).map_or(3.0, |law| law.inverse_cdf(1.0 - chance));
-    let late = without(end, solution, Lives::Jerk);
-    let bent = without(end, solution, Lives::Bristle);
+    let late = without(&end.main, solution, Lives::Jerk);
+    let bent = without(&end.main, solution, Lives::Bristle);
     let size = |form: &&Regressor<'p>| {
-        let ground = match form.effect.regime() {
+        let ridge = match form.effect.regime() {
             Regime::Hysteresis => &bent,
             _ if form.id() == DELAY => &late,
-            _ => &solution.ground,
+            _ => &solution.ridge,
         };
-        Some((form.id(), smallest(form, ground, critical, end, solution)?))
+        Some((form.id(), smallest(form, ridge, critical, end, solution)?))
     };
     let sizes: Vec<(&'p str, f64)> = open.par_iter().filter_map(size).collect();
     let of_effect = |forms: &[(&'p str, f64)]| DetectionLimit {
@@ -47,11 +47,17 @@ pub fn silences<'p>(
 }
 
 /// RMS of the smallest effect of a form that would have been named.
-fn smallest(form: &Regressor, ground: &Ground, critical: f64, end: &TwoStageModel, solution: &Solution) -> Option<f64> {
-    let added = visible(ground, form)?;
+fn smallest(
+    form: &Regressor,
+    ridge: &BlockedRidge,
+    critical: f64,
+    end: &TwoStageModel,
+    solution: &Solution,
+) -> Option<f64> {
+    let added = visible(ridge, form)?;
     let scatter = added.scatter(&added.factors());
     let share = least_share(form.effect);
-    let least = share / (1.0 - share) * ground.loss();
+    let least = share / (1.0 - share) * ridge.loss();
     let delay = || {
         let form_error = end.main.problem.form_error.as_deref()?;
         Some(effect_factor(&end.main, solution, "inertia")?.abs() * DELAY_ROWS * form_error.sample_s)

@@ -1,0 +1,215 @@
+//! Columns beside a blocked ridge regression: what they would add in the whole run and in each block that had no part.
+
+use crate::linear::basis::dot;
+use crate::linear::blocked_ridge::{BlockedRidge, FREE, Fold, Sums, times};
+use crate::linear::cholesky::Cholesky;
+use std::ops::Range;
+
+/// Products of columns with each other and with the response.
+type Normal = (Vec<f64>, Vec<f64>);
+
+/// Columns beside a base, in sums of products: what they would add without each block, and what that block says then.
+pub struct Added {
+    pub size: usize,
+    /// Products of what the columns have of their own with themselves and with the response.
+    own: Vec<f64>,
+    side: Vec<f64>,
+    /// Share of the columns that is their own.
+    pub visible: f64,
+    /// The same without each block, and of that block alone.
+    without: Vec<Normal>,
+    held_out: Vec<Normal>,
+    /// The same of each block beside the whole base.
+    within: Vec<Normal>,
+    diagonal: Vec<f64>,
+}
+
+impl Added {
+    pub fn new(ridge: &BlockedRidge, columns: &[impl AsRef<[f32]>]) -> Self {
+        let weighted =
+            |c: &[f32]| -> Vec<f64> { c.iter().zip(&ridge.weight).map(|(v, w)| f64::from(*v) * w).collect() };
+        let columns: Vec<Vec<f64>> = columns.iter().map(|c| weighted(c.as_ref())).collect();
+        let (k, p) = (columns.len(), ridge.base.len());
+        let sums: Vec<Products> = ridge.blocks.iter().map(|rows| Products::of(ridge, &columns, rows)).collect();
+        let mut all = Products::none(k, p);
+        sums.iter().for_each(|s| all.add(s, 1.0));
+        let solved =
+            |fold: &Fold, of: &Products| -> Vec<Vec<f64>> { of.jb.iter().map(|jb| times(&fold.inverse, jb)).collect() };
+        // In the whole: of what is left of the columns, with a base that is held near zero only in part.
+        let along = solved(&ridge.whole, &all);
+        let (own, side) = all.projected(&along, &ridge.whole.factors);
+        let diagonal: Vec<f64> = (0..k).map(|a| all.jj[a * k + a]).collect();
+        let visible = (0..k).map(|a| own[a * k + a] / diagonal[a].max(f64::MIN_POSITIVE)).fold(f64::INFINITY, f64::min);
+        let mut out = Self {
+            size: k,
+            own,
+            side,
+            visible,
+            without: Vec::with_capacity(sums.len()),
+            held_out: Vec::with_capacity(sums.len()),
+            within: Vec::with_capacity(sums.len()),
+            diagonal,
+        };
+        for ((part, each), fold) in sums.iter().zip(&ridge.each).zip(&ridge.folds) {
+            let rest = all.without(part);
+            let of_fold = solved(fold, &rest);
+            out.without.push(rest.projected(&of_fold, &fold.factors));
+            out.held_out.push(part.left(each, &of_fold, &fold.factors));
+            out.within.push(part.left(each, &along, &ridge.whole.factors));
+        }
+        out
+    }
+
+    /// Factors in the whole run.
+    pub fn factors(&self) -> Vec<f64> {
+        Cholesky::new(&self.own, self.size, 1e-12).solve(&self.side)
+    }
+
+    /// Weighted squared error that the columns take off in the whole run.
+    pub fn taken(&self) -> f64 {
+        dot(&self.factors(), &self.side)
+    }
+
+    /// Squared size of what each column has of its own.
+    pub fn squares(&self) -> impl Iterator<Item = f64> {
+        (0..self.size).map(|a| self.own[a * self.size + a])
+    }
+
+    /// How sure the factors are not zero: the Wald statistic with the scatter of whole blocks under the alternative.
+    pub fn wald(&self) -> f64 {
+        let covariance = self.scatter(&self.factors());
+        let white = Cholesky::new(&covariance, self.size, 1e-12).whiten(&self.side);
+        dot(&white, &white)
+    }
+
+    /// Covariance of the products of the columns with what is left beside these factors of them.
+    pub fn scatter(&self, factors: &[f64]) -> Vec<f64> {
+        let k = self.size;
+        let mut covariance = vec![0.0; k * k];
+        for (own, side) in &self.within {
+            let left: Vec<f64> = side.iter().zip(times(own, factors)).map(|(s, t)| s - t).collect();
+            (0..k * k).for_each(|at| covariance[at] += left[at / k] * left[at % k]);
+        }
+        let groups = self.within.len() as f64;
+        covariance.iter_mut().for_each(|c| *c *= groups / (groups - 1.0));
+        covariance
+    }
+
+    /// What the columns take off each held-out block with factors that the others decide, and what they take off those.
+    /// `strength` holds the factors near zero; factors of which `allows` says no are zero.
+    pub fn gains(&self, strength: f64, allows: impl Fn(&[f64]) -> bool) -> Vec<Gain> {
+        let k = self.size;
+        let gain = |((own, side), (there, side_there)): (&Normal, &Normal)| {
+            let mut own = own.clone();
+            (0..k).for_each(|a| own[a * k + a] += (strength + FREE) * self.diagonal[a]);
+            let factors = Cholesky::new(&own, k, 1e-12).solve(side);
+            if !allows(&factors) {
+                return Gain { held_out: 0.0, fitted: 0.0 };
+            }
+            let held_out = 2.0 * dot(&factors, side_there) - dot(&factors, &times(there, &factors));
+            Gain { held_out, fitted: dot(&factors, side) }
+        };
+        self.without.iter().zip(&self.held_out).map(gain).collect()
+    }
+}
+
+/// What a candidate takes off one block, and off the rest that chose its factors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gain {
+    pub held_out: f64,
+    pub fitted: f64,
+}
+
+/// Products of some columns over some rows.
+struct Products {
+    jj: Vec<f64>,
+    jb: Vec<Vec<f64>>,
+    jy: Vec<f64>,
+}
+
+impl Products {
+    fn none(k: usize, p: usize) -> Self {
+        Self { jj: vec![0.0; k * k], jb: vec![vec![0.0; p]; k], jy: vec![0.0; k] }
+    }
+
+    fn of(ridge: &BlockedRidge, columns: &[Vec<f64>], rows: &Range<usize>) -> Self {
+        let k = columns.len();
+        let part = |column: &Vec<f64>| column[rows.clone()].to_vec();
+        let columns: Vec<Vec<f64>> = columns.iter().map(part).collect();
+        let mut jj = vec![0.0; k * k];
+        for a in 0..k {
+            for b in 0..=a {
+                jj[a * k + b] = dot(&columns[a], &columns[b]);
+                jj[b * k + a] = jj[a * k + b];
+            }
+        }
+        let with_base = |c: &Vec<f64>| ridge.base.iter().map(|b| dot(c, &b[rows.clone()])).collect();
+        Self {
+            jj,
+            jb: columns.iter().map(with_base).collect(),
+            jy: columns.iter().map(|c| dot(c, &ridge.response[rows.clone()])).collect(),
+        }
+    }
+
+    fn add(&mut self, other: &Products, times: f64) {
+        let add = |a: &mut Vec<f64>, b: &Vec<f64>| a.iter_mut().zip(b).for_each(|(a, b)| *a += times * b);
+        add(&mut self.jj, &other.jj);
+        add(&mut self.jy, &other.jy);
+        self.jb.iter_mut().zip(&other.jb).for_each(|(a, b)| add(a, b));
+    }
+
+    fn without(&self, part: &Products) -> Self {
+        let mut rest = Self { jj: self.jj.clone(), jb: self.jb.clone(), jy: self.jy.clone() };
+        rest.add(part, -1.0);
+        rest
+    }
+
+    /// What the columns have of their own beside a base with these factors for them and for the response.
+    fn projected(&self, along: &[Vec<f64>], factors: &[f64]) -> Normal {
+        let k = along.len();
+        let own = (0..k * k).map(|at| self.jj[at] - dot(&self.jb[at / k], &along[at % k])).collect();
+        let side = (0..k).map(|a| self.jy[a] - dot(&self.jb[a], factors)).collect();
+        (own, side)
+    }
+
+    /// The same over rows that had no part in these factors.
+    fn left(&self, base: &Sums, along: &[Vec<f64>], factors: &[f64]) -> Normal {
+        let k = along.len();
+        let inner: Vec<Vec<f64>> = along.iter().map(|a| times(&base.bb, a)).collect();
+        let own = (0..k * k).map(|at| {
+            let (a, b) = (at / k, at % k);
+            self.jj[at] - dot(&along[a], &self.jb[b]) - dot(&self.jb[a], &along[b]) + dot(&inner[a], &along[b])
+        });
+        let side =
+            (0..k).map(|a| self.jy[a] - dot(&along[a], &base.by) - dot(&self.jb[a], factors) + dot(&inner[a], factors));
+        (own.collect(), side.collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::blocked_ridge::BaseColumn;
+
+    fn column(frequency: f64) -> Vec<f64> {
+        (0..240).map(|i| (frequency * f64::from(i)).sin()).collect()
+    }
+
+    #[test]
+    fn a_gain_is_that_of_refits_without_each_block() {
+        let (base, other, noise) = (column(0.3), column(0.7), column(2.9));
+        let y: Vec<f64> = (0..240).map(|i| 2.0 * base[i] + 0.5 * other[i] + 0.3 * noise[i]).collect();
+        let block: Vec<usize> = (0..240).map(|i| i / 30).collect();
+        let free = |values| BaseColumn { values, scale: 1.0, shrinks: false };
+        let weight = vec![1.0; 240];
+        let alone = BlockedRidge::new(&[free(&base)], &y, &weight, &block, None);
+        let both = BlockedRidge::new(&[free(&base), free(&other)], &y, &weight, &block, None);
+        let single: Vec<f32> = other.iter().map(|v| *v as f32).collect();
+        let added = Added::new(&alone, &[single]);
+        for ((gain, was), is) in added.gains(0.0, |_| true).iter().zip(&alone.losses).zip(&both.losses) {
+            assert!((was - gain.held_out - is).abs() < 1e-4 * was, "{was} {gain:?} {is}");
+        }
+        assert!((added.factors()[0] - both.factors()[1]).abs() < 1e-5);
+        assert!(added.wald() > 100.0);
+    }
+}

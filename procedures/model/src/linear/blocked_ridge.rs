@@ -1,0 +1,211 @@
+//! A base of columns projected out of a response, over the whole run and without each of its blocks in turn.
+//!
+//! Rows are touched once: everything that follows is made of sums of products over blocks.
+
+use crate::linear::basis::dot;
+use crate::linear::cholesky::Cholesky;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Strengths that are tried for columns that are held near zero, as shares of the rows.
+const RIDGES: [f64; 7] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
+/// What keeps the others solvable.
+pub(in crate::linear) const FREE: f64 = 1e-9;
+
+/// A column of the base.
+#[derive(Clone, Copy)]
+pub struct BaseColumn<'a> {
+    pub values: &'a [f64],
+    /// Size by which it is held near zero.
+    pub scale: f64,
+    pub shrinks: bool,
+}
+
+/// Sums of products over some rows: of the base with itself and with the response, and of the response.
+#[derive(Clone)]
+pub(in crate::linear) struct Sums {
+    pub bb: Vec<f64>,
+    pub by: Vec<f64>,
+    yy: f64,
+}
+
+/// The base without one block.
+pub(in crate::linear) struct Fold {
+    /// Inverse of the products of the base: a base is solved for hundreds of columns.
+    pub inverse: Vec<f64>,
+    /// Factors of the base for the response.
+    pub factors: Vec<f64>,
+}
+
+/// Ridge regression of a response on a base of columns, solved without each block in turn.
+pub struct BlockedRidge {
+    /// Rows of each block.
+    pub blocks: Vec<Range<usize>>,
+    pub(in crate::linear) weight: Vec<f64>,
+    pub(in crate::linear) base: Vec<Vec<f64>>,
+    scale: Vec<f64>,
+    pub(in crate::linear) response: Vec<f64>,
+    /// Weighted residual of the base.
+    left: Vec<f64>,
+    pub(in crate::linear) each: Vec<Sums>,
+    pub(in crate::linear) folds: Vec<Fold>,
+    pub(in crate::linear) whole: Fold,
+    /// Strength of what is held near zero, as a share of the rows.
+    pub strength: f64,
+    /// Held-out weighted squared error of each block.
+    pub losses: Vec<f64>,
+}
+
+/// Rows of equal block numbers.
+pub fn ranges(block: &[usize]) -> Vec<Range<usize>> {
+    let mut end = 0;
+    let range = |rows: &[usize]| {
+        end += rows.len();
+        end - rows.len()..end
+    };
+    block.chunk_by(|a, b| a == b).map(range).collect()
+}
+
+impl BlockedRidge {
+    /// `strength`: the strength, or the one of [`RIDGES`] that predicts held-out blocks best.
+    pub fn new(
+        columns: &[BaseColumn],
+        response: &[f64],
+        weight: &[f64],
+        block: &[usize],
+        strength: Option<f64>,
+    ) -> Self {
+        let blocks = ranges(block);
+        let scale: Vec<f64> = columns.iter().map(|c| c.scale.max(f64::MIN_POSITIVE)).collect();
+        let weighted =
+            |values: &[f64], by: f64| -> Vec<f64> { values.iter().zip(weight).map(|(v, w)| v * w / by).collect() };
+        let base: Vec<Vec<f64>> = columns.iter().zip(&scale).map(|(c, scale)| weighted(c.values, *scale)).collect();
+        let response = weighted(response, 1.0);
+        let each: Vec<Sums> = blocks.iter().map(|rows| Sums::of(&base, &response, rows)).collect();
+        let mut all = each[0].clone();
+        each[1..].iter().for_each(|sums| all.add(sums, 1.0));
+        let n = response.len() as f64;
+        let penalty = |strength: f64| -> Vec<f64> {
+            columns.iter().map(|c| if c.shrinks { strength } else { FREE } * n).collect()
+        };
+        let shrinks = columns.iter().any(|c| c.shrinks);
+        let loss = |strength: f64| -> f64 {
+            let penalty = penalty(strength);
+            each.par_iter().map(|sums| sums.loss(&all.without(sums).factors(&penalty))).sum()
+        };
+        let strength = strength.unwrap_or_else(|| {
+            let tried = RIDGES.iter().filter(|_| shrinks).map(|strength| (*strength, loss(*strength)));
+            tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(1.0, |best| best.0)
+        });
+        let penalty = penalty(strength);
+        let folds: Vec<Fold> = each.par_iter().map(|sums| all.without(sums).fold(&penalty)).collect();
+        let losses = each.iter().zip(&folds).map(|(sums, fold)| sums.loss(&fold.factors)).collect();
+        let whole = all.fold(&penalty);
+        let mut left = response.clone();
+        for (base, factor) in base.iter().zip(&whole.factors) {
+            left.iter_mut().zip(base).for_each(|(e, b)| *e -= factor * b);
+        }
+        Self { blocks, weight: weight.to_vec(), base, scale, response, left, each, folds, whole, strength, losses }
+    }
+
+    pub fn loss(&self) -> f64 {
+        self.losses.iter().sum()
+    }
+
+    /// Factors of the columns as they were given, over all rows.
+    pub fn factors(&self) -> Vec<f64> {
+        self.whole.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect()
+    }
+
+    /// The same without each block in turn.
+    pub fn replicates(&self) -> impl Iterator<Item = Vec<f64>> {
+        self.folds.iter().map(|fold| fold.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect())
+    }
+
+    /// Weighted squared error that columns with these factors take off the rows that are not `near`, and what is left there
+    /// without them.
+    pub fn taken_outside(&self, columns: &[Vec<f32>], factors: &[f64], near: &[bool]) -> (f64, f64) {
+        let weighted = |values: &[f32]| values.iter().zip(&self.weight).map(|(v, w)| f64::from(*v) * w).collect();
+        let mut sum = vec![0.0; self.response.len()];
+        for (column, factor) in columns.iter().zip(factors) {
+            let own: Vec<f64> = self.rest(weighted(column));
+            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += factor * own);
+        }
+        let outside = sum.iter().zip(&self.left).zip(near).filter(|(_, near)| !**near).map(|(pair, _)| pair);
+        outside.fold((0.0, 0.0), |(taken, left), (own, e)| (taken + own * (2.0 * e - own), left + e * e))
+    }
+
+    /// What a column has beside the base.
+    fn rest(&self, mut own: Vec<f64>) -> Vec<f64> {
+        let side: Vec<f64> = self.base.iter().map(|b| dot(b, &own)).collect();
+        for (base, factor) in self.base.iter().zip(times(&self.whole.inverse, &side)) {
+            own.iter_mut().zip(base).for_each(|(o, b)| *o -= factor * b);
+        }
+        own
+    }
+}
+
+impl Sums {
+    fn of(base: &[Vec<f64>], response: &[f64], rows: &Range<usize>) -> Self {
+        let p = base.len();
+        let mut bb = vec![0.0; p * p];
+        for a in 0..p {
+            for b in 0..=a {
+                bb[a * p + b] = dot(&base[a][rows.clone()], &base[b][rows.clone()]);
+                bb[b * p + a] = bb[a * p + b];
+            }
+        }
+        let y = &response[rows.clone()];
+        Self { bb, by: base.iter().map(|b| dot(&b[rows.clone()], y)).collect(), yy: dot(y, y) }
+    }
+
+    fn add(&mut self, other: &Sums, times: f64) {
+        self.bb.iter_mut().zip(&other.bb).for_each(|(a, b)| *a += times * b);
+        self.by.iter_mut().zip(&other.by).for_each(|(a, b)| *a += times * b);
+        self.yy += times * other.yy;
+    }
+
+    fn without(&self, part: &Sums) -> Self {
+        let mut rest = self.clone();
+        rest.add(part, -1.0);
+        rest
+    }
+
+    fn factored(&self, penalty: &[f64]) -> Cholesky {
+        let p = penalty.len();
+        let mut matrix = self.bb.clone();
+        penalty.iter().enumerate().for_each(|(a, penalty)| matrix[a * p + a] += penalty);
+        Cholesky::new(&matrix, p, 0.0)
+    }
+
+    fn factors(&self, penalty: &[f64]) -> Vec<f64> {
+        self.factored(penalty).solve(&self.by)
+    }
+
+    fn fold(&self, penalty: &[f64]) -> Fold {
+        let factored = self.factored(penalty);
+        Fold { factors: factored.solve(&self.by), inverse: factored.inverse() }
+    }
+
+    /// Squared error with these factors.
+    fn loss(&self, factors: &[f64]) -> f64 {
+        (self.yy - 2.0 * dot(factors, &self.by) + dot(factors, &times(&self.bb, factors))).max(0.0)
+    }
+}
+
+/// Factors of columns for a response over all rows alone.
+pub fn fitted(columns: &[BaseColumn], response: &[f64], weight: &[f64], strength: f64) -> Vec<f64> {
+    let weighted =
+        |values: &[f64], by: f64| -> Vec<f64> { values.iter().zip(weight).map(|(v, w)| v * w / by).collect() };
+    let scale = |c: &BaseColumn| c.scale.max(f64::MIN_POSITIVE);
+    let base: Vec<Vec<f64>> = columns.iter().map(|c| weighted(c.values, scale(c))).collect();
+    let n = response.len() as f64;
+    let sums = Sums::of(&base, &weighted(response, 1.0), &(0..response.len()));
+    let penalty: Vec<f64> = columns.iter().map(|c| if c.shrinks { strength } else { FREE } * n).collect();
+    sums.factors(&penalty).iter().zip(columns).map(|(f, c)| f / scale(c)).collect()
+}
+
+/// A symmetric matrix times a vector.
+pub(in crate::linear) fn times(matrix: &[f64], vector: &[f64]) -> Vec<f64> {
+    matrix.chunks(vector.len().max(1)).map(|row| dot(row, vector)).collect()
+}

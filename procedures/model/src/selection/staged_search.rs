@@ -1,0 +1,252 @@
+//! From a model to the one that is left when nothing more can be named, in stages: steady state first, then ramps, then reversals.
+
+use crate::inference::intervals::intervals;
+use crate::preprocess::Prepared;
+use crate::regression::candidates::CandidateSet;
+use crate::regression::linear_model::{LinearModel, Term};
+use crate::regression::two_stage_model::TwoStageModel;
+use crate::report::diagnosis::Imitated;
+use crate::residual_analysis::maps::Maps;
+use crate::residual_analysis::{lack_of_fit, undersampled_harmonics};
+use crate::selection::advance::SelectionStep;
+use crate::selection::floating_search::{FloatingSearch, Move};
+use crate::selection::hysteresis_stage::memory;
+use crate::selection::model_selection::ModelSelection;
+use crate::selection::offset_terms;
+use crate::selection::omitted_variable_bias::{Imitated as Found, moved};
+use crate::selection::pruning::partial_explanation::{bump, half_explained};
+use crate::selection::pruning::spurious::borrowing;
+use crate::selection::pruning::unidentified::{Doubt, is_decided, undecided};
+use crate::selection::ramp_stage::late;
+use crate::selection::removal::{self, RemovalReason};
+use crate::{ModelError, ModelSpec, Options};
+
+/// The steps so far, each told as soon as it is made.
+struct Path<'a, 'p> {
+    start: TwoStageModel<'p>,
+    advances: Vec<SelectionStep<'p>>,
+    /// Effects that the model may gain.
+    most: usize,
+    on_advance: &'a mut dyn FnMut(&SelectionStep),
+}
+
+impl<'p> Path<'_, 'p> {
+    fn push(&mut self, advance: SelectionStep<'p>) {
+        self.advances.push(advance);
+        self.advances.last().into_iter().for_each(&mut *self.on_advance);
+    }
+
+    fn end(&self) -> &TwoStageModel<'p> {
+        self.advances.last().map_or(&self.start, |a| &a.after)
+    }
+
+    fn may_grow(&self) -> bool {
+        self.end().effects.len() < self.start.effects.len() + self.most
+    }
+}
+
+/// What the search of the steady-state part ends with.
+struct SteadyState<'p> {
+    maps: Maps,
+    residual: Vec<f64>,
+    /// An effect that may be there as well, in the model that has it.
+    open: Option<Found<'p>>,
+    /// Why effects were taken back, where the search itself did not ask for it.
+    taken_back: Vec<(&'p str, RemovalReason)>,
+}
+
+/// `on_advance` sees every move when it is made.
+pub fn search<'p>(
+    prepared: &'p Prepared,
+    spec: &'p ModelSpec,
+    options: &Options,
+    most: usize,
+    on_advance: &mut dyn FnMut(&SelectionStep),
+) -> Result<ModelSelection<'p>, ModelError> {
+    let start = TwoStageModel::new(prepared, spec, options)?;
+    let library = CandidateSet::new(spec, &prepared.main, prepared.regimes());
+    // Of columns that cannot be right every effect is made up.
+    let most = if prepared.clashes.void.is_empty() { most } else { 0 };
+    let offset = (most > 0).then(|| offset_terms::advance(&start, &library, options)).flatten();
+    let mut path = Path { start, advances: Vec::new(), most, on_advance };
+    if let Some(offset) = offset {
+        path.push(offset);
+    }
+    let left = most.saturating_sub(path.advances.len());
+    let mut search = FloatingSearch::new(path.end().main.clone(), &library, &prepared.baseline, left, options);
+    let SteadyState { maps, residual, open, taken_back } = steady_state(&mut search, &mut path, prepared, options);
+    if let Some(last) = path.advances.last_mut() {
+        last.after = last.after.clone().settled(options)?;
+    }
+    let moves = |id: &str, was: &LinearModel<'p>, is: &LinearModel<'p>| imitated(id, was, is, spec, prepared);
+    let open = open.and_then(|open| moves(open.rival.term.id(), &search.now, &open.with));
+    let upheld = search.retained_for_bias.iter().filter(|id| search.now.contains(id));
+    let upheld = upheld.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
+    let withdrawn = removal::all(&search, &taken_back);
+    let ties = open_ties(&search, &path.advances);
+    if !search.unmodelled_structure {
+        ramps(&mut path, options)?;
+        reversals(&mut path, prepared, options)?;
+    }
+    let silences = search.silences();
+    let Path { start, advances, .. } = path;
+    let now = search.now;
+    Ok(ModelSelection { start, advances, withdrawn, now, residual, maps, silences, ties, upheld, open, decided: None })
+}
+
+/// First phase: what shows in steady-state motion, or in all of a trajectory.
+fn steady_state<'p>(
+    search: &mut FloatingSearch<'_, 'p>,
+    path: &mut Path<'_, 'p>,
+    prepared: &'p Prepared,
+    options: &Options,
+) -> SteadyState<'p> {
+    let mut effects = path.end().effects.clone();
+    let mut taken_back = Vec::new();
+    loop {
+        let made = search.next().or_else(|| {
+            let undecided = || Some((undecided(search, prepared)?, RemovalReason::Unidentified));
+            let (id, why) =
+                search.follows_random_walk().map(|id| (id, RemovalReason::RandomWalk)).or_else(undecided)?;
+            taken_back.push((id, why));
+            Some(search.withdraw(id))
+        });
+        let made = match made {
+            Some(made) => made,
+            None => {
+                let residual = search.now.tangent().rest(&search.now.response());
+                let maps = maps_of(&search.now, residual.clone(), prepared, options);
+                let axis = lack_of_fit::structured(&maps);
+                if let Some((id, why)) = outside_the_library(search, &maps, axis, prepared, options) {
+                    taken_back.push((id, why));
+                    search.unmodelled_structure = true;
+                    search.withdraw(id)
+                } else {
+                    let is_decided = |with: &LinearModel<'p>, term: &Term<'p>| is_decided(with, term, prepared);
+                    let nothing_shows = axis.is_none();
+                    let is_all = |with: &LinearModel| nothing_shows || leaves_nothing(with, prepared, options);
+                    match search.imitated(is_decided) {
+                        Some(found) if found.is_clear && is_all(&found.with) => search.uphold(found.rival),
+                        open => {
+                            let open = open.filter(|_| nothing_shows);
+                            return SteadyState { maps, residual, open, taken_back };
+                        }
+                    }
+                }
+            }
+        };
+        let (added, removed, ties) = match made {
+            Move::Added { rival, ties } => {
+                effects.push(rival.term.id().into());
+                (Some(*rival), None, ties)
+            }
+            Move::Removed(id) => {
+                effects.retain(|e| e != id);
+                (None, Some(id), Vec::new())
+            }
+        };
+        let after = path.start.of(search.now.clone(), effects.clone());
+        path.push(SelectionStep { added, removed, ties, after });
+    }
+}
+
+/// An added effect that is only a relative of what lies outside the library.
+fn outside_the_library<'p>(
+    search: &FloatingSearch<'_, 'p>,
+    maps: &Maps,
+    axis: Option<&str>,
+    prepared: &Prepared,
+    options: &Options,
+) -> Option<(&'p str, RemovalReason)> {
+    let whole = axis.and_then(|axis| taken_back(search, maps, axis, prepared, options));
+    let bump = || Some((bump(search, prepared, options)?, RemovalReason::PartialExplanation));
+    whole.or_else(bump)
+}
+
+/// Second phase: a torque that is recorded late, on the ramps of a run in steps.
+fn ramps<'p>(path: &mut Path<'_, 'p>, options: &Options) -> Result<(), ModelError> {
+    if path.may_grow()
+        && let Some((rival, after)) = late(path.end(), options)
+    {
+        let after = after.settled(options)?;
+        path.push(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after });
+    }
+    Ok(())
+}
+
+/// Third phase: effects with a memory, around the reversals of a run in steps.
+fn reversals<'p>(path: &mut Path<'_, 'p>, prepared: &'p Prepared, options: &Options) -> Result<(), ModelError> {
+    let now = path.end();
+    if path.may_grow()
+        && let Some(rival) = memory(now, options)
+        && let effects = now.effects.iter().map(String::as_str).chain([rival.term.id()]).map(String::from).collect()
+        && let after = now.of(now.main.clone(), effects).settled(options)?
+        && let Some(moving) = &after.moving
+        && !Doubt::of(&rival.term, moving, &intervals(moving, prepared.motion).parameters, prepared).is_there()
+    {
+        path.push(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after });
+    }
+    Ok(())
+}
+
+/// An added effect that is taken back where structure remains over an axis.
+fn taken_back<'p>(
+    search: &FloatingSearch<'_, 'p>,
+    maps: &Maps,
+    axis: &str,
+    prepared: &Prepared,
+    options: &Options,
+) -> Option<(&'p str, RemovalReason)> {
+    let half = half_explained(search, axis, prepared, options).map(|id| (id, RemovalReason::PartialExplanation));
+    half.or_else(|| Some((borrowing(search, maps, axis, options)?, RemovalReason::Spurious)))
+}
+
+/// Of what tied with an effect when it came in, what still does beside everything that came later, and what does only
+/// since then.
+fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]) -> Vec<(&'p str, &'p str)> {
+    let mut open = Vec::new();
+    for advance in advances {
+        let Some(effect) = advance.added.as_ref().map(|rival| rival.term.id()) else { continue };
+        let is_new = |rival: &&&'p str| !search.now.contains(rival) && !open.contains(&(effect, **rival));
+        if search.now.contains(effect) {
+            let rivals: Vec<&'p str> = advance.ties.iter().filter(is_new).copied().collect();
+            open.extend(rivals.into_iter().filter(|rival| search.ties(effect, rival)).map(|rival| (effect, rival)));
+        }
+    }
+    for term in search.added() {
+        let stand_ins = search.stand_ins(term).into_iter().map(|rival| (term.id(), rival));
+        let new: Vec<_> = stand_ins.filter(|tie| !open.contains(tie)).collect();
+        open.extend(new);
+    }
+    open
+}
+
+/// Maps of what a model leaves.
+fn maps_of(terms: &LinearModel, residual: Vec<f64>, prepared: &Prepared, options: &Options) -> Maps {
+    Maps::new(prepared, undersampled_harmonics::without_swift_waves(terms, residual), options)
+}
+
+/// Nothing of what a model leaves shows over any axis.
+fn leaves_nothing(terms: &LinearModel, prepared: &Prepared, options: &Options) -> bool {
+    let residual = terms.tangent().rest(&terms.response());
+    lack_of_fit::structured(&maps_of(terms, residual, prepared, options)).is_none()
+}
+
+/// What another effect imitates, with the figure of the given model that it costs.
+fn imitated(
+    id: &str,
+    without: &LinearModel,
+    with: &LinearModel,
+    spec: &ModelSpec,
+    prepared: &Prepared,
+) -> Option<Imitated> {
+    let found = moved(without, with, &spec.effects)?;
+    let info = found.term.effect.info();
+    Some(Imitated {
+        effect: id.into(),
+        parameter: format!("{}.{}", info.id, found.factor),
+        unit: prepared.motion.label(info.unit(found.factor)),
+        without: found.was,
+        with: found.is,
+    })
+}
