@@ -17,8 +17,8 @@ fn emps_gives_the_published_parameters() {
     let found = fit(&train, &spec, &Options::default()).unwrap();
     let check = |name: &str, published: f64, budget: f64| {
         let found = found.parameters.iter().find(|p| p.name == name).unwrap();
-        println!("{found:?}");
         assert!((found.value / published - 1.0).abs() < budget, "{name}: {found:?}, published {published}");
+        assert!((found.ci95[0]..found.ci95[1]).contains(&published), "{name}: {found:?}, published {published}");
     };
     // Beside bristles, jerk and snap, which the published fit has not: its inertia takes in a part of the flexible shaft.
     check("j", 95.1089, 0.015);

@@ -4,29 +4,33 @@ use super::{effects, json};
 use crate::shared::shared;
 use serde_json::Value;
 
-fn parameter(fit: &Value, effect: &str) -> f64 {
+fn parameter<'v>(fit: &'v Value, effect: &str) -> &'v Value {
     let parameters = fit["parameters"].as_array().expect("parameters");
-    parameters.iter().find(|p| p["effect"] == effect).and_then(|p| p["value"].as_f64()).expect("the parameter")
+    parameters.iter().find(|p| p["effect"] == effect).expect("the parameter")
 }
 
 #[test]
-fn the_published_parameters_and_errors_are_reproduced() {
+fn the_published_parameters_lie_in_the_intervals_and_the_errors_are_no_larger() {
     let (Some(train), Some(pulses)) = (shared("data/emps-train"), shared("data/emps-pulses")) else { return };
     let other = pulses.join("run.csv").display().to_string();
     let said = json("fit", &train, &["--evaluate", &other]);
+    // The published fit has no columns for the error of formulas, and takes all samples alike.
     for (effect, published, budget) in [
-        ("inertia", 95.1089, 0.005),
-        ("viscous", 203.5034, 0.005),
-        ("coulomb", 20.3935, 0.005),
-        ("direction_offset", -3.1648, 0.02),
+        ("inertia", 95.1089, 0.015),
+        ("viscous", 203.5034, 0.04),
+        ("coulomb", 20.3935, 0.06),
+        ("direction_offset", -3.1648, 0.05),
     ] {
         let found = parameter(&said, effect);
-        assert!((found / published - 1.0).abs() < budget, "{effect}: {found}, published {published}");
+        let value = found["value"].as_f64().expect("a value");
+        assert!((value / published - 1.0).abs() < budget, "{found}, published {published}");
+        let [low, high] = [0, 1].map(|end| found["ci95"][end].as_f64().expect("an end of the interval"));
+        assert!((low..high).contains(&published), "{found}, published {published}");
     }
     let train_error = said["relative_error"].as_f64().expect("the relative error");
     let pulses_error = said["evaluation"]["result"]["relative_error"].as_f64().expect("the relative error elsewhere");
-    assert!((0.040..=0.042).contains(&train_error), "train {train_error}");
-    assert!((0.059..=0.061).contains(&pulses_error), "pulses {pulses_error}");
+    assert!(train_error < 0.041, "train {train_error}, published 0.0408");
+    assert!(pulses_error < 0.060, "pulses {pulses_error}, published 0.0598");
 }
 
 #[test]

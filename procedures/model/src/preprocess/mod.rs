@@ -9,6 +9,7 @@ pub(crate) mod encoder;
 pub mod filter;
 pub(crate) mod form_error;
 pub(crate) mod friction;
+pub(crate) mod held_side;
 pub(crate) mod independent_blocks;
 pub(crate) mod initial_hysteresis_state;
 pub(crate) mod loading_history;

@@ -4,6 +4,7 @@ use crate::linear::cholesky::Cholesky;
 use crate::preprocess::chunks::Source;
 use crate::preprocess::design::replicates::Same;
 use crate::preprocess::design::segments;
+use crate::preprocess::held_side::held_turns;
 use crate::preprocess::{Prepared, filter, sample_s, sweeps};
 use crate::signal::{Signal, Signals};
 use crate::view::Constants;
@@ -86,18 +87,6 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
         format!("motor and link have another zero in every repeat, {apart} RMS apart, as encoders do that are set to zero before each: it is taken off")
     }));
     Ok(prepared)
-}
-
-/// The turns of the link where one side of the joint is held. A joint that turns moves farther than it twists, on both sides:
-/// of one that is held the twist is the motion of the other side, and no function of that motion explains it.
-pub fn held_turns(twist: &[f64], link: &[f64]) -> Option<f64> {
-    let range = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        high - low
-    };
-    let of_link = range(&mut link.iter().copied());
-    let of_motor = range(&mut twist.iter().zip(link).map(|(t, q)| t + q));
-    (of_link.min(of_motor) < range(&mut twist.iter().copied())).then_some(of_link / std::f64::consts::TAU)
 }
 
 /// The step in which an encoder counts [rad], a power of two in a turn: the readings lie on its multiples, and the torque that

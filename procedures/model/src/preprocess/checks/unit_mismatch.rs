@@ -2,7 +2,7 @@
 //! fits.
 
 use crate::preprocess::checks::pieces::{PIECE_S, Piece, pieces};
-use crate::preprocess::stiffness;
+use crate::preprocess::held_side::is_held;
 use jointbench_instrument::{Kind, Motion, RunTable};
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -174,21 +174,6 @@ fn rests(one: &str, a: &[f64], other: &str, b: &[f64], factor: f64) -> Option<St
     (moved > WAY && a.iter().all(|v| *v == a[0])).then(|| {
         format!("{one} never changes, while {other} says that it moved by {moved:.3} rad: it was not connected")
     })
-}
-
-/// One side of a joint is held: its motion has nothing to do with that of the other one, which goes with the torque.
-fn is_held(run: &RunTable) -> bool {
-    const MOST: f64 = 0.5;
-    let Some(gear) = run.meta().gear_ratio.filter(|_| run.kind() == Kind::Stiffness) else { return false };
-    let column = |name: &str| run.column(name).unwrap_or_default();
-    let (motor, link, torque) = (column("motor_position_rad"), column("link_position_rad"), column("link_torque_nm"));
-    let twist: Vec<f64> = motor.iter().zip(link).map(|(m, q)| m / gear - q).collect();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let (middle, centre) = (mean(&twist), mean(torque));
-    let product =
-        |f: fn(f64, f64) -> f64| twist.iter().zip(torque).map(|(q, t)| f(q - middle, t - centre)).sum::<f64>();
-    stiffness::held_turns(&twist, link).is_some()
-        && product(|q, t| q * t).powi(2) > MOST * product(|q, _| q * q) * product(|_, t| t * t)
 }
 
 /// How many times the second the first is, where both move alike.

@@ -1,0 +1,30 @@
+//! A joint of which one side is held, so that it twists and does not turn.
+
+use jointbench_instrument::{Kind, RunTable};
+
+/// The turns of the link where one side of the joint is held. A joint that turns moves farther than it twists, on both sides:
+/// of one that is held the twist is the motion of the other side, and no function of that motion explains it.
+pub fn held_turns(twist: &[f64], link: &[f64]) -> Option<f64> {
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        high - low
+    };
+    let of_link = range(&mut link.iter().copied());
+    let of_motor = range(&mut twist.iter().zip(link).map(|(t, q)| t + q));
+    (of_link.min(of_motor) < range(&mut twist.iter().copied())).then_some(of_link / std::f64::consts::TAU)
+}
+
+/// One side of a joint is held: its motion has nothing to do with that of the other one, which goes with the torque.
+pub fn is_held(run: &RunTable) -> bool {
+    const MOST: f64 = 0.5;
+    let Some(gear) = run.meta().gear_ratio.filter(|_| run.kind() == Kind::Stiffness) else { return false };
+    let column = |name: &str| run.column(name).unwrap_or_default();
+    let (motor, link, torque) = (column("motor_position_rad"), column("link_position_rad"), column("link_torque_nm"));
+    let twist: Vec<f64> = motor.iter().zip(link).map(|(m, q)| m / gear - q).collect();
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (middle, centre) = (mean(&twist), mean(torque));
+    let product =
+        |f: fn(f64, f64) -> f64| twist.iter().zip(torque).map(|(q, t)| f(q - middle, t - centre)).sum::<f64>();
+    held_turns(&twist, link).is_some()
+        && product(|q, t| q * t).powi(2) > MOST * product(|q, _| q * q) * product(|_, t| t * t)
+}
