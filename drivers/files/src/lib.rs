@@ -18,6 +18,7 @@ mod guess;
 mod mat_out;
 mod naming;
 mod note;
+mod operating_points;
 mod options;
 mod order;
 mod parquet_check;

@@ -48,6 +48,8 @@ pub enum TimeFrom {
     RateInstead(f64),
     /// From the column; rows with one time stamp are spread evenly up to the next.
     Spread,
+    /// There is none: each row is the mean of one steady operating point.
+    OperatingPoints,
 }
 
 impl ReadOptions {
@@ -91,6 +93,7 @@ pub struct Choices {
     pub rate: Option<f64>,
     pub time_from_rate: Option<f64>,
     pub spread_time: bool,
+    pub operating_points: bool,
     pub split_runs: bool,
 }
 
@@ -114,6 +117,7 @@ impl Choices {
         for (name, is_chosen) in [
             ("leave_empty_rows", self.leave_empty_rows),
             ("spread_time", self.spread_time),
+            ("operating_points", self.operating_points),
             ("split_runs", self.split_runs),
         ] {
             parts.extend(is_chosen.then(|| (name, true.to_string())));
@@ -136,6 +140,7 @@ impl Choices {
             "time_from_rate" => self.time_from_rate = number(&text)?,
             "leave_empty_rows" => self.leave_empty_rows = text == "true",
             "spread_time" => self.spread_time = text == "true",
+            "operating_points" => self.operating_points = text == "true",
             "split_runs" => self.split_runs = text == "true",
             "names" => self.names = Some(text),
             _ => return Ok(false),
@@ -163,11 +168,12 @@ impl Choices {
 
     fn time(&self) -> Result<TimeFrom, OptionFault> {
         let rate = |rate: f64| if rate.is_finite() && rate > 0.0 { Ok(rate) } else { Err(OptionFault::Rate(rate)) };
-        match (self.rate, self.time_from_rate, self.spread_time) {
-            (None, None, false) => Ok(TimeFrom::Column),
-            (Some(hz), None, false) => Ok(TimeFrom::Rate(rate(hz)?)),
-            (None, Some(hz), false) => Ok(TimeFrom::RateInstead(rate(hz)?)),
-            (None, None, true) => Ok(TimeFrom::Spread),
+        match (self.rate, self.time_from_rate, self.spread_time, self.operating_points) {
+            (None, None, false, false) => Ok(TimeFrom::Column),
+            (Some(hz), None, false, false) => Ok(TimeFrom::Rate(rate(hz)?)),
+            (None, Some(hz), false, false) => Ok(TimeFrom::RateInstead(rate(hz)?)),
+            (None, None, true, false) => Ok(TimeFrom::Spread),
+            (None, None, false, true) => Ok(TimeFrom::OperatingPoints),
             _ => Err(OptionFault::TwoTimes),
         }
     }
@@ -185,7 +191,7 @@ pub enum OptionFault {
     Decimal(String),
     #[error("{0} is no rate: expected a number of rows a second above 0")]
     Rate(f64),
-    #[error("time comes from one place: choose one of --rate, --time-from-rate and --spread-time")]
+    #[error("time comes from one place: choose one of --rate, --time-from-rate, --spread-time and --operating-points")]
     TwoTimes,
     #[error("“{0}”: expected NAME=COLUMN, such as motor_current_a=Iq")]
     Map(String),

@@ -3,6 +3,7 @@
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
 use crate::note::{Note, counted, plural};
+use crate::operating_points;
 use crate::options::{ReadOptions, TimeFrom};
 use crate::order::{self, Order};
 use crate::raw::RawTable;
@@ -16,10 +17,14 @@ const DAY_S: f64 = 86_400.0;
 /// Gives the table a rising time in seconds. Returns the rows, but the first, with which a recording begins.
 pub(crate) fn settle(
     table: &mut RawTable,
-    meta: &Meta,
+    meta: &mut Meta,
     options: &ReadOptions,
     file: &str,
 ) -> Result<Vec<usize>, FileError> {
+    if options.time == TimeFrom::OperatingPoints {
+        operating_points::settle(table, meta);
+        return Ok(Vec::new());
+    }
     let in_file = |fault: FileFault| fault.in_file(file);
     let stamped = table.place(TIME).map(|place| to_seconds(&mut table.columns[place], meta)).transpose();
     if let Some(note) = stamped.map_err(|fault| fault.at_line(file, table.names_line).in_column(TIME))?.flatten() {
@@ -38,7 +43,7 @@ pub(crate) fn settle(
         (TimeFrom::Column, None, Some(hz)) => from_rate(table, hz, "sample_rate_hz of the facts"),
         (TimeFrom::Column | TimeFrom::Spread, None, _) => return Ok(Vec::new()),
         (TimeFrom::Spread, Some(order), _) => spread(table, &order),
-        (TimeFrom::Column, Some(_), _) => {}
+        (TimeFrom::Column, Some(_), _) | (TimeFrom::OperatingPoints, ..) => {}
     }
     if has_time && options.time == TimeFrom::Column && !starts.is_empty() && !options.split_runs {
         return Err(several(table, &starts, file));

@@ -5,7 +5,7 @@ use crate::error::{FileError, FileFault};
 use crate::note::{Note, counted, plural, shell};
 use crate::raw::RawTable;
 use crate::text::Decimal;
-use crate::{ReadOptions, contradiction, facts, guess, naming, time};
+use crate::{ReadOptions, contradiction, facts, guess, naming, operating_points, time};
 use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
 
 /// The fact that says how many rows of the file were left out for their empty cells.
@@ -57,7 +57,7 @@ impl RawTable {
             left.push(self.columns.remove(place).name);
             self.notes.push(note);
         }
-        let starts = time::settle(&mut self, &meta, options, file)?;
+        let starts = time::settle(&mut self, &mut meta, options, file)?;
         let names = self.names();
         let channels = facts::take_resolutions(&mut meta, &names);
         let columns = self.columns.iter_mut().map(|column| std::mem::take(&mut column.values)).collect();
@@ -228,7 +228,9 @@ impl Understood {
             let said = format!("the file holds {} recordings, numbered in column run", starts.len() + 1);
             notes.push(Note::with(said, "--split-runs"));
         }
-        notes.extend(contradiction::proposals(&run));
+        if !meta.operating_points {
+            notes.extend(contradiction::proposals(&run));
+        }
         Ok((run, notes))
     }
 }
@@ -261,6 +263,10 @@ fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: Vec<guess::
         TableFault::MissingColumn { column, .. } if guessed.iter().any(|one| one.column == *column) => {
             let options = guessed.iter().map(guess::Proposal::option).collect();
             FileFault::Proposed { fault, said: "the file seems to hold it", options }
+        }
+        TableFault::MissingColumn { column: "time_s", .. } if operating_points::may_be(table) => {
+            let options = vec!["--operating-points".to_owned()];
+            FileFault::Proposed { fault, said: "each row may be the mean of one steady operating point", options }
         }
         TableFault::MissingColumn { column: "time_s", .. } => {
             let options = vec!["--rate HZ".to_owned()];

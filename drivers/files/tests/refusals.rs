@@ -1,7 +1,7 @@
 //! A malformed file is refused with file, line, column and what was expected.
 
 use arrow_array::{ArrayRef, Float32Array, Float64Array, Int64Array, RecordBatch, StringArray};
-use jointbench_files::{FileError, ReadOptions, parse_meta, read, read_bytes};
+use jointbench_files::{Choices, FileError, ReadOptions, parse_meta, read, read_bytes};
 use jointbench_instrument::{Kind, Meta, RunTable};
 use std::io::Write;
 use std::sync::Arc;
@@ -202,4 +202,24 @@ fn other_files_and_facts_are_refused() {
 
     let unknown = read_bytes("run.csv", format!("{NAMES}\n0,1,2\n").as_bytes(), &ReadOptions::default()).unwrap_err();
     assert!(unknown.to_string().contains("expected \"kind\": friction, encoder, stiffness or brake"), "{unknown}");
+}
+
+#[test]
+fn a_last_number_that_is_cut_is_left_out() {
+    let rows: Vec<String> = (0..30).map(|i| format!("{:.3},{:.4},{:.4}", 1e-3 * f64::from(i), 1.0, 0.25)).collect();
+    let whole = format!("{NAMES}\n{}", rows.join("\n"));
+    assert_eq!(take("run.csv", whole.as_bytes()).unwrap().len(), 30, "a line end may be missing");
+    let cut = &whole[..whole.len() - 2];
+    assert_eq!(take("run.csv", cut.as_bytes()).unwrap().len(), 29, "0.25 is no whole number here");
+}
+
+#[test]
+fn a_table_of_conditions_asks_for_its_option_and_is_read_with_it() {
+    let text = "motor_velocity_rad_s,motor_current_a\n10,0.6\n-10,-0.6\n";
+    let refused = take("run.csv", text.as_bytes()).unwrap_err().to_string();
+    assert!(refused.contains("--operating-points"), "{refused}");
+    let options = Choices { operating_points: true, ..Choices::default() }.options().unwrap();
+    let meta = Some(Meta { kind: Some(Kind::Friction), sample_rate_hz: Some(1000.0), ..Meta::default() });
+    let run = read_bytes("run.csv", text.as_bytes(), &ReadOptions { meta, ..options }).unwrap();
+    assert!(run.meta().operating_points && run.column("time_s") == Some(&[0.0, 1.0][..]));
 }

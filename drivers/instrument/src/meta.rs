@@ -104,6 +104,9 @@ pub struct Meta {
     /// Effects of the model to start from (ids).
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub baseline: Vec<String>,
+    /// Each row is the mean of one steady operating point, in any order: time and angle only count the rows.
+    #[serde(skip_serializing_if = "is_false")]
+    pub operating_points: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_rate_hz: Option<f64>,
     /// k_m: motor torque for each ampere of i_q.
@@ -132,10 +135,11 @@ pub struct Meta {
 
 impl Meta {
     /// Every fact that is known by name.
-    pub const FACTS: [&str; 13] = [
+    pub const FACTS: [&str; 14] = [
         "kind",
         "motion",
         "baseline",
+        "operating_points",
         "sample_rate_hz",
         "torque_constant_nm_per_a",
         "gear_ratio",
@@ -162,6 +166,10 @@ impl Meta {
     }
 }
 
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
 fn is_rotary(motion: &Motion) -> bool {
     *motion == Motion::Rotary
 }
@@ -183,7 +191,7 @@ mod tests {
         assert_eq!(misspelt(r#"{"note": "dry", "oil": "x", "rated_torque_nm": 13}"#), None);
         assert_eq!(misspelt(r#"{"gear_ratio": 50, "gear_ratio_2": 3}"#), None, "the known one is there");
         let all: Vec<String> = Meta::FACTS.iter().map(|fact| format!("\"{fact}\": null")).collect();
-        assert!(serde_json::from_str::<Meta>(&format!("{{{}}}", all[3..].join(","))).unwrap().other.is_empty());
+        assert!(serde_json::from_str::<Meta>(&format!("{{{}}}", all[4..].join(","))).unwrap().other.is_empty());
     }
 
     #[test]

@@ -37,10 +37,10 @@ thresholds! {
     ALPHA = 0.05, "probability", "family-wise error of everything that is named or shown (`Options::alpha`)", "convention; `evaluate --part null` measures 0.4 %";
     PRACTICAL_SHARE = 0.02, "share of squared error", "smallest share of the remaining error that is worth a name (`Options::practical_share`), or shows in a map", "`evaluate --part power`";
     FLIPS = 499.0, "sign flips", "permutations of the max-T test (`Options::flips`)", "smallest p-value 0.002";
-    DECISION_SHARE = 0.03, "share of held-out squared error", "smallest share that an effect must take where samples are judged", "`score_cases`: flat from 2 to 5 %";
-    LEFT_SHARE = 0.1, "share of held-out squared error", "a function of an axis, a line in time or neighbouring seconds that take more are structure", "nulls of `score_cases`";
-    LEFT_ERRORS = 2.0, "standard errors over blocks", "and surely so", "nulls of `score_cases`";
-    TIME_ERRORS = 3.0, "standard errors", "the same of neighbouring seconds", "nulls of `score_cases`";
+    DECISION_SHARE = 0.03, "share of held-out squared error", "smallest share that an effect must take where samples are judged", "`evaluate FOLDER`: flat from 2 to 5 %";
+    LEFT_SHARE = 0.1, "share of held-out squared error", "a function of an axis, a line in time or neighbouring seconds that take more are structure", "nulls of `evaluate FOLDER`";
+    LEFT_ERRORS = 2.0, "standard errors over blocks", "and surely so", "nulls of `evaluate FOLDER`";
+    TIME_ERRORS = 3.0, "standard errors", "the same of neighbouring seconds", "nulls of `evaluate FOLDER`";
     FORMULA_ERROR = 0.002, "share of squared error", "of what an effect explains, its formula may leave this share (4.5 % in RMS; encoders none)", "`evaluate --part hidden,null`";
     UNMISTAKABLE_SHARE = 0.5, "share of squared error", "an effect that takes this share of what is left is no remainder of another formula", "`evaluate --part hidden,null`";
     PERIODIC_SHARE = 0.04, "share of squared error", "a wave that is sought among many orders takes at least this share", "`evaluate --part hidden,null`";

@@ -7,9 +7,10 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 /// Whether the run has shown what it was made for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
+    #[default]
     Identified,
     /// The run says too little; [`Identification::advice`] tells what to measure.
     Inconclusive,
@@ -17,7 +18,7 @@ pub enum Verdict {
     Failed,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Identification {
     pub verdict: Verdict,
     /// One plain sentence, or a line for each part of a campaign. A `RUN` in its commands stands for the number of the run, which [`Self::of_run`] writes.
@@ -26,18 +27,28 @@ pub struct Identification {
     pub advice: Option<String>,
     pub quantities: Vec<Quantity>,
     pub figures: Vec<Figure>,
+    /// Held against a data sheet: whether it passes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub passes: Option<bool>,
+    /// Parts of a campaign, in their order. The summary ends with a line for each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<Part>,
+}
+
+/// A part of a campaign.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Part {
+    /// The procedure; names of its quantities and figures begin with it and a dot.
+    pub id: String,
+    pub title: String,
+    pub verdict: Verdict,
+    pub summary: String,
 }
 
 impl Identification {
     /// The run cannot be used: why, and what to do about it.
     pub fn failed(why: impl Into<String>, advice: impl Into<String>) -> Self {
-        Self {
-            verdict: Verdict::Failed,
-            summary: why.into(),
-            advice: Some(advice.into()),
-            quantities: Vec::new(),
-            figures: Vec::new(),
-        }
+        Self { verdict: Verdict::Failed, summary: why.into(), advice: Some(advice.into()), ..Self::default() }
     }
 
     /// The same, made of this run, which is in this state: a run that did not come to its end has not shown what it was made
@@ -73,6 +84,7 @@ impl Identification {
         }
         // Commands are there to be typed as they stand.
         let numbered = |text: String| signed(&text.replace("RUN", &run.to_string()));
+        self.parts.iter_mut().for_each(|part| part.summary = numbered(std::mem::take(&mut part.summary)));
         Self { summary: numbered(self.summary), advice: self.advice.map(numbered), ..self }
     }
 

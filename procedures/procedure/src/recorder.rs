@@ -56,4 +56,7 @@ pub struct Progress {
     pub elapsed_s: f64,
     /// From the plan, corrected by how long the steps so far really took.
     pub remaining_s: f64,
+    /// The run warms the joint up until it is steady, and takes no longer than this.
+    #[serde(default)]
+    pub at_most: bool,
 }

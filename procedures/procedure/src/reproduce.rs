@@ -319,7 +319,14 @@ mod tests {
         };
         let quantities = names.iter().map(quantity).collect();
         let summary = String::new();
-        Identification { verdict: Verdict::Identified, summary, advice: None, quantities, figures: Vec::new() }
+        Identification {
+            verdict: Verdict::Identified,
+            summary,
+            advice: None,
+            quantities,
+            figures: Vec::new(),
+            ..Identification::default()
+        }
     }
 
     #[test]

@@ -103,6 +103,8 @@ pub struct ImportForm {
     time_from_rate: Option<f64>,
     /// Whether rows of one time stamp are spread evenly up to the next.
     spread_time: Option<bool>,
+    /// Whether each row is the mean of one steady operating point: a table of conditions without a time.
+    operating_points: Option<bool>,
     /// Whether a file in which the time begins again is taken as several recordings of one measurement.
     split_runs: Option<bool>,
 }

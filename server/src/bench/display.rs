@@ -63,6 +63,7 @@ impl Display {
             label: progress.label.clone(),
             elapsed_s,
             remaining_s: progress.remaining_s * wall,
+            at_most: progress.at_most,
         }
     }
 

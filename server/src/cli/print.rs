@@ -176,6 +176,7 @@ fn state(parameter: &Parameter) -> String {
         (ParameterState::Ok, _) => String::new(),
         (_, Some(note)) => format!("  {note}"),
         (ParameterState::AtBound, None) => "  at bound".to_owned(),
+        (ParameterState::Impossible, None) => "  impossible".to_owned(),
         (ParameterState::Unidentified, None) => "  not identified".to_owned(),
     }
 }

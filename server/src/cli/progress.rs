@@ -40,7 +40,8 @@ impl RunProgress {
         }
         let whole_s = progress.elapsed_s + progress.remaining_s;
         let share = if whole_s > 0.0 { (progress.elapsed_s / whole_s).clamp(0.0, 1.0) } else { 0.0 };
-        let left = format!("{:.0} s left", progress.remaining_s);
+        let at_most = if progress.at_most { "at most " } else { "" };
+        let left = format!("{at_most}{:.0} s left", progress.remaining_s);
         let step = format!("step {}/{}", (progress.step + 1).min(progress.steps), progress.steps);
         if let Some(bar) = &self.bar {
             bar.set_position((1000.0 * share) as u64);

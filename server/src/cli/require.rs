@@ -149,6 +149,8 @@ pub(super) mod tests {
             advice: None,
             quantities: vec![quantity],
             figures: Vec::new(),
+            passes: None,
+            parts: Vec::new(),
         };
         let applies = Applies { can: false, what: String::new() };
         let procedure = "friction".to_owned();

@@ -65,6 +65,9 @@ pub struct Finding {
     /// Why no verdict is possible: the data cannot show a missing effect, or the columns contradict each other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
+    /// The kind of that reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub undecided_reason: Option<UndecidedReason>,
     /// Regions with significant residual, largest first.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
@@ -82,6 +85,20 @@ pub struct Finding {
     /// Rejected effects.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
+}
+
+/// Why no verdict is possible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum UndecidedReason {
+    /// The columns contradict each other.
+    ContradictoryColumns,
+    /// Too few independent blocks to name an effect.
+    TooFewBlocks,
+    /// The repeatability of the run is not known.
+    NoNoiseFloor,
+    /// A parameter contradicts physics in every model.
+    ImpossibleParameter,
 }
 
 /// Repeatability of the measurement (noise floor).

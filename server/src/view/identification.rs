@@ -68,6 +68,22 @@ pub struct Shown {
     pub advice: Option<String>,
     pub quantities: Vec<Quantity>,
     pub figures: Vec<Figure>,
+    /// Against a data sheet: whether it passes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub passes: Option<bool>,
+    /// Parts of a campaign, in their order. The summary ends with a line for each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<CampaignPart>,
+}
+
+/// A part of a campaign.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CampaignPart {
+    /// Procedure of the part; the names of its quantities and figures begin with it and a dot.
+    pub id: String,
+    pub title: String,
+    pub verdict: Identified,
+    pub summary: String,
 }
 
 impl Shown {

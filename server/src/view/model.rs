@@ -182,6 +182,8 @@ pub enum ParameterState {
     Ok,
     /// The best value lies at the edge of what is physically sensible.
     AtBound,
+    /// The whole interval of a coefficient contradicts physics, or the range that was given for it.
+    Impossible,
     /// The interval is as wide as the value.
     Unidentified,
 }

@@ -160,6 +160,9 @@ pub struct Progress {
     /// In wall-clock time, like the remaining time.
     pub elapsed_s: f64,
     pub remaining_s: f64,
+    /// The run warms the joint up until it is steady: it takes no longer than the remaining time, and may end before.
+    #[serde(default)]
+    pub at_most: bool,
 }
 
 /// A run to start. Omitted parameters take the defaults of the procedure.

@@ -21,6 +21,7 @@ export type Beside = Schemas['Beside'];
 export type ImportPreview = Schemas['ImportPreview'];
 export type Identification = Schemas['Identification'];
 export type IdentifiedQuantity = Schemas['Quantity'];
+export type CampaignPart = Schemas['CampaignPart'];
 export type LiveMessage = Schemas['LiveMessage'];
 export type LogEntry = Schemas['LogEntry'];
 export type Model = Schemas['Model'];

@@ -3,7 +3,7 @@ import type { ImportPreview } from '../api/types';
 import type { Mapping } from './columns';
 
 /** Parts of a request that hold one value. */
-const SINGLE = new Set(['rate', 'time_from_rate', 'names', 'spread_time', 'split_runs', 'leave_empty_rows']);
+const SINGLE = new Set(['rate', 'time_from_rate', 'names', 'spread_time', 'operating_points', 'split_runs', 'leave_empty_rows']);
 
 /** `--unit time_s=ms --map 'time_s=Time [ms]'`, as the daemon proposes it for the command line, as parts of a request. */
 export function parseOption(text: string): [part: string, value: string][] {

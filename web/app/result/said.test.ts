@@ -30,17 +30,21 @@ it('takes a campaign apart into its parts, and nothing else', () => {
 	const axis = { label: 'torque', unit: 'Nm' };
 	const loop = { name: 'stiffness.torsion_over_torque', title: 'Torsion over torque', form: 'cartesian' as const, x: axis, y: axis, series: [] };
 	const summary = 'The run did not come to its end (stopped), this is what its part says:\nStiffness: It is 678 Nm/rad; it is: linear.\nFriction compensation (failed): The run ended before this part.';
-	const { lead, parts } = partsOf({ summary, quantities: [k], figures: [loop] });
+	const told = [
+		{ id: 'stiffness', title: 'Stiffness', verdict: 'identified' as const, summary: 'It is 678 Nm/rad; it is: linear.' },
+		{ id: 'compensation', title: 'Friction compensation', verdict: 'failed' as const, summary: 'The run ended before this part.' },
+	];
+	const { lead, parts } = partsOf({ summary, quantities: [k], figures: [loop], parts: told });
 	expect(lead).toBe('The run did not come to its end (stopped), this is what its part says:');
 	expect(parts).toEqual([
-		{ id: 'stiffness', title: 'Stiffness', verdict: 'identified', said: 'It is 678 Nm/rad; it is: linear.', quantities: [{ ...k, title: 'Stiffness of the joint' }], figures: [loop] },
-		{ id: 'Friction compensation', title: 'Friction compensation', verdict: 'failed', said: 'The run ended before this part.', quantities: [], figures: [] },
+		{ ...told[0], quantities: [{ ...k, title: 'Stiffness of the joint' }], figures: [loop] },
+		{ ...told[1], quantities: [], figures: [] },
 	]);
 	expect(partsOf({ summary: 'PASS: every way is consistent.', quantities: [], figures: [] }).parts).toEqual([]);
 });
 
 it('takes the word from a result that was held against a data sheet', () => {
-	expect(judged('identified', 'PASS: every way is consistent.')).toMatchObject({ word: 'PASS', mood: 'good', rest: 'every way is consistent.' });
-	expect(judged('identified', 'OUT OF TOLERANCE on X.')).toMatchObject({ word: 'OUT OF TOLERANCE', mood: 'bad', rest: 'on X.' });
-	expect(judged('inconclusive', 'NOT SURE: X.')).toMatchObject({ word: 'INCONCLUSIVE', rest: 'NOT SURE: X.' });
+	expect(judged({ verdict: 'identified', passes: true }, 'PASS: every way is consistent.')).toMatchObject({ word: 'PASS', mood: 'good', rest: 'every way is consistent.' });
+	expect(judged({ verdict: 'identified', passes: false }, 'OUT OF TOLERANCE on X.')).toMatchObject({ word: 'OUT OF TOLERANCE', mood: 'bad', rest: 'on X.' });
+	expect(judged({ verdict: 'inconclusive' }, 'NOT SURE: X.')).toMatchObject({ word: 'INCONCLUSIVE', rest: 'NOT SURE: X.' });
 });

@@ -1,4 +1,4 @@
-import type { Identification, IdentifiedQuantity } from '../api/types';
+import type { CampaignPart, Identification, IdentifiedQuantity } from '../api/types';
 import { type Scale, bounds, estimate, figure, scaleFor } from '../format/number';
 import type { Mood } from '../ui/states';
 
@@ -11,12 +11,11 @@ const VERDICTS: Record<Identification['verdict'], { word: string; icon: string; 
 
 export const sayVerdict = (verdict: Identification['verdict']) => VERDICTS[verdict];
 
-/** Held against a data sheet, the summary begins with what came of it: that is the word then, and the rest follows. */
-export function judged(verdict: Identification['verdict'], summary: string) {
-	const word = /^(PASS|OUT OF TOLERANCE)\b:? */.exec(summary);
-	if (verdict !== 'identified' || !word) return { ...VERDICTS[verdict], rest: summary };
-	const passed = word[1] === 'PASS';
-	return { word: word[1]!, icon: passed ? '✓' : '✕', mood: (passed ? 'good' : 'bad') as Mood, rest: summary.slice(word[0].length) };
+/** Held against a data sheet, the word is what came of that; the summary begins with it, and the rest follows. */
+export function judged({ verdict, passes }: Pick<Identification, 'verdict' | 'passes'>, summary: string) {
+	if (verdict !== 'identified' || passes == null) return { ...VERDICTS[verdict], rest: summary };
+	const word = passes ? 'PASS' : 'OUT OF TOLERANCE';
+	return { word, icon: passes ? '✓' : '✕', mood: (passes ? 'good' : 'bad') as Mood, rest: summary.replace(new RegExp(`^${word}:? *`), '') };
 }
 
 /** A quantity with one prefix for value and interval: `32.1 ± 0.4 µNm·s/rad`; an uneven interval is said by its ends. */
@@ -59,34 +58,21 @@ export function tableOf(quantities: readonly IdentifiedQuantity[]): Table | null
 	return whole && quantities.every((one) => !one.ci95) ? { ways, rows } : null;
 }
 
-/** A part of a campaign: its line of the summary and what its figures are. */
-export interface Part {
-	id: string;
-	title: string;
-	verdict: Identification['verdict'];
-	said: string;
+/** A part of a campaign with what its figures are. */
+export interface Part extends CampaignPart {
 	quantities: IdentifiedQuantity[];
 	figures: Identification['figures'];
 }
 
-/** `Stiffness: …` or `Stiffness (failed): …` is a part's line, where there are several; the rest leads. Its figures carry its id and title. */
-export function partsOf({ summary, quantities, figures }: Pick<Identification, 'summary' | 'quantities' | 'figures'>): { lead: string; parts: Part[] } {
+/** The summary ends with a line for each part; the rest leads. */
+export function partsOf({ summary, quantities, figures, parts = [] }: Pick<Identification, 'summary' | 'quantities' | 'figures' | 'parts'>): { lead: string; parts: Part[] } {
 	const lines = summary.split('\n');
-	const found = lines.map((line) => /^([A-Z][^:.]*?)(?: \((inconclusive|failed)\))?: (.+)$/.exec(line));
-	if (lines.length < 2) return { lead: summary, parts: [] };
-	const parts = found.flatMap((match) => {
-		if (!match) return [];
-		const [, title, verdict, said] = match as unknown as [string, string, Part['verdict'] | undefined, string];
-		const own = quantities.filter((one) => one.title.startsWith(`${title}: `));
-		const id = own[0]?.name.split('.')[0] ?? title;
-		return {
-			id,
-			title,
-			verdict: verdict ?? 'identified',
-			said,
-			quantities: own.map((one) => ({ ...one, title: one.title.slice(title.length + 2) })),
-			figures: figures.filter(({ name }) => name.startsWith(`${id}.`)),
-		};
-	});
-	return { lead: lines.filter((_, i) => !found[i]).join(' '), parts };
+	return {
+		lead: parts.length > 0 ? lines.slice(0, lines.length - parts.length).join(' ') : summary,
+		parts: parts.map((part) => ({
+			...part,
+			quantities: quantities.filter(({ name }) => name.startsWith(`${part.id}.`)).map((one) => ({ ...one, title: one.title.slice(part.title.length + 2) })),
+			figures: figures.filter(({ name }) => name.startsWith(`${part.id}.`)),
+		})),
+	};
 }

@@ -6,4 +6,7 @@ export function stepOn({ step, steps }: Progress): number {
 	return Math.min(step + 1, steps);
 }
 
-export const sayStep = (progress: Progress): string => `step ${stepOn(progress)} of ${progress.steps}, ${countdown(progress.remaining_s)} left`;
+/** A warm-up ends as soon as the joint is steady. */
+export const sayLeft = ({ remaining_s, at_most }: Progress): string => (at_most ? 'at most ' : '') + countdown(remaining_s);
+
+export const sayStep = (progress: Progress): string => `step ${stepOn(progress)} of ${progress.steps}, ${sayLeft(progress)} left`;

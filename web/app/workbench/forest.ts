@@ -10,7 +10,7 @@ export interface Row {
 	flags: string[];
 }
 
-const SAID: Partial<Record<Parameter['state'], string>> = { at_bound: 'at its bound', unidentified: 'not decided by this data' };
+const SAID: Partial<Record<Parameter['state'], string>> = { at_bound: 'at its bound', impossible: 'contradicts physics', unidentified: 'not decided by this data' };
 
 /** Pairs that the data can hardly tell apart are flagged from this correlation on. */
 const TRADING = 0.9;

@@ -169,7 +169,7 @@ export function openWorkbench(id: number) {
 	});
 	const trying = $derived(other !== null && other.parent === model?.id && isAside(other));
 	/** What columns suggest that contradict each other is no advice. */
-	const contradicts = $derived(diagnosis.data?.undecided?.includes('columns contradict') ?? false);
+	const contradicts = $derived(diagnosis.data?.undecided_reason === 'contradictory_columns');
 
 	/** The same effects fitted to other data; without `excluded` it looks away where this version does. */
 	async function refitOn(more: number[], what: string, excluded?: Exclusion[], told?: string): Promise<void> {

@@ -186,7 +186,9 @@ fn finish(mut table: RawTable, layout: &Layout, name: &str) -> Result<RawTable, 
         table.notes.push(Note::new(format!("{} between the rows skipped", plural(table.comments, "comment line"))));
     }
     if table.is_cut {
-        table.notes.push(Note::new("the last line is cut off and was left out"));
+        table.notes.push(Note::new(
+            "the last line is shorter than all others and has no line end: it was left out as cut off",
+        ));
     }
     if !table.named_again.is_empty() {
         let times = plural(table.named_again.len(), "more time");

@@ -39,7 +39,7 @@ pub struct Part {
     pub comments: usize,
     /// Rows above which the names stand again.
     pub named_again: Vec<usize>,
-    /// The last row, where it is shorter and no line end follows.
+    /// The last row, where it or its last cell is shorter than all others and no line end follows.
     pub is_cut: bool,
     pub refused: Option<(u64, usize, FileFault)>,
 }
@@ -78,6 +78,9 @@ impl Layout {
     }
 }
 
+/// Of so many rows the last cell of the last one is not the shortest by accident.
+const MANY: usize = 20;
+
 impl Rows<'_> {
     /// `is_last`: no line end needs to follow the last row.
     pub fn part(&self, text: &[u8], is_last: bool) -> Part {
@@ -98,9 +101,16 @@ impl Rows<'_> {
             .flexible(true)
             .from_reader(text);
         let mut record = ByteRecord::new();
+        let mut shortest = usize::MAX;
         // From memory, in any width: nothing fails.
         while reader.read_byte_record(&mut record).unwrap_or(false) {
             let is_end = is_last && reader.position().byte() == text.len() as u64 && !text.ends_with(b"\n");
+            let length = record.iter().next_back().map_or(0, |cell| cell.trim_ascii().len());
+            if is_end && part.rows >= MANY && length < shortest && self.fits(&record) {
+                part.is_cut = true;
+                break;
+            }
+            shortest = shortest.min(length);
             self.take(&record, text, is_end, &mut part);
             if part.refused.is_some() || part.rows > self.bounds.rows {
                 break;

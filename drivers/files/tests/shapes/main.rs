@@ -116,7 +116,7 @@ fn what_was_skipped_or_assumed_is_said() {
             ],
         ),
         ("pandas_bool.csv", &["valid is 1 for true and 0 for false (--leave valid)"]),
-        ("csv_cut_off.csv", &["the last line is cut off"]),
+        ("csv_cut_off.csv", &["left out as cut off"]),
         ("labview.lvm", &["no row has a value for Comment", "time_s has no unit and was taken as s"]),
         ("epoch_ms.csv", &["time_s has no unit and was taken as ms, since 1970"]),
         ("pandas_datetime.csv", &["time_s counts the seconds from the stamp in the first row, 2026-01-02 10:00:00"]),

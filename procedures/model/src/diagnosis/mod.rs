@@ -57,7 +57,8 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        undecided,
+        undecided_reason: undecided.as_ref().map(|why| why.reason),
+        undecided: undecided.map(|why| why.said),
         summary: match verdict {
             Verdict::MissingEffect => narrative::missing(&found, &fit, &complete, &suggestions),
             _ => narrative::end(&found, &complete, structure.as_ref(), options, false),
@@ -112,7 +113,8 @@ pub fn discover(
         noise_floor_rms: found.floor.rms,
         noise_floor: found.floor.clone(),
         verdict,
-        undecided,
+        undecided_reason: undecided.as_ref().map(|why| why.reason),
+        undecided: undecided.map(|why| why.said),
         summary: narrative::end(&found, &fit, structure.as_ref(), options, is_cut)
             + &narrative::nowhere(verdict, &found.maps, &regions, &fit),
         shows_over: shows_over(&found, structure.as_ref()),

@@ -2,9 +2,8 @@
 
 use crate::diagnosis::findings::Findings;
 use crate::effect::{Effect, Regime};
-use crate::inference::parameter_state::IMPOSSIBLE;
-use crate::report::diagnosis::{Evidence, Imitated, Suggestion, Verdict};
-use crate::report::fit::Parameter;
+use crate::report::diagnosis::{Evidence, Imitated, Suggestion, UndecidedReason, Verdict};
+use crate::report::fit::{Parameter, ParameterState};
 use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::events::Events;
 use crate::residual_analysis::lack_of_fit;
@@ -92,7 +91,7 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
         (_, None) => {
             format!("The model explains this run: its held-out error is {error}, and {floor}{}.", above(found, fit))
         }
-        (_, Some(why)) => format!(
+        (_, Some(Undecided { said: why, .. })) => format!(
             "Nothing more can be named in this run, whose held-out error is {error}; whether the model is adequate \
              cannot be decided: {why}."
         ),
@@ -258,30 +257,41 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
     }
 }
 
+/// Why a verdict decides nothing, and the sentence that says so.
+pub struct Undecided {
+    pub reason: UndecidedReason,
+    pub said: String,
+}
+
 /// Why the verdict decides nothing: columns that contradict each other carry none, too short a run cannot find fault with a
 /// model, or a size contradicts physics in all of the fits.
-pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Options) -> Option<String> {
+pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Options) -> Option<Undecided> {
     let blocks = found.start.main.problem.blocks;
     // The smallest p-value that flipping the signs of so many blocks can give.
     let smallest = 0.5f64.powi(blocks.saturating_sub(1).min(60) as i32);
-    match verdict {
-        _ if !found.start.prepared.clashes.is_empty() => Some("its columns contradict each other".to_owned()),
-        Verdict::Adequate if smallest > options.alpha => {
-            Some(format!("{blocks} independent stretches of motion are too few to name anything"))
+    let (reason, said) = match verdict {
+        _ if !found.start.prepared.clashes.is_empty() => {
+            (UndecidedReason::ContradictoryColumns, "its columns contradict each other".to_owned())
         }
-        Verdict::Adequate if found.floor.rms.is_none() => Some(found.floor.source.clone()),
-        Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => Some(
+        Verdict::Adequate if smallest > options.alpha => (
+            UndecidedReason::TooFewBlocks,
+            format!("{blocks} independent stretches of motion are too few to name anything"),
+        ),
+        Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, found.floor.source.clone()),
+        Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => (
+            UndecidedReason::NoNoiseFloor,
             "a few moments hold nearly all that its repeats differ by, so how well it repeats itself is not known"
                 .into(),
         ),
-        Verdict::Adequate | Verdict::MissingEffect => impossible(fits),
-        _ => None,
-    }
+        Verdict::Adequate | Verdict::MissingEffect => (UndecidedReason::ImpossibleParameter, impossible(fits)?),
+        Verdict::UnexplainedStructure => return None,
+    };
+    Some(Undecided { reason, said })
 }
 
 /// A size that contradicts physics in all of the fits: beside a curve that came in for it, what is left of a line may well turn.
 fn impossible(fits: &[&Fit]) -> Option<String> {
-    let is_impossible = |p: &&Parameter| p.note.as_ref().is_some_and(|note| note.starts_with(IMPOSSIBLE));
+    let is_impossible = |p: &&Parameter| p.state == ParameterState::Impossible;
     let in_fit = |fit: &Fit, of: &Parameter| {
         let mut impossible = fit.parameters.iter().filter(is_impossible);
         impossible.any(|p| (&p.effect, &p.name) == (&of.effect, &of.name))

@@ -23,9 +23,6 @@ pub struct Slot<'a> {
     pub shape: Option<Shape<'a>>,
 }
 
-/// How what is said of a size begins that contradicts physics, or the range that a user gave it, and certainly so.
-pub const IMPOSSIBLE: &str = "lies beyond what is possible";
-
 const MAY_BE_ZERO: &str = "not identified by this run: it may be zero";
 
 /// A factor that is known to be small beside another one of its effect is known, zero or not: it is the phase of a wave, or a
@@ -64,7 +61,7 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
                 _ => format!("at most {}", say(most)),
             };
             let cure = "another effect is missing, or a column has another sign or unit";
-            return (ParameterState::AtBound, Some(format!("{IMPOSSIBLE}, {possible}: {cure}")));
+            return (ParameterState::Impossible, Some(format!("lies beyond what is possible, {possible}: {cure}")));
         }
         return (ParameterState::Ok, None);
     };

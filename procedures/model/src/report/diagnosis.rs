@@ -7,6 +7,20 @@ use crate::thresholds::{MASKED_RATIO, SMALL_REDUCTION, STRONG_P_VALUE};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
+/// Why a verdict decides nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UndecidedReason {
+    /// The columns of the run contradict each other.
+    ContradictoryColumns,
+    /// Too few independent blocks to name anything.
+    TooFewBlocks,
+    /// How well the run repeats itself is not known.
+    NoNoiseFloor,
+    /// A parameter contradicts physics in every model.
+    ImpossibleParameter,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -36,6 +50,9 @@ pub struct Diagnosis {
     /// than that nothing was found, or the columns contradict each other. With it `jointbench` ends with code 3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
+    /// The kind of that reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub undecided_reason: Option<UndecidedReason>,
     /// One plain sentence.
     pub summary: String,
     /// Regions in which the model errs, the worst first.
@@ -219,6 +236,9 @@ pub struct Discovery {
     /// than that nothing was found, or the columns contradict each other. With it `jointbench` ends with code 3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided: Option<String>,
+    /// The kind of that reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub undecided_reason: Option<UndecidedReason>,
     pub summary: String,
     pub model: Vec<String>,
     pub fit: Fit,

@@ -74,6 +74,8 @@ pub enum ParameterState {
     Ok,
     /// The best value lies at or beyond the edge of what is physically sensible.
     AtBound,
+    /// The whole interval of a coefficient contradicts physics, or the range that a user gave it.
+    Impossible,
     /// The data does not decide it: the interval is as wide as the value.
     Unidentified,
 }

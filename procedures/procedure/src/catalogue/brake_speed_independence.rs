@@ -151,6 +151,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
                 relative,
             ),
         ],
+        ..Identification::default()
     })
 }
 

@@ -181,6 +181,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             quantity(["torques", "n", "Number of torques", ""], count as f64, None),
         ],
         figures: figures(&points),
+        ..Identification::default()
     })
 }
 

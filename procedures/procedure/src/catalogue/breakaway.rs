@@ -189,6 +189,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             quantity(words("deviation", "s", "Standard deviation over positions"), deviation, None),
         ],
         figures: vec![over_angle(&broke), distribution(&all)],
+        ..Identification::default()
     })
 }
 

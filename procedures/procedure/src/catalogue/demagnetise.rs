@@ -136,6 +136,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             y: Axis::of("torque", "Nm"),
             series: figures,
         }],
+        ..Identification::default()
     })
 }
 

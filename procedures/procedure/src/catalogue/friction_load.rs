@@ -109,6 +109,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         advice: None,
         quantities,
         figures: vec![over_load(&table, gear, laws)?],
+        ..Identification::default()
     })
 }
 

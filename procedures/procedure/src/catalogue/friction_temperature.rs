@@ -156,6 +156,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
         advice: (!enough).then(|| "The temperature range is too small. Increase heat_s or top_speed_rad_s.".into()),
         quantities,
         figures,
+        ..Identification::default()
     })
 }
 

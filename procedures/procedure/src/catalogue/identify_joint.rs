@@ -20,7 +20,7 @@ use super::presliding::Presliding;
 use super::stiffness::Stiffness;
 use super::{Findable, Learnt, Procedure, procedure};
 use crate::findings::{Unusable, verdict};
-use crate::identification::{Identification, Verdict};
+use crate::identification::{Identification, Part, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Phase, Plan, PlanFault, Step};
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -227,13 +227,7 @@ fn found(
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let facts = parts_of(run)?;
-    let mut whole = Identification {
-        verdict: Verdict::Identified,
-        summary: String::new(),
-        advice: None,
-        quantities: Vec::new(),
-        figures: Vec::new(),
-    };
+    let mut whole = Identification::default();
     for number in 0..facts.len() {
         let (procedure, found) = found(run, facts, number)?;
         let found = found.unwrap_or_else(|| none_of(procedure, &whole));
@@ -249,6 +243,12 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             Verdict::Failed => format!("{} (failed): {}", procedure.title(), found.summary),
         };
         whole.summary = below(&whole.summary, said);
+        whole.parts.push(Part {
+            id: id.to_owned(),
+            title: procedure.title().to_owned(),
+            verdict: found.verdict,
+            summary: found.summary,
+        });
         if let Some(advice) = found.advice {
             whole.advice = Some(below(&whole.advice.take().unwrap_or_default(), words(&advice)));
         }

@@ -150,6 +150,7 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             y: Axis::of("friction torque (motor)", "Nm"),
             series,
         }],
+        ..Identification::default()
     })
 }
 

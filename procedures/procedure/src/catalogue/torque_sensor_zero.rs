@@ -158,6 +158,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
             quantity(["drag", "τ_d", "Drag torque of the drive line", "Nm"], zero.drag.value, Some(zero.drag.ci95)),
         ],
         figures: vec![over_time(&zero, "zero_over_time", "Zero of the torque sensor")],
+        ..Identification::default()
     };
     let bound = values.number("steady_nm_per_min");
     let mut steady = zero.is_steady(bound);

@@ -1,12 +1,14 @@
 //! How long a run still takes: the plan's durations, corrected by what the steps so far really took.
 
-use crate::plan::Plan;
+use crate::plan::{Phase, Plan};
 use crate::recorder::Progress;
 
 #[derive(Debug, Clone)]
 pub(super) struct Pace {
     /// Planned time from the start of each step to the end of the plan, and 0 at the end.
     left_s: Vec<f64>,
+    /// First step after those that a steady joint needs no more.
+    warm: usize,
     steps: usize,
     step: usize,
     label: String,
@@ -23,7 +25,9 @@ impl Pace {
         }
         left_s.reverse();
         let steps = plan.steps.len();
-        Self { left_s, steps, step: 0, label: String::new(), step_started_s: 0.0, planned_s: 0.0, taken_s: 0.0 }
+        let last = plan.steps.iter().rposition(|step| step.phase == Phase::WarmUp);
+        let warm = last.filter(|_| plan.steady.is_some()).map_or(0, |last| last + 1);
+        Self { left_s, warm, steps, step: 0, label: String::new(), step_started_s: 0.0, planned_s: 0.0, taken_s: 0.0 }
     }
 
     pub fn step_started(&mut self, step: usize, label: &str, now_s: f64) {
@@ -55,6 +59,7 @@ impl Pace {
             label: self.label.clone(),
             elapsed_s: now_s - started_s,
             remaining_s: (self.left_s[self.step] - done_s) * correction,
+            at_most: self.step < self.warm,
         }
     }
 }

@@ -41,6 +41,9 @@ pub struct Columns {
     /// Spread rows of one time stamp evenly up to the next, where a clock ticks more slowly than rows come
     #[arg(long)]
     pub spread_time: bool,
+    /// Each row is the mean of one steady operating point: a table of conditions without a time
+    #[arg(long)]
+    pub operating_points: bool,
     /// Take a file in which the time begins again as several recordings of one measurement, numbered in column run
     #[arg(long)]
     pub split_runs: bool,
@@ -60,6 +63,7 @@ impl Columns {
             rate: self.rate,
             time_from_rate: self.time_from_rate,
             spread_time: self.spread_time,
+            operating_points: self.operating_points,
             split_runs: self.split_runs,
         }
     }

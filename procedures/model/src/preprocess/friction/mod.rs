@@ -2,6 +2,7 @@
 
 pub(crate) mod bristles;
 pub(crate) mod layout;
+pub(crate) mod operating_points;
 pub(crate) mod signals;
 pub(crate) mod steady_state;
 pub(crate) mod trajectory;
@@ -19,6 +20,9 @@ use crate::{ModelError, Options, ResidualKind};
 use jointbench_instrument::{Motion, RunTable};
 
 pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -> Result<Prepared, ModelError> {
+    if run.meta().operating_points {
+        return operating_points::prepare(run);
+    }
     if options.residual == Some(ResidualKind::Raw) {
         return trajectory::prepare(run, options, bristles);
     }

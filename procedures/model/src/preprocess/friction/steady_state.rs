@@ -173,13 +173,13 @@ pub fn prepare(
 }
 
 /// What the motor gives belongs to settled motion and to ramps alike.
-fn set_drive(problem: &mut Problem) {
+pub fn set_drive(problem: &mut Problem) {
     let drive = crate::preprocess::friction::drive(&problem.view.points, &problem.target);
     problem.view.points.set(Signal::Drive, drive);
 }
 
 /// Plateaus of the same speed, direction and load are one condition.
-fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&[f64]>) -> Vec<usize> {
+pub fn conditions(samples: &Source, plateaus: &[Range<usize>], command: Option<&[f64]>) -> Vec<usize> {
     let middle = |signal: &[f64], p: &Range<usize>| median(signal[p.clone()].iter().copied());
     let velocity = samples.signals.find(Signal::Velocity).unwrap_or_default();
     let speeds: Vec<f64> = plateaus.iter().map(|p| middle(velocity, p)).collect();

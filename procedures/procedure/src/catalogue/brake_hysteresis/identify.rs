@@ -98,6 +98,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             .then(|| "Increase levels or dwell_s. The model error must be below 1 % of the rated torque.".into()),
         quantities,
         figures: [loops(&sweeps, &everett), vec![judgement(&judged)]].concat(),
+        ..Identification::default()
     })
 }
 

@@ -78,6 +78,7 @@ pub(super) fn identify(period_s: f64, run: &RunTable) -> Result<Identification, 
             .then(|| "Reduce share, or identify friction again because the joint may be warmer.".into()),
         quantities,
         figures: vec![bars(&followed), trajectories(&followed, period_s), errors(&followed)],
+        ..Identification::default()
     })
 }
 

@@ -134,7 +134,15 @@ impl Procedure for EncoderAlignment {
         }
         let mut figures = vec![tolerance::figure(&found)];
         figures.extend(map.map(|map| map.figure()));
-        Some(Identification { verdict: judged.verdict, summary, advice: judged.advice, quantities, figures })
+        Some(Identification {
+            verdict: judged.verdict,
+            summary,
+            advice: judged.advice,
+            quantities,
+            figures,
+            passes: judged.passes,
+            ..Identification::default()
+        })
     }
 
     fn follow_up(&self, found: &Identification) -> Option<FollowUp> {

@@ -117,6 +117,7 @@ impl Procedure for EncoderDelay {
                     Series::new("delay, offset and hysteresis", Mark::Line, line, fitted),
                 ],
             }],
+            ..Identification::default()
         })
     }
 }

@@ -152,7 +152,14 @@ impl Procedure for EncoderLinearity {
              encoder_linearity --set turns=32 --set table_size=4096."
                 .into()
         });
-        Some(Identification { verdict: Verdict::Identified, summary, advice, quantities, figures })
+        Some(Identification {
+            verdict: Verdict::Identified,
+            summary,
+            advice,
+            quantities,
+            figures,
+            ..Identification::default()
+        })
     }
 }
 

@@ -112,6 +112,7 @@ impl Procedure for EncoderOffset {
                 quantity(["positions", "n", "Number of positions", ""], positions as f64, None),
             ],
             figures: figures(&sweeps),
+            ..Identification::default()
         })
     }
 }

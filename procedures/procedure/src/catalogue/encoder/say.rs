@@ -31,5 +31,6 @@ pub fn too_little(what: &str, advice: &str) -> Option<Identification> {
         advice: Some(advice.into()),
         quantities: Vec::new(),
         figures: Vec::new(),
+        ..Identification::default()
     })
 }

@@ -127,6 +127,7 @@ impl Procedure for EncoderStartup {
                 quantity(["power_ups", "n", "Number of power-ups", ""], zeros.len() as f64, None),
             ],
             figures: figures(&zeros),
+            ..Identification::default()
         })
     }
 }

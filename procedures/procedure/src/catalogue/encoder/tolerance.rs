@@ -6,6 +6,8 @@ use crate::identification::{Axis, Figure, Form, Mark, Series, Verdict};
 /// PASS, OUT OF TOLERANCE or NOT SURE, and the ways that are to blame.
 pub struct Judgement {
     pub verdict: Verdict,
+    /// `None` where the travel does not decide it.
+    pub passes: Option<bool>,
     pub said: String,
     pub advice: Option<String>,
 }
@@ -46,6 +48,7 @@ impl Judgement {
             let said = format!("OUT OF TOLERANCE: {}.", each(&out, &lost));
             return Self {
                 verdict: Verdict::Identified,
+                passes: Some(false),
                 said,
                 advice: Some(format!("{cure}. Then align and repeat the run.")),
             };
@@ -57,12 +60,13 @@ impl Judgement {
             let further = each(&unsure, &|(way, _)| format!("--set {}={:.2e}", way.reach, 1.2 * way.manufacturing));
             return Self {
                 verdict: Verdict::Inconclusive,
+                passes: None,
                 said: format!("UNDECIDED: {}.", each(&unsure, &far)),
                 advice: Some(format!("Increase the travel and the bisection steps: {further} --set halvings=6.")),
             };
         }
         let said = "PASS: consistent within the data sheet tolerance in all directions.".into();
-        Self { verdict: Verdict::Identified, said, advice: None }
+        Self { verdict: Verdict::Identified, passes: Some(true), said, advice: None }
     }
 }
 

@@ -203,6 +203,7 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         advice: advice.map(str::to_owned),
         quantities,
         figures,
+        ..Identification::default()
     })
 }
 

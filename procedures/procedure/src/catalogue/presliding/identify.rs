@@ -104,6 +104,7 @@ pub fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusa
         }),
         quantities,
         figures: vec![loops(&held, dahl), first_loading(dahl)],
+        ..Identification::default()
     })
 }
 

@@ -109,6 +109,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
             .then(|| "Not all breakaway events were detected. Increase top_torque_nm or breakaways.".into()),
         quantities,
         figures: vec![over_volts.clone(), in_torque(over_volts, nm_per_v), figures.over_angle(&holds, arc_rad)],
+        ..Identification::default()
     })
 }
 

@@ -156,6 +156,7 @@ pub(super) fn identify(run: &RunTable) -> Result<Identification, Unusable> {
             .then(|| "The value includes the bearing. Enter bearing_stiffness_nm_rad to separate it.".into()),
         quantities,
         figures: vec![whole, beyond],
+        ..Identification::default()
     })
 }
 

@@ -1,0 +1,42 @@
+//! A table of conditions: each row is the mean of one steady operating point.
+
+use crate::column::Column;
+use crate::note::Note;
+use crate::raw::RawTable;
+use jointbench_instrument::{Kind, Meta};
+
+const ANGLE: &str = "motor_position_rad";
+const SPEED: &str = "motor_velocity_rad_s";
+
+/// Speeds without time and angle are points and no record of a motion.
+pub fn may_be(table: &RawTable) -> bool {
+    table.place(SPEED).is_some() && table.place(ANGLE).is_none()
+}
+
+/// Numbers the rows in the place of a time, a second each, and turns the motor on by the speed of each row where the table has no
+/// angle. Neither means anything beyond the order of the rows.
+pub fn settle(table: &mut RawTable, meta: &mut Meta) {
+    meta.operating_points = true;
+    meta.sample_rate_hz = None;
+    let numbers = Column::new("time_s", (0..table.rows).map(|row| row as f64).collect());
+    match table.place("time_s") {
+        Some(place) => table.columns[place] = numbers,
+        None => table.columns.insert(0, numbers),
+    }
+    let mut counted = "time_s counts the rows";
+    if meta.kind == Some(Kind::Friction)
+        && table.place(ANGLE).is_none()
+        && let Some(speed) = table.place(SPEED)
+    {
+        let mut angle = 0.0;
+        let mut turned = |speed: &f64| {
+            angle += speed;
+            angle
+        };
+        let values = table.columns[speed].values.iter().map(&mut turned).collect();
+        table.columns.insert(1, Column::new(ANGLE, values));
+        counted = "time_s and motor_position_rad only count the rows";
+    }
+    let said = format!("each row is one steady operating point: {counted}");
+    table.notes.push(Note::with(said, "--operating-points"));
+}
