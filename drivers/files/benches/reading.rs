@@ -68,7 +68,8 @@ fn write(path: &Path, bytes: u64) -> std::io::Result<usize> {
         written += line.len() as u64;
         row += 1;
     }
-    out.flush()?;
+    // Writing it back must not go on while it is read.
+    out.into_inner()?.sync_all()?;
     Ok(row)
 }
 

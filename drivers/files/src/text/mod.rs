@@ -55,28 +55,27 @@ pub(crate) fn read(
     }
     let begin = first[layout.start.min(first.len())..].to_vec();
     let mut line = layout.start_line - 1;
-    let mut batch = vec![(begin, is_last)];
-    let most = 2 * rayon::current_num_threads();
-    loop {
-        while batch.len() < most && !batch.last().is_some_and(|(_, is_last)| *is_last) {
-            match pieces.next().map_err(in_file)? {
-                Some(piece) => batch.push(piece),
-                None => break,
+    let (mut batch, mut read) = (vec![(begin, is_last)], Vec::new());
+    // While one batch is read into numbers, the one before joins the table and the next one comes from the disk.
+    while !batch.is_empty() {
+        let (parts, (joined, next)) = rayon::join(
+            || batch.par_iter().map(|(text, is_last)| rows.part(text, *is_last)).collect::<Vec<Part>>(),
+            || {
+                let joined = read.drain(..).try_for_each(|part| append(&mut table, part, &mut line, name, options));
+                (joined, pieces.batch(2 * rayon::current_num_threads()))
+            },
+        );
+        joined?;
+        read = parts;
+        match next {
+            Ok(next) => batch = next,
+            Err(fault) => {
+                read.drain(..).try_for_each(|part| append(&mut table, part, &mut line, name, options))?;
+                return Err(in_file(fault));
             }
         }
-        if batch.is_empty() {
-            break;
-        }
-        let is_over = batch.last().is_some_and(|(_, is_last)| *is_last);
-        let parts: Vec<Part> = batch.par_iter().map(|(text, is_last)| rows.part(text, *is_last)).collect();
-        for part in parts {
-            append(&mut table, part, &mut line, name, options)?;
-        }
-        batch.clear();
-        if is_over {
-            break;
-        }
     }
+    read.into_iter().try_for_each(|part| append(&mut table, part, &mut line, name, options))?;
     finish(table, &layout, name)
 }
 

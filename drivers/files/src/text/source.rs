@@ -5,18 +5,18 @@ use crate::Bounds;
 use crate::error::FileFault;
 use encoding_rs::Decoder;
 use flate2::read::MultiGzDecoder;
-use std::cell::Cell;
 use std::io::{self, Read};
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Bytes from a file, a packed file or memory.
-pub trait Source {
+pub trait Source: Send {
     fn read(&mut self, room: &mut [u8]) -> Result<usize, FileFault>;
 }
 
 pub struct Plain<R>(pub R);
 
-impl<R: Read> Source for Plain<R> {
+impl<R: Read + Send> Source for Plain<R> {
     fn read(&mut self, room: &mut [u8]) -> Result<usize, FileFault> {
         loop {
             match self.0.read(room) {
@@ -30,37 +30,37 @@ impl<R: Read> Source for Plain<R> {
 /// A gzip file, unpacked within bounds.
 pub struct Packed<R> {
     inner: MultiGzDecoder<Counted<R>>,
-    packed: Rc<Cell<u64>>,
+    packed: Arc<AtomicU64>,
     unpacked: u64,
     bounds: Bounds,
 }
 
 struct Counted<R> {
     inner: R,
-    count: Rc<Cell<u64>>,
+    count: Arc<AtomicU64>,
 }
 
 impl<R: Read> Read for Counted<R> {
     fn read(&mut self, room: &mut [u8]) -> io::Result<usize> {
         let read = self.inner.read(room)?;
-        self.count.set(self.count.get() + read as u64);
+        self.count.fetch_add(read as u64, Ordering::Relaxed);
         Ok(read)
     }
 }
 
 impl<R: Read> Packed<R> {
     pub fn new(inner: R, bounds: Bounds) -> Self {
-        let packed = Rc::<Cell<u64>>::default();
+        let packed = Arc::<AtomicU64>::default();
         let inner = MultiGzDecoder::new(Counted { inner, count: packed.clone() });
         Self { inner, packed, unpacked: 0, bounds }
     }
 }
 
-impl<R: Read> Source for Packed<R> {
+impl<R: Read + Send> Source for Packed<R> {
     fn read(&mut self, room: &mut [u8]) -> Result<usize, FileFault> {
         let read = self.inner.read(room).map_err(|fault| FileFault::Gzip(fault.to_string()))?;
         self.unpacked += read as u64;
-        self.bounds.check_expanded(self.unpacked, Some(self.packed.get()))?;
+        self.bounds.check_expanded(self.unpacked, Some(self.packed.load(Ordering::Relaxed)))?;
         Ok(read)
     }
 }
@@ -156,6 +156,17 @@ impl<'s> Pieces<'s> {
         }
         let is_last = self.is_over && self.rest.is_empty();
         Ok(Some((piece, is_last)))
+    }
+
+    /// The next pieces, at most so many; none behind the last.
+    pub fn batch(&mut self, most: usize) -> Result<Vec<(Vec<u8>, bool)>, FileFault> {
+        let mut batch = Vec::new();
+        while batch.len() < most
+            && let Some(piece) = self.next()?
+        {
+            batch.push(piece);
+        }
+        Ok(batch)
     }
 }
 
