@@ -6,7 +6,7 @@
 
 use crate::ModelError;
 use crate::export::parts::Parts;
-use crate::export::{about, notes_of, of_model};
+use crate::export::{about, of_model};
 use crate::report::fit::{Fit, Parameter};
 use jointbench_instrument::Kind;
 
@@ -53,7 +53,7 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
     // What a figure is worth stands beside it: the element follows at once.
     let beside = carried.iter().filter_map(|(name, a)| Some((name, a.of?.0)));
     let beside =
-        beside.flat_map(|(name, told)| notes_of(fit, told).map(move |note| format!("{name}, motor side: {note}")));
+        beside.flat_map(|(name, told)| told.note.iter().map(move |note| format!("{name}, motor side: {note}")));
     let mut parts = Parts::of(fit)?;
     parts.parts.retain(|part| held(part.effect));
     let mut words = about(fit, &parts, &left_out, vec![of_model(fit, &left_out)]);

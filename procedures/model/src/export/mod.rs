@@ -19,7 +19,7 @@ pub use crate::export::predict::{Moments, predict};
 use crate::ModelError;
 use crate::export::parts::Parts;
 use crate::preprocess::Problem;
-use crate::report::fit::{ANOTHER_INERTIA, Fit, Parameter, SignalRange};
+use crate::report::fit::{Fit, SignalRange};
 use crate::signal::Signal;
 use crate::user_effects::signals_with;
 use jointbench_instrument::Kind;
@@ -130,12 +130,6 @@ pub(crate) fn measure(fit: &mut Fit, problem: &Problem) -> Result<(), ModelError
     let table_rms = table::on_run(fit, problem)?;
     fit.scope.iter_mut().for_each(|scope| scope.table_rms = table_rms);
     Ok(())
-}
-
-/// What the fit says about one of its figures, which is not to leave without it.
-fn notes_of<'f>(fit: &'f Fit, parameter: &'f Parameter) -> impl Iterator<Item = &'f str> {
-    let of_inertia = |note: &&String| parameter.effect == "inertia" && note.starts_with(ANOTHER_INERTIA);
-    parameter.note.iter().chain(fit.notes.iter().filter(of_inertia)).map(String::as_str)
 }
 
 #[cfg(test)]

@@ -4,9 +4,6 @@ use crate::OwnEffect;
 use jointbench_instrument::{Kind, Motion};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// How the note begins that an inertia is not the set-up's.
-pub(crate) const ANOTHER_INERTIA: &str = "the inertia is ";
-
 /// What RMS figures and residuals are made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

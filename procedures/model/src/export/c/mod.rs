@@ -81,7 +81,7 @@ fn parameters(fit: &Fit, parts: &Parts) -> Vec<(String, f64, String)> {
         let effect = part.effect;
         for (name, value) in part.factors.iter().chain(&part.shape) {
             let told = fit.parameters.iter().find(|p| p.effect == effect && p.name == *name);
-            all.push((format!("{effect}_{name}"), *value, told.map(|told| comment(fit, told)).unwrap_or_default()));
+            all.push((format!("{effect}_{name}"), *value, told.map(comment).unwrap_or_default()));
         }
         if let Some(band) = dead_band_of(fit, part) {
             let words = format!(
@@ -122,8 +122,8 @@ fn fed(fit: &Fit, parts: &Parts) -> Vec<String> {
     }
 }
 
-fn comment(fit: &Fit, parameter: &Parameter) -> String {
+fn comment(parameter: &Parameter) -> String {
     let [low, high] = parameter.ci95;
-    let note: String = crate::export::notes_of(fit, parameter).map(|note| format!("; {note}")).collect();
+    let note: String = parameter.note.iter().map(|note| format!("; {note}")).collect();
     format!(" /* {} */", suffix::ascii(&format!("[{}] 95 %: {low:.4e} to {high:.4e}{note}", parameter.unit)))
 }
