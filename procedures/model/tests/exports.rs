@@ -99,7 +99,7 @@ fn an_inertia_that_is_not_the_set_ups_says_so_wherever_it_goes() {
     }
     let mujoco = export(&fit, Format::Mujoco).unwrap();
     let before = mujoco.split("<joint").next().unwrap().trim_end();
-    assert!(before.ends_with(&format!("<!-- armature, motor side: not determined by this run -->")), "{mujoco}");
+    assert!(before.ends_with("<!-- armature, motor side: not determined by this run -->"), "{mujoco}");
 }
 
 /// Between the points of a table in straight lines, at the axes named; the last axis runs fastest.
