@@ -1,6 +1,7 @@
 //! A table of conditions: each row is the mean of one steady operating point.
 
 use crate::column::Column;
+use crate::error::FileFault;
 use crate::note::Note;
 use crate::raw::RawTable;
 use jointbench_instrument::{Kind, Meta};
@@ -15,7 +16,16 @@ pub fn may_be(table: &RawTable) -> bool {
 
 /// Numbers the rows in the place of a time, a second each, and turns the motor on by the speed of each row where the table has no
 /// angle. Neither means anything beyond the order of the rows.
-pub fn settle(table: &mut RawTable, meta: &mut Meta) {
+pub fn settle(table: &mut RawTable, meta: &mut Meta) -> Result<(), FileFault> {
+    if meta.kind == Some(Kind::Friction) && table.place(ANGLE).is_some() {
+        let said = format!("the table has {ANGLE}: it is the record of a motion and no table of conditions");
+        return Err(FileFault::Choice { said, options: vec!["the file without --operating-points".into()] });
+    }
+    if meta.kind == Some(Kind::Friction) && table.place(SPEED).is_none() {
+        let said = format!("a table of conditions needs {SPEED}, and the file has {}", table.names().join(", "));
+        let option = |unit: &str| format!("--map {SPEED}=NAME --unit {SPEED}={unit}");
+        return Err(FileFault::Choice { said, options: vec![option("rad/s"), option("rpm")] });
+    }
     meta.operating_points = true;
     meta.sample_rate_hz = None;
     let numbers = Column::new("time_s", (0..table.rows).map(|row| row as f64).collect());
@@ -35,8 +45,9 @@ pub fn settle(table: &mut RawTable, meta: &mut Meta) {
         };
         let values = table.columns[speed].values.iter().map(&mut turned).collect();
         table.columns.insert(1, Column::new(ANGLE, values));
-        counted = "time_s and motor_position_rad only count the rows";
+        counted = "time_s counts the rows, and motor_position_rad adds up their speeds";
     }
     let said = format!("each row is one steady operating point: {counted}");
     table.notes.push(Note::with(said, "--operating-points"));
+    Ok(())
 }

@@ -21,11 +21,11 @@ pub(crate) fn settle(
     options: &ReadOptions,
     file: &str,
 ) -> Result<Vec<usize>, FileError> {
+    let in_file = |fault: FileFault| fault.in_file(file);
     if options.time == TimeFrom::OperatingPoints {
-        operating_points::settle(table, meta);
+        operating_points::settle(table, meta).map_err(in_file)?;
         return Ok(Vec::new());
     }
-    let in_file = |fault: FileFault| fault.in_file(file);
     let stamped = table.place(TIME).map(|place| to_seconds(&mut table.columns[place], meta)).transpose();
     if let Some(note) = stamped.map_err(|fault| fault.at_line(file, table.names_line).in_column(TIME))?.flatten() {
         table.notes.push(note);
@@ -88,12 +88,13 @@ fn to_seconds(column: &mut Column, meta: &Meta) -> Result<Option<Note>, FileFaul
                     .then(|| Note::with(format!("{TIME} was converted from {text}"), format!("--unit {TIME}=UNIT"))),
             )
         }
-        (None, true) => {
+        // Seconds since 1970 that are no date before 2100 are none.
+        (None, is_open) if is_open || values.first().is_some_and(|first| *first > EPOCH_S.end) => {
             let (name, why) = open_unit(values, meta.sample_rate_hz)?;
             let said = format!("{TIME} has no unit and was taken as {name}, {why}");
             (Unit::parse(name).unwrap_or(Unit::SI), Some(Note::with(said, format!("--unit {TIME}=UNIT"))))
         }
-        (None, false) => (Unit::SI, None),
+        (None, _) => (Unit::SI, None),
     };
     // Of a clock that counts from long ago the digits would go to the years.
     let zero =

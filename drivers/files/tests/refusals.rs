@@ -223,3 +223,23 @@ fn a_table_of_conditions_asks_for_its_option_and_is_read_with_it() {
     let run = read_bytes("run.csv", text.as_bytes(), &ReadOptions { meta, ..options }).unwrap();
     assert!(run.meta().operating_points && run.column("time_s") == Some(&[0.0, 1.0][..]));
 }
+
+#[test]
+fn milliseconds_since_1970_are_no_seconds_whatever_their_name() {
+    let rows: Vec<String> = (0..30).map(|i| format!("{},{},0.5", 1_700_000_000_000_u64 + 2 * i, i)).collect();
+    let run = take("run.csv", format!("{NAMES}\n{}\n", rows.join("\n")).as_bytes()).unwrap();
+    let time_s = run.column("time_s").unwrap();
+    assert!((time_s[1] - time_s[0] - 2e-3).abs() < 1e-9, "{:?}", &time_s[..3]);
+}
+
+#[test]
+fn the_record_of_a_motion_is_no_table_of_conditions() {
+    let options = Choices { operating_points: true, ..Choices::default() }.options().unwrap();
+    let meta = Some(Meta { kind: Some(Kind::Friction), ..Meta::default() });
+    let read =
+        |text: &str| read_bytes("run.csv", text.as_bytes(), &ReadOptions { meta: meta.clone(), ..options.clone() });
+    let refused = read(&format!("{NAMES}\n0,1,0.5\n1,2,0.5\n")).unwrap_err().to_string();
+    assert!(refused.contains("no table of conditions"), "{refused}");
+    let refused = read("speed,current\n10,0.5\n20,0.5\n").unwrap_err().to_string();
+    assert!(refused.contains("--map motor_velocity_rad_s=NAME"), "{refused}");
+}

@@ -26,6 +26,12 @@ fn table(load_share: f64) -> RunTable {
             }
         }
     }
+    // At rest the joint holds itself.
+    for held in [0.3, -0.2, 0.1, 0.0, 0.4] {
+        velocity.push(0.0);
+        load.push(5.0);
+        current.push(held);
+    }
     let rows = velocity.len();
     let columns = [
         ("time_s", (0..rows).map(|row| row as f64).collect()),

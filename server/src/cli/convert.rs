@@ -36,7 +36,8 @@ pub fn convert(arguments: &Convert) -> Done {
         let names: Vec<&str> = trace.channels().iter().map(|channel| channel.name.as_str()).collect();
         json_out(&json!({ "file": out, "rows": trace.len(), "columns": names, "left": left, "notes": notes }))?;
     } else {
-        println!("{} ({} rows)", out.display(), trace.len());
+        let rows = if trace.len() == 1 { "row" } else { "rows" };
+        println!("{} ({} {rows})", out.display(), trace.len());
         if out.extension().is_none_or(|end| end != "parquet") {
             println!("{}", meta_path_of(out).display());
         }

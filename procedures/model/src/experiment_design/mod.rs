@@ -267,7 +267,7 @@ fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run tells {what}: the predictions are expected to lie {} standard deviations apart{}{enough}",
+            "that run would tell {what}: the predictions are expected to lie {} standard deviations apart{}{enough}",
             in_words(bid.z),
             bid.choice.provided(),
         ),

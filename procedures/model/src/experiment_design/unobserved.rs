@@ -74,7 +74,7 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Proble
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run would show {} of a size that the data so far could not show: {worth} would stand out by at least {:.1} \
+            "that run would show {} of a size that the data so far could not show: {worth} would stand out by at least {:.1} \
              standard deviations{}",
             list(&effects),
             bid.z.min(100.0),

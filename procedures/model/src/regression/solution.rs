@@ -1,10 +1,12 @@
 //! A model on a run that is judged sample by sample: effects, and beside them where the errors of their formulas live.
 
 use crate::effects;
+use crate::linear::basis::{Basis, dot};
 use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
-use crate::preprocess::form_error::{FormError, Lives};
+use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::weights::weights;
+use crate::thresholds::BIAS_TOLERANCE;
 use jointbench_instrument::Kind;
 use std::sync::Arc;
 
@@ -23,8 +25,8 @@ pub struct Beside<'a> {
     pub relatives: Vec<BaseColumn<'a>>,
 }
 
-/// What stands beside the effects of a model: all form error but what an effect of it is, or what `leaves_out` says, and other
-/// forms of its effects.
+/// What stands beside the effects of a model: all form error but what an effect of it is, what looks like its effects, or what
+/// `leaves_out` says, and other forms of its effects.
 pub fn beside<'a>(model: &'a LinearModel, form_error: &'a FormError, leaves_out: impl Fn(Lives) -> bool) -> Beside<'a> {
     let passes_load = model.given.iter().any(|g| *g != 0.0);
     let is_out = |lives: Lives| match lives {
@@ -32,7 +34,17 @@ pub fn beside<'a>(model: &'a LinearModel, form_error: &'a FormError, leaves_out:
         Lives::LoadRate => !passes_load,
         Lives::Bristle | Lives::Snap => false,
     };
-    let columns = form_error.columns.iter().enumerate().filter(|(_, c)| !is_out(c.lives) && !leaves_out(c.lives));
+    // On one sine jerk is velocity: what is not held near zero must be none of the effects.
+    let effects = Basis::of(model.terms.iter().flat_map(|term| &term.columns));
+    let is_own = |c: &ErrorColumn| {
+        if c.lives.shrinks() {
+            return true;
+        }
+        let rest = effects.rest(&c.values);
+        dot(&rest, &rest) > BIAS_TOLERANCE * dot(&c.values, &c.values)
+    };
+    let is_beside = |c: &ErrorColumn| !is_out(c.lives) && !leaves_out(c.lives) && is_own(c);
+    let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_beside(c));
     let error =
         columns.map(|(at, c)| (at, BaseColumn { values: &c.values, scale: c.scale, shrinks: c.lives.shrinks() }));
     let relatives = model.relatives.iter().flat_map(|relative: &Relative| &relative.columns);

@@ -29,19 +29,19 @@ pub struct Columns {
     /// Names of the columns, for a table without a line of names
     #[arg(long, value_name = "NAME,NAME,…")]
     pub names: Option<String>,
-    /// Decimal sign: point or comma, of all columns or of one (current_ma=comma); the other sign parts thousands
+    /// Decimal sign: point or comma, of all columns or of one (current_ma=comma); the other sign separates thousands
     #[arg(long, value_name = "[NAME=]SIGN")]
     pub decimal: Vec<String>,
-    /// Rows a second of a table without a time [Hz]
+    /// Sample rate of a table without a time [Hz]
     #[arg(long, value_name = "HZ")]
     pub rate: Option<f64>,
-    /// Count the rows instead of reading the time, so many a second [Hz]
+    /// Ignore the time in the table and count the rows at this sample rate [Hz]
     #[arg(long, value_name = "HZ")]
     pub time_from_rate: Option<f64>,
-    /// Spread rows of one time stamp evenly up to the next, where a clock ticks more slowly than rows come
+    /// Spread rows with the same time stamp evenly up to the next one, for a clock that is coarser than the sampling
     #[arg(long)]
     pub spread_time: bool,
-    /// Each row is the mean of one steady operating point: a table of conditions without a time
+    /// Each row is the mean of one steady operating point (speed, current, load): a friction or brake table without a time
     #[arg(long)]
     pub operating_points: bool,
     /// Take a file in which the time begins again as several recordings of one measurement, numbered in column run

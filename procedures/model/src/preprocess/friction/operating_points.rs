@@ -12,23 +12,37 @@ use jointbench_instrument::{Motion, RunTable};
 
 /// Fewer say nothing of two effects.
 const FEWEST: usize = 12;
+/// A point below this share of the fastest speed is at rest.
+const AT_REST: f64 = 1e-3;
 
-/// Rows of equal speed and load are replicates of one condition. Nothing is known of angles, ramps and reversals.
+/// Points at rest are left out: friction there is whatever holds the joint. Rows of equal speed and load are replicates of one condition. Nothing is known of angles, ramps and reversals.
 pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
-    if run.len() < FEWEST {
-        return Err(ModelError::TooFewSamples { usable: run.len(), needed: FEWEST, what: "operating points" });
-    }
     let samples = read(run)?;
-    let points: Vec<_> = (0..run.len()).map(|row| row..row + 1).collect();
+    let speed = samples.signals.find(Signal::Velocity).unwrap_or_default();
+    let fastest = speed.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+    let moving: Vec<usize> = (0..run.len()).filter(|row| speed[*row].abs() > AT_REST * fastest).collect();
+    let at_rest = run.len() - moving.len();
+    if moving.len() < FEWEST {
+        return Err(ModelError::TooFewSamples {
+            usable: moving.len(),
+            needed: FEWEST,
+            what: "operating points in motion",
+        });
+    }
+    let points: Vec<_> = moving.iter().map(|row| *row..row + 1).collect();
     let condition = steady_state::conditions(&samples, &points, run.column("brake_torque_command_nm"));
     let occurrence = occurrences(&condition);
-    let repeat = occurrence.iter().map(|k| *k as i64).collect();
+    let mut repeat = vec![0; run.len()];
+    moving.iter().zip(&occurrence).for_each(|(row, k)| repeat[*row] = *k as i64);
     let samples = Source { repeat: Some(repeat), ..samples };
-    let group = (0..run.len()).collect();
+    let group = (0..moving.len()).collect();
     let repeats = occurrence.iter().any(|k| *k > 0);
     let layout = Layout { chunks: points, group, condition, phase: Some(occurrence), settled: true, inputs: &[] };
     let mut main = problem(&samples, layout);
     steady_state::set_drive(&mut main);
+    let doubt = (at_rest > 0).then(|| {
+        format!("points at rest are left out ({at_rest} of {}): friction there is whatever holds the joint", run.len())
+    });
     let about = Preparation {
         residual: ResidualKind::PlateauMean,
         sample_rate_hz: 1.0,
@@ -50,7 +64,7 @@ pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
         load_scale: run.meta().gear_ratio.unwrap_or(1.0),
         constants: crate::preprocess::constants(run),
         clashes: DataErrors::default(),
-        doubts: Vec::new(),
+        doubts: doubt.into_iter().collect(),
         main,
         bristled: None,
         moving: None,
