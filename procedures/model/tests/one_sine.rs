@@ -14,7 +14,9 @@ fn what_an_effect_says_is_no_error_of_a_formula() {
     };
     let time_s: Vec<f64> = (0..20_000).map(|i| f64::from(i) / rate_hz).collect();
     let turn = |t: &f64| TAU * hz * t;
-    let position = time_s.iter().map(|t| size * turn(t).sin()).collect();
+    // An encoder of 14 bits.
+    let step = TAU / 16_384.0;
+    let position = time_s.iter().map(|t| (size * turn(t).sin() / step).round() * step).collect();
     let torque = |t: &f64| {
         let velocity = TAU * hz * size * turn(t).cos();
         let acceleration = -(TAU * hz).powi(2) * size * turn(t).sin();

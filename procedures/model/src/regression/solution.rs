@@ -6,7 +6,6 @@ use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::weights::weights;
-use crate::thresholds::BIAS_TOLERANCE;
 use jointbench_instrument::Kind;
 use std::sync::Arc;
 
@@ -14,6 +13,9 @@ use std::sync::Arc;
 const FIRST_RIDGE: f64 = 1e-4;
 /// How often the weights are made anew.
 const REWEIGHTED: usize = 2;
+
+/// A column of which less is its own than this share of its square (a variance inflation of 1000) says nothing beside the effects.
+const LEAST_OWN: f64 = 1e-3;
 
 /// The effect that jerk itself is, and the one that moves the load.
 pub const DELAY: &str = "signal_delay";
@@ -41,7 +43,7 @@ pub fn beside<'a>(model: &'a LinearModel, form_error: &'a FormError, leaves_out:
             return true;
         }
         let rest = effects.rest(&c.values);
-        dot(&rest, &rest) > BIAS_TOLERANCE * dot(&c.values, &c.values)
+        dot(&rest, &rest) > LEAST_OWN * dot(&c.values, &c.values)
     };
     let is_beside = |c: &ErrorColumn| !is_out(c.lives) && !leaves_out(c.lives) && is_own(c);
     let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_beside(c));
