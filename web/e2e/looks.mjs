@@ -30,8 +30,8 @@ export async function zoomWhileFollowing(page, base) {
 	const waits = await Promise.all(benches.map(async ({ name }) => ({ name, ...(await post('/procedures/friction/preview', { bench: name })) })));
 	const bench = waits.find(({ wait_s }) => wait_s > 20)?.name;
 	if (!bench) return console.log('no bench keeps a pace: zooming a run that is on is left out');
-	// Long dwells: the run must not end by itself on a slow machine.
-	const { id } = await post('/runs', { bench, procedure: 'friction', parameters: { dwell_s: 10 } });
+	// Long dwells, within the range of the link: the run must not end by itself on a slow machine.
+	const { id } = await post('/runs', { bench, procedure: 'friction', parameters: { dwell_s: 4 } });
 	await page.goto(`${base}/runs/${id}`);
 	const plot = page.locator('main figure .u-over').first();
 	await plot.waitFor({ timeout: PATIENCE_MS });
