@@ -275,6 +275,7 @@ async function readCampaign(page, base, runs) {
 		const named = (one) => ({ ...one, name: `${procedure}.${one.name}` });
 		return {
 			summary: `${title}: ${found.summary}`,
+			part: { id: procedure, title, verdict: found.verdict, summary: found.summary },
 			quantities: found.quantities.map((one) => ({ ...named(one), title: `${title}: ${one.title}` })),
 			figures: found.figures.map(named),
 		};
@@ -282,7 +283,7 @@ async function readCampaign(page, base, runs) {
 	const parts = await Promise.all(runs.map((one, i) => of(one, `Part ${i + 1}`)));
 	const whole = (what) => parts.flatMap((part) => part[what]);
 	await page.route('**/identification', (route) =>
-		route.fulfill({ json: { run: runs[0].run, procedure: 'identify_joint', software: 'jointbench', verdict: 'identified', advice: null, applies: { can: false, what: 'Nothing of this is applied.' }, summary: whole('summary').join('\n'), quantities: whole('quantities'), figures: whole('figures') } }),
+		route.fulfill({ json: { run: runs[0].run, procedure: 'identify_joint', software: 'jointbench', verdict: 'identified', advice: null, applies: { can: false, what: 'Nothing of this is applied.' }, summary: whole('summary').join('\n'), quantities: whole('quantities'), figures: whole('figures'), parts: parts.map(({ part }) => part) } }),
 	);
 	await page.goto(`${base}/runs/${runs[0].run}`);
 	const lines = page.locator('[data-part]');
