@@ -14,8 +14,8 @@ pub fn may_be(table: &RawTable) -> bool {
     table.place(SPEED).is_some() && table.place(ANGLE).is_none()
 }
 
-/// Numbers the rows in the place of a time, a second each, and turns the motor on by the speed of each row where the table has no
-/// angle. Neither means anything beyond the order of the rows.
+/// Numbers the rows in the place of a time, a second each. Of a friction table it makes the angle too: the sum of the speeds.
+/// Neither means anything beyond the order of the rows.
 pub fn settle(table: &mut RawTable, meta: &mut Meta) -> Result<(), FileFault> {
     if meta.kind == Some(Kind::Friction) && table.place(ANGLE).is_some() {
         let said = format!("the table has {ANGLE}: it is the record of a motion and no table of conditions");
@@ -35,7 +35,6 @@ pub fn settle(table: &mut RawTable, meta: &mut Meta) -> Result<(), FileFault> {
     }
     let mut counted = "time_s counts the rows";
     if meta.kind == Some(Kind::Friction)
-        && table.place(ANGLE).is_none()
         && let Some(speed) = table.place(SPEED)
     {
         let mut angle = 0.0;

@@ -67,7 +67,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         terms.push(term);
         parameters.extend(found);
     }
-    let undetermined = beside_stated(&mut parameters, prepared);
+    let undetermined = undetermined_inertia(&mut parameters, prepared);
     let (form_error, said) = form_error(main, &prepared.unit());
     parameters.extend(assembly.hidden.iter().flat_map(|h| unseen(assembly, &h.effect, &h.why)));
     let order = |effect: &str| assembly.effects.iter().position(|e| e == effect);
@@ -116,9 +116,9 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     Ok(fit)
 }
 
-/// Settled motion hardly accelerates, and much of that little is how its velocity scatters: where the set-up states another inertia,
-/// the run does not determine it, and the interval reaches the stated one.
-fn beside_stated(parameters: &mut [Parameter], prepared: &Prepared) -> Option<String> {
+/// Settled motion hardly accelerates, and much of that little is the scatter of its velocity. Where the set-up states another
+/// inertia the run does not determine it: the interval reaches the stated one.
+fn undetermined_inertia(parameters: &mut [Parameter], prepared: &Prepared) -> Option<String> {
     let stated = prepared.main.view.constants.rotor_inertia.filter(|_| prepared.main.settled)?;
     let is_other = |p: &&mut Parameter| p.effect == "inertia" && !(p.ci95[0]..=p.ci95[1]).contains(&stated);
     parameters.iter_mut().find(is_other).map(|p| {

@@ -10,11 +10,11 @@ use serde_json::{Map, Value};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    #[default]
     Identified,
     /// The run says too little; [`Identification::advice`] tells what to measure.
     Inconclusive,
     /// The run cannot be used; [`Identification::summary`] tells why.
+    #[default]
     Failed,
 }
 

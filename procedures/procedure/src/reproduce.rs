@@ -319,14 +319,7 @@ mod tests {
         };
         let quantities = names.iter().map(quantity).collect();
         let summary = String::new();
-        Identification {
-            verdict: Verdict::Identified,
-            summary,
-            advice: None,
-            quantities,
-            figures: Vec::new(),
-            ..Identification::default()
-        }
+        Identification { verdict: Verdict::Identified, summary, quantities, ..Identification::default() }
     }
 
     #[test]

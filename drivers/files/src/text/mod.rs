@@ -55,7 +55,7 @@ pub(crate) fn read(
     }
     let begin = first[layout.start.min(first.len())..].to_vec();
     let mut line = layout.start_line - 1;
-    let (mut batch, mut read) = (vec![(begin, is_last)], Vec::new());
+    let (mut batch, mut read, mut broken) = (vec![(begin, is_last)], Vec::new(), None);
     // While one batch is read into numbers, the one before joins the table and the next one comes from the disk.
     while !batch.is_empty() {
         let (parts, (joined, next)) = rayon::join(
@@ -67,15 +67,16 @@ pub(crate) fn read(
         );
         joined?;
         read = parts;
-        match next {
-            Ok(next) => batch = next,
-            Err(fault) => {
-                read.drain(..).try_for_each(|part| append(&mut table, part, &mut line, name, options))?;
-                return Err(in_file(fault));
-            }
-        }
+        batch = next.unwrap_or_else(|fault| {
+            broken = Some(fault);
+            Vec::new()
+        });
     }
+    // A wrong cell in what was read comes before a fault of the disk behind it.
     read.into_iter().try_for_each(|part| append(&mut table, part, &mut line, name, options))?;
+    if let Some(fault) = broken {
+        return Err(in_file(fault));
+    }
     finish(table, &layout, name)
 }
 

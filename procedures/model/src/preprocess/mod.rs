@@ -144,6 +144,25 @@ pub struct Prepared {
 pub(crate) const BENDS: &str = "presliding";
 
 impl Prepared {
+    /// Judged on one problem, with nothing wrong in the columns and the facts.
+    fn of(run: &RunTable, main: Problem, about: Preparation) -> Self {
+        let meta = run.meta();
+        Self {
+            kind: run.kind(),
+            motion: meta.motion,
+            baseline: meta.baseline.clone(),
+            main,
+            bristled: None,
+            moving: None,
+            memory: None,
+            load_scale: meta.gear_ratio.filter(|_| run.kind() == Kind::Friction).unwrap_or(1.0),
+            constants: constants(run),
+            clashes: DataErrors::default(),
+            doubts: Vec::new(),
+            about,
+        }
+    }
+
     /// What a model of these effects is judged on.
     pub fn judged(&self, effects: &[String]) -> &Problem {
         let bends = effects.iter().any(|effect| effect == BENDS);

@@ -79,20 +79,8 @@ pub fn prepare(
         segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
         repeats_from: repeats_from.into(),
     };
-    Ok(Prepared {
-        kind: run.kind(),
-        motion: run.meta().motion,
-        baseline: run.meta().baseline.clone(),
-        main,
-        bristled: None,
-        moving: None,
-        memory: None,
-        load_scale: 1.0,
-        constants: crate::preprocess::constants(run),
-        clashes: crate::preprocess::checks::unit_mismatch::clashes(run),
-        doubts,
-        about,
-    })
+    let clashes = crate::preprocess::checks::unit_mismatch::clashes(run);
+    Ok(Prepared { clashes, doubts, ..Prepared::of(run, main, about) })
 }
 
 /// What is remembered of the time before the run, in a sentence.

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// A candidate with less than this share of its own looks like the model.
-const LEAST_VISIBLE: f64 = 1e-5;
+pub const LEAST_VISIBLE: f64 = 1e-5;
 
 /// The rule of one standard error (Breiman and others 1984, ch. 3).
 pub const ONE_ERROR: f64 = 1.0;

@@ -4,6 +4,7 @@ use crate::effects;
 use crate::linear::basis::{Basis, dot};
 use crate::linear::blocked_ridge::{BaseColumn, BlockedRidge, fitted};
 use crate::preprocess::form_error::{ErrorColumn, FormError, Lives};
+use crate::regression::evidence::LEAST_VISIBLE;
 use crate::regression::linear_model::{Linear, LinearModel, Relative};
 use crate::regression::weights::weights;
 use jointbench_instrument::Kind;
@@ -13,9 +14,6 @@ use std::sync::Arc;
 const FIRST_RIDGE: f64 = 1e-4;
 /// How often the weights are made anew.
 const REWEIGHTED: usize = 2;
-
-/// A column of which less is its own than this share of its square (a variance inflation of 1000) says nothing beside the effects.
-const LEAST_OWN: f64 = 1e-3;
 
 /// The effect that jerk itself is, and the one that moves the load.
 pub const DELAY: &str = "signal_delay";
@@ -36,14 +34,14 @@ pub fn beside<'a>(model: &'a LinearModel, form_error: &'a FormError, leaves_out:
         Lives::LoadRate => !passes_load,
         Lives::Bristle | Lives::Snap => false,
     };
-    // On one sine jerk is velocity: what is not held near zero must be none of the effects.
+    // On one sine jerk is velocity. What the ridge does not hold near zero must differ from the effects.
     let effects = Basis::of(model.terms.iter().flat_map(|term| &term.columns));
     let is_own = |c: &ErrorColumn| {
         if c.lives.shrinks() {
             return true;
         }
         let rest = effects.rest(&c.values);
-        dot(&rest, &rest) > LEAST_OWN * dot(&c.values, &c.values)
+        dot(&rest, &rest) > LEAST_VISIBLE * dot(&c.values, &c.values)
     };
     let is_beside = |c: &ErrorColumn| !is_out(c.lives) && !leaves_out(c.lives) && is_own(c);
     let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_beside(c));

@@ -1,4 +1,4 @@
-//! One step of a selection.
+//! The steps of a selection.
 
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::selection::forward_step::ScoredCandidate;
@@ -9,4 +9,26 @@ pub struct SelectionStep<'p> {
     pub removed: Option<&'p str>,
     pub ties: Vec<&'p str>,
     pub after: TwoStageModel<'p>,
+}
+
+/// The steps from a model to the last one, each told as soon as it is made.
+pub struct Path<'a, 'p> {
+    pub start: TwoStageModel<'p>,
+    pub advances: Vec<SelectionStep<'p>>,
+    on_advance: &'a mut dyn FnMut(&SelectionStep),
+}
+
+impl<'a, 'p> Path<'a, 'p> {
+    pub fn new(start: TwoStageModel<'p>, on_advance: &'a mut dyn FnMut(&SelectionStep)) -> Self {
+        Self { start, advances: Vec::new(), on_advance }
+    }
+
+    pub fn end(&self) -> &TwoStageModel<'p> {
+        self.advances.last().map_or(&self.start, |a| &a.after)
+    }
+
+    pub fn push(&mut self, advance: SelectionStep<'p>) {
+        (self.on_advance)(&advance);
+        self.advances.push(advance);
+    }
 }

@@ -15,7 +15,7 @@ use crate::regression::solution::{DELAY, PRESLIDING, Solution, beside, effect_co
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Left};
-use crate::selection::advance::SelectionStep;
+use crate::selection::advance::{Path, SelectionStep};
 use crate::selection::block_limits;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
@@ -43,15 +43,13 @@ impl<'p> Libraries<'p> {
     }
 }
 
-/// The way from a model to the last one, each step told as soon as it is made.
-struct Path<'a, 'p> {
+/// What the steps are chosen from.
+struct Search<'a, 'p> {
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
     options: &'a Options,
-    start: TwoStageModel<'p>,
-    advances: Vec<SelectionStep<'p>>,
+    path: Path<'a, 'p>,
     libraries: Libraries<'p>,
-    on_advance: &'a mut dyn FnMut(&SelectionStep),
 }
 
 /// `on_advance` sees every move when it is made.
@@ -64,42 +62,33 @@ pub fn search<'p>(
 ) -> Result<ModelSelection<'p>, ModelError> {
     let start = TwoStageModel::new(prepared, spec, options)?;
     let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
-    let mut path = Path { prepared, spec, options, start, advances: Vec::new(), libraries, on_advance };
+    let mut search = Search { prepared, spec, options, path: Path::new(start, on_advance), libraries };
     // Of columns that cannot be right every effect is made up.
     let most = if prepared.clashes.void.is_empty() { most.min(MOST_NAMED) } else { 0 };
     if most > 0
-        && let Some(step) = offset(&path.start, options)
+        && let Some(step) = offset(&search.path.start, options)
     {
-        path.push(step);
+        search.path.push(step);
     }
-    let refused = path.grow(most)?;
-    while let Some(id) = idle(path.end(), spec) {
-        path.remove(id)?;
+    let refused = search.grow(most)?;
+    while let Some(id) = idle(search.path.end(), spec) {
+        search.remove(id)?;
     }
-    let left = path.left()?;
-    path.told(left, refused)
+    let left = search.left()?;
+    search.told(left, refused)
 }
 
-impl<'p> Path<'_, 'p> {
-    fn end(&self) -> &TwoStageModel<'p> {
-        self.advances.last().map_or(&self.start, |a| &a.after)
-    }
-
-    fn push(&mut self, advance: SelectionStep<'p>) {
-        (self.on_advance)(&advance);
-        self.advances.push(advance);
-    }
-
+impl<'p> Search<'_, 'p> {
     /// Adds the effect that takes most, as long as one passes. Returns those that take much and do not.
     fn grow(&mut self, most: usize) -> Result<Vec<Refused<'p>>, ModelError> {
         loop {
-            let now = self.end();
+            let now = self.path.end();
             let library = self.libraries.of(&now.main, self.prepared, self.spec);
             let Some(solution) = Solution::of(&now.main) else { return Ok(Vec::new()) };
             let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
             let all = candidates(now, &solution, library, forms);
             let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), self.options.alpha);
-            let added = self.advances.iter().filter(|a| a.added.is_some()).count();
+            let added = self.path.advances.iter().filter(|a| a.added.is_some()).count();
             let mut named = None;
             let passing: Vec<&Evidence> = all.iter().filter(passes).filter(|_| added < most).collect();
             for e in in_turn(&passing) {
@@ -123,20 +112,20 @@ impl<'p> Path<'_, 'p> {
                 p_value: best.p_value,
                 losses: best.losses.clone(),
             };
-            self.push(SelectionStep { added: Some(rival), removed: None, ties, after });
+            self.path.push(SelectionStep { added: Some(rival), removed: None, ties, after });
         }
     }
 
     fn remove(&mut self, id: &'p str) -> Result<(), ModelError> {
-        let effects = self.end().effects.iter().filter(|e| *e != id).cloned().collect();
+        let effects = self.path.end().effects.iter().filter(|e| *e != id).cloned().collect();
         let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
-        self.push(SelectionStep { added: None, removed: Some(id), ties: Vec::new(), after });
+        self.path.push(SelectionStep { added: None, removed: Some(id), ties: Vec::new(), after });
         Ok(())
     }
 
     /// What remains. Where a function of one axis says more than all that was named, nothing of the library is it.
     fn left(&mut self) -> Result<Option<Left>, ModelError> {
-        let of = |path: &Self| {
+        let of = |Self { path, .. }: &Self| {
             Solution::of(&path.end().main).and_then(|solution| structure::left(&path.start, path.end(), &solution))
         };
         let left = of(self);
@@ -144,27 +133,27 @@ impl<'p> Path<'_, 'p> {
             return Ok(left);
         }
         let spec = self.spec;
-        for id in self.end().effects.clone().iter().filter(|e| !spec.contains(e)) {
+        for id in self.path.end().effects.clone().iter().filter(|e| !spec.contains(e)) {
             self.remove(spec.find(id)?.info().id)?;
         }
         Ok(of(self).or(left))
     }
 
     fn told(self, left: Option<Left>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
-        let end = self.end();
+        let end = self.path.end();
         let now = end.main.clone();
         let silences = Solution::of(&now).map_or_else(Vec::new, |solution| {
             block_limits::silences(end, &solution, self.libraries.of(&now, self.prepared, self.spec), self.options)
         });
         let residual = now.linear().residual;
         let is_in = |id: &str| end.effects.iter().any(|e| e == id);
-        let named = self.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
+        let named = self.path.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
         let ties = named.flat_map(|(id, rivals)| rivals.iter().map(move |rival| (id, *rival)));
         let ties = ties.filter(|(id, rival)| is_in(id) && !is_in(rival)).collect();
         let maps = Maps::new(self.prepared, residual.clone(), self.options);
         Ok(ModelSelection {
-            start: self.start,
-            advances: self.advances,
+            start: self.path.start,
+            advances: self.path.advances,
             withdrawn: Vec::new(),
             now,
             residual,

@@ -8,7 +8,7 @@ use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::Imitated;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::{lack_of_fit, undersampled_harmonics};
-use crate::selection::advance::SelectionStep;
+use crate::selection::advance::{Path, SelectionStep};
 use crate::selection::floating_search::{FloatingSearch, Move};
 use crate::selection::hysteresis_stage::memory;
 use crate::selection::model_selection::ModelSelection;
@@ -20,30 +20,6 @@ use crate::selection::pruning::unidentified::{Doubt, is_decided, undecided};
 use crate::selection::ramp_stage::late;
 use crate::selection::removal::{self, RemovalReason};
 use crate::{ModelError, ModelSpec, Options};
-
-/// The steps so far, each told as soon as it is made.
-struct Path<'a, 'p> {
-    start: TwoStageModel<'p>,
-    advances: Vec<SelectionStep<'p>>,
-    /// Effects that the model may gain.
-    most: usize,
-    on_advance: &'a mut dyn FnMut(&SelectionStep),
-}
-
-impl<'p> Path<'_, 'p> {
-    fn push(&mut self, advance: SelectionStep<'p>) {
-        self.advances.push(advance);
-        self.advances.last().into_iter().for_each(&mut *self.on_advance);
-    }
-
-    fn end(&self) -> &TwoStageModel<'p> {
-        self.advances.last().map_or(&self.start, |a| &a.after)
-    }
-
-    fn may_grow(&self) -> bool {
-        self.end().effects.len() < self.start.effects.len() + self.most
-    }
-}
 
 /// What the search of the steady-state part ends with.
 struct SteadyState<'p> {
@@ -68,7 +44,7 @@ pub fn search<'p>(
     // Of columns that cannot be right every effect is made up.
     let most = if prepared.clashes.void.is_empty() { most } else { 0 };
     let offset = (most > 0).then(|| offset_terms::advance(&start, &library, options)).flatten();
-    let mut path = Path { start, advances: Vec::new(), most, on_advance };
+    let mut path = Path::new(start, on_advance);
     if let Some(offset) = offset {
         path.push(offset);
     }
@@ -85,8 +61,8 @@ pub fn search<'p>(
     let withdrawn = removal::all(&search, &taken_back);
     let ties = open_ties(&search, &path.advances);
     if !search.unmodelled_structure {
-        ramps(&mut path, options)?;
-        reversals(&mut path, prepared, options)?;
+        ramps(&mut path, most, options)?;
+        reversals(&mut path, most, prepared, options)?;
     }
     let silences = search.silences();
     let Path { start, advances, .. } = path;
@@ -163,9 +139,14 @@ fn outside_the_library<'p>(
     whole.or_else(bump)
 }
 
+/// At most so many effects are added.
+fn may_grow(path: &Path, most: usize) -> bool {
+    path.end().effects.len() < path.start.effects.len() + most
+}
+
 /// Second phase: a torque that is recorded late, on the ramps of a run in steps.
-fn ramps<'p>(path: &mut Path<'_, 'p>, options: &Options) -> Result<(), ModelError> {
-    if path.may_grow()
+fn ramps<'p>(path: &mut Path<'_, 'p>, most: usize, options: &Options) -> Result<(), ModelError> {
+    if may_grow(path, most)
         && let Some((rival, after)) = late(path.end(), options)
     {
         let after = after.settled(options)?;
@@ -175,9 +156,14 @@ fn ramps<'p>(path: &mut Path<'_, 'p>, options: &Options) -> Result<(), ModelErro
 }
 
 /// Third phase: effects with a memory, around the reversals of a run in steps.
-fn reversals<'p>(path: &mut Path<'_, 'p>, prepared: &'p Prepared, options: &Options) -> Result<(), ModelError> {
+fn reversals<'p>(
+    path: &mut Path<'_, 'p>,
+    most: usize,
+    prepared: &'p Prepared,
+    options: &Options,
+) -> Result<(), ModelError> {
     let now = path.end();
-    if path.may_grow()
+    if may_grow(path, most)
         && let Some(rival) = memory(now, options)
         && let effects = now.effects.iter().map(String::as_str).chain([rival.term.id()]).map(String::from).collect()
         && let after = now.of(now.main.clone(), effects).settled(options)?

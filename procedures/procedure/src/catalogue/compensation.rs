@@ -274,9 +274,7 @@ mod tests {
         let found = |values: &[(&str, f64)]| Identification {
             verdict: Verdict::Identified,
             summary: String::new(),
-            advice: None,
             quantities: values.iter().map(|(name, value)| quantity([name, "", "", ""], *value, None)).collect(),
-            figures: Vec::new(),
             ..Identification::default()
         };
         let all = [("tau_c", 0.030_612_3), ("c_v", 1.5e-4), ("tau_h", 0.0391), ("omega_s", 0.06), ("delta_s", 0.8)];
@@ -296,14 +294,7 @@ mod tests {
             let quantities =
                 given.into_iter().chain(more).map(|(name, value, ci95)| quantity([name, "", "", ""], value, ci95));
             let (summary, quantities) = (String::new(), quantities.collect());
-            Identification {
-                verdict: Verdict::Identified,
-                summary,
-                advice: None,
-                quantities,
-                figures: Vec::new(),
-                ..Identification::default()
-            }
+            Identification { verdict: Verdict::Identified, summary, quantities, ..Identification::default() }
         };
         let fed = |low_nm: f64| of_friction(&sided(low_nm)).unwrap().parameters["tau_c_nm"].as_f64().unwrap();
         assert_eq!((fed(0.006), fed(-0.001)), (0.0250, 0.0301));

@@ -106,7 +106,6 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     Ok(Identification {
         verdict: Verdict::Identified,
         summary,
-        advice: None,
         quantities,
         figures: vec![over_load(&table, gear, laws)?],
         ..Identification::default()

@@ -227,7 +227,7 @@ fn found(
 
 fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     let facts = parts_of(run)?;
-    let mut whole = Identification::default();
+    let mut whole = Identification { verdict: Verdict::Identified, ..Identification::default() };
     for number in 0..facts.len() {
         let (procedure, found) = found(run, facts, number)?;
         let found = found.unwrap_or_else(|| none_of(procedure, &whole));

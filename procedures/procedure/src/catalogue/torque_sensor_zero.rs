@@ -151,7 +151,6 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     let mut found = Identification {
         verdict: Verdict::Identified,
         summary: format!("Zero of the active range: {}.", zero.words()),
-        advice: None,
         quantities: vec![
             quantity(["zero", "τ₀", "Zero of the torque sensor", "Nm"], zero.value.value, Some(zero.value.ci95)),
             quantity(["drift", "dτ₀/dt", "Drift of the zero", "Nm/min"], zero.drift.slope, Some(zero.drift.slope_ci95)),

@@ -143,14 +143,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     Ok(if over.is_empty() {
         let drifts: Vec<String> = drifts.iter().map(said).collect();
         let summary = format!("Steady state reached: {}.", drifts.join(", "));
-        Identification {
-            verdict: Verdict::Identified,
-            summary,
-            advice: None,
-            quantities,
-            figures,
-            ..Identification::default()
-        }
+        Identification { verdict: Verdict::Identified, summary, quantities, figures, ..Identification::default() }
     } else {
         let summary = format!("Steady state not reached: {}.", over.join("; "));
         let advice = Some("Repeat the warm-up while the joint is warm, or increase longest_s.".to_owned());

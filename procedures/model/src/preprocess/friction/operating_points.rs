@@ -1,6 +1,5 @@
 //! A table of conditions: each row is the mean of one steady operating point, in any order and without a time.
 
-use crate::preprocess::checks::unit_mismatch::DataErrors;
 use crate::preprocess::chunks::{Layout, Source, problem};
 use crate::preprocess::friction::steady_state;
 use crate::preprocess::{Prepared, unknown_columns};
@@ -15,7 +14,8 @@ const FEWEST: usize = 12;
 /// A point below this share of the fastest speed is at rest.
 const AT_REST: f64 = 1e-3;
 
-/// Points at rest are left out: friction there is whatever holds the joint. Rows of equal speed and load are replicates of one condition. Nothing is known of angles, ramps and reversals.
+/// Rows of equal speed and load are replicates of one condition. Points at rest are left out: friction there is whatever holds
+/// the joint. Nothing is known of angles, ramps and reversals.
 pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
     let samples = read(run)?;
     let speed = samples.signals.find(Signal::Velocity).unwrap_or_default();
@@ -57,20 +57,7 @@ pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
         segments_from: "operating points".into(),
         repeats_from: if repeats { "found" } else { "none" }.into(),
     };
-    Ok(Prepared {
-        kind: run.kind(),
-        motion: run.meta().motion,
-        baseline: run.meta().baseline.clone(),
-        load_scale: run.meta().gear_ratio.unwrap_or(1.0),
-        constants: crate::preprocess::constants(run),
-        clashes: DataErrors::default(),
-        doubts: doubt.into_iter().collect(),
-        main,
-        bristled: None,
-        moving: None,
-        memory: None,
-        about,
-    })
+    Ok(Prepared { doubts: doubt.into_iter().collect(), ..Prepared::of(run, main, about) })
 }
 
 fn read(run: &RunTable) -> Result<Source, ModelError> {

@@ -156,20 +156,7 @@ pub fn prepare(
         segments_from: if samples.segment.is_some() { "column" } else { "found" }.into(),
         repeats_from: if repeats { "column" } else { "none" }.into(),
     };
-    Ok(Prepared {
-        kind: run.kind(),
-        motion: run.meta().motion,
-        baseline: run.meta().baseline.clone(),
-        load_scale: run.meta().gear_ratio.unwrap_or(1.0),
-        constants: crate::preprocess::constants(run),
-        clashes,
-        doubts,
-        main,
-        bristled: None,
-        moving,
-        memory,
-        about,
-    })
+    Ok(Prepared { clashes, doubts, moving, memory, ..Prepared::of(run, main, about) })
 }
 
 /// What the motor gives belongs to settled motion and to ramps alike.

@@ -101,20 +101,9 @@ pub fn prepare(run: &RunTable, options: &Options, given: Option<&Bristles>) -> R
         repeats_from: layout.repeats_from.into(),
         bristles: Some(bristles),
     };
-    Ok(Prepared {
-        kind: run.kind(),
-        motion: run.meta().motion,
-        baseline: run.meta().baseline.clone(),
-        load_scale: run.meta().gear_ratio.unwrap_or(1.0),
-        constants: crate::preprocess::constants(run),
-        clashes: crate::preprocess::checks::unit_mismatch::clashes(run),
-        doubts: crate::preprocess::checks::metadata::doubts(run),
-        main,
-        bristled,
-        moving: None,
-        memory: None,
-        about,
-    })
+    let clashes = crate::preprocess::checks::unit_mismatch::clashes(run);
+    let doubts = crate::preprocess::checks::metadata::doubts(run);
+    Ok(Prepared { bristled, clashes, doubts, ..Prepared::of(run, main, about) })
 }
 
 /// What was asked for, or the usual corner where the rate allows it.

@@ -104,7 +104,6 @@ impl Procedure for EncoderDelay {
         Some(Identification {
             verdict: Verdict::Identified,
             summary,
-            advice: None,
             quantities,
             figures: vec![Figure {
                 name: "disparity".into(),

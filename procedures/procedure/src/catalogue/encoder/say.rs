@@ -29,8 +29,6 @@ pub fn too_little(what: &str, advice: &str) -> Option<Identification> {
         verdict: Verdict::Inconclusive,
         summary: what.into(),
         advice: Some(advice.into()),
-        quantities: Vec::new(),
-        figures: Vec::new(),
         ..Identification::default()
     })
 }
