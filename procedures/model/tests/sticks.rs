@@ -80,7 +80,7 @@ fn a_joint_that_sticks_hides_nothing() {
         assert!((value / truth - 1.0).abs() < 0.02, "{name}: {value} instead of {truth}");
     }
     // Nothing is cut out: where formulas err stands beside the effects, and is told.
-    assert!(found.fit.notes.iter().any(|note| note.contains("the errors of formulas live")), "{:?}", found.fit.notes);
+    assert!(found.fit.notes.iter().any(|note| note.contains("nuisance terms explain")), "{:?}", found.fit.notes);
 }
 
 #[test]

@@ -185,7 +185,7 @@ fn suggestions(
         } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
             format!("The error hardly misses it, but without it {}.", narrative::elsewhere(upheld, false))
         } else if found.decided.is_some() {
-            format!("It takes {} off the squared error of data that had no part in its fit.", percent(importance))
+            format!("It reduces the validated squared error by {}.", percent(importance))
         } else {
             let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
             let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };

@@ -18,8 +18,8 @@ const OF_CORNERS: f64 = 2.05;
 
 /// Parameters of the terms with 95 % intervals.
 ///
-/// Half an interval is the larger one of a jackknife over blocks at each corner of the filter, with Student's t, and beside it
-/// what the estimate differs by from corner to corner. What a parameter of shape may be lies between its neighbours on the
+/// The half width is the largest one of a jackknife over blocks at each corner of the filter, with Student's t, combined with the
+/// scatter of the estimate over the corners. What a parameter of shape may be lies between its neighbours on the
 /// grid.
 pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
     let solution = Solution::of(model)?;
@@ -62,7 +62,9 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
             let (mut state, mut note) = parameter_state::judge(&slot, ci95, half == 0.0 && value == 0.0);
             if solution.bound.contains(&k) {
                 state = ParameterState::AtBound;
-                note = Some("lies at the edge of what is possible: the run would have it beyond by chance".into());
+                note = Some(
+                    "at its physical bound: the unconstrained estimate lies outside, within its standard error".into(),
+                );
             }
             parameters.push(Parameter {
                 effect: info.id.into(),

@@ -1,4 +1,4 @@
-//! What a fit tells of a model that is judged sample by sample, beside its effects.
+//! What a fit reports of a model that is judged sample by sample: presliding and the nuisance terms.
 
 use crate::effects;
 use crate::regression::linear_model::LinearModel;
@@ -37,7 +37,7 @@ pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Te
     Some((term, all))
 }
 
-/// The columns beside the effects with their factors, and what they come to in a sentence.
+/// Nuisance terms with their coefficients, and a sentence with their size.
 pub fn form_error(model: &LinearModel, unit: &str) -> (Vec<FormErrorTerm>, Option<String>) {
     let (Some(solution), Some(form_error)) = (Solution::of(model), model.problem.form_error.as_deref()) else {
         return (Vec::new(), None);
@@ -65,8 +65,8 @@ pub fn form_error(model: &LinearModel, unit: &str) -> (Vec<FormErrorTerm>, Optio
     let sum = solution.form_error(model);
     let (size, whole) = (rms(&sum), rms(&model.problem.target));
     let said = format!(
-        "beside its effects the fit holds {} RMS ({} of the torque) where the errors of formulas live: the way since a reversal, \
-         jerk, snap and other forms of its effects; an exported model has only the effects",
+        "nuisance terms explain {} RMS ({} of the torque): displacement since a reversal, jerk, snap, load rate and other forms of the \
+         effects; an exported model has the effects only",
         figure(size, unit),
         percent(size / whole.max(f64::MIN_POSITIVE))
     );

@@ -1,4 +1,4 @@
-//! Columns beside a blocked ridge regression: what they would add in the whole run and in each block that had no part.
+//! Candidate columns for a blocked ridge regression: their explained error in the whole run and in each block that was left out.
 
 use crate::linear::basis::dot;
 use crate::linear::blocked_ridge::{BlockedRidge, FREE, Fold, Sums, times};
@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Products of columns with each other and with the response.
 type Normal = (Vec<f64>, Vec<f64>);
 
-/// Columns beside a base, in sums of products: what they would add without each block, and what that block says then.
+/// Candidate columns projected out of a base, as sums of products: for the fit without each block, and for that block.
 pub struct Added {
     pub size: usize,
     /// Products of what the columns have of their own with themselves and with the response.
@@ -19,7 +19,7 @@ pub struct Added {
     /// The same without each block, and of that block alone.
     without: Vec<Normal>,
     held_out: Vec<Normal>,
-    /// The same of each block beside the whole base.
+    /// The same of each block, projected by the whole run.
     within: Vec<Normal>,
     diagonal: Vec<f64>,
 }
@@ -82,7 +82,7 @@ impl Added {
         dot(&white, &white)
     }
 
-    /// Covariance of the products of the columns with what is left beside these factors of them.
+    /// Covariance of the products of the columns with the residual for these coefficients.
     pub fn scatter(&self, factors: &[f64]) -> Vec<f64> {
         let k = self.size;
         let mut covariance = vec![0.0; k * k];

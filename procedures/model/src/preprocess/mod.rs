@@ -64,7 +64,7 @@ pub struct Problem {
     pub repeat: Vec<i64>,
     /// Speed and load are constant within a block: what they seem to change there is their sensors' noise.
     pub settled: bool,
-    /// Where the errors of formulas live, of a run that is judged sample by sample.
+    /// Nuisance columns for the form error, of a run that is judged sample by sample.
     pub form_error: Option<Arc<FormError>>,
     /// The same run at other corners of its filter: what they differ by nobody knows better.
     pub bandwidths: Vec<Problem>,

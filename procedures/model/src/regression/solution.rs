@@ -1,4 +1,4 @@
-//! A model on a run that is judged sample by sample: effects, and beside them where the errors of their formulas live.
+//! A model on a run that is judged sample by sample: effects and nuisance columns for their form error.
 
 use crate::effects;
 use crate::linear::basis::{Basis, dot};
@@ -19,15 +19,25 @@ const REWEIGHTED: usize = 2;
 pub const DELAY: &str = "signal_delay";
 pub const PRESLIDING: &str = "presliding";
 
-/// Columns beside a model.
-pub struct Beside<'a> {
+/// Nuisance columns of a model.
+pub struct Nuisance<'a> {
     pub error: Vec<(usize, BaseColumn<'a>)>,
     pub relatives: Vec<BaseColumn<'a>>,
 }
 
-/// What stands beside the effects of a model: all form error but what an effect of it is, what looks like its effects, or what
-/// `leaves_out` says, and other forms of its effects.
-pub fn beside<'a>(model: &'a LinearModel, form_error: &'a FormError, leaves_out: impl Fn(Lives) -> bool) -> Beside<'a> {
+impl<'a> Nuisance<'a> {
+    pub fn columns(&self) -> impl Iterator<Item = BaseColumn<'a>> {
+        self.error.iter().map(|(_, column)| *column).chain(self.relatives.iter().copied())
+    }
+}
+
+/// Nuisance columns of a model: its form error and other forms of its effects. Form error that an effect of the model describes or
+/// imitates is omitted, and so is what `leaves_out` says.
+pub fn nuisance<'a>(
+    model: &'a LinearModel,
+    form_error: &'a FormError,
+    leaves_out: impl Fn(Lives) -> bool,
+) -> Nuisance<'a> {
     let passes_load = model.given.iter().any(|g| *g != 0.0);
     let is_out = |lives: Lives| match lives {
         Lives::Jerk => model.contains(DELAY),
@@ -43,13 +53,13 @@ pub fn beside<'a>(model: &'a LinearModel, form_error: &'a FormError, leaves_out:
         let rest = effects.rest(&c.values);
         dot(&rest, &rest) > LEAST_VISIBLE * dot(&c.values, &c.values)
     };
-    let is_beside = |c: &ErrorColumn| !is_out(c.lives) && !leaves_out(c.lives) && is_own(c);
-    let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_beside(c));
+    let is_nuisance = |c: &ErrorColumn| !is_out(c.lives) && !leaves_out(c.lives) && is_own(c);
+    let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_nuisance(c));
     let error =
         columns.map(|(at, c)| (at, BaseColumn { values: &c.values, scale: c.scale, shrinks: c.lives.shrinks() }));
     let relatives = model.relatives.iter().flat_map(|relative: &Relative| &relative.columns);
     let relative = |values: &'a Vec<f64>| BaseColumn { values, scale: rms(values), shrinks: true };
-    Beside { error: error.collect(), relatives: relatives.map(relative).collect() }
+    Nuisance { error: error.collect(), relatives: relatives.map(relative).collect() }
 }
 
 pub fn rms(values: &[f64]) -> f64 {
@@ -95,11 +105,10 @@ impl Solution {
 
     pub fn weighted(model: &LinearModel, form_error: &FormError, weight: Vec<f64>, strength: Option<f64>) -> Self {
         let response = model.response();
-        let beside = beside(model, form_error, |_| false);
+        let nuisance = nuisance(model, form_error, |_| false);
         let mut columns = effect_columns(model);
         let own = columns.len();
-        columns.extend(beside.error.iter().map(|(_, column)| *column));
-        columns.extend(beside.relatives.iter().copied());
+        columns.extend(nuisance.columns());
         let nothing = vec![0.0; response.len()];
         let mut bound = Vec::new();
         let mut ridge = BlockedRidge::new(&columns, &response, &weight, &model.problem.block, strength);
@@ -111,10 +120,10 @@ impl Solution {
         let all = ridge.factors();
         let residual = left(&columns, &all, &response);
         let (factors, rest) = all.split_at(own);
-        let (error, relatives) = rest.split_at(beside.error.len());
+        let (error, relatives) = rest.split_at(nuisance.error.len());
         Self {
             factors: factors.to_vec(),
-            error: beside.error.iter().map(|(at, _)| *at).zip(error.iter().copied()).collect(),
+            error: nuisance.error.iter().map(|(at, _)| *at).zip(error.iter().copied()).collect(),
             relatives: relatives.to_vec(),
             residual,
             weight,
@@ -123,7 +132,7 @@ impl Solution {
         }
     }
 
-    /// What the columns beside the effects come to at the rows.
+    /// Sum of the nuisance terms at the rows.
     pub fn form_error(&self, model: &LinearModel) -> Vec<f64> {
         let mut sum = vec![0.0; model.problem.rows()];
         let mut add = |column: &[f64], factor: f64| sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
@@ -147,10 +156,9 @@ impl Solution {
     pub fn held_out(&self, model: &LinearModel) -> Vec<f64> {
         let Some(form_error) = model.problem.form_error.as_deref() else { return Vec::new() };
         let response = model.response();
-        let beside = beside(model, form_error, |_| false);
+        let nuisance = nuisance(model, form_error, |_| false);
         let mut columns = effect_columns(model);
-        columns.extend(beside.error.iter().map(|(_, column)| *column));
-        columns.extend(beside.relatives);
+        columns.extend(nuisance.columns());
         let replicates = self.ridge.replicates().zip(&self.ridge.blocks);
         let loss = |(factors, rows): (Vec<f64>, &std::ops::Range<usize>)| {
             let mut left = response[rows.clone()].to_vec();
@@ -189,10 +197,9 @@ fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<usize> {
 pub fn weighed(model: &LinearModel, form_error: &FormError) -> Vec<f64> {
     let mut weight = vec![1.0; model.problem.rows()];
     let response = model.response();
-    let beside = beside(model, form_error, |_| false);
+    let nuisance = nuisance(model, form_error, |_| false);
     let mut columns = effect_columns(model);
-    columns.extend(beside.error.into_iter().map(|(_, column)| column));
-    columns.extend(beside.relatives);
+    columns.extend(nuisance.columns());
     for _ in 0..REWEIGHTED {
         let factors = fitted(&columns, &response, &weight, FIRST_RIDGE);
         weight = weights(form_error, &left(&columns, &factors, &response));
@@ -241,9 +248,8 @@ pub fn effect_factor(model: &LinearModel, solution: &Solution, id: &str) -> Opti
 pub fn without(model: &LinearModel, solution: &Solution, lives: Lives) -> BlockedRidge {
     let mut columns = effect_columns(model);
     if let Some(form_error) = model.problem.form_error.as_deref() {
-        let beside = beside(model, form_error, |other| other == lives);
-        columns.extend(beside.error.into_iter().map(|(_, column)| column));
-        columns.extend(beside.relatives);
+        let nuisance = nuisance(model, form_error, |other| other == lives);
+        columns.extend(nuisance.columns());
     }
     // Weights make least of the very rows that such an effect is about.
     let even = vec![1.0; model.problem.rows()];

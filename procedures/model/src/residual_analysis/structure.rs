@@ -8,7 +8,7 @@ use crate::preprocess::Problem;
 use crate::preprocess::form_error::Lives;
 use crate::preprocess::friction::bristles::quantile;
 use crate::regression::evidence::errors;
-use crate::regression::solution::{DELAY, Solution, beside, effect_columns};
+use crate::regression::solution::{DELAY, Solution, effect_columns, nuisance};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::functions::{Functions, functions};
 use crate::signal::Signal;
@@ -90,13 +90,12 @@ fn explains_all(axis: &Functions, start: &TwoStageModel, end: &TwoStageModel, so
     let Some(form_error) = plain.problem.form_error.as_deref() else { return false };
     // What an added effect is no error of a formula any more.
     let is_added = |id: &str| end.main.contains(id) && !plain.contains(id);
-    let beside = beside(plain, form_error, |lives| match lives {
+    let nuisance = nuisance(plain, form_error, |lives| match lives {
         Lives::Jerk => is_added(DELAY),
         Lives::Bristle => !std::ptr::eq(plain.problem, end.main.problem),
         Lives::Snap | Lives::LoadRate => false,
     });
-    columns.extend(beside.error.into_iter().map(|(_, column)| column));
-    columns.extend(beside.relatives);
+    columns.extend(nuisance.columns());
     let strength = Some(solution.ridge.strength);
     let ridge = BlockedRidge::new(&columns, &plain.response(), &solution.weight, &plain.problem.block, strength);
     let with: Vec<f64> = ridge.losses.iter().zip(taken(&ridge, axis)).map(|(loss, gain)| loss - gain).collect();

@@ -11,7 +11,7 @@ use crate::preprocess::form_error::Lives;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
-use crate::regression::solution::{DELAY, PRESLIDING, Solution, beside, effect_columns, effect_factor, without};
+use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_columns, effect_factor, nuisance, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Left};
@@ -252,8 +252,8 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
             return Solution::weighted(model, form_error, weight.clone(), None).ridge.loss();
         }
         let mut columns = effect_columns(model);
-        let beside = beside(model, form_error, |lives| lives == Lives::Jerk);
-        columns.extend(beside.error.into_iter().map(|(_, column)| column));
+        let nuisance = nuisance(model, form_error, |lives| lives == Lives::Jerk);
+        columns.extend(nuisance.columns());
         BlockedRidge::new(&columns, &model.response(), &weight, &model.problem.block, None).loss()
     };
     let whole = loss(&plain, false);

@@ -1,4 +1,4 @@
-//! What the evidence leaves: structure, and effects that take much and are not named.
+//! Results of the evidence beyond the named effects: unexplained structure, and rejected effects.
 
 use crate::effect::{Effect, Regime};
 use crate::regression::evidence::{Evidence, ONE_ERROR};
@@ -6,21 +6,21 @@ use crate::residual_analysis::structure::Left;
 use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 use crate::words::percent;
 
-/// What the decision leaves.
+/// What remains after the decision.
 pub struct Decided<'p> {
-    /// Structure that no effect takes.
+    /// Structure that no effect explains.
     pub left: Option<Left>,
     pub refused: Vec<Refused<'p>>,
 }
 
-/// An effect that takes much, and was not named.
+/// A rejected effect with a large error reduction.
 pub struct Refused<'p> {
     pub effect: &'p str,
     pub gain: f64,
     pub p_value: f64,
     pub alpha: f64,
     pub errors: f64,
-    /// What it would have to take.
+    /// Error reduction that would be required.
     pub least: f64,
 }
 
@@ -36,25 +36,24 @@ impl<'p> Refused<'p> {
         }
     }
 
-    /// What it takes, and why it is not named, in words.
+    /// Its error reduction, and why it is rejected.
     pub fn why(&self) -> String {
-        let takes =
-            format!("it would take {} off the squared error of data that had no part in its fit", percent(self.gain));
+        let reduces = format!("it would reduce the validated squared error by {}", percent(self.gain));
         match () {
             () if self.p_value >= self.alpha => {
-                format!("{takes}, which chance does with a probability of {:.2}", self.p_value)
+                format!("{reduces}, which is not significant (p = {:.2})", self.p_value)
             }
-            () if self.errors <= ONE_ERROR => format!("{takes}, in a few stretches of the run alone"),
+            () if self.errors <= ONE_ERROR => format!("{reduces}, but only in a few blocks"),
             () if self.gain <= self.least => format!(
-                "{takes}, and shows only around reversals and on ramps, where every formula errs: there it takes {} to name it",
+                "{reduces}, but only at reversals and on ramps, where every model has form error; there at least {} is required",
                 percent(self.least)
             ),
-            () => format!("{takes}, beside as many effects as are added at most"),
+            () => format!("{reduces}, but the largest number of added effects is reached"),
         }
     }
 }
 
-/// What shows only where all formulas err has to take most of what is left.
+/// An effect of transients competes with the form error of all models: it has to explain most of the residual.
 pub fn least_share(effect: &dyn Effect) -> f64 {
     match effect.regime() {
         Regime::SteadyState => DECISION_SHARE,

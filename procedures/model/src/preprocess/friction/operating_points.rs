@@ -14,8 +14,8 @@ const FEWEST: usize = 12;
 /// A point below this share of the fastest speed is at rest.
 const AT_REST: f64 = 1e-3;
 
-/// Rows of equal speed and load are replicates of one condition. Points at rest are left out: friction there is whatever holds
-/// the joint. Nothing is known of angles, ramps and reversals.
+/// Rows of equal speed and load are replicates of one condition. Points at rest are omitted: friction at rest is any
+/// torque up to breakaway. Nothing is known of angles, ramps and reversals.
 pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
     let samples = read(run)?;
     let speed = samples.signals.find(Signal::Velocity).unwrap_or_default();
@@ -41,7 +41,7 @@ pub fn prepare(run: &RunTable) -> Result<Prepared, ModelError> {
     let mut main = problem(&samples, layout);
     steady_state::set_drive(&mut main);
     let doubt = (at_rest > 0).then(|| {
-        format!("points at rest are left out ({at_rest} of {}): friction there is whatever holds the joint", run.len())
+        format!("{at_rest} of {} operating points are at rest and omitted: they do not determine friction", run.len())
     });
     let about = Preparation {
         residual: ResidualKind::PlateauMean,
