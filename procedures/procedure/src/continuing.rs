@@ -2,6 +2,7 @@
 
 use crate::columns::MOTOR_CURRENT_SETPOINT;
 use crate::findings::keep_rows;
+use crate::plan::Lesson;
 use crate::recorder::RunId;
 use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
 use serde::{Deserialize, Serialize};
@@ -95,6 +96,12 @@ pub fn joined(first: &RunTable, done: &Done, second: &RunTable, later_s: f64) ->
     }
     whole.append(Trace::from_columns(whole.channels().to_vec(), columns));
     RunTable::new(meta, whole)
+}
+
+/// What a [`Lesson`] learns from in an earlier measurement: its segments, and those of steps that were made again, whose
+/// numbers are above all others.
+pub fn learnt_from(table: &RunTable, lesson: &Lesson) -> Result<RunTable, TableFault> {
+    part(table, |segment| lesson.from.contains(&segment) || segment >= lesson.to.end)
 }
 
 /// The rows of some segments.

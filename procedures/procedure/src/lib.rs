@@ -30,7 +30,7 @@ pub use engine::{RunEnd, Secured, run, secure};
 pub use event::{Control, Demand, Event, EventKind, Safe};
 pub use identification::Identification;
 pub use menu::menu;
-pub use plan::{BenchFacts, Plan, PlanFault};
+pub use plan::{BenchFacts, Lesson, Plan, PlanFault};
 pub use preview::Preview;
 pub use recorder::{Commit, Live, Progress, Recorder, RecorderFault, RunId};
 pub use state::{Outcome, RunState, Transition};

@@ -19,15 +19,16 @@ pub fn convert(arguments: &Convert) -> Done {
         )));
     }
     // A measurement that says its kind is joined and looked at as a run; any other table is written as it was understood.
-    let (meta, trace, notes, left) = match understood.is_run() {
-        true => {
+    let (meta, trace, notes, left) = match understood.lacks() {
+        None => {
             let left = understood.left.clone();
             let (run, notes) = understood.into_run()?;
             let (meta, trace) = run.into_parts();
             (meta, trace, notes, left)
         }
-        false => {
-            let Understood { meta, trace, notes, left, .. } = understood;
+        Some(lacking) => {
+            let Understood { meta, trace, mut notes, left, .. } = understood;
+            notes.push(lacking);
             (meta, trace, notes, left)
         }
     };

@@ -20,6 +20,7 @@ pub use process::{Jobs, Streamed};
 
 use crate::lab::{Alignment, ExportRequest, ImportRequest, Most, Offer};
 use crate::view::{EffectTrial, Exclusion};
+use jointbench_procedure::Lesson;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -75,6 +76,15 @@ pub enum Job {
     },
     Beside {
         run: i64,
+    },
+    /// The model that a run of `brake_hysteresis` has identified.
+    BrakeModel {
+        run: i64,
+    },
+    /// What the steps left of an unfinished run learn from its measurement.
+    Recall {
+        run: i64,
+        lesson: Lesson,
     },
     Statistics {
         run: i64,

@@ -2,8 +2,10 @@
 
 use super::calibrations::BRAKE_MODEL;
 use super::convert::{bench_view, safety_entry};
+use super::models::blocking;
 use super::{Answer, Lab, LabError};
 use crate::bench::BenchHandle;
+use crate::job::Job;
 use crate::store::RunFilter;
 use crate::view::{self, Bench, BenchState};
 use jointbench_instrument::zero::TORQUE_ZERO;
@@ -162,10 +164,7 @@ impl Lab {
                 "run {id} is not a {BRAKE_MODEL} run of bench {bench}: enter such a run, or 0 for the latest"
             )));
         }
-        let table = self.measurement(id).await?;
-        let model = tokio::task::spawn_blocking(move || brake_model(&table))
-            .await
-            .map_err(|fault| LabError::Internal(format!("the brake model of run {id} failed: {fault}")))?;
+        let model: Option<BrakeModel> = self.work_out(Job::BrakeModel { run: id }).await?;
         let missing = || {
             LabError::Invalid(format!(
                 "run {id} ended before its model was identified: repeat \
@@ -173,6 +172,11 @@ impl Lab {
             ))
         };
         model.map(|model| Some((id, model))).ok_or_else(missing)
+    }
+
+    pub(super) async fn brake_model_here(&self, run: i64) -> Answer<Option<BrakeModel>> {
+        let table = self.measurement(run).await?;
+        blocking(move || Ok(brake_model(&table))).await
     }
 
     pub(super) async fn wait_until_secured(&self) {

@@ -2,12 +2,13 @@
 
 use super::benches::previewed;
 use super::{Answer, Lab, LabError};
+use crate::job::Job;
 use crate::store::{EventRecord, RunRecord};
 use crate::view::{Preview, Run};
 use jiff::Timestamp;
-use jointbench_instrument::{Meta, RunTable};
-use jointbench_procedure::continuing::{Continues, Done, joined};
-use jointbench_procedure::{Plan, RunState};
+use jointbench_instrument::{Meta, RunTable, TableFault};
+use jointbench_procedure::continuing::{Continues, Done, joined, learnt_from};
+use jointbench_procedure::{Lesson, Plan, RunState};
 
 impl Lab {
     /// Starts a run that makes the steps that another one has left, behind what restores their history.
@@ -39,10 +40,10 @@ impl Lab {
             .rest(id, done.steps, done.next_segment, &bench.facts())
             .ok_or_else(|| LabError::Invalid(format!("run {id} has no finished step to resume from: {again}")))?;
         // Read only where something is to be learnt from it: it may be long.
-        let rest = match rest.lesson {
-            Some(_) => {
-                let (measured, done) = self.measured(id).await?;
-                rest.recalling(measured, done)
+        let rest = match rest.lesson.clone() {
+            Some(lesson) => {
+                let recalled = self.recall(id, lesson).await?;
+                recalled.into_iter().fold(rest, |rest, (measured, done)| rest.recalling(measured, done))
             }
             None => rest,
         };
@@ -109,6 +110,22 @@ impl Lab {
             done.segments.extend(more.segments);
         }
         Ok((whole, done))
+    }
+
+    /// The part of a measurement that a lesson needs. `None`: nothing of it was measured.
+    async fn recall(&self, run: i64, lesson: Lesson) -> Answer<Option<(RunTable, Done)>> {
+        let bytes = self.worked_out(Job::Recall { run, lesson }).await?;
+        rmp_serde::from_slice(&bytes).map_err(|fault| LabError::Internal(format!("run {run} cannot be recalled: {fault}")))
+    }
+
+    /// The same as bytes: JSON has no NaN.
+    pub(super) async fn recall_here(&self, run: i64, lesson: &Lesson) -> Answer<Vec<u8>> {
+        let (whole, done) = self.measured(run).await?;
+        let recalled = match learnt_from(&whole, lesson) {
+            Err(TableFault::Empty) => None,
+            part => Some((part?, done)),
+        };
+        rmp_serde::to_vec_named(&recalled).map_err(|fault| LabError::Internal(fault.to_string()))
     }
 
     /// What a run, with those before it, has finished of the plan of its procedure. With the plan at hand its steps are

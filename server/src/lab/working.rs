@@ -38,6 +38,8 @@ impl Lab {
             Job::TryEffect { trial } => json(&self.try_effect_here(&trial).await?),
             Job::Identify { run, step } => json(&self.identify_here(run, step).await?),
             Job::Beside { run } => json(&self.beside_here(run).await?),
+            Job::BrakeModel { run } => json(&self.brake_model_here(run).await?),
+            Job::Recall { run, lesson } => self.recall_here(run, &lesson).await,
             Job::Statistics { run, channels, from_s, to_s } => {
                 json(&self.statistics_here(run, channels.as_deref(), from_s, to_s).await?)
             }

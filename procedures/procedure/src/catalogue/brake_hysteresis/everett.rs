@@ -1,7 +1,9 @@
 //! Preisach's model in Everett's form, from measured reversal curves, and its inverse.
 
+use serde::{Deserialize, Serialize};
+
 /// Torque of a brake over its current, after any history since it was demagnetised.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Everett {
     /// Rising currents, the first 0 [A].
     grid_a: Vec<f64>,
