@@ -57,7 +57,7 @@ pub enum FileFault {
     Empty,
     #[error("not a whole gzip file ({0}): copy or pack it again")]
     Gzip(String),
-    #[error("expected text, found the byte 0x{0:02x}: save the table as CSV")]
+    #[error("this file is binary (byte 0x{0:02x}), and a table is expected: save the table as CSV or Parquet")]
     NotText(u8),
     #[error("there are column names and no sample below them: was the table cut off, or is it still being written?")]
     NoRows,

@@ -2,9 +2,10 @@
 
 use crate::column::Column;
 use crate::error::FileFault;
+use crate::guess::Proposal;
 use crate::note::Note;
 use crate::raw::RawTable;
-use jointbench_instrument::{Kind, Meta};
+use jointbench_instrument::{Kind, Meta, TableFault};
 
 const ANGLE: &str = "motor_position_rad";
 const SPEED: &str = "motor_velocity_rad_s";
@@ -16,15 +17,13 @@ pub fn may_be(table: &RawTable) -> bool {
 
 /// Numbers the rows in the place of a time, a second each. Of a friction table it makes the angle too: the sum of the speeds.
 /// Neither means anything beyond the order of the rows.
-pub fn settle(table: &mut RawTable, meta: &mut Meta) -> Result<(), FileFault> {
+pub fn settle(table: &mut RawTable, meta: &mut Meta, guessed: &[Proposal]) -> Result<(), FileFault> {
     if meta.kind == Some(Kind::Friction) && table.place(ANGLE).is_some() {
         let said = format!("the table has {ANGLE}: it is the record of a motion and no table of conditions");
         return Err(FileFault::Choice { said, options: vec!["the file without --operating-points".into()] });
     }
     if meta.kind == Some(Kind::Friction) && table.place(SPEED).is_none() {
-        let said = format!("a table of conditions needs {SPEED}, and the file has {}", table.names().join(", "));
-        let option = |unit: &str| format!("--map {SPEED}=NAME --unit {SPEED}={unit}");
-        return Err(FileFault::Choice { said, options: vec![option("rad/s"), option("rpm")] });
+        return Err(without_speed(table, guessed));
     }
     meta.operating_points = true;
     meta.sample_rate_hz = None;
@@ -49,4 +48,17 @@ pub fn settle(table: &mut RawTable, meta: &mut Meta) -> Result<(), FileFault> {
     let said = format!("each row is one steady operating point: {counted}");
     table.notes.push(Note::with(said, "--operating-points"));
     Ok(())
+}
+
+/// What the file seems to hold instead, as options to copy.
+fn without_speed(table: &RawTable, guessed: &[Proposal]) -> FileFault {
+    let of_points = |one: &&Proposal| one.column != ANGLE && one.column != "time_s";
+    if guessed.iter().any(|one| one.column == SPEED) {
+        let fault = TableFault::MissingColumn { kind: Kind::Friction, column: SPEED, found: table.names() };
+        let options = guessed.iter().filter(of_points).map(Proposal::option).collect();
+        return FileFault::Proposed { fault, said: "the file seems to hold it", options };
+    }
+    let said = format!("a table of conditions needs {SPEED}, and the file has {}", table.names().join(", "));
+    let option = |unit: &str| format!("--map {SPEED}=NAME --unit {SPEED}={unit}");
+    FileFault::Choice { said, options: vec![option("rad/s"), option("rpm")] }
 }

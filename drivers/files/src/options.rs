@@ -167,6 +167,9 @@ impl Choices {
     }
 
     fn time(&self) -> Result<TimeFrom, OptionFault> {
+        if self.operating_points && self.split_runs {
+            return Err(OptionFault::RunsOfPoints);
+        }
         let rate = |rate: f64| if rate.is_finite() && rate > 0.0 { Ok(rate) } else { Err(OptionFault::Rate(rate)) };
         match (self.rate, self.time_from_rate, self.spread_time, self.operating_points) {
             (None, None, false, false) => Ok(TimeFrom::Column),
@@ -193,6 +196,8 @@ pub enum OptionFault {
     Rate(f64),
     #[error("time comes from one place: choose one of --rate, --time-from-rate, --spread-time and --operating-points")]
     TwoTimes,
+    #[error("--split-runs needs a time, which a table of conditions has not: leave one of --split-runs and --operating-points out")]
+    RunsOfPoints,
     #[error("“{0}”: expected NAME=COLUMN, such as motor_current_a=Iq")]
     Map(String),
     #[error("“{0}”: expected NAME=FACTOR with a finite factor other than 0, such as motor_position_rad=0.0174532925")]
@@ -290,6 +295,7 @@ mod tests {
         assert!(unit("motor_position_rad").contains("expected COLUMN=UNIT"));
         assert!(said(Choices { rate: Some(-1.0), ..Choices::default() }).contains("-1 is no rate"));
         assert!(said(Choices { spread_time: true, rate: Some(1.0), ..Choices::default() }).contains("choose one"));
+        assert!(said(Choices { operating_points: true, split_runs: true, ..Choices::default() }).contains("--split-runs"));
         assert!(said(Choices { decimal: vec!["dot".into()], ..Choices::default() }).contains("point or comma"));
     }
 }

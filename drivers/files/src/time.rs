@@ -3,6 +3,7 @@
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
 use crate::note::{Note, counted, plural};
+use crate::guess::Proposal;
 use crate::operating_points;
 use crate::options::{ReadOptions, TimeFrom};
 use crate::order::{self, Order};
@@ -19,11 +20,12 @@ pub(crate) fn settle(
     table: &mut RawTable,
     meta: &mut Meta,
     options: &ReadOptions,
+    guessed: &[Proposal],
     file: &str,
 ) -> Result<Vec<usize>, FileError> {
     let in_file = |fault: FileFault| fault.in_file(file);
     if options.time == TimeFrom::OperatingPoints {
-        operating_points::settle(table, meta).map_err(in_file)?;
+        operating_points::settle(table, meta, guessed).map_err(in_file)?;
         return Ok(Vec::new());
     }
     let stamped = table.place(TIME).map(|place| to_seconds(&mut table.columns[place], meta)).transpose();

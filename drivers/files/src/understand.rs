@@ -5,6 +5,7 @@ use crate::error::{FileError, FileFault};
 use crate::note::{Note, counted, plural, shell};
 use crate::raw::RawTable;
 use crate::text::Decimal;
+use crate::unit::{Unit, dimension_of};
 use crate::{ReadOptions, contradiction, facts, guess, naming, operating_points, time};
 use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
 
@@ -20,6 +21,8 @@ pub struct Understood {
     pub notes: Vec<Note>,
     /// Columns of the file that no model can use.
     pub left: Vec<String>,
+    /// Likely sources of columns that are not there.
+    guessed: Vec<guess::Proposal>,
     file: String,
     table: RawTable,
     starts: Vec<usize>,
@@ -47,8 +50,9 @@ impl RawTable {
         };
         self.refuse_wrong(file, is_needed, options.leave_empty_rows)?;
         self.refuse_doubtful(file, options)?;
+        let guessed = meta.kind.map(|kind| guess::guess(&self.columns, kind)).unwrap_or_default();
         let mut left = self.leave_unusable(is_needed, options);
-        self.check_units(options).map_err(|fault| fault.at_line(file, self.names_line))?;
+        self.settle_units(options).map_err(|fault| fault.at_line(file, self.names_line))?;
         self.scale(options).map_err(in_file)?;
         if options.leave_empty_rows {
             self.leave_empty_rows(&mut meta);
@@ -57,13 +61,13 @@ impl RawTable {
             left.push(self.columns.remove(place).name);
             self.notes.push(note);
         }
-        let starts = time::settle(&mut self, &mut meta, options, file)?;
+        let starts = time::settle(&mut self, &mut meta, options, &guessed, file)?;
         let names = self.names();
         let channels = facts::take_resolutions(&mut meta, &names);
         let columns = self.columns.iter_mut().map(|column| std::mem::take(&mut column.values)).collect();
         let trace = Trace::from_columns(channels, columns);
         let notes = std::mem::take(&mut self.notes);
-        Ok(Understood { meta, trace, notes, left, file: file.to_owned(), table: self, starts })
+        Ok(Understood { meta, trace, notes, left, guessed, file: file.to_owned(), table: self, starts })
     }
 
     /// Refuses a column in which a sign could part thousands or decimals.
@@ -142,22 +146,27 @@ impl RawTable {
         left
     }
 
-    /// A unit in the file that contradicts the name in the run table: one of them is wrong.
-    fn check_units(&self, options: &ReadOptions) -> Result<(), FileFault> {
-        for column in self.columns.iter().filter(|column| column.name != "time_s") {
+    /// The unit that the file states for a column. One that contradicts the name in the file is asked about: one of both is
+    /// wrong. A column that was renamed is converted.
+    fn settle_units(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
+        for column in self.columns.iter_mut().filter(|column| column.name != "time_s") {
             let (name, Some(text)) = (&column.name, &column.unit) else { continue };
             let is_said =
                 options.unit.iter().any(|(of, _)| of == name) || options.scale.iter().any(|(of, _)| of == name);
-            let (Some(dimension), Some(unit)) = (crate::unit::dimension_of(name), crate::unit::Unit::parse(text))
-            else {
+            let (Some(dimension), Some(unit)) = (dimension_of(name), Unit::parse(text)) else { continue };
+            if is_said || unit.dimension != dimension || unit.is_si() {
                 continue;
-            };
-            if !is_said && (unit.dimension == dimension && !unit.is_si()) {
+            }
+            if dimension_of(&column.source).is_some() {
                 let said = format!("the file says {text} for column {name}");
                 let si = jointbench_instrument::units::unit_of(name).unwrap_or_default();
                 let option = |unit: &str| format!("--unit {}", shell(&format!("{name}={unit}")));
                 return Err(FileFault::Choice { said, options: vec![option(text), option(si)] });
             }
+            let said = format!("{name} is {}, converted from {text}", column.source);
+            self.notes.push(Note::with(said, format!("--unit {name}=UNIT")));
+            column.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
+            column.unit = None;
         }
         Ok(())
     }
@@ -207,17 +216,30 @@ impl RawTable {
 }
 
 impl Understood {
-    /// Whether it has what a run of its kind needs; a table without a kind has not.
-    pub fn is_run(&self) -> bool {
-        let has = |name: &&str| self.trace.column(name).is_some();
-        self.meta.kind.is_some_and(|kind| kind.required_columns().iter().all(has))
+    /// What it lacks for a run of its kind, with what the file seems to hold instead. `None`: nothing.
+    pub fn lacks(&self) -> Option<Note> {
+        let Some(kind) = self.meta.kind else {
+            return Some(Note::with("no model fits the table yet: its facts state no kind", "--meta FILE"));
+        };
+        let is_missing = |name: &&&str| self.trace.column(name).is_none();
+        let missing: Vec<&str> = kind.required_columns().iter().filter(is_missing).copied().collect();
+        let said = match missing[..] {
+            [] => return None,
+            _ => format!("no {kind} model fits the table yet: it lacks {}", missing.join(", ")),
+        };
+        let options: Vec<String> = self.guessed.iter().map(guess::Proposal::option).collect();
+        Some(if options.is_empty() { Note::new(said) } else { Note::with(said, options.join(" ")) })
     }
 
     /// The run, checked, and the notes.
     pub fn into_run(self) -> Result<(RunTable, Vec<Note>), FileError> {
-        let Understood { meta, trace, mut notes, file, table, starts, .. } = self;
-        let guessed = || meta.kind.map(|kind| guess::guess(&table.columns, kind)).unwrap_or_default();
-        let refused = |fault: TableFault| refusal(fault, &file, &table, guessed());
+        let Understood { meta, trace, mut notes, left, guessed, file, table, starts } = self;
+        let refused = |mut fault: TableFault| {
+            if let TableFault::MissingColumn { found, .. } = &mut fault {
+                found.extend(left.iter().cloned());
+            }
+            refusal(fault, &file, &table, &guessed)
+        };
         let run = match starts.is_empty() {
             true => RunTable::new(meta.clone(), trace).map_err(refused)?,
             false => joined(&meta, &trace, &starts).map_err(|said| {
@@ -249,7 +271,7 @@ fn joined(meta: &Meta, trace: &Trace, starts: &[usize]) -> Result<RunTable, Stri
 }
 
 /// Where the fault is, and what the file seems to hold instead.
-fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: Vec<guess::Proposal>) -> FileError {
+fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: &[guess::Proposal]) -> FileError {
     let row = fault.row();
     let mut place = match row {
         Some(row) => table.located(file, row),

@@ -70,7 +70,7 @@ fn text_is_refused_where_it_is_wrong() {
         "run.csv, line 1: numbers stand where the line of column names is expected, in 3 columns: write it above them, or name \
          them with --names, such as --names time_s,column_2,column_3",
     );
-    check_refused(b"PK\x03\x04\0\0\x08", "run.csv: expected text, found the byte 0x03: save the table as CSV");
+    check_refused(b"PK\x03\x04\0\0\x08", "run.csv: this file is binary (byte 0x03), and a table is expected: save the table as CSV or Parquet");
 }
 
 #[test]
@@ -240,6 +240,32 @@ fn the_record_of_a_motion_is_no_table_of_conditions() {
         |text: &str| read_bytes("run.csv", text.as_bytes(), &ReadOptions { meta: meta.clone(), ..options.clone() });
     let refused = read(&format!("{NAMES}\n0,1,0.5\n1,2,0.5\n")).unwrap_err().to_string();
     assert!(refused.contains("no table of conditions"), "{refused}");
-    let refused = read("speed,current\n10,0.5\n20,0.5\n").unwrap_err().to_string();
+    let refused = read("fast,strong\n10,0.5\n20,0.5\n").unwrap_err().to_string();
     assert!(refused.contains("--map motor_velocity_rad_s=NAME"), "{refused}");
+    let refused = read("Speed [rpm],Torque [mNm],Current [A]\n10,1,0.5\n20,1,0.5\n").unwrap_err().to_string();
+    for option in [
+        "--map 'motor_velocity_rad_s=Speed [rpm]' --unit motor_velocity_rad_s=rpm",
+        "--map 'motor_current_a=Current [A]'",
+        "--map 'link_torque_nm=Torque [mNm]' --unit link_torque_nm=mNm",
+    ] {
+        assert!(refused.contains(option), "{refused}");
+    }
+}
+
+#[test]
+fn a_mapped_column_is_converted_from_the_unit_that_its_name_states() {
+    let text = "time_s,Angle [deg],Iq (mA)\n0,90,500\n1,180,500\n";
+    let map = vec!["motor_position_rad=Angle [deg]".into(), "motor_current_a=Iq (mA)".into()];
+    let options = Choices { map, ..Choices::default() }.options().unwrap();
+    let meta = Some(Meta { kind: Some(Kind::Friction), ..Meta::default() });
+    let run = read_bytes("run.csv", text.as_bytes(), &ReadOptions { meta, ..options }).unwrap();
+    assert_eq!(run.column("motor_current_a"), Some(&[0.5, 0.5][..]));
+    assert!((run.column("motor_position_rad").unwrap()[1] - std::f64::consts::PI).abs() < 1e-12);
+}
+
+#[test]
+fn a_column_with_a_gap_is_among_those_of_the_file() {
+    let refused = take("run.csv", b"time_s,angle_deg,Iq\n0,1,0.5\n1,2,\n2,3,0.5\n").unwrap_err().to_string();
+    assert!(refused.contains("angle_deg, Iq"), "{refused}");
+    assert!(refused.contains("--map motor_current_a=Iq"), "{refused}");
 }
