@@ -141,6 +141,11 @@ impl Step {
         self.velocity.duration_s().max(self.brake.duration_s()).max(drive_s)
     }
 
+    /// Whether it ends when the joint breaks away, and not after its duration.
+    pub fn may_end_early(&self) -> bool {
+        matches!(self.drive, Drive::Current { .. })
+    }
+
     /// The largest motor current that is commanded as such [A].
     pub fn top_motor_current_a(&self) -> f64 {
         match &self.drive {

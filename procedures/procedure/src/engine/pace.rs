@@ -1,33 +1,60 @@
 //! How long a run still takes: the plan's durations, corrected by what the steps so far really took.
 
-use crate::plan::{Phase, Plan};
+use crate::plan::{Phase, Plan, Step};
 use crate::recorder::Progress;
+
+/// Durations of steps that end as planned, and of steps that end when the joint breaks away.
+#[derive(Debug, Clone, Copy, Default)]
+struct Durations {
+    planned: f64,
+    open: f64,
+}
+
+impl Durations {
+    fn add(&mut self, step: &Step, seconds: f64) {
+        *self.of(step.may_end_early()) += seconds;
+    }
+
+    fn of(&mut self, open: bool) -> &mut f64 {
+        if open { &mut self.open } else { &mut self.planned }
+    }
+}
 
 #[derive(Debug, Clone)]
 pub(super) struct Pace {
-    /// Planned time from the start of each step to the end of the plan, and 0 at the end.
-    left_s: Vec<f64>,
+    /// Longest duration of each step, and whether it may end earlier.
+    steps: Vec<(f64, bool)>,
+    /// From the start of each step to the end of the plan, and 0 at the end.
+    left_s: Vec<Durations>,
     /// First step after those that a steady joint needs no more.
     warm: usize,
-    steps: usize,
     step: usize,
     label: String,
     step_started_s: f64,
-    planned_s: f64,
-    taken_s: f64,
+    planned_s: Durations,
+    taken_s: Durations,
 }
 
 impl Pace {
     pub fn new(plan: &Plan) -> Self {
-        let mut left_s = vec![0.0];
+        let mut left = Durations::default();
+        let mut left_s = vec![left];
         for step in plan.steps.iter().rev() {
-            left_s.push(left_s[left_s.len() - 1] + step.duration_s());
+            left.add(step, step.duration_s());
+            left_s.push(left);
         }
         left_s.reverse();
-        let steps = plan.steps.len();
         let last = plan.steps.iter().rposition(|step| step.phase == Phase::WarmUp);
-        let warm = last.filter(|_| plan.steady.is_some()).map_or(0, |last| last + 1);
-        Self { left_s, warm, steps, step: 0, label: String::new(), step_started_s: 0.0, planned_s: 0.0, taken_s: 0.0 }
+        Self {
+            steps: plan.steps.iter().map(|step| (step.duration_s(), step.may_end_early())).collect(),
+            left_s,
+            warm: last.filter(|_| plan.steady.is_some()).map_or(0, |last| last + 1),
+            step: 0,
+            label: String::new(),
+            step_started_s: 0.0,
+            planned_s: Durations::default(),
+            taken_s: Durations::default(),
+        }
     }
 
     pub fn step_started(&mut self, step: usize, label: &str, now_s: f64) {
@@ -37,8 +64,9 @@ impl Pace {
     }
 
     pub fn step_done(&mut self, now_s: f64) {
-        self.planned_s += self.left_s[self.step] - self.left_s[self.step + 1];
-        self.taken_s += now_s - self.step_started_s;
+        let (longest_s, open) = self.steps[self.step];
+        *self.planned_s.of(open) += longest_s;
+        *self.taken_s.of(open) += now_s - self.step_started_s;
         self.step += 1;
         self.step_started_s = now_s;
     }
@@ -50,16 +78,20 @@ impl Pace {
 
     /// While a step waits, its own share of the remaining time does not fall.
     pub fn progress(&self, started_s: f64, now_s: f64, moving: bool) -> Progress {
-        let correction = if self.planned_s > 0.0 { self.taken_s / self.planned_s } else { 1.0 };
-        let this_s = self.left_s[self.step] - self.left_s.get(self.step + 1).unwrap_or(&0.0);
-        let done_s = if moving { (now_s - self.step_started_s).min(this_s) } else { 0.0 };
+        let mut left = self.left_s[self.step];
+        if let Some((longest_s, open)) = self.steps.get(self.step).filter(|_| moving) {
+            *left.of(*open) -= (now_s - self.step_started_s).min(*longest_s);
+        }
+        let pace = |taken_s: f64, planned_s: f64| if planned_s > 0.0 { taken_s / planned_s } else { 1.0 };
+        let remaining_s = left.planned * pace(self.taken_s.planned, self.planned_s.planned)
+            + left.open * pace(self.taken_s.open, self.planned_s.open);
         Progress {
             step: self.step,
-            steps: self.steps,
+            steps: self.steps.len(),
             label: self.label.clone(),
             elapsed_s: now_s - started_s,
-            remaining_s: (self.left_s[self.step] - done_s) * correction,
-            at_most: self.step < self.warm,
+            remaining_s,
+            at_most: self.step < self.warm || (left.open > 0.0 && self.planned_s.open == 0.0),
         }
     }
 }
@@ -68,6 +100,8 @@ impl Pace {
 mod tests {
     use super::*;
     use crate::plan::testing::plan_of;
+    use crate::plan::{Drive, Until};
+    use crate::profile::Profile;
 
     #[test]
     fn slow_steps_stretch_what_remains() {
@@ -81,5 +115,23 @@ mod tests {
         let progress = pace.progress(100.0, 112.0, true);
         assert!((progress.remaining_s - 36.0).abs() < 1e-9, "{progress:?}");
         assert_eq!((progress.step, progress.steps, progress.elapsed_s), (1, 3, 12.0));
+    }
+
+    #[test]
+    fn steps_that_end_at_breakaway_are_at_most_so_long_until_one_has_ended() {
+        let mut plan = plan_of(&[10.0, 40.0, 10.0, 40.0]);
+        for step in [1, 3] {
+            let current_a = Profile::from(0.0).to(1.0, 40.0);
+            plan.steps[step].drive =
+                Drive::Current { from_s: 0.0, current_a, until: Until { increases: 3, speed_rad_s: 1.0 } };
+        }
+        let mut pace = Pace::new(&plan);
+        pace.step_started(0, "approach", 0.0);
+        let progress = pace.progress(0.0, 0.0, true);
+        assert_eq!((progress.remaining_s, progress.at_most), (100.0, true));
+        pace.step_done(10.0);
+        pace.step_done(30.0);
+        let progress = pace.progress(0.0, 30.0, true);
+        assert_eq!((progress.remaining_s, progress.at_most), (30.0, false), "half of the longest ramp was needed");
     }
 }
