@@ -1,12 +1,14 @@
 //! One sine: its jerk is its velocity and its snap its acceleration, turned over.
 
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
-use jointbench_model::{ModelSpec, Options, fit};
+use jointbench_model::{ModelSpec, Options, diagnose, fit};
 use std::f64::consts::TAU;
 
-#[test]
-fn what_an_effect_says_is_no_error_of_a_formula() {
-    let (km, rate_hz, hz, size) = (0.064, 500.0, 0.25, 60.0);
+const KM: f64 = 0.064;
+
+/// Inertia, dry and viscous friction on one sine.
+fn one_sine(baseline: &[&str]) -> RunTable {
+    let (rate_hz, hz, size) = (500.0, 0.25, 60.0);
     let mut noise = 3u64;
     let mut scatter = || {
         noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -22,14 +24,29 @@ fn what_an_effect_says_is_no_error_of_a_formula() {
         let acceleration = -(TAU * hz).powi(2) * size * turn(t).sin();
         0.02 * velocity.signum() + 2e-4 * velocity + 2e-5 * acceleration
     };
-    let current = time_s.iter().map(|t| (torque(t) + 3e-4 * scatter()) / km).collect();
+    let current = time_s.iter().map(|t| (torque(t) + 3e-4 * scatter()) / KM).collect();
     let names = ["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).to_vec();
-    let baseline = ["inertia", "coulomb", "viscous"].map(String::from).to_vec();
-    let meta = Meta { kind: Some(Kind::Friction), baseline, torque_constant_nm_per_a: Some(km), ..Meta::default() };
-    let run = RunTable::new(meta, Trace::from_columns(names, vec![time_s.clone(), position, current])).unwrap();
+    let baseline = baseline.iter().map(|id| id.to_string()).collect();
+    let meta = Meta { kind: Some(Kind::Friction), baseline, torque_constant_nm_per_a: Some(KM), ..Meta::default() };
+    RunTable::new(meta, Trace::from_columns(names, vec![time_s.clone(), position, current])).unwrap()
+}
+
+#[test]
+fn what_an_effect_says_is_no_error_of_a_formula() {
+    let run = one_sine(&["inertia", "coulomb", "viscous"]);
     let found = fit(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     for (name, truth) in [("j", 2e-5), ("tau_c", 0.02), ("c_v", 2e-4)] {
         let p = found.parameters.iter().find(|p| p.name == name).unwrap();
         assert!((p.value / truth - 1.0).abs() < 0.03, "{p:?} instead of {truth}");
+    }
+}
+
+#[test]
+fn a_missing_effect_is_found_that_form_error_imitates() {
+    for (has, missing) in [(["coulomb", "viscous"], "inertia"), (["inertia", "coulomb"], "viscous")] {
+        let run = one_sine(&has);
+        let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
+        let named: Vec<&str> = found.suggestions.iter().map(|s| s.effect.as_str()).collect();
+        assert_eq!(named.first(), Some(&missing), "{named:?}");
     }
 }

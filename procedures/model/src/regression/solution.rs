@@ -47,11 +47,8 @@ pub fn nuisance<'a>(
     // On one sine jerk is velocity. What the ridge does not hold near zero must differ from the effects.
     let effects = Basis::of(model.terms.iter().flat_map(|term| &term.columns));
     let is_own = |c: &ErrorColumn| {
-        if c.lives.shrinks() {
-            return true;
-        }
         let rest = effects.rest(&c.values);
-        dot(&rest, &rest) > LEAST_VISIBLE * dot(&c.values, &c.values)
+        c.lives.shrinks() || dot(&rest, &rest) > LEAST_VISIBLE * dot(&c.values, &c.values)
     };
     let is_nuisance = |c: &ErrorColumn| !is_out(c.lives) && !leaves_out(c.lives) && is_own(c);
     let columns = form_error.columns.iter().enumerate().filter(|(_, c)| is_nuisance(c));

@@ -7,9 +7,9 @@
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::Prepared;
-use crate::preprocess::form_error::Lives;
+use crate::preprocess::form_error::{ErrorColumn, Lives};
 use crate::regression::candidates::{CandidateSet, Regressor};
-use crate::regression::evidence::{Evidence, chance, errors, evidence};
+use crate::regression::evidence::{Evidence, LEAST_VISIBLE, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_columns, effect_factor, nuisance, without};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -197,8 +197,34 @@ fn candidates<'l, 'p>(
     }
     let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
     all.extend(evidence(&solution.ridge, &inertia, &near, forms));
+    // On one sine snap is the acceleration, turned over, and jerk the velocity.
+    for error in free_error(now, solution) {
+        let imitated = of(&|c| c.id() != DELAY && imitates(error, c));
+        if !imitated.is_empty() {
+            all.extend(evidence(&without(&now.main, solution, error.lives), &imitated, &near, forms));
+        }
+    }
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all
+}
+
+/// Columns of the form error beside a model that nothing holds near zero.
+fn free_error<'a>(now: &'a TwoStageModel, solution: &'a Solution) -> impl Iterator<Item = &'a ErrorColumn> {
+    let columns = now.main.problem.form_error.as_deref().map_or(&[][..], |form_error| &form_error.columns);
+    solution.error.iter().filter_map(|(at, _)| columns.get(*at)).filter(|column| !column.lives.shrinks())
+}
+
+/// Whether a column of the form error is the column of a candidate times a factor.
+fn imitates(error: &ErrorColumn, candidate: &Regressor) -> bool {
+    let [column] = &candidate.columns[..] else { return false };
+    let [mut own, mut both, mut other] = [0.0; 3];
+    for (e, c) in error.values.iter().zip(column) {
+        let c = f64::from(*c);
+        own += e * e;
+        both += e * c;
+        other += c * c;
+    }
+    own * other - both * both <= LEAST_VISIBLE * own * other
 }
 
 /// An effect that changes the direction of all others explains what free elements explain in its place: a torque that comes late
