@@ -23,6 +23,11 @@ impl Request {
         Self { method: "GET", path: path.into(), content_type: String::new(), body: String::new() }
     }
 
+    /// Without a body: a server need not wait for one before it answers.
+    pub fn delete(path: impl Into<String>) -> Self {
+        Self { method: "DELETE", ..Self::get(path) }
+    }
+
     pub fn json(method: &'static str, path: impl Into<String>, body: &Value) -> Self {
         Self { method, path: path.into(), content_type: "application/json".into(), body: body.to_string() }
     }

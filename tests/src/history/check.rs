@@ -81,7 +81,8 @@ fn check_tokens(client: &Client, history: &History, outcome: &mut Outcome) {
         let there = count(name);
         let revoke = revoked(name);
         if revoke.is_none_or(|revoke| !revoke.possible()) {
-            check_count(one, there, "a token", outcome);
+            let revoked = revoke.map_or(String::new(), |revoke| format!(" (its revocation: {:?})", revoke.outcome));
+            check_count(one, there, &format!("a token{revoked}"), outcome);
         } else if revoke.is_some_and(|revoke| revoke.acknowledged().is_some()) && there > 0 {
             outcome.lost(format!("the revocation of token {name}: it is listed"));
         }

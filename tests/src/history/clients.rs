@@ -7,7 +7,7 @@ use crate::wire::now_s;
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
@@ -120,7 +120,7 @@ impl Actor {
     fn revoke(&mut self, word: String) -> (Kind, Request) {
         match self.tokens.pop() {
             Some((id, name, secret)) => {
-                (Kind::Revoke { name, secret }, Request::json("DELETE", format!("/tokens/{id}"), &Value::Null))
+                (Kind::Revoke { name, secret }, Request::delete(format!("/tokens/{id}")))
             }
             None => self.note(word),
         }
