@@ -56,8 +56,7 @@ pub fn idle_velocity(columns: &[Column], kind: Kind) -> Option<(usize, Note)> {
     (is_idle && high - low > MOVES).then(|| {
         let moved = high - low;
         let said = format!(
-            "{speed} stays at 0 in every row, while {angle} moves by {moved:.3} rad: the column was left out, and the velocity is \
-             the slope of the position"
+            "{speed} stays at 0 in every row, while {angle} moves by {moved:.3} rad: the column is omitted, and the velocity is the slope of the position"
         );
         (place, Note::with(said, format!("--leave {speed}")))
     })

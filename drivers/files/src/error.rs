@@ -11,7 +11,7 @@ pub(crate) const TOLD_ROWS: usize = 5;
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{place}: {fault}{}",
-    if fault.is_of_empty_cells() { "; rows with empty cells can be left out with --leave-empty-rows" } else { "" }
+    if fault.is_of_empty_cells() { "; use --leave-empty-rows to omit rows with empty cells" } else { "" }
 )]
 pub struct FileError {
     pub place: Box<Place>,
@@ -100,7 +100,7 @@ pub enum FileFault {
     Misspelt { found: String, meant: &'static str },
     #[error("the mapping names column {wanted}, which is not in the file: it has {}", .there.join(", "))]
     Unmapped { wanted: String, there: Vec<String> },
-    #[error("column {wanted} cannot be left out, as it is not in the file: it has {}", .there.join(", "))]
+    #[error("column {wanted} cannot be omitted, as it is not in the file: it has {}", .there.join(", "))]
     NotLeft { wanted: String, there: Vec<String> },
     #[error("the scale names column {wanted}, which is not in the table: it has {}", .there.join(", "))]
     Unscaled { wanted: String, there: Vec<String> },

@@ -196,7 +196,7 @@ pub enum OptionFault {
     Rate(f64),
     #[error("time comes from one place: choose one of --rate, --time-from-rate, --spread-time and --operating-points")]
     TwoTimes,
-    #[error("--split-runs needs a time, which a table of conditions has not: leave one of --split-runs and --operating-points out")]
+    #[error("--split-runs needs a time, which a table of conditions has not: remove one of --split-runs and --operating-points")]
     RunsOfPoints,
     #[error("“{0}”: expected NAME=COLUMN, such as motor_current_a=Iq")]
     Map(String),

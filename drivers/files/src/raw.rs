@@ -92,7 +92,7 @@ impl RawTable {
         let is_index = |column: &Column| matches!(column.name.as_str(), "" | "Unnamed: 0") && counts(column);
         if self.columns.len() > 1 && self.columns.first().is_some_and(is_index) {
             self.columns.remove(0);
-            self.notes.push(Note::with("the first column counts the rows and was left out", "--names to keep it"));
+            self.notes.push(Note::with("the first column counts the rows and is omitted", "--names to keep it"));
         }
     }
 

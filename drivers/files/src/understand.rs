@@ -137,7 +137,7 @@ impl RawTable {
                 ));
             }
             why.is_none_or(|why| {
-                notes.push(Note::new(format!("column {} was left out: {why}", column.name)));
+                notes.push(Note::new(format!("column {} is omitted: {why}", column.name)));
                 left.push(column.name.clone());
                 false
             })
@@ -208,7 +208,7 @@ impl RawTable {
         }
         meta.other.insert(LEFT_OUT_ROWS.to_owned(), left.into());
         self.notes
-            .push(Note::with(format!("rows left out for an empty cell: {}", counted(left)), "--leave-empty-rows"));
+            .push(Note::with(format!("rows omitted for an empty cell: {}", counted(left)), "--leave-empty-rows"));
         self.named_again = self.named_again.iter().map(|row| places.partition_point(|place| place < row)).collect();
         self.rows = places.len();
         self.places = Some(places);

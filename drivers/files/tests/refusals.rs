@@ -33,8 +33,8 @@ fn text_is_refused_where_it_is_wrong() {
     );
     check_refused(
         &with("0,1,\n"),
-        "run.csv, line 2, column motor_current_a: expected a number, found nothing; rows with empty cells can be left out with \
-         --leave-empty-rows",
+        "run.csv, line 2, column motor_current_a: expected a number, found nothing; use --leave-empty-rows to omit rows with \
+         empty cells",
     );
     check_refused(
         &with("0,1,2\r\n1,1\r\n"),
@@ -42,8 +42,8 @@ fn text_is_refused_where_it_is_wrong() {
     );
     check_refused(
         &with("0,1,2\n\r\n1,NaN,2\n"),
-        "run.csv, line 4, column motor_position_rad: expected a number, found “NaN”; rows with empty cells can be left out with \
-         --leave-empty-rows",
+        "run.csv, line 4, column motor_position_rad: expected a number, found “NaN”; use --leave-empty-rows to omit rows with \
+         empty cells",
     );
     check_refused(
         &with("0,1,2\n1,1,2\n0.5,1,2\n"),

@@ -96,7 +96,7 @@ fn why_wider(wide: &Fit, narrow: &Fit, pair: &ParameterPair) -> String {
     let added = wide.effects.iter().filter(|effect| !narrow.effects.contains(effect));
     let added: Vec<String> = added.map(|effect| effect.replace('_', " ")).collect();
     if !added.is_empty() {
-        return format!("with {} there is more to tell apart by the same samples", added.join(" and "));
+        return format!("with {} the same samples determine more parameters", added.join(" and "));
     }
-    "segments and repeats agree less about it".to_owned()
+    "segments and repeats agree less on it".to_owned()
 }

@@ -238,8 +238,7 @@ pub trait Effect: Sync {
         }
         if let Some(other) = self.same_as(view) {
             return Some(format!(
-                "the motion goes one way only, where it is one and the same with {other}, which stands for both; measure the \
-                 other direction as well"
+                "the motion has one direction only, in which it equals {other}, which represents both; measure the other direction as well"
             ));
         }
         if self.forms(view).is_empty() { Some(format!("it would not show: {}", self.unseen())) } else { None }

@@ -25,8 +25,7 @@ pub enum ModelError {
     #[error("effect {effect} is not visible in this data: {why}; leave it out of the model, or measure what it needs")]
     NotVisible { effect: String, why: String },
     #[error(
-        "{first} and {second} cannot be told apart in this data: their columns are proportional; \
-         leave one out, or record a run in which they differ"
+        "{first} and {second} are confounded: their columns are proportional in this data; remove one, or record a run in which they differ"
     )]
     Collinear { first: String, second: String },
     #[error("{column} never changes: nothing can be identified; record a run in which it does")]

@@ -77,14 +77,13 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     let target = &prepared.main.target;
     let mut notes: Vec<String> = prepared.clashes.all().chain(&prepared.doubts).cloned().collect();
     notes.extend(said);
-    notes.extend(assembly.hidden.iter().map(|h| format!("{} is not visible in this data: {}", h.effect, h.why)));
+    notes.extend(assembly.hidden.iter().map(|h| format!("{} is not testable with this run: {}", h.effect, h.why)));
     if assembly.effects.iter().any(|e| e == "direction_offset") {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
     }
     if prepared.main.view.goes_one_way() && main.contains("coulomb") {
-        let note = "the motion goes one way only (less than a tenth of a trajectory the other way is left out): Coulomb \
-                    friction and an offset cannot be told apart, and tau_c is both together; measure the other direction \
-                    as well";
+        let note = "the motion has one direction only (less than a tenth of a trajectory in the other is omitted): Coulomb \
+                    friction and an offset are confounded, and tau_c contains both; measure the other direction as well";
         notes.push(note.into());
     }
     notes.extend(undetermined);
@@ -126,7 +125,7 @@ fn undetermined_inertia(parameters: &mut [Parameter], prepared: &Prepared) -> Op
         p.state = ParameterState::Unidentified;
         p.note = Some("not determined by this run".into());
         format!(
-            "the run does not determine the inertia: settled motion hardly accelerates, and the set-up states {}; record a trajectory",
+            "the run does not determine the inertia: constant speeds contain hardly any acceleration, and the set-up states {}; record a trajectory",
             figure(stated, &p.unit)
         )
     })

@@ -17,8 +17,7 @@ pub fn prefix(size: f64) -> (f64, &'static str) {
 pub fn figure(value: f64, unit: &str) -> String {
     let unit = if unit == "1" { "" } else { unit };
     let size = value.abs();
-    let prefixed = unit.starts_with("Nm") || unit.starts_with("rad") || unit == "N" || unit == "m";
-    let (factor, prefix) = if prefixed { prefix(size) } else { (1.0, "") };
+    let (factor, prefix) = if is_prefixed(unit) { prefix(size) } else { (1.0, "") };
     let scaled = value * factor;
     if scaled != 0.0 && scaled.abs() < 0.01 {
         return format!("{scaled:.2e} {prefix}{unit}").trim_end().to_owned();
@@ -29,6 +28,38 @@ pub fn figure(value: f64, unit: &str) -> String {
         _ => 2,
     };
     format!("{scaled:.digits$} {prefix}{unit}").trim_end().to_owned()
+}
+
+/// The prefixed unit of one figure, for others in the same sentence.
+pub struct Scale {
+    factor: f64,
+    unit: String,
+}
+
+impl Scale {
+    /// The unit in which `value` is written.
+    pub fn of(value: f64, unit: &str) -> Self {
+        let (factor, prefix) = if is_prefixed(unit) { prefix(value.abs()) } else { (1.0, "") };
+        let unit = if unit == "1" { "" } else { unit };
+        Self { factor, unit: format!("{prefix}{unit}") }
+    }
+
+    /// Three digits.
+    pub fn figure(&self, value: f64) -> String {
+        let scaled = value * self.factor;
+        let digits = match scaled.abs() {
+            s if s >= 100.0 => 0,
+            s if s >= 10.0 => 1,
+            s if s >= 1.0 || s == 0.0 => 2,
+            s if s >= 0.01 => 3,
+            _ => return format!("{scaled:.2e} {}", self.unit).trim_end().to_owned(),
+        };
+        format!("{scaled:.digits$} {}", self.unit).trim_end().to_owned()
+    }
+}
+
+fn is_prefixed(unit: &str) -> bool {
+    unit.starts_with("Nm") || unit.starts_with("rad") || unit == "N" || unit == "m"
 }
 
 pub fn percent(share: f64) -> String {
@@ -84,6 +115,14 @@ mod tests {
         assert_eq!(figure(-0.00123, "kg·m²"), "-1.23e-3 kg·m²");
         assert_eq!(percent(0.184), "18 %");
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
+    }
+
+    #[test]
+    fn figures_of_one_sentence_share_their_unit() {
+        let scale = Scale::of(3.24e-3, "Nm");
+        assert_eq!((scale.figure(3.24e-3), scale.figure(0.629e-3)), ("3.24 mNm".into(), "0.629 mNm".into()));
+        assert_eq!(Scale::of(95.1, "1").figure(0.5), "0.500");
+        assert_eq!(Scale::of(1.0, "Nm").figure(4e-4), "4.00e-4 Nm");
     }
 
     #[test]

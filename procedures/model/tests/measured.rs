@@ -73,7 +73,7 @@ fn a_current_of_another_unit_or_sign_is_told_before_all_else() {
     assert!(!diagnosed(1.0).summary.contains("Attention"));
     for factor in [1000.0, -1.0] {
         let found = diagnosed(factor);
-        let first = found.summary.split(". Mend that first").next().unwrap();
+        let first = found.summary.split(". Correct this first").next().unwrap();
         assert!(first.starts_with("Attention: motor_current_a with the torque constant"), "{}", found.summary);
         assert!(first.len() < found.summary.len() && found.undecided.is_some(), "{factor}: {}", found.summary);
     }

@@ -185,7 +185,7 @@ fn an_autopilot_adds_nothing_to_columns_that_contradict_each_other() {
     let actions: Vec<&str> = ended["steps"].as_array().unwrap().iter().filter_map(|s| s["action"].as_str()).collect();
     assert_eq!((actions.as_slice(), &ended["state"]), (&["fit"][..], &"finished".into()), "{ended}");
     let reason = ended["reason"].as_str().unwrap();
-    assert!(reason.starts_with("Attention: ") && reason.contains("Mend that first"), "{reason}");
+    assert!(reason.starts_with("Data problem: ") && reason.contains("Correct this first"), "{reason}");
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn rows_with_empty_cells_stay_out_where_that_is_asked_for() {
     let daemon = TestDaemon::start();
     let gap = GOOD.replace("0.01,0.2", "0.01,");
     let (status, problem) = upload(&daemon, &gap, &[("meta", META)]);
-    assert!(status == 422 && problem["detail"].as_str().unwrap().contains("can be left out"), "{problem}");
+    assert!(status == 422 && problem["detail"].as_str().unwrap().contains("--leave-empty-rows"), "{problem}");
     let (status, run) = upload(&daemon, &gap, &[("meta", META), ("leave_empty_rows", "true")]);
     assert_eq!((status, &run["rows"]), (201, &2.into()), "{run}");
     assert!(run["provenance"]["imported"]["understood"].to_string().contains("for an empty cell: 1"), "{run}");
@@ -155,7 +155,7 @@ fn a_preview_says_what_would_be_understood_and_keeps_nothing() {
     let (status, run) = upload(&daemon, foreign, &choices);
     assert_eq!((status, &run["rows"]), (201, &3.into()), "{run}");
     let understood = run["provenance"]["imported"]["understood"].as_str().unwrap();
-    assert!(understood.contains("column remark was left out: it holds words"), "{understood}");
+    assert!(understood.contains("column remark is omitted: it holds words"), "{understood}");
     let (status, problem) = upload(&daemon, foreign, &[("unit", "motor_position_rad=furlong")]);
     assert!(status == 422 && problem["detail"].as_str().unwrap().contains("expected COLUMN=UNIT"), "{problem}");
 }

@@ -40,7 +40,7 @@ fn what_another_run_lacks_is_said() {
     let meta = std::fs::read_to_string(folder.join("meta.json")).expect("facts");
     std::fs::write(folder.join("bare/meta.json"), meta.replace("50", "100")).expect("facts");
     let told = done(folder, &["model", "evaluate", "model.json", "bare"]);
-    assert!(told.contains("load_transmission is left out, for the run has no column link_torque_nm"), "{told}");
+    assert!(told.contains("load_transmission is omitted, because the run has no column link_torque_nm"), "{told}");
     assert!(told.contains("gear_ratio is 100 in the facts of this run and 50 in those of the fitted one"), "{told}");
 
     done(folder, &["fit", "bare", "--model", MODEL, "--out", "bare.json"]);

@@ -17,10 +17,10 @@ it('trusts a unit that is given', () => {
 
 it('says ids of a sentence as words', () => {
 	expect(prose('it would show load_linear and stribeck_load, at 5 mNm')).toBe('It would show load linear and stribeck load, at 5 mNm');
-	expect(prose('load_linear is missing, then load_viscous', [{ id: 'load_linear', title: 'Load-dependent friction' }])).toBe('Load-dependent friction is missing, then load viscous');
+	expect(prose('Missing effects: load_linear, then load_viscous.', [{ id: 'load_linear', title: 'Load-dependent friction' }])).toBe('Missing effects: load-dependent friction, then load viscous.');
 	const short = [{ id: 'viscous', title: 'Viscous friction' }, { id: 'stribeck', title: 'Stribeck effect' }];
-	expect(prose('viscous is missing: with viscous the held-out error falls', short)).toBe('Viscous friction is missing: with viscous friction the held-out error falls');
-	expect(prose('what is missing: with stribeck the held-out error falls', short)).toBe('What is missing: with Stribeck effect the held-out error falls');
+	expect(prose('Missing effect: viscous. Adding viscous reduces the validation error', short)).toBe('Missing effect: viscous friction. Adding viscous friction reduces the validation error');
+	expect(prose('Possibly missing effect (weak evidence): stribeck (or viscous: this run cannot distinguish them).', short)).toBe('Possibly missing effect (weak evidence): Stribeck effect (or viscous: this run cannot distinguish them).');
 	expect(prose('motor_current_a is -1.5 times what 0-3 gives, by time_s')).toBe('Motor current is −1.5 times what 0-3 gives, by time');
 	expect(prose('repeat with a lower stribeck_speed_rad_s, for tau_c')).toBe('Repeat with a lower stribeck speed, for tau c');
 });

@@ -69,7 +69,7 @@ export const signed = (text: string): string => text.replace(SIGN, '−');
 
 /** A sentence of the daemon as people write it: effects by their titles, other ids as words, without the unit at their end; a capital at its start. */
 export function prose(sentence: string, effects: readonly { id: string; title: string }[] = []): string {
-	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])|(?<=^|with )[a-z]+(?= is missing| the held-out)/g, (id) => {
+	const spoken = sentence.replace(/(?<![\w.])[a-z]+(_[a-z0-9]+)+(?![\w.]*[=(])|(?<=issing effects?(?: \(weak evidence\))?: |, then |Adding )[a-z]+(?=[.,]| \(or| reduces)/g, (id) => {
 		const title = effects.find((one) => one.id === id)?.title;
 		return title?.replace(/^(?!Coul|Strib)./, (first) => first.toLowerCase()) ?? words(id.replace(SPELT_UNIT, ''));
 	});

@@ -18,7 +18,7 @@ it('says what changed last, and nothing of what was there from the first', () =>
 	expect(changed([])).toBe(null);
 	expect(changed([said(0), said(4, 'a'), said(8, 'a')])).toBe(null);
 	expect(changed([said(0), said(4, 'a'), said(8, 'a', 'b'), said(12, 'a', 'b')])).toContain('From 8 s on found now: the b.');
-	expect(changed([said(4, 'a', 'b'), said(8, 'a', 'c')])).toContain('found now: the c; not found any more: the b.');
+	expect(changed([said(4, 'a', 'b'), said(8, 'a', 'c')])).toContain('found now: the c; no longer found: the b.');
 	const wide = { at_s: 16, quantities: [{ name: 'a', title: 'the a', ci95: [0, 2] }] as unknown as IdentifiedQuantity[] };
 	expect(changed([said(4, 'a'), said(8, 'a'), wide, wide])).toContain('From 16 s on 1 of 1 intervals wider.');
 });

@@ -18,8 +18,8 @@ export function changed(story: readonly Said[]): string | null {
 		const only = (here: readonly IdentifiedQuantity[], there: readonly IdentifiedQuantity[]) => here.filter(({ name }) => there.every((one) => one.name !== name)).map(({ title }) => title).join(', ');
 		const [came, went] = [only(now, before), only(before, now)];
 		const wider = now.filter((one) => before.some((other) => other.name === one.name && width(one) > WIDER * width(other))).length;
-		const said = [came && `found now: ${came}`, went && `not found any more: ${went}`, wider && `${wider} of ${now.length} intervals wider`].filter(Boolean).join('; ');
-		if (said) return `From ${story[i]!.at_s.toFixed(0)} s on ${said}. They grow with what is looked for beside them, and where new samples contradict the former.`;
+		const said = [came && `found now: ${came}`, went && `no longer found: ${went}`, wider && `${wider} of ${now.length} intervals wider`].filter(Boolean).join('; ');
+		if (said) return `From ${story[i]!.at_s.toFixed(0)} s on ${said}. Intervals grow with each further effect, and where new samples contradict earlier ones.`;
 	}
 	return null;
 }

@@ -6,6 +6,6 @@ import { role } from './role.svelte';
 export function barred({ blocked, run }: Bench): string | null {
 	if (role.observing) return role.barred;
 	if (lab.lost) return 'no contact with the daemon';
-	if (blocked) return `the bench is ${blocked.stopped ? 'stopped' : 'blocked'}: look at it and reset it above`;
-	return run ? `run #${run} is on` : null;
+	if (blocked) return `the bench is ${blocked.stopped ? 'stopped' : 'blocked'}: inspect it and reset it above`;
+	return run ? `run #${run} is in progress` : null;
 }

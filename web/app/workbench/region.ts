@@ -42,9 +42,9 @@ export function around({ from, to }: { from: number; to: number }, low: number, 
 	return [middle - half, middle + half];
 }
 
-export type Strength = 'STRONG' | 'SMALL' | 'WEAK' | "CAN'T TELL APART";
+export type Strength = 'STRONG' | 'SMALL' | 'WEAK' | 'CONFOUNDED';
 
 /** One word for the evidence; the figures stand beside it. */
 export function strength({ evidence, confounded_with }: Pick<Suggestion, 'evidence' | 'confounded_with'>): Strength {
-	return confounded_with.length > 0 ? "CAN'T TELL APART" : (evidence.toUpperCase() as Strength);
+	return confounded_with.length > 0 ? 'CONFOUNDED' : (evidence.toUpperCase() as Strength);
 }

@@ -156,7 +156,7 @@ export function openWorkbench(id: number) {
 		if (!kept && open.length === 0) return null;
 		const stays = after.added.length === 0 && Math.abs(share) <= WORTH;
 		const [was, is] = [before, after].map((one) => quantity(one.validation_rms, one.fit.unit));
-		const said = `Held-out error ${was} → ${is}: ${stays ? '≈ as before' : worded(share)} (${change(-share)})`;
+		const said = `Validation error ${was} → ${is}: ${stays ? '≈ as before' : worded(share)} (${change(-share)})`;
 		if (open.length > 0) return { text: `${said}, but this data does not decide ${open.join(', ')}: ${kept ? 'undo with z, or ' : ''}give what is searched for a range that the run can show.`, good: false };
 		const good = stays || share > WORTH;
 		return { text: `${said}.${good ? '' : ' Undo with z.'}`, good };

@@ -156,7 +156,7 @@ describe('regions', () => {
 
 it('says how strong the evidence is', () => {
 	expect(strength({ evidence: 'small', confounded_with: [] })).toBe('SMALL');
-	expect(strength({ evidence: 'strong', confounded_with: ['drift'] })).toBe("CAN'T TELL APART");
+	expect(strength({ evidence: 'strong', confounded_with: ['drift'] })).toBe('CONFOUNDED');
 });
 
 it('flags parameters in words', () => {

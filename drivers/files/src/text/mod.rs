@@ -187,7 +187,7 @@ fn finish(mut table: RawTable, layout: &Layout, name: &str) -> Result<RawTable, 
     }
     if table.is_cut {
         table.notes.push(Note::new(
-            "the last line is shorter than all others and has no line end: it was left out as cut off",
+            "the last line is shorter than all others and has no line end: it is truncated and omitted",
         ));
     }
     if !table.named_again.is_empty() {

@@ -100,7 +100,7 @@ fn what_was_skipped_or_assumed_is_said() {
     };
     for (name, words) in [
         ("pandas_plain.csv", &[][..]),
-        ("pandas_index.csv", &["the first column counts the rows and was left out"]),
+        ("pandas_index.csv", &["the first column counts the rows and is omitted"]),
         ("csv_comments.csv", &["2 lines above the names skipped, 2 of them comments"]),
         ("csv_units_line.csv", &["line 2 was taken as units"]),
         ("pandas_german.csv", &["decimals stand behind commas (--decimal point)"]),
@@ -111,12 +111,12 @@ fn what_was_skipped_or_assumed_is_said() {
         (
             "pandas_gaps.csv",
             &[
-                "column remark was left out: it holds words",
-                "column oil_temperature was left out: 30 of 40 cells are empty",
+                "column remark is omitted: it holds words",
+                "column oil_temperature is omitted: 30 of 40 cells are empty",
             ],
         ),
         ("pandas_bool.csv", &["valid is 1 for true and 0 for false (--leave valid)"]),
-        ("csv_cut_off.csv", &["left out as cut off"]),
+        ("csv_cut_off.csv", &["truncated and omitted"]),
         ("labview.lvm", &["no row has a value for Comment", "time_s has no unit and was taken as s"]),
         ("epoch_ms.csv", &["time_s has no unit and was taken as ms, since 1970"]),
         ("pandas_datetime.csv", &["time_s counts the seconds from the stamp in the first row, 2026-01-02 10:00:00"]),

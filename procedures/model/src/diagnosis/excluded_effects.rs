@@ -8,7 +8,7 @@ use crate::selection::model_selection::ModelSelection;
 use crate::selection::refused::Refused;
 use crate::selection::{hysteresis_stage, ramp_stage};
 
-const TOO_LARGE: &str = "only one that is larger than all that was measured would have been seen";
+const TOO_LARGE: &str = "its detection limit exceeds the largest measured value";
 
 #[derive(Default)]
 pub struct ExcludedEffects {
@@ -33,7 +33,7 @@ impl ExcludedEffects {
             let id = effect.info().id;
             let tied = ties.iter().find(|(_, rival)| *rival == id);
             let tied = tied
-                .map(|(named, _)| format!("{named} is in the model in its place, and this run cannot tell them apart"));
+                .map(|(named, _)| format!("{named} is in the model, and this run cannot distinguish them"));
             let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words().to_owned());
             let refused = selected.decided.iter().flat_map(|decided| &decided.refused).find(|r| r.effect == id);
             let tried = tried.or_else(|| refused.map(Refused::why));
@@ -61,7 +61,7 @@ impl ExcludedEffects {
 /// What enters as it is has no size from which it would have been found.
 fn given(effect: &dyn Effect, end: &TwoStageModel) -> Option<&'static str> {
     let is_tried = effect.is_offset() && effect.hidden(&end.prepared.main.view).is_none();
-    is_tried.then_some("it enters as it is measured, and the error is not clearly smaller with it")
+    is_tried.then_some("it is used as measured, and does not clearly reduce the error")
 }
 
 /// The numbers of waves that were tried.
@@ -84,20 +84,20 @@ fn excitation(effect: &dyn Effect) -> &'static str {
     let needs = |column: &str| effect.info().needs.contains(&column);
     match effect.regime() {
         Regime::Hysteresis => "slow reversals over many steps of the encoder",
-        Regime::Transient => "swifter changes of the speed",
+        Regime::Transient => "faster changes of the speed",
         Regime::SteadyState if effect.wave().is_some() => "more of a turn of that angle, slowly, in both directions",
         Regime::SteadyState if needs("temperature_c") => "the same motion at another temperature",
         Regime::SteadyState if needs("link_torque_nm") => "the same speeds under other loads",
         Regime::SteadyState if needs("link_position_rad") => "more of a turn of the link",
-        Regime::SteadyState => "more speeds, in both directions, that come again at other times",
+        Regime::SteadyState => "more speeds, in both directions, repeated at other times",
     }
 }
 
 fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
-    const ALIKE: &str = "in this data it looks like what the model has already, which takes its place";
-    const RAMP: &str = "settled motion does not show it, and on ramps, where the signals of different instruments are not \
-                        aligned, only a torque that is late is looked for, beside an inertia; name it in the model, or record \
-                        a trajectory without steps";
+    const ALIKE: &str = "in this data it has the shape of effects of the model";
+    const RAMP: &str = "it does not act at steady state. Ramps, where signals of different instruments are not aligned, are \
+                        tested for a delay only, with an inertia in the model; add the effect to the model, or record a \
+                        trajectory without steps";
     let prepared = end.prepared;
     let remembered = prepared.memory.as_ref().map(|problem| &problem.view);
     let view = match (end.is_apart(effect), effect.regime()) {
@@ -107,8 +107,8 @@ fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
     };
     match view {
         Some(view) => {
-            effect.hidden(view).unwrap_or_else(|| format!("{ALIKE}: to tell them takes {}", excitation(effect)))
+            effect.hidden(view).unwrap_or_else(|| format!("{ALIKE}; to distinguish them, measure {}", excitation(effect)))
         }
-        None => "the run has no slow reversals that could show it".into(),
+        None => "the run has no slow reversals".into(),
     }
 }

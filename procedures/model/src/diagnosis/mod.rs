@@ -175,23 +175,21 @@ fn suggestions(
                 alike.push(format!("{:.2}", evidence::correlation(&found.start.main, &alone.main, &other.main)));
             }
             format!(
-                " This run cannot tell it from {}, in its place: what they take off the error is {} correlated.",
+                " Confounded with {}: each reduces the error equally well (correlation of the contributions {}).",
                 list(&confounded_with),
                 list(&alike)
             )
         };
         let evidence = if apart {
-            format!("Around reversals it takes {} off the squared error.", percent(rival.share))
+            format!("Around reversals it reduces the squared error by {}.", percent(rival.share))
         } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
-            format!("The error hardly misses it, but without it {}.", narrative::elsewhere(upheld, false))
+            format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(upheld, false))
         } else if found.decided.is_some() {
-            format!("It reduces the validated squared error by {}.", percent(importance))
+            format!("It reduces the squared validation error by {}.", percent(importance))
         } else {
             let times = 1.0 / (1.0 - importance).max(f64::MIN_POSITIVE);
             let times = if times > 1000.0 { "over 1000".to_owned() } else { format!("{times:.1}") };
-            format!(
-                "Without this effect the complete model's squared error on the fitted data would be {times} times as large."
-            )
+            format!("Removing it from the final model increases the squared error {times}-fold.")
         };
         let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
         let instead = confounding::instead(rival.term.effect, found.start.prepared);
@@ -254,7 +252,7 @@ fn experiment(found: &Findings, prepared: &Prepared) -> Option<Experiment> {
         return Some(Experiment {
             procedure: prepared.kind.name().into(),
             parameters,
-            why: "without repeats of the same profile nobody knows how small the error can become".into(),
+            why: "without repeats of the same profile the noise floor is not known".into(),
             expected_z: None,
             expected_duration_s: None,
             separates: Vec::new(),

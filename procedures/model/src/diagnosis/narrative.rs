@@ -11,107 +11,112 @@ use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::Left;
 use crate::selection::removal::{RemovalReason, Withdrawn};
 use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, TOLD_LOSS};
-use crate::words::{figure, list, percent, spoken_axis};
+use crate::words::{Scale, figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
-/// What is missing, and what is left when it is there. `fit` is the model at hand, `complete` the one with all suggestions.
+/// The missing effects, and what remains with them. `fit` is the given model, `complete` the one with all suggestions.
 pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Suggestion]) -> String {
-    let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, complete));
+    let unit = Scale::of(fit.validation_rms, &fit.unit);
+    let (error, floor) = (unit.figure(fit.validation_rms), floor(found, complete, &unit));
     let first = &suggestions[0];
-    let more: Vec<String> = suggestions[1..].iter().map(or_rival).collect();
-    let then = if more.is_empty() { String::new() } else { format!(", then {}", list(&more)) };
-    let with = figure(first.validation_rms, &fit.unit);
-    let (effect, named) = (&first.effect, or_rival(first));
-    let all = match more.is_empty() {
-        true => String::new(),
-        false => format!(" and with all of them to {}", figure(complete.validation_rms, &fit.unit)),
+    let named: Vec<String> = suggestions.iter().map(or_rivals).collect();
+    let with = unit.figure(first.validation_rms);
+    let effect = &first.effect;
+    let all = match suggestions.len() {
+        1 => String::new(),
+        _ => format!(", and adding all of them to {}", unit.figure(complete.validation_rms)),
     };
-    let is = match suggestions.iter().all(|s| s.evidence == Evidence::Weak) {
-        true => "may be missing, and the evidence is weak",
-        false => "is missing",
+    let plural = if named.len() > 1 { "s" } else { "" };
+    let head = match suggestions.iter().all(|s| s.evidence == Evidence::Weak) {
+        true => format!("Possibly missing effect{plural} (weak evidence)"),
+        false => format!("Missing effect{plural}"),
     };
     let place = match found.start.spec.find(effect).map(Effect::regime) {
         Ok(Regime::Transient) => "on ramps",
         _ => "around reversals",
     };
     let gain = if with == error {
-        format!(
-            "{named} {is}{then}: it acts {place}; settled motion has a held-out error of {error} with it \
-             and without it, and {floor}."
-        )
+        format!("It acts {place}. At steady state the validation error is {error} with it and without it; {floor}.")
     } else {
-        format!("{named} {is}{then}: with {effect} the held-out error falls from {error} to {with}{all}; {floor}.")
+        format!("Adding {effect} reduces the validation error from {error} to {with}{all}; {floor}.")
     };
     let beyond = match found.end_verdict() {
         Verdict::UnexplainedStructure => {
-            let them = if more.is_empty() { "it" } else { "them" };
+            let them = if named.len() > 1 { "them" } else { "it" };
             let shown = found.maps.structure(&found.start.prepared.main);
             format!(
-                " Even with {them} structure remains that {}: {}.",
-                unexplained(found),
-                structure(found, complete, shown.as_ref())
+                " Unexplained structure remains with {them}: {}. {}",
+                structure(found, complete, shown.as_ref()),
+                unexplained(found)
             )
         }
         _ => String::new(),
     };
-    format!("{}{gain}{beyond}{}{}", attention(found, &[fit, complete]), open(found), taken_back(found, &fit.unit))
+    let named = named.join(", then ");
+    format!(
+        "{}{head}: {named}. {gain}{beyond}{}{}",
+        attention(found, &[fit, complete]),
+        open(found),
+        rejected(found, &fit.unit)
+    )
 }
 
-/// An effect with what this run cannot tell it from: one of them alone would say more than the run knows.
-fn or_rival(suggestion: &Suggestion) -> String {
+/// An effect with those that it is confounded with.
+fn or_rivals(suggestion: &Suggestion) -> String {
     let Suggestion { effect, confounded_with: rivals, .. } = suggestion;
     match rivals.is_empty() {
         true => effect.clone(),
-        false => format!("{effect} (or {} in its place: this run cannot tell)", rivals.join(" or ")),
+        false => format!("{effect} (or {}: this run cannot distinguish them)", rivals.join(" or ")),
     }
 }
 
-/// What is left at the end of the search, where `fit` is its model. `is_cut`: it ended because no more effects were asked for.
+/// What remains at the end of the search, where `fit` is its model. `is_cut`: it ended at the requested number of effects.
 pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Options, is_cut: bool) -> String {
-    let (error, floor) = (figure(fit.validation_rms, &fit.unit), floor(found, fit));
+    let unit = Scale::of(fit.validation_rms, &fit.unit);
+    let (error, floor) = (unit.figure(fit.validation_rms), floor(found, fit, &unit));
     let verdict = found.end_verdict();
     let said = match (verdict, undecided(found, &[fit], verdict, options)) {
         (Verdict::UnexplainedStructure, _) => format!(
-            "Structure remains{}: {}; {floor}.",
+            "Unexplained structure remains: {}. {} The {floor}.",
+            structure(found, fit, shown),
             match is_cut {
-                true => ", and no more effects were asked for that could explain it".into(),
-                false => format!(" that {}", unexplained(found)),
+                true => "The requested number of effects is reached; further effects may explain it.",
+                false => unexplained(found),
             },
-            structure(found, fit, shown)
         ),
         (_, None) if found.is_rounding() => format!(
-            "The model explains this run: its held-out error is {error}, as the steps of the encoders leave {}, and {floor}.",
-            figure(found.start.prepared.main.view.constants.rounding, &fit.unit)
+            "The model explains this run. Validation error {error}, encoder quantization {}, {floor}.",
+            unit.figure(found.start.prepared.main.view.constants.rounding)
         ),
-        // Far above the repeatability it is adequate for one reason only.
+        // Far above the noise floor it is adequate for one reason only.
         (_, None) if found.exceeds_floor() && found.is_negligible() => format!(
-            "What the model leaves is negligible beside what was measured: its held-out error is {error}, and {floor}{}.",
+            "The residual is negligible relative to the measured signal. Validation error {error}, {floor}{}.",
             above(found, fit)
         ),
         (_, None) => {
-            format!("The model explains this run: its held-out error is {error}, and {floor}{}.", above(found, fit))
+            format!("The model explains this run. Validation error {error}, {floor}{}.", above(found, fit))
         }
         (_, Some(Undecided { said: why, .. })) => format!(
-            "Nothing more can be named in this run, whose held-out error is {error}; whether the model is adequate \
-             cannot be decided: {why}."
+            "This run identifies no further effect (validation error {error}). Whether the model is adequate cannot be \
+             decided: {why}."
         ),
     };
     // Of a model that is adequate but for it, the sentence itself says so.
     let sized: &[&Fit] = if verdict == Verdict::UnexplainedStructure { &[fit] } else { &[] };
-    attention(found, sized) + &said + &scatter(found, verdict, &fit.unit) + &open(found) + &taken_back(found, &fit.unit)
+    attention(found, sized) + &said + &scatter(found, verdict, &fit.unit) + &open(found) + &rejected(found, &fit.unit)
 }
 
 /// Why what shows over an axis is called noise.
 fn scatter(found: &Findings, verdict: Verdict, unit: &str) -> String {
     let main = &found.start.prepared.main;
     let elsewhere = match 2 * main.different_angle.len() > main.replicate_pairs.len() {
-        true => ", or friction depends on an angle that the repeats pass at other moments",
+        true => ", or friction depends on an angle that the repeats pass at other times",
         false => "",
     };
     let said = |rms: f64| {
         format!(
-            " What is left shows over an axis, but hardly comes again in another repeat, and is what whole stretches of motion \
-             scatter by: the zero wanders by {} from one to another{elsewhere}.",
+            " Part of the residual depends on an axis but hardly recurs in other repeats: the zero drifts by {} between \
+             sections of the run{elsewhere}.",
             figure(rms, unit)
         )
     };
@@ -121,7 +126,7 @@ fn scatter(found: &Findings, verdict: Verdict, unit: &str) -> String {
 /// An effect that may be there as well, for all that the error tells.
 fn open(found: &Findings) -> String {
     let said = |open: &Imitated| {
-        format!(" This run does not tell whether {} is there as well: with it {}.", open.effect, elsewhere(open, true))
+        format!(" This run does not determine whether {} is present: with it {}.", open.effect, elsewhere(open, true))
     };
     found.open.as_ref().map(said).unwrap_or_default()
 }
@@ -133,100 +138,86 @@ pub fn elsewhere(imitated: &Imitated, is_there: bool) -> String {
     format!("{parameter} would be {} instead of {}", figure(*would, unit), figure(*instead, unit))
 }
 
-const MEND: &str = "Mend that first: what follows is what these columns make of the model. ";
-const MEND_ALL: &str =
-    "Mend that first: no effect is named before, and what follows is what these columns make of the model. ";
+const CORRECT: &str = "Correct this first: the results are based on these columns. ";
+const CORRECT_ALL: &str = "Correct this first: no effect is suggested until then, and the results are based on these columns. ";
 
-/// What a user has to mend before anything else counts: columns that contradict each other, a size that contradicts physics in all
+/// What a user has to correct before anything else counts: columns that contradict each other, a size that contradicts physics in all
 /// of the fits, and what the model takes as given and the run shows as a constant, which may not have been connected.
 fn attention(found: &Findings, fits: &[&Fit]) -> String {
-    let told = |what: &String| format!("Attention: {what}. ");
+    let told = |what: &String| format!("Data problem: {what}. ");
     let clashes = &found.start.prepared.clashes;
-    let mend = (!clashes.is_empty()).then(|| if clashes.void.is_empty() { MEND } else { MEND_ALL }.to_owned());
-    let clashes = clashes.all().map(told).chain(mend);
-    // Its own words say what to look for.
-    let impossible = impossible(fits).as_ref().map(told);
+    let correct = || if clashes.void.is_empty() { CORRECT } else { CORRECT_ALL }.to_owned();
+    let correct = (!clashes.is_empty()).then(correct);
+    let clashes = clashes.all().map(told).chain(correct);
+    let impossible = impossible(fits).map(|what| format!("Implausible: {what}. "));
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;
     let is_dependent = |id: &str| spec.find(id).is_ok_and(|e| e.is_offset() && e.missing(view).is_none());
     let dead = found.start.hidden.iter().find(|h| is_dependent(&h.effect));
-    let dead = dead.map(|h| format!("Attention: {}; if something did act there, what follows is wrong. ", h.why));
+    let dead = dead.map(|h| format!("Data problem: {}; if that input was active, the results are wrong. ", h.why));
     clashes.chain(impossible).chain(dead).collect()
 }
 
-/// How well the run repeats itself, and why an error may be smaller than that.
-fn floor(found: &Findings, end: &Fit) -> String {
+/// The noise floor, and why an error may be smaller.
+fn floor(found: &Findings, end: &Fit, unit: &Scale) -> String {
     let Some(floor) = found.floor.rms else {
         let why =
             found.floor.source.strip_prefix("no noise floor").filter(|_| found.start.prepared.main.unlike.is_some());
-        return format!("how well the run repeats itself is not known{}", why.unwrap_or_default());
+        return format!("noise floor unknown{}", why.unwrap_or_default());
     };
     // An error within the floor's own interval needs no excuse.
     let below = match end.validation_rms < found.floor.ci95.map_or(floor, |[low, _]| low) {
-        true => {
-            " (counted only at moments that come again in another repeat; the error over all moments may be smaller)"
-        }
+        true => " (from repeated conditions only; the error over all samples may be smaller)",
         false => "",
     };
     let about = if found.floor.ci95.is_some() { "" } else { "about " };
-    format!("the run repeats itself to {about}{}{below}", figure(floor, &end.unit))
+    format!("noise floor {about}{}{below}", unit.figure(floor))
 }
 
-/// What an error is that is larger than the run repeats itself to, and that nothing takes away.
+/// What an error above the noise floor consists of.
 fn above(found: &Findings, end: &Fit) -> String {
     if found.floor.ci95.is_none_or(|[_, high]| end.validation_rms <= high) {
         return String::new();
     }
     match found.floor.repeatable_share {
-        Some(share) if share < NOTHING_IN_COMMON => {
-            ": what is above that is not the same at the same moment of another repeat".to_owned()
-        }
+        Some(share) if share < NOTHING_IN_COMMON => ". The difference is not repeatable".to_owned(),
         Some(share) => {
-            format!(
-                ": {} of the squared error is the same in every repeat, and nothing that was tried takes it away",
-                percent(share)
-            )
+            format!(". {} of the squared error is repeatable, and no candidate effect reduces it", percent(share))
         }
         None => String::new(),
     }
 }
 
-/// Where what is left shows most.
+/// Where the residual is largest.
 fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
     let error = figure(end.validation_rms, &end.unit);
     let repeats = match found.floor.repeatable_share {
-        Some(share) if share < NOTHING_IN_COMMON => {
-            ", none of it the same at the same moment of another repeat".to_owned()
-        }
-        Some(share) => format!(", {} of it the same in every repeat", percent(share)),
+        Some(share) if share < NOTHING_IN_COMMON => ", none of it repeatable".to_owned(),
+        Some(share) => format!(", {} of it repeatable", percent(share)),
         None => String::new(),
     };
     if lack_of_fit::structured(&found.maps).is_none()
         && let Some(event) = found.events.first()
     {
         let [from_s, to_s] = Events::span_s(&found.start.prepared.main, event);
-        // Without repeats nobody knows what comes again.
-        let does = match found.start.prepared.main.replicate_pairs.is_empty() {
-            true => "lies far out of what all others scatter by",
-            false => "lies far out of what all others scatter by and does not come again",
-        };
+        // Without repeats nothing can recur.
+        let recurs = if found.start.prepared.main.replicate_pairs.is_empty() { "" } else { " and does not recur" };
         let which = match found.events.len() {
-            1 => format!("it shows in one stretch of the run, which {does}:"),
-            count => format!("it shows in {count} stretches of the run, each of which {does}, the largest of"),
+            1 => format!("one interval of the run deviates far beyond the scatter of all others{recurs}:"),
+            count => format!("{count} intervals of the run deviate far beyond the scatter of all others{recurs}; the largest:"),
         };
         return format!(
-            "{which} {} from {from_s:.2} s to {to_s:.2} s (the error that remains is {error}{repeats})",
+            "{which} {} from {from_s:.2} s to {to_s:.2} s (remaining error {error}{repeats})",
             figure(event.mean.abs(), &end.unit)
         );
     }
     match shown_over(found, shown) {
         Some((axes, share)) => format!(
-            "it shows most over {}, a function of which would take {} off the squared error that remains \
-             ({error}{repeats})",
+            "it is largest over {}, and a function of that would remove {} of the remaining squared error ({error}{repeats})",
             list(&axes.iter().map(|axis| spoken_axis(axis, found.start.prepared.kind)).collect::<Vec<_>>()),
             percent(share),
         ),
-        None => format!("no axis of this run shows where it comes from (the error that remains is {error}{repeats})"),
+        None => format!("no axis of this run shows its origin (remaining error {error}{repeats})"),
     }
 }
 
@@ -251,9 +242,9 @@ pub fn nowhere(verdict: Verdict, maps: &Maps, regions: &[Region], fit: &Fit) -> 
         Verdict::Adequate => String::new(),
         _ if !regions.is_empty() => String::new(),
         Verdict::UnexplainedStructure => {
-            format!(" It is spread: no part of an axis stands out for sure{}.", maps.nowhere(&fit.unit))
+            format!(" The residual is spread: no part of an axis is significant{}.", maps.nowhere(&fit.unit))
         }
-        _ => format!(" No part of an axis stands out for sure{}.", maps.nowhere(&fit.unit)),
+        _ => format!(" No part of an axis is significant{}.", maps.nowhere(&fit.unit)),
     }
 }
 
@@ -275,13 +266,12 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
         }
         Verdict::Adequate if smallest > options.alpha => (
             UndecidedReason::TooFewBlocks,
-            format!("{blocks} independent stretches of motion are too few to name anything"),
+            format!("{blocks} independent blocks are too few for a significance test"),
         ),
         Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, found.floor.source.clone()),
         Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => (
             UndecidedReason::NoNoiseFloor,
-            "a few moments hold nearly all that its repeats differ by, so how well it repeats itself is not known"
-                .into(),
+            "a few moments hold nearly all of the variance between its repeats, so its noise floor is not known".into(),
         ),
         Verdict::Adequate | Verdict::MissingEffect => (UndecidedReason::ImpossibleParameter, impossible(fits)?),
         Verdict::UnexplainedStructure => return None,
@@ -303,52 +293,47 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
     Some(format!("{} of {} is {}, which {note}", p.name, p.effect, figure(p.value, &p.unit)))
 }
 
-/// What is said of structure, where something that was left out might be it.
+/// What is said of structure, where a rejected effect might explain it.
 fn unexplained(found: &Findings) -> &'static str {
     let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());
-    match left_out(found).next().is_some() || is_refused {
-        true => "no effect of the library is sure to explain",
-        false => "no effect of the library explains",
+    match undetermined(found).next().is_some() || is_refused {
+        true => "No effect of the library certainly explains it.",
+        false => "No effect of the library explains it.",
     }
 }
 
-/// Effects that would bring something, and whose size the run does not decide.
-fn left_out<'f, 'p>(found: &'f Findings<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
+/// Effects that would reduce the error, and whose size the run does not determine.
+fn undetermined<'f, 'p>(found: &'f Findings<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
     let bound = TOLD_LOSS * found.end_held_out_rms;
     found.withdrawn.iter().filter(move |w| w.why == RemovalReason::Unidentified && w.held_out_rms < bound)
 }
 
-/// Effects that came in and were taken back, and what that cost.
-fn taken_back(found: &Findings, unit: &str) -> String {
-    // What could stand in the place of an effect of the model is named there.
-    let open: Vec<&Withdrawn> = left_out(found).filter(|w| !found.is_rival(w.effect)).collect();
-    let back = |why: RemovalReason| -> Vec<&str> {
-        let taken = found.withdrawn.iter().filter(|w| w.why == why && !found.is_rival(w.effect));
-        taken.map(|w| w.effect).rev().collect()
+/// Effects that were tried and removed, with the reason.
+fn rejected(found: &Findings, unit: &str) -> String {
+    // What could replace an effect of the model is named there.
+    let open: Vec<&Withdrawn> = undetermined(found).filter(|w| !found.is_rival(w.effect)).collect();
+    let rejected = |why: RemovalReason| -> Vec<&str> {
+        let of = found.withdrawn.iter().filter(|w| w.why == why && !found.is_rival(w.effect));
+        of.map(|w| w.effect).rev().collect()
     };
-    let (half, borrowing) = (back(RemovalReason::PartialExplanation), back(RemovalReason::Spurious));
     let named: Vec<&str> = open.iter().map(|w| w.effect).rev().collect();
     let with = open.iter().map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
     let open = (!open.is_empty()).then(|| {
-        let (object, are) = if open.len() > 1 { ("the best of them", "they are") } else { ("it", "it is") };
+        let (object, size) = if open.len() > 1 { ("the best of them", "their sizes") } else { ("it", "its size") };
+        let scale = Scale::of(found.end_held_out_rms, unit);
         format!(
-            " Left out: {}. With {object} the held-out error would be {} instead of {}, but this run does not decide \
-             how large {are}.",
+            " Rejected: {}. With {object} the validation error would be {} instead of {}, but this run does not determine \
+             {size}.",
             list(&named),
-            figure(with, unit),
-            figure(found.end_held_out_rms, unit)
+            scale.figure(with),
+            scale.figure(found.end_held_out_rms)
         )
     });
-    let half = (!half.is_empty()).then(|| {
-        let (explains, own) =
-            if half.len() > 1 { ("they explain", "their own axes") } else { ("it explains", "its own axis") };
-        format!(" Taken back: {}, because {explains} only a part of what shows over {own}.", list(&half))
-    });
-    let borrowing = (!borrowing.is_empty()).then(|| {
-        let explains = if borrowing.len() > 1 { "they explain" } else { "it explains" };
-        format!(" Taken back: {}, because {explains} nothing beside the structure that remains.", list(&borrowing))
+    let for_reason = [RemovalReason::PartialExplanation, RemovalReason::Spurious].into_iter().filter_map(|why| {
+        let effects = rejected(why);
+        (!effects.is_empty()).then(|| format!(" Rejected: {} ({}).", list(&effects), why.words()))
     });
     let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_rival(r.effect));
-    let refused = refused.map(|refused| format!(" Left out: {}: {}.", refused.effect, refused.why()));
-    open.into_iter().chain(half).chain(borrowing).chain(refused).collect()
+    let refused = refused.map(|refused| format!(" Rejected: {} ({}).", refused.effect, refused.why()));
+    open.into_iter().chain(for_reason).chain(refused).collect()
 }

@@ -43,7 +43,7 @@ pub fn region(model: &TwoStageModel, reach: f64, fit: &Fit, yardstick: Option<&R
         samples,
         direction: None,
         sentence: format!(
-            "the friction of the model is {} too {side} on the first {} after a reversal{measure}",
+            "the friction of the model is {} too {side} within {} after a reversal{measure}",
             figure(mean.abs(), &fit.unit),
             figure(reach, &angle),
         ),

@@ -183,10 +183,10 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         }
         let bid = together.or(first);
         if let Some(bid) = bid {
-            let tells = format!("{effect} from {}", list(&apart));
+            let tells = format!("distinguish {effect} from {}", list(&apart));
             let mut next = told(bid, &tells, std::iter::once(effect).chain(&apart));
             next.why
-                .extend(vain.map(|vain| format!("; no run within what this bench may do is expected to tell {vain}")));
+                .extend(vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")));
             return Ok(next.into());
         }
         in_vain.extend(vain);
@@ -194,11 +194,11 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let next = if let Some(effect) = &open.imitated
         && let Some(bid) = decided(&[with_all.with(effect)?])?
     {
-        Some(told(bid, &format!("whether {effect} is there as well"), [effect]))
+        Some(told(bid, &format!("decide whether {effect} is present"), [effect]))
     } else if let Some((effect, spec)) = over_time(&with_all, &prepared)?
         && let Some(bid) = decided(&[spec])?
     {
-        Some(told(bid, &format!("{effect} from a drift over time"), [&effect]))
+        Some(told(bid, &format!("distinguish {effect} from a drift over time"), [&effect]))
     } else if !open.has_noise_floor
         && let Some(choice) = nearest(menu, &prepared)
     {
@@ -211,7 +211,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     };
     let in_vain = (!in_vain.is_empty()).then(|| {
         let ties = list(&in_vain);
-        format!("run within what this bench may do is expected to tell {ties}: that takes another speed, load or temperature")
+        format!("run within the limits of this bench is expected to distinguish {ties}: use another speed, load or temperature")
     });
     Ok(match (next, in_vain) {
         (Some(next), Some(vain)) => Experiment { why: format!("no {vain}; but {}", next.why), ..next }.into(),
@@ -267,7 +267,7 @@ fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "that run would tell {what}: the predictions are expected to lie {} standard deviations apart{}{enough}",
+            "this run would {what} (expected separation {} standard deviations{}){enough}",
             in_words(bid.z),
             bid.choice.provided(),
         ),
@@ -302,8 +302,8 @@ fn again(choice: &Choice) -> Experiment {
     Experiment {
         procedure: choice.procedure.clone(),
         parameters: choice.parameters.clone(),
-        why: "without repeats of the same profile nobody knows how small the error can become; make the run at hand again and \
-              number its repeats, or this run, which comes nearest to it"
+        why: "without repeats of the same profile the noise floor is not known; repeat this run with numbered repeats, or \
+              perform the proposed run, which is closest to it"
             .into(),
         expected_z: None,
         expected_duration_s: choice.duration_s.is_finite().then_some(choice.duration_s),

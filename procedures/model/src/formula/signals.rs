@@ -41,12 +41,12 @@ const DIRECTION: NamedSignal = named("direction", Signal::Direction, "1", "", "+
 
 const FRICTION: &[NamedSignal] = &[
     TIME,
-    named("position", Signal::Position, "rad", "motor_position_rad", "motor position, which goes on beyond a turn"),
+    named("position", Signal::Position, "rad", "motor_position_rad", "motor position, counted over turns"),
     named("velocity", Signal::Velocity, "rad/s", "motor_velocity_rad_s", "motor velocity"),
     named("acceleration", Signal::Acceleration, "rad/s²", "", "motor acceleration"),
     named("jerk", Signal::Jerk, "rad/s³", "", "change of the acceleration"),
     DIRECTION,
-    named("link_position", Signal::Link, "rad", "link_position_rad", "link position, which goes on beyond a turn"),
+    named("link_position", Signal::Link, "rad", "link_position_rad", "link position, counted over turns"),
     named("load", Signal::Load, "Nm", "link_torque_nm", "link torque on the motor side, divided by the gear ratio"),
     TEMPERATURE,
     named("motor_torque", Signal::Drive, "Nm", "", "smooth estimate of the motor torque"),
@@ -58,7 +58,7 @@ const ENCODER: &[NamedSignal] = &[
         Signal::Position,
         "rad",
         "reference_position_rad",
-        "reference position, which goes on beyond a turn",
+        "reference position, counted over turns",
     ),
     named("velocity", Signal::Velocity, "rad/s", "velocity_rad_s", "velocity"),
     DIRECTION,
@@ -66,8 +66,8 @@ const ENCODER: &[NamedSignal] = &[
 ];
 const STIFFNESS: &[NamedSignal] = &[
     TIME,
-    named("position", Signal::Position, "rad", "motor_position_rad", "motor position, which goes on beyond a turn"),
-    named("link_position", Signal::Link, "rad", "link_position_rad", "link position, which goes on beyond a turn"),
+    named("position", Signal::Position, "rad", "motor_position_rad", "motor position, counted over turns"),
+    named("link_position", Signal::Link, "rad", "link_position_rad", "link position, counted over turns"),
     named("velocity", Signal::Velocity, "rad/s", "link_velocity_rad_s", "link velocity"),
     DIRECTION,
     named("load", Signal::Load, "Nm", "link_torque_nm", "link torque"),
@@ -77,7 +77,7 @@ const BRAKE: &[NamedSignal] = &[
     TIME,
     named("current", Signal::Current, "A", "brake_current_a", "coil current"),
     named("velocity", Signal::Velocity, "rad/s", "velocity_rad_s", "shaft velocity"),
-    named("position", Signal::Position, "rad", "position_rad", "shaft position, which goes on beyond a turn"),
+    named("position", Signal::Position, "rad", "position_rad", "shaft position, counted over turns"),
     named("direction", Signal::Direction, "1", "", "+1 where the current rises, −1 where it falls"),
     TEMPERATURE,
 ];

@@ -193,7 +193,7 @@ impl Check<'_> {
         match (self.of(a)?, self.of(b)?) {
             (Some(first), Some(second)) if first != second => {
                 let (a, at) = (&self.text[a.at.clone()], b.at.clone());
-                Err(Mistake::new(at, format!("this is in {second}, but {a} beside it is in {first}{CURE}")))
+                Err(Mistake::new(at, format!("this is in {second}, but {a} is in {first}{CURE}")))
             }
             (first, second) => Ok(first.or(second)),
         }

@@ -29,11 +29,10 @@ pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
     let empty = figure(empty, &drag.unit);
     drag.note = Some(match fresh {
         Some(_) => {
-            format!("holds the remanence that the largest current leaves: before any current the brake held {empty}")
+            format!("includes the remanence after the largest current: before any current the brake held {empty}")
         }
         None => format!(
-            "trades off with hysteresis, because it holds the remanence that the largest current leaves: demagnetised, the \
-             brake would hold {empty}; begin a run without current after demagnetising it"
+            "trades off with hysteresis, because it includes the remanence after the largest current: demagnetised, the brake would hold {empty}; begin a run without current after demagnetising it"
         ),
     });
 }

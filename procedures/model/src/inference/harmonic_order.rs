@@ -24,9 +24,7 @@ pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter])
                     p.ci95 = [first.min(p.value), last.max(p.value)];
                     p.state = ParameterState::Unidentified;
                     p.note = Some(format!(
-                        "not identified by this run, which covers {turns:.2} of a turn: {} to {} waves in a turn explain it \
-                         alike, each with another size, and so may a bump at this place; a run over more of the turn tells their \
-                         number",
+                        "not identified by this run, which covers {turns:.2} of a turn: {} to {} waves per turn explain it equally well, each with another amplitude, and so may a bump at this angle; a run over more of the turn determines their number",
                         p.ci95[0], p.ci95[1]
                     ));
                 } else if let Some(at) = term.form.linear.iter().position(|name| *name == p.name) {

@@ -44,7 +44,7 @@ pub fn know_the_small(parameters: &mut [Parameter]) {
 /// State of a parameter, with words where it is not well determined.
 pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option<String>) {
     let nothing =
-        || (ParameterState::Unidentified, Some("not identified by this run: it says nothing about it".into()));
+        || (ParameterState::Unidentified, Some("not identified by this run: its data does not depend on it".into()));
     let say = |value: f64| figure(value, &slot.unit);
     let Some(shape) = slot.shape else {
         let (least, most) = slot.possible;
@@ -60,14 +60,14 @@ pub fn judge(slot: &Slot, ci95: [f64; 2], dead: bool) -> (ParameterState, Option
                 (true, false) => format!("at least {}", say(least)),
                 _ => format!("at most {}", say(most)),
             };
-            let cure = "another effect is missing, or a column has another sign or unit";
-            return (ParameterState::Impossible, Some(format!("lies beyond what is possible, {possible}: {cure}")));
+            let cure = "another effect is missing, or a column has the wrong sign or unit";
+            return (ParameterState::Impossible, Some(format!("is outside its physical range ({possible}): {cure}")));
         }
         return (ParameterState::Ok, None);
     };
     let (min, max) = (shape.min, shape.max);
     if shape.is_edge(slot.value) {
-        let words = format!("lies at the edge of what this data can speak about, {} to {}", say(min), say(max));
+        let words = format!("at bound: this data covers {} to {}", say(min), say(max));
         return (ParameterState::AtBound, Some(words));
     }
     if dead {

@@ -51,8 +51,7 @@ impl Scope {
         let was_there = self.signals.iter().any(|s| s.name == signal.name);
         match (was_there, effect.missing(&prepared.main.view)) {
             (true, Some(column)) => Some(format!(
-                "{id} is left out, for the run has no column {column}: whatever the link carried counts as error of the \
-                 model; add the column, or take the figure as one of a joint without load"
+                "{id} is omitted, because the run has no column {column}: the effect of any link load counts as model error; add the column, or use the figure for an unloaded joint only"
             )),
             (false, None) => Some(format!(
                 "{id} counts here, but the run that was fitted had no column {column}: if its link carried a load, the \

@@ -84,7 +84,7 @@ pub fn prepare(run: &RunTable, options: &Options) -> Result<Prepared, ModelError
     prepared.main.view.felt = Some(torque.to_vec().into());
     prepared.doubts.extend(zeros_rad.map(|apart| {
         let apart = figure(apart, &prepared.unit());
-        format!("motor and link have another zero in every repeat, {apart} RMS apart, as encoders do that are set to zero before each: it is taken off")
+        format!("motor and link have another zero in every repeat ({apart} RMS apart), as encoders that are zeroed before each: it is subtracted")
     }));
     Ok(prepared)
 }

@@ -36,13 +36,12 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool, event
         rms: Some((all.noise / all.count).sqrt()),
         ci95: interval(&all, &of_piece),
         source: format!(
-            "what the complete model leaves, compared between {} pairs of moments of the same condition and phase in \
-             different repeats ({}{})",
+            "residuals of the complete model in {} pairs of the same condition and phase in different repeats ({}{})",
             replicate_pairs.len(),
             match (prepared.about.repeats_from.as_str(), prepared.main.settled || prepared.kind == Kind::Friction) {
-                ("column", _) => "as numbered",
-                (_, true) => "found by the period of the motion",
-                (_, false) => "legs that run alike",
+                ("column", _) => "repeats as numbered",
+                (_, true) => "repeats by the period of the motion",
+                (_, false) => "sections with the same profile",
             },
             if elsewhere > 0 { format!(", {elsewhere} of them at other angles") } else { String::new() }
         ),
@@ -116,21 +115,20 @@ fn unknown(prepared: &Prepared) -> String {
         let (column, unit) = (prepared.column_name(unlike.signal), prepared.column_unit(unlike.signal));
         let say = |value: f64| figure(prepared.column_scale(unlike.signal) * value, &unit);
         return format!(
-            "no noise floor: the repeats are different motions, whose {} differs by {} RMS at the same moment where it \
-             varies by {} in the whole run",
+            "no noise floor: the repeats are different motions; their {} differs by {} RMS at the same moment, and varies \
+             by {} in the whole run",
             spoken(column),
             say(unlike.apart),
             say(unlike.spread)
         );
     }
     if !problem.different_history.is_empty() {
-        return "no noise floor: the brake came to no moment twice on the same way; repeat its loops in the same order"
+        return "no noise floor: the brake passed no state twice on the same branch; repeat its loops in the same order"
             .into();
     }
     let source = match problem.repeat.iter().any(|r| *r != problem.repeat[0]) {
         true => {
-            "no noise floor: the repeats have no moments of the same condition and phase in common; make every repeat of the \
-             same steps, in whatever order"
+            "no noise floor: the repeats share no condition and phase; use the same steps in every repeat, in any order"
         }
         false => "no noise floor: the run has no repeats of the same profile",
     };

@@ -38,7 +38,7 @@ impl<'p> Refused<'p> {
 
     /// Its error reduction, and why it is rejected.
     pub fn why(&self) -> String {
-        let reduces = format!("it would reduce the validated squared error by {}", percent(self.gain));
+        let reduces = format!("it would reduce the squared validation error by {}", percent(self.gain));
         match () {
             () if self.p_value >= self.alpha => {
                 format!("{reduces}, which is not significant (p = {:.2})", self.p_value)

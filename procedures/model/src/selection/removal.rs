@@ -29,12 +29,12 @@ pub enum RemovalReason {
 impl RemovalReason {
     pub fn words(self) -> &'static str {
         match self {
-            RemovalReason::Unidentified => "this run does not decide how large it is",
-            RemovalReason::PartialExplanation => "it explains only a part of what shows over its own axis",
-            RemovalReason::Spurious => "beside the structure that remains it explains nothing",
-            RemovalReason::RandomWalk => "the zero wanders over time, which explains as much",
-            RemovalReason::Infeasible => "it would have to be of a size that is physically impossible",
-            RemovalReason::Insignificant => "beside the other effects it brings nothing that is worth a name",
+            RemovalReason::Unidentified => "this run does not determine its size",
+            RemovalReason::PartialExplanation => "it explains only part of the structure over its axis",
+            RemovalReason::Spurious => "it explains nothing beyond the remaining structure",
+            RemovalReason::RandomWalk => "a zero that drifts over time explains as much",
+            RemovalReason::Infeasible => "its size would be physically impossible",
+            RemovalReason::Insignificant => "it adds nothing to the other effects",
         }
     }
 }

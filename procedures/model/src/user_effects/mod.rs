@@ -21,8 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Said of a formula that names the motor's torque.
-const OF_RESPONSE: &str = "motor_torque is the very thing that a friction model predicts: an effect made of it takes in whatever \
-                           the others leave, and says nothing where only motion and load are known; name what causes it";
+const OF_RESPONSE: &str = "motor_torque is the response that a friction model predicts: an effect of it absorbs every residual, and predicts nothing from motion and load; name the cause instead";
 
 /// A user's effect whose definition makes sense.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -132,7 +132,7 @@ fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
     let imitated = open.imitated.as_ref().unwrap();
     assert_eq!((imitated.effect.as_str(), imitated.parameter.as_str()), ("viscous_quadratic", "coulomb.tau_c"));
     assert!(imitated.without < 0.022 && (0.027..0.030).contains(&imitated.with), "{imitated:?}");
-    assert!(open.summary.contains("does not tell whether viscous_quadratic is there"), "{}", open.summary);
+    assert!(open.summary.contains("does not determine whether viscous_quadratic is present"), "{}", open.summary);
     let spec = ModelSpec::baseline(&run).unwrap().with("stribeck").unwrap();
     let fit = diagnose(&run, &spec, &Options::default()).unwrap().fit;
     let tau_c = fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();

@@ -1,7 +1,7 @@
 //! Words and phrases that the glossary replaces by standard terms.
 
 /// As lower-case words. A phrase matches these words in a row.
-const BANNED: [&str; 74] = [
+const BANNED: [&str; 75] = [
     "any more",
     "asked for",
     "at hand",
@@ -76,6 +76,7 @@ const BANNED: [&str; 74] = [
     "whoever",
     "worked out",
     "would have been found",
+    "would have been seen",
 ];
 
 /// Longer sentences need a second reading.

@@ -2,6 +2,7 @@
 //! description of the API, and the strings of the sources from which results, journals and refusals are made.
 
 mod banned;
+mod dashboard;
 mod literals;
 
 use super::root;
@@ -13,9 +14,12 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Folders whose strings are messages for people.
-const SPOKEN: [&str; 9] = [
+const SPOKEN: [&str; 12] = [
     "procedures/procedure/src",
-    "procedures/model/src/effects",
+    "procedures/model/src",
+    "drivers/files/src",
+    "drivers/instrument/src",
+    "drivers/devices/src",
     "server/src/api",
     "server/src/bench",
     "server/src/cli",
@@ -130,4 +134,9 @@ fn the_description_of_the_api_is_standard_english() {
 fn strings_of_the_sources_are_standard_english() {
     let of = |folder: &&str| literals::under(&root(), Path::new(folder));
     assert_plain(SPOKEN.iter().flat_map(of), 1000);
+}
+
+#[test]
+fn the_dashboard_is_standard_english() {
+    assert_plain(dashboard::under(&root(), Path::new("web/app")), 500);
 }

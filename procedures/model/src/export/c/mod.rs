@@ -85,7 +85,7 @@ fn parameters(fit: &Fit, parts: &Parts) -> Vec<(String, f64, String)> {
         }
         if let Some(band) = dead_band_of(fit, part) {
             let words = format!(
-                " /* followed is what goes beyond it: {} times the noise of the signal, rms */",
+                " /* changes beyond it are followed: {} times the noise of the signal, rms */",
                 load_noise::NOISES
             );
             all.push((format!("{effect}_{DEAD_BAND}"), band, words));
@@ -108,7 +108,7 @@ fn fed(fit: &Fit, parts: &Parts) -> Vec<String> {
     match (noise, scope.and_then(|scope| scope.fed_rms)) {
         _ if effects.is_empty() => Vec::new(),
         (Some((noise, unit)), Some(rms)) => vec![
-            format!("Error fed with the load as that run felt it, sample by sample: {rms:.4e} {} rms", fit.unit),
+            format!("Error with the measured load of that run, sample by sample: {rms:.4e} {} rms", fit.unit),
             format!(
                 "The fit smoothed the load, which had {noise:.4e} {unit} rms of noise; {list} follows it beyond a dead band \
                  of {} times that. Feed it unfiltered, and set {DEAD_BAND} where your signal has another noise.",

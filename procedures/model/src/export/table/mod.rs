@@ -122,7 +122,7 @@ impl<'f> Layout<'f> {
     fn worth(&self, fit: &Fit, values: &[f64]) -> Result<Vec<String>, ModelError> {
         let (unit, validation_rms) = (&fit.unit, fit.validation_rms);
         let of_model =
-            format!("of the whole model {validation_rms:.4e} {unit} rms on data that took no part in the fit");
+            format!("of the whole model {validation_rms:.4e} {unit} rms on data excluded from the fit");
         let mut lines = vec![match self.scope.table_rms {
             Some(rms) => format!("Error: of this table {rms:.4e} {unit} rms on the run that was fitted; {of_model}"),
             None => format!("Error: of this table not known, for the fit did not measure it; {of_model}"),
@@ -140,7 +140,7 @@ impl<'f> Layout<'f> {
             );
         }
         if self.axes.iter().any(Axis::is_angle) {
-            lines.push("An angle goes round: what is asked for is what it is beyond whole turns".to_owned());
+            lines.push("An angle is periodic: look it up without its whole turns".to_owned());
         }
         lines.extend(self.means.iter().map(|mean| {
             format!(

@@ -19,8 +19,7 @@ fn rate(run: &RunTable) -> Option<String> {
     let agree = (1.0 / OTHER_RATE..=OTHER_RATE).contains(&(found_hz / stated_hz));
     (!agree).then(|| {
         format!(
-            "sample_rate_hz is {stated_hz}, and column time_s has {found_hz:.3} samples in a second: one of them is wrong, and \
-             what is computed goes by time_s"
+            "sample_rate_hz is {stated_hz}, and column time_s has {found_hz:.3} samples in a second: one of them is wrong; time_s is used"
         )
     })
 }
@@ -37,7 +36,7 @@ fn gear(run: &RunTable) -> Option<String> {
 
 fn segments(run: &RunTable) -> Option<String> {
     (run.column("segment").is_some() && crate::preprocess::design::segments::numbered(run).is_none())
-        .then(|| "column segment numbers no segments of a run: they are looked for instead".into())
+        .then(|| "column segment does not number segments: they are detected instead".into())
 }
 
 #[cfg(test)]

@@ -65,7 +65,7 @@ fn clipped(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>]) -
     (count as f64 >= CLIPPED_SHARE * values.len() as f64).then(|| {
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
         format!(
-            "{name} never goes beyond {} and stays there for {count} samples: the range of its sensor or a limit of the drive ends there",
+            "{name} is saturated at {} for {count} samples: the range of its sensor, or a limit of the drive",
             figure(end, &unit)
         )
     })
@@ -82,7 +82,7 @@ fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], ang
     (range.len() >= STUCK_SAMPLES && to_s - from_s >= STUCK_S).then(|| {
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
         format!(
-            "{name} stays at {} from {from_s:.3} s to {to_s:.3} s, while the motion goes on: its sensor was not read",
+            "{name} stays at {} from {from_s:.3} s to {to_s:.3} s, while the joint moves: its sensor was not read",
             figure(values[range.start], &unit)
         )
     })

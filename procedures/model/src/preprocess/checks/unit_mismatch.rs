@@ -102,8 +102,7 @@ fn driven(run: &RunTable, pieces: &[Piece]) -> Option<String> {
     }
     let brakes = work.iter().zip(&moved).all(|(work, moved)| *work < -DRIVEN * moved);
     brakes.then(|| {
-        "motor_current_a works against the motion both ways, as if the joint turned the motor: it or the motion has \
-         another sign"
+        "motor_current_a opposes the motion in both directions, as if the joint drove the motor: it or the motion has the wrong sign"
             .to_owned()
     })
 }
@@ -162,7 +161,7 @@ fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
     let tells = ab * ab > SAME_ANGLE * aa * bb && turned > GEAR_WAY && (found / ratio - 1.0).abs() > GEAR_CLASH;
     tells.then(|| {
         format!(
-            "gear_ratio is {ratio}, and motor_position_rad goes {found:.2} times as far as link_position_rad: one of them is wrong"
+            "gear_ratio is {ratio}, and motor_position_rad moves {found:.2} times as far as link_position_rad: one of them is wrong"
         )
     })
 }
@@ -199,7 +198,7 @@ fn too_fast(run: &RunTable) -> Option<String> {
     let step = crate::preprocess::median(angle.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
     (step > TAU).then(|| {
         format!(
-            "reference_position_rad goes on by {:.3} turns from one sample to the next: it has another unit, or was sampled too slowly",
+            "reference_position_rad advances by {:.3} turns from one sample to the next: it has another unit, or was sampled too slowly",
             step / TAU
         )
     })
@@ -210,7 +209,7 @@ fn dead_load(run: &RunTable) -> Option<String> {
     let load = run.column("link_torque_nm").filter(|_| run.kind() == Kind::Friction)?;
     let is_dependent = load[0] != 0.0 && load.iter().all(|v| *v == load[0]);
     is_dependent.then(|| {
-        format!("link_torque_nm is {} Nm in every sample, which no sensor tells: it was not connected", load[0])
+        format!("link_torque_nm is {} Nm in every sample: the sensor was not connected", load[0])
     })
 }
 
@@ -240,8 +239,7 @@ fn noise(run: &RunTable, pieces: &[Piece]) -> Option<String> {
     let swings = variance(current) > mean(current).powi(2);
     (means.len() >= LEAST_PIECES && swings && is_white(current) && is_white(&means)).then(|| {
         format!(
-            "{column} is noise: neither a sample nor {PIECE_S} s of it tell anything of what follows; it was not connected, or \
-             is another signal"
+            "{column} is white noise, from sample to sample and over {PIECE_S} s: it was not connected, or is another signal"
         )
     })
 }
@@ -315,7 +313,7 @@ mod tests {
         assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is noise")), "{found:?}");
         assert_eq!(told(0.03, 0.0, 0.0), Vec::<String>::new(), "friction of a tenth of the noise");
         let turned = told(-1.0, 0.5, 0.2);
-        assert!(matches!(&turned[..], [one] if one.starts_with("motor_current_a works against")), "{turned:?}");
+        assert!(matches!(&turned[..], [one] if one.starts_with("motor_current_a opposes the motion")), "{turned:?}");
         assert_eq!(told(0.2, 1.0, 0.5), Vec::<String>::new(), "a weight that drives now and then");
         assert_eq!(told(0.0, 0.2, 0.0), Vec::<String>::new(), "a wave that comes and goes");
         assert_eq!(told(0.0, 0.0, 0.4), Vec::<String>::new(), "a current that is held");

@@ -121,7 +121,7 @@ pub fn prepare(
         }
     }
     if chunks.len() < 12 {
-        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks of settled motion" });
+        return Err(ModelError::TooFewSamples { usable: chunks.len(), needed: 12, what: "chunks at steady speed" });
     }
     let condition = conditions(&samples, &plateaus, run.column("brake_torque_command_nm"));
     let condition: Vec<usize> = group.iter().map(|g| condition[*g]).collect();

@@ -92,8 +92,8 @@ pub fn nowhere(maps: &Maps, unit: &str) -> String {
     if let Some(best) = unbanded(maps) {
         let worst = best.cells.iter().max_by(|a, b| a.mean.abs().total_cmp(&b.mean.abs()));
         return format!(
-            ", though a function of {} would take {} off: fewer than three independent stretches of motion passed each part of it. \
-             Most is left where {}",
+            ", though a function of {} would remove {} of the squared error: fewer than three independent blocks cover each \
+             part of it. The residual is largest where {}",
             spoken_axis(&best.x.name, maps.kind),
             percent(best.removable),
             worst.map(|cell| of(best, cell, 0.0).sentence).unwrap_or_default(),
@@ -104,10 +104,10 @@ pub fn nowhere(maps: &Maps, unit: &str) -> String {
     let banded = cells.filter_map(|(map, cell)| Some((map, cell, maps.half_width(cell)?)));
     let beyond = |(_, cell, half_width): &(&Map, &Cell, f64)| cell.mean.abs() / half_width.max(f64::MIN_POSITIVE);
     let Some((map, cell, half_width)) = banded.max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else {
-        return ", because none was passed by three independent stretches of motion".into();
+        return ", because no part is covered by three independent blocks".into();
     };
     format!(
-        "; nearest to it, {}, known to ±{} from {} independent stretches of motion",
+        "; closest to significance, {} (±{} from {} independent blocks)",
         of(map, cell, half_width).sentence,
         figure(half_width, unit),
         cell.pieces,
