@@ -408,7 +408,7 @@ export async function writeEffect(page, run) {
 	await form.getByRole('button', { name: 'Make a a parameter' }).click();
 	const keep = form.getByRole('button', { name: 'Keep and add' });
 	await keep.click();
-	await form.getByText('cannot tell it from Coulomb friction').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'an effect that is another one is kept without a word'));
+	await form.getByText('Confounded with Coulomb friction').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'an effect that is another one is kept without a word'));
 	await formula.fill('tau = a * direction * abs(load)');
 	await form.getByRole('button', { name: `Try on run #${run}` }).click();
 	const found = await form.locator('.tried').innerText({ timeout: FIT_MS });

@@ -51,7 +51,8 @@ impl Scale {
             s if s >= 100.0 => 0,
             s if s >= 10.0 => 1,
             s if s >= 1.0 || s == 0.0 => 2,
-            s if s >= 0.01 => 3,
+            s if s >= 0.1 => 3,
+            s if s >= 0.01 => 4,
             _ => return format!("{scaled:.2e} {}", self.unit).trim_end().to_owned(),
         };
         format!("{scaled:.digits$} {}", self.unit).trim_end().to_owned()
@@ -121,6 +122,7 @@ mod tests {
     fn figures_of_one_sentence_share_their_unit() {
         let scale = Scale::of(3.24e-3, "Nm");
         assert_eq!((scale.figure(3.24e-3), scale.figure(0.629e-3)), ("3.24 mNm".into(), "0.629 mNm".into()));
+        assert_eq!(scale.figure(3.28e-5), "0.0328 mNm");
         assert_eq!(Scale::of(95.1, "1").figure(0.5), "0.500");
         assert_eq!(Scale::of(1.0, "Nm").figure(4e-4), "4.00e-4 Nm");
     }

@@ -55,7 +55,7 @@ fn an_effect_without_its_signal_stays_in_the_model_as_not_visible() {
     let run = table(2000, |i| 0.4 * (i as f64 * 0.02).cos().signum() + 0.01 * (i as f64 * 1.3).sin(), wave);
     let spec = ModelSpec::parse(Kind::Friction, "coulomb,viscous,load_linear").unwrap();
     let found = fit(&run, &spec, &Options::default()).unwrap();
-    assert!(found.notes.iter().any(|n| n.contains("load_linear is not visible")), "{:?}", found.notes);
+    assert!(found.notes.iter().any(|n| n.contains("load_linear is not testable")), "{:?}", found.notes);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn numbers_that_nothing_can_be_computed_with_are_refused_by_their_column() {
 fn a_load_that_never_changes_is_told_before_all_else() {
     let run = Staircase { noise_nm: 2e-3, scatter_nm: 1e-4, seed: 1 }.run_at(&[0.0], |m| 0.03 * m.velocity.signum());
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
-    assert!(found.summary.starts_with("Attention: link_torque_nm never changes"), "{}", found.summary);
+    assert!(found.summary.starts_with("Data problem: link_torque_nm never changes"), "{}", found.summary);
     assert!(found.suggestions.is_empty());
 }
 
@@ -190,7 +190,7 @@ fn no_effect_is_forgotten() {
     assert_each_told_once(&found, &spec);
     assert!(found.silent.iter().any(|s| s.effect == "presliding" && s.minimum_detectable_rms > 0.0), "{found:?}");
     let told = |id: &str| found.not_visible.iter().find(|n| n.effect == id).map(|n| n.why.as_str()).unwrap_or_default();
-    assert!(told("signal_delay").contains("on ramps"), "{}", told("signal_delay"));
+    assert!(told("signal_delay").contains("Ramps"), "{}", told("signal_delay"));
 
     let one_way = |name: &str, i: usize, v: f64| match name {
         "reference_position_rad" => 0.01 * i as f64,

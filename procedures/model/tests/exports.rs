@@ -66,7 +66,7 @@ fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
     assert!(apart < fit.rms, "C and model are {apart} apart, and the model errs by {}", fit.rms);
     let error = rms(c.iter().zip(&of_fit.measured).map(|(c, measured)| c - measured));
     let header = export(&fit, Format::C).unwrap();
-    let said = told(&header, "as that run felt it, sample by sample: ");
+    let said = told(&header, "Error with the measured load of that run, sample by sample: ");
     assert!((said / error - 1.0).abs() < 0.02, "the header says {said}, and it is {error}");
     assert!(header.contains("torsional_hysteresis_dead_band"), "{header}");
 

@@ -66,5 +66,5 @@ fn where_a_model_fails_over_speeds_that_came_twice_is_told_by_the_speed() {
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     assert_eq!(found.suggestions.first().map(|s| &*s.effect), Some("stribeck"), "{}", found.summary);
     assert!(found.regions.iter().all(|region| region.axis != "link_position_rad"), "{:?}", found.regions);
-    assert!(found.summary.contains("a function of motor velocity would take"), "{}", found.summary);
+    assert!(found.summary.contains("a function of motor velocity would remove"), "{}", found.summary);
 }

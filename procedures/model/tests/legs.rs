@@ -74,7 +74,7 @@ fn what_whole_legs_scatter_by_is_neither_an_effect_nor_structure() {
         .map(|found| format!("{:?}: {}", found.model, found.summary))
         .collect();
     assert!(wrong.len() <= 2, "{}: {wrong:#?}", wrong.len());
-    assert!(found.iter().any(|found| found.summary.contains("the zero wanders by")));
+    assert!(found.iter().any(|found| found.summary.contains("the zero drifts by")));
 }
 
 /// Friction at eight speeds both ways, six times. The zero of each leg differs from that before it by `step_nm` at random, all of

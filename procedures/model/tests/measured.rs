@@ -70,11 +70,11 @@ fn a_current_of_another_unit_or_sign_is_told_before_all_else() {
             RunTable::new(run.meta().clone(), Trace::from_columns(run.trace().channels().to_vec(), columns)).unwrap();
         diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap()
     };
-    assert!(!diagnosed(1.0).summary.contains("Attention"));
+    assert!(!diagnosed(1.0).summary.contains("Data problem"));
     for factor in [1000.0, -1.0] {
         let found = diagnosed(factor);
         let first = found.summary.split(". Correct this first").next().unwrap();
-        assert!(first.starts_with("Attention: motor_current_a with the torque constant"), "{}", found.summary);
+        assert!(first.starts_with("Data problem: motor_current_a with the torque constant"), "{}", found.summary);
         assert!(first.len() < found.summary.len() && found.undecided.is_some(), "{factor}: {}", found.summary);
     }
 }

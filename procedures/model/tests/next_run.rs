@@ -74,19 +74,19 @@ fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
     assert!(names.iter().all(|name| before.summary.contains(name)), "one of a tie alone is told: {}", before.summary);
 
     let why = &before.suggestions[0].why;
-    let alike = why.split("take off the error is ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    let alike = why.split("correlation of the contributions ").nth(1).and_then(|rest| rest.split(')').next()).unwrap();
     assert!(alike.parse::<f64>().is_ok_and(|r| r > 0.9), "{why}");
     let ask = |menu: &[Choice]| next_run(&first, &open, menu, &Options::default()).unwrap().experiment;
     let same = strokes("same", &SPEEDS, 8.0, 1.0);
     let other = strokes("other", &SPEEDS, 12.0, 1.5);
     assert_eq!(ask(std::slice::from_ref(&same)).map(|e| e.expected_z), None, "nothing new is measured there");
     let vain = next_run(&first, &open, std::slice::from_ref(&same), &Options::default()).unwrap().in_vain.unwrap();
-    assert!(vain.starts_with("No run within what this bench may do is expected to tell load_"), "{vain}");
+    assert!(vain.starts_with("No run within the limits of this bench is expected to distinguish load_"), "{vain}");
     let without_floor = Open { has_noise_floor: false, ..open.clone() };
     let repeats =
         next_run(&first, &without_floor, std::slice::from_ref(&same), &Options::default()).unwrap().experiment.unwrap();
     assert!(
-        repeats.why.starts_with("no run within what this bench may do is expected to tell load_"),
+        repeats.why.starts_with("no run within the limits of this bench is expected to distinguish load_"),
         "{}",
         repeats.why
     );
@@ -104,7 +104,7 @@ fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
     with_twin.ties[0].1.push("twin".into());
     let spared = next_run(&first, &with_twin, &menu, &Options::default()).unwrap().experiment.unwrap();
     assert_eq!((&spared.procedure, spared.expected_z), (&next.procedure, next.expected_z), "{}", spared.why);
-    assert!(spared.why.ends_with(&format!("tell {} from twin", open.ties[0].0)), "{}", spared.why);
+    assert!(spared.why.ends_with(&format!("distinguish {} from twin", open.ties[0].0)), "{}", spared.why);
 
     let both = first.join(vec![bench(2).run_at(&[12.0], with_square_of_load)]).unwrap();
     let after = diagnosed(&both);

@@ -31,9 +31,9 @@ fn what_goes_one_way_is_called_by_one_name() {
         assert_eq!(model, ["cogging", "coulomb"], "{}", found.summary);
         for (effect, other) in [("direction_offset", "coulomb"), ("friction_ripple", "cogging")] {
             let why = &found.not_visible.iter().find(|n| n.effect == effect).unwrap().why;
-            assert!(why.contains("one way only") && why.contains(other), "{effect}: {why}");
+            assert!(why.contains("one direction only") && why.contains(other), "{effect}: {why}");
         }
-        assert!(found.fit.notes.iter().any(|note| note.contains("one way only")), "{:?}", found.fit.notes);
+        assert!(found.fit.notes.iter().any(|note| note.contains("one direction only")), "{:?}", found.fit.notes);
         let coulomb = found.fit.parameters.iter().find(|p| p.name == "tau_c").unwrap();
         assert!((coulomb.value - 0.03).abs() < 1e-3, "{coulomb:?}");
     }

@@ -49,7 +49,7 @@ fn a_size_beyond_its_range_is_told_with_the_range() {
     let run = measured(1);
     let found = fit(&run, &spec(&run, &["rub"], &RUB.replace("0..1;", "0..0.01;")), &Options::default()).unwrap();
     let note = found.parameters.iter().find(|p| p.name == "a").unwrap().note.as_ref().unwrap();
-    assert!(note.starts_with("lies beyond what is possible, 0.00 to 0.01: "), "{note}");
+    assert!(note.starts_with("is outside its physical range (0.00 to 0.01): "), "{note}");
 }
 
 #[test]

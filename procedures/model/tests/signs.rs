@@ -28,8 +28,8 @@ fn an_impossible_size_is_told_before_the_effect_that_is_named() {
     assert_eq!(right.suggestions.first().map(|s| s.effect.as_str()), Some("saturation"), "{}", right.summary);
     assert_eq!(right.undecided, None);
     let turned = brake(-1.0);
-    assert!(turned.summary.starts_with("Attention: "), "{}", turned.summary);
-    assert!(turned.undecided.is_some_and(|why| why.contains("lies beyond what is possible")));
+    assert!(turned.summary.starts_with("Implausible: "), "{}", turned.summary);
+    assert!(turned.undecided.is_some_and(|why| why.contains("is outside its physical range")));
 }
 
 #[test]
@@ -50,6 +50,6 @@ fn nothing_is_named_of_columns_that_cannot_be_right() {
     assert!(!named(1.0).suggestions.is_empty());
     let turned = named(-1.0);
     assert_eq!(turned.suggestions.len(), 0, "{}", turned.summary);
-    assert!(turned.summary.contains("no effect is named before"), "{}", turned.summary);
+    assert!(turned.summary.contains("no effect is suggested until then"), "{}", turned.summary);
     assert_eq!(turned.undecided.as_deref(), Some("its columns contradict each other"));
 }

@@ -38,7 +38,7 @@ fn steps_of_the_current_are_no_hysteresis() {
     let run = staircase();
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     assert_eq!((found.verdict, &found.undecided), (Verdict::Adequate, &None), "{}", found.summary);
-    assert!(found.noise_floor.source.contains("legs that run alike"), "{}", found.noise_floor.source);
+    assert!(found.noise_floor.source.contains("sections with the same profile"), "{}", found.noise_floor.source);
     assert!(found.fit.validation_rms < 0.01, "{}", found.summary);
     let drag = found.fit.parameters.iter().find(|p| p.effect == "drag").unwrap();
     assert!((drag.value - 0.05).abs() < 5e-3, "{drag:?}");

@@ -118,6 +118,6 @@ fn a_formula_over_the_column_takes_it_off() {
     assert!(live().tell(other.trace()).is_none());
 
     let without = fit(&other, &spec, &Options::default()).unwrap();
-    let said = "middle is not visible in this data: the run has no column oil_pressure_pa";
+    let said = "middle is not testable with this run: the run has no column oil_pressure_pa";
     assert!(without.notes.iter().any(|note| note == said), "{:?}", without.notes);
 }

@@ -197,5 +197,5 @@ fn what_to_think_about_is_told_for_the_run_at_hand() {
     assert_eq!(doubt(RUB, "m/s", None), "", "a joint may slide");
     assert!(doubt(RUB, "m/s", Some(run)).contains("this is in 1/m"));
     let response = "tau = a * tanh(velocity / w0) * motor_torque";
-    assert!(doubt(response, "rad/s", Some(run)).contains("the very thing that a friction model predicts"));
+    assert!(doubt(response, "rad/s", Some(run)).contains("the response that a friction model predicts"));
 }

@@ -118,7 +118,7 @@ fn nothing_is_advised_before_contradicting_columns_are_mended() {
         let (code, whole) = told(&[]);
         assert!(code == Some(0) && whole.contains("recommended next run"), "{whole}");
         let (code, broken) = told(&["--scale", "motor_current_a=1000"]);
-        assert!(code == Some(3) && broken.contains("Attention: motor_current_a with the torque constant"), "{broken}");
+        assert!(code == Some(3) && broken.contains("Data problem: motor_current_a with the torque constant"), "{broken}");
         for advice in ["recommended next run", "define your own effect", "missing effects, most important"] {
             assert!(!broken.contains(advice), "{broken}");
         }
@@ -164,8 +164,8 @@ fn advice_names_the_axis_of_the_summary_as_a_formula_does() {
     let bumped: Vec<String> = bumped.collect();
     std::fs::write(folder.path().join("run.csv"), bumped.join("\n")).expect("a table");
     let told = stdout(&run_in(folder.path(), &["discover", "run.csv", "--max-effects", "0"]));
-    assert!(told.contains("no more effects were asked for"), "{told}");
-    assert!(told.contains("it shows most over motor velocity and link torque, a function"), "{told}");
+    assert!(told.contains("The requested number of effects is reached"), "{told}");
+    assert!(told.contains("it is largest over motor velocity and link torque, and a function"), "{told}");
     assert!(told.contains("as a formula of velocity and load with --own"), "{told}");
     let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv"]));
     assert!(told.contains("missing effects, most") && !told.contains("as a formula of"), "{told}");

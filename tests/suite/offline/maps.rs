@@ -49,7 +49,7 @@ fn an_axis_that_the_verdict_names_by_direction_is_not_called_flat() {
     let rub = "rub: tau = a * tanh(velocity / 12) * abs(load); a [1] 0..1";
     let model = "load_transmission,coulomb,viscous,rub";
     let told = stdout(&run_in(folder.path(), &["diagnose", "run.csv", "--own", rub, "--model", model, "--maps"]));
-    assert!(told.contains("it shows most over oil pressure and direction, a function of which"), "{told}");
+    assert!(told.contains("it is largest over oil pressure and direction, and a function"), "{told}");
     let (_, maps) = told.split_once("mean residual (measured − model)").expect("maps");
     let (drawn, flat) = maps.split_once("\nno structure over ").unwrap_or((maps, ""));
     assert!(!flat.contains("oil_pressure_pa"), "{told}");

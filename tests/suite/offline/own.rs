@@ -94,7 +94,7 @@ fn a_caret_stands_below_the_mistake() {
     assert!(said.contains("note: effect rub: tanh takes a plain number, but this is in 1/m"), "{said}");
     let response = "rub: tau = a * motor_torque; a [1]";
     let said = stderr(&run_in(folder.path(), &["diagnose", "run.csv", "--own", response]));
-    assert!(said.contains("note: effect rub: motor_torque is the very thing that a friction model predicts"), "{said}");
+    assert!(said.contains("note: effect rub: motor_torque is the response that a friction model predicts"), "{said}");
     let output = run_in(folder.path(), &["fit", "run.csv", "--own", RUB]);
     assert_eq!(output.status.code(), Some(2), "an effect that takes no part");
     assert!(stderr(&output).contains("--model load_transmission,coulomb,viscous,rub"), "{}", stderr(&output));

@@ -77,7 +77,7 @@ pub fn end(found: &Findings, fit: &Fit, shown: Option<&PairMap>, options: &Optio
     let verdict = found.end_verdict();
     let said = match (verdict, undecided(found, &[fit], verdict, options)) {
         (Verdict::UnexplainedStructure, _) => format!(
-            "Unexplained structure remains: {}. {} The {floor}.",
+            "Unexplained structure remains: {}; {floor}. {}",
             structure(found, fit, shown),
             match is_cut {
                 true => "The requested number of effects is reached; further effects may explain it.",

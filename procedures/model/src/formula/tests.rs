@@ -140,9 +140,9 @@ fn units_that_contradict_each_other_are_told_where_they_do() {
     check("tau = a * tanh(velocity / w) + b * velocity", torque, "");
     check("tau = a * tanh(§velocity / w)", ["Nm", "1", "s"], "tanh takes a plain number, but this is in 1/s²");
     check("tau = §a * velocity", torque, "tau is in Nm, but this is in Nm/s");
-    check("tau = a + §b * velocity^2", torque, "this is in Nm/s, but a beside it is in Nm");
+    check("tau = a + §b * velocity^2", torque, "this is in Nm/s, but a is in Nm");
     check("tau = a * 2^§load", torque, "an exponent takes a plain number, but this is in Nm");
-    check("tau = a * max(load, §velocity)", torque, "but load beside it is in Nm");
+    check("tau = a * max(load, §velocity)", torque, "but load is in Nm");
     check("tau = §a * sqrt(load) * wrap(position - 3)", torque, "this is in Nm^1.5");
     check("tau = a * sign(velocity - w) * abs(direction) + a * sqrt((velocity/w)^2)", torque, "");
     check("tau = §a * exp(-b * (temperature - w)) * load", ["1/K", "1/°C", "°C"], "this is in Nm/K");

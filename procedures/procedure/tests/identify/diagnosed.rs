@@ -82,7 +82,7 @@ fn a_joint_that_starts_from_rest_shows_its_contacts_and_nothing_that_stands_for_
             Joint::JointA => assert_eq!(shown(&rest), ["presliding"]),
             _ => {
                 assert!(
-                    diagnosis(&rest).summary.contains("presliding: it would reduce"),
+                    diagnosis(&rest).summary.contains("Rejected: presliding (it would reduce"),
                     "{}",
                     diagnosis(&rest).summary
                 )

@@ -158,7 +158,7 @@ mod tests {
         assert_eq!((failed(&whole), spikes(&whole)), (Vec::new(), None));
         let clipped = failed(&run(|_, current| current.clamp(-1.4, 1.4)));
         assert!(
-            matches!(&clipped[..], [one] if one.starts_with("motor_current_a never goes beyond 1.40 A")),
+            matches!(&clipped[..], [one] if one.starts_with("motor_current_a is saturated at 1.40 A")),
             "{clipped:?}"
         );
         let stuck = failed(&run(|i, current| if (1000..1100).contains(&i) { 0.7 } else { current }));

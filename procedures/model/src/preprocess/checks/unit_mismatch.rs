@@ -310,7 +310,7 @@ mod tests {
             said(&RunTable::new(meta, trace).unwrap())
         };
         let found = told(0.0, 0.0, 0.0);
-        assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is noise")), "{found:?}");
+        assert!(matches!(&found[..], [one] if one.starts_with("motor_current_a is white noise")), "{found:?}");
         assert_eq!(told(0.03, 0.0, 0.0), Vec::<String>::new(), "friction of a tenth of the noise");
         let turned = told(-1.0, 0.5, 0.2);
         assert!(matches!(&turned[..], [one] if one.starts_with("motor_current_a opposes the motion")), "{turned:?}");
@@ -324,7 +324,7 @@ mod tests {
         assert_eq!(said(&run(1.0, 1.0)), Vec::<String>::new());
         assert_eq!(said(&run(1.1, 0.995)), Vec::<String>::new(), "late or filtered");
         let gear = said(&run(1.0, 50.0 / 51.0));
-        assert!(gear.len() == 1 && gear[0].contains("goes 51.00 times as far"), "{gear:?}");
+        assert!(gear.len() == 1 && gear[0].contains("moves 51.00 times as far"), "{gear:?}");
         let rpm = said(&run(9.549, 1.0));
         assert!(rpm.len() == 1 && rpm[0].starts_with("motor_velocity_rad_s is 9.5"), "{rpm:?}");
         let degrees = said(&run(-1.0, 57.296));
