@@ -196,7 +196,9 @@ pub enum OptionFault {
     Rate(f64),
     #[error("time comes from one place: choose one of --rate, --time-from-rate, --spread-time and --operating-points")]
     TwoTimes,
-    #[error("--split-runs needs a time, which a table of conditions has not: remove one of --split-runs and --operating-points")]
+    #[error(
+        "--split-runs needs a time, which a table of conditions has not: remove one of --split-runs and --operating-points"
+    )]
     RunsOfPoints,
     #[error("“{0}”: expected NAME=COLUMN, such as motor_current_a=Iq")]
     Map(String),
@@ -295,7 +297,9 @@ mod tests {
         assert!(unit("motor_position_rad").contains("expected COLUMN=UNIT"));
         assert!(said(Choices { rate: Some(-1.0), ..Choices::default() }).contains("-1 is no rate"));
         assert!(said(Choices { spread_time: true, rate: Some(1.0), ..Choices::default() }).contains("choose one"));
-        assert!(said(Choices { operating_points: true, split_runs: true, ..Choices::default() }).contains("--split-runs"));
+        assert!(
+            said(Choices { operating_points: true, split_runs: true, ..Choices::default() }).contains("--split-runs")
+        );
         assert!(said(Choices { decimal: vec!["dot".into()], ..Choices::default() }).contains("point or comma"));
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
-use crate::note::{Note, counted, plural};
 use crate::guess::Proposal;
+use crate::note::{Note, counted, plural};
 use crate::operating_points;
 use crate::options::{ReadOptions, TimeFrom};
 use crate::order::{self, Order};

@@ -207,8 +207,7 @@ impl RawTable {
             column.values = places.iter().map(|row| column.values[*row]).collect();
         }
         meta.other.insert(LEFT_OUT_ROWS.to_owned(), left.into());
-        self.notes
-            .push(Note::with(format!("rows omitted for an empty cell: {}", counted(left)), "--leave-empty-rows"));
+        self.notes.push(Note::with(format!("rows omitted for an empty cell: {}", counted(left)), "--leave-empty-rows"));
         self.named_again = self.named_again.iter().map(|row| places.partition_point(|place| place < row)).collect();
         self.rows = places.len();
         self.places = Some(places);

@@ -70,7 +70,10 @@ fn text_is_refused_where_it_is_wrong() {
         "run.csv, line 1: numbers stand where the line of column names is expected, in 3 columns: write it above them, or name \
          them with --names, such as --names time_s,column_2,column_3",
     );
-    check_refused(b"PK\x03\x04\0\0\x08", "run.csv: this file is binary (byte 0x03), and a table is expected: save the table as CSV or Parquet");
+    check_refused(
+        b"PK\x03\x04\0\0\x08",
+        "run.csv: this file is binary (byte 0x03), and a table is expected: save the table as CSV or Parquet",
+    );
 }
 
 #[test]

@@ -202,7 +202,7 @@ fn no_effect_is_forgotten() {
     let found = diagnose(&run, &spec, &Options::default()).unwrap();
     assert_each_told_once(&found, &spec);
     let told = found.not_visible.iter().find(|n| n.effect == "direction_hysteresis");
-    assert!(told.is_some_and(|n| n.why.contains("looks like what the model has already")), "{told:?}");
+    assert!(told.is_some_and(|n| n.why.contains("has the shape of effects of the model")), "{told:?}");
 
     for kind in Kind::ALL {
         let run = common::tables::table(kind, &Shape { segment: 300, repeats: 3, ..Shape::default() });

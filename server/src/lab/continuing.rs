@@ -115,7 +115,8 @@ impl Lab {
     /// The part of a measurement that a lesson needs. `None`: nothing of it was measured.
     async fn recall(&self, run: i64, lesson: Lesson) -> Answer<Option<(RunTable, Done)>> {
         let bytes = self.worked_out(Job::Recall { run, lesson }).await?;
-        rmp_serde::from_slice(&bytes).map_err(|fault| LabError::Internal(format!("run {run} cannot be recalled: {fault}")))
+        rmp_serde::from_slice(&bytes)
+            .map_err(|fault| LabError::Internal(format!("run {run} cannot be recalled: {fault}")))
     }
 
     /// The same as bytes: JSON has no NaN.

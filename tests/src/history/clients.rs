@@ -119,9 +119,7 @@ impl Actor {
 
     fn revoke(&mut self, word: String) -> (Kind, Request) {
         match self.tokens.pop() {
-            Some((id, name, secret)) => {
-                (Kind::Revoke { name, secret }, Request::delete(format!("/tokens/{id}")))
-            }
+            Some((id, name, secret)) => (Kind::Revoke { name, secret }, Request::delete(format!("/tokens/{id}"))),
             None => self.note(word),
         }
     }

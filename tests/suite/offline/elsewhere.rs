@@ -118,7 +118,10 @@ fn nothing_is_advised_before_contradicting_columns_are_mended() {
         let (code, whole) = told(&[]);
         assert!(code == Some(0) && whole.contains("recommended next run"), "{whole}");
         let (code, broken) = told(&["--scale", "motor_current_a=1000"]);
-        assert!(code == Some(3) && broken.contains("Data problem: motor_current_a with the torque constant"), "{broken}");
+        assert!(
+            code == Some(3) && broken.contains("Data problem: motor_current_a with the torque constant"),
+            "{broken}"
+        );
         for advice in ["recommended next run", "define your own effect", "missing effects, most important"] {
             assert!(!broken.contains(advice), "{broken}");
         }

@@ -32,8 +32,7 @@ impl ExcludedEffects {
         for effect in end.spec.known().filter(is_out) {
             let id = effect.info().id;
             let tied = ties.iter().find(|(_, rival)| *rival == id);
-            let tied = tied
-                .map(|(named, _)| format!("{named} is in the model, and this run cannot distinguish them"));
+            let tied = tied.map(|(named, _)| format!("{named} is in the model, and this run cannot distinguish them"));
             let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words().to_owned());
             let refused = selected.decided.iter().flat_map(|decided| &decided.refused).find(|r| r.effect == id);
             let tried = tried.or_else(|| refused.map(Refused::why));
@@ -106,9 +105,9 @@ fn invisible(effect: &dyn Effect, end: &TwoStageModel) -> String {
         _ => Some(&prepared.main.view),
     };
     match view {
-        Some(view) => {
-            effect.hidden(view).unwrap_or_else(|| format!("{ALIKE}; to distinguish them, measure {}", excitation(effect)))
-        }
+        Some(view) => effect
+            .hidden(view)
+            .unwrap_or_else(|| format!("{ALIKE}; to distinguish them, measure {}", excitation(effect))),
         None => "the run has no slow reversals".into(),
     }
 }

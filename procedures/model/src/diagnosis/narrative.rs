@@ -139,7 +139,8 @@ pub fn elsewhere(imitated: &Imitated, is_there: bool) -> String {
 }
 
 const CORRECT: &str = "Correct this first: the results are based on these columns. ";
-const CORRECT_ALL: &str = "Correct this first: no effect is suggested until then, and the results are based on these columns. ";
+const CORRECT_ALL: &str =
+    "Correct this first: no effect is suggested until then, and the results are based on these columns. ";
 
 /// What a user has to correct before anything else counts: columns that contradict each other, a size that contradicts physics in all
 /// of the fits, and what the model takes as given and the run shows as a constant, which may not have been connected.
@@ -204,7 +205,9 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
         let recurs = if found.start.prepared.main.replicate_pairs.is_empty() { "" } else { " and does not recur" };
         let which = match found.events.len() {
             1 => format!("one interval of the run deviates far beyond the scatter of all others{recurs}:"),
-            count => format!("{count} intervals of the run deviate far beyond the scatter of all others{recurs}; the largest:"),
+            count => format!(
+                "{count} intervals of the run deviate far beyond the scatter of all others{recurs}; the largest:"
+            ),
         };
         return format!(
             "{which} {} from {from_s:.2} s to {to_s:.2} s (remaining error {error}{repeats})",
@@ -264,10 +267,9 @@ pub fn undecided(found: &Findings, fits: &[&Fit], verdict: Verdict, options: &Op
         _ if !found.start.prepared.clashes.is_empty() => {
             (UndecidedReason::ContradictoryColumns, "its columns contradict each other".to_owned())
         }
-        Verdict::Adequate if smallest > options.alpha => (
-            UndecidedReason::TooFewBlocks,
-            format!("{blocks} independent blocks are too few for a significance test"),
-        ),
+        Verdict::Adequate if smallest > options.alpha => {
+            (UndecidedReason::TooFewBlocks, format!("{blocks} independent blocks are too few for a significance test"))
+        }
         Verdict::Adequate if found.floor.rms.is_none() => (UndecidedReason::NoNoiseFloor, found.floor.source.clone()),
         Verdict::Adequate if found.exceeds_floor() && !found.is_negligible() => (
             UndecidedReason::NoNoiseFloor,

@@ -185,8 +185,9 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         if let Some(bid) = bid {
             let tells = format!("distinguish {effect} from {}", list(&apart));
             let mut next = told(bid, &tells, std::iter::once(effect).chain(&apart));
-            next.why
-                .extend(vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")));
+            next.why.extend(
+                vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")),
+            );
             return Ok(next.into());
         }
         in_vain.extend(vain);

@@ -53,13 +53,7 @@ const FRICTION: &[NamedSignal] = &[
 ];
 const ENCODER: &[NamedSignal] = &[
     TIME,
-    named(
-        "position",
-        Signal::Position,
-        "rad",
-        "reference_position_rad",
-        "reference position, counted over turns",
-    ),
+    named("position", Signal::Position, "rad", "reference_position_rad", "reference position, counted over turns"),
     named("velocity", Signal::Velocity, "rad/s", "velocity_rad_s", "velocity"),
     DIRECTION,
     TEMPERATURE,

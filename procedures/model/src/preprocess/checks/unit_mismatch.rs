@@ -208,9 +208,7 @@ fn too_fast(run: &RunTable) -> Option<String> {
 fn dead_load(run: &RunTable) -> Option<String> {
     let load = run.column("link_torque_nm").filter(|_| run.kind() == Kind::Friction)?;
     let is_dependent = load[0] != 0.0 && load.iter().all(|v| *v == load[0]);
-    is_dependent.then(|| {
-        format!("link_torque_nm is {} Nm in every sample: the sensor was not connected", load[0])
-    })
+    is_dependent.then(|| format!("link_torque_nm is {} Nm in every sample: the sensor was not connected", load[0]))
 }
 
 /// A current of which neither a sample nor a piece of the run tells anything of the next: an open input. Where it holds still
