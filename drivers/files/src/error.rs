@@ -61,8 +61,14 @@ pub enum FileFault {
     NotText(u8),
     #[error("there are column names and no sample below them: was the table cut off, or is it still being written?")]
     NoRows,
-    #[error("{first}; and {} more rows are wrong: {}", .rows - 1, shown_rows(.more, .rows - 1))]
-    Rows { first: Box<FileFault>, more: Vec<Wrong>, rows: usize },
+    #[error("{first}; and {} more rows are wrong: {}{gaps}", .rows - 1, shown_rows(.more, .rows - 1))]
+    Rows {
+        first: Box<FileFault>,
+        more: Vec<Wrong>,
+        rows: usize,
+        /// Columns with empty cells, and how many rows have none; empty where there are none.
+        gaps: String,
+    },
     #[error(
         "numbers stand where the line of column names is expected, in {columns} columns: write it above them, or name them with \
          --names, such as --names {proposed}"
@@ -182,11 +188,11 @@ impl FileError {
     }
 
     /// `wrong`: the first of `rows` rows that are wrong, one at least. Told at the place of the first.
-    pub(crate) fn of_rows(file: &str, mut wrong: Vec<Wrong>, rows: usize, is_text: bool) -> Self {
+    pub(crate) fn of_rows(file: &str, mut wrong: Vec<Wrong>, rows: usize, gaps: String, is_text: bool) -> Self {
         let Wrong { line, column, fault } = wrong.remove(0);
         let fault = match rows {
             1 => fault,
-            _ => FileFault::Rows { first: Box::new(fault), more: wrong, rows },
+            _ => FileFault::Rows { first: Box::new(fault), more: wrong, rows, gaps },
         };
         let place = Place { file: file.to_owned(), column, ..Place::default() };
         let place = match is_text {

@@ -3,7 +3,7 @@
 use crate::column::Column;
 use crate::naming::{Named, is_time, known};
 use crate::note::shell;
-use crate::unit::{Unit, dimension_of};
+use crate::unit::{Dimension, Unit, dimension_of, is_count};
 use jointbench_instrument::Kind;
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,9 @@ impl Proposal {
     /// As it is written on the command line.
     pub fn option(&self) -> String {
         let map = format!("--map {}", shell(&format!("{}={}", self.column, self.from)));
-        match self.unit.as_ref().filter(|unit| Unit::parse(unit).is_some_and(|unit| !unit.is_si())) {
+        let is_open = |unit: &str| unit.starts_with("counts/N");
+        let is_told = |unit: &&String| is_open(unit) || Unit::parse(unit).is_some_and(|unit| !unit.is_si());
+        match self.unit.as_ref().filter(is_told) {
             Some(unit) => format!("{map} --unit {}", shell(&format!("{}={unit}", self.column))),
             None => map,
         }
@@ -32,7 +34,7 @@ impl Proposal {
 const ALIASES: [(&str, &str); 15] = [
     (
         "motor_position_rad",
-        "motor_position motor_pos motor_angle theta_m rotor_position encoder encoder_position position pos angle q phi theta \
+        "motor_position motor_pos motor_angle theta_m rotor_position motorwinkel encoder encoder_position position pos angle q phi theta \
          winkel",
     ),
     (
@@ -42,7 +44,7 @@ const ALIASES: [(&str, &str); 15] = [
     ),
     (
         "motor_current_a",
-        "motor_current iq i_q iq_measured iq_meas q_current current_q current cur i amps strom motor_current_measured",
+        "motor_current iq i_q iq_measured iq_meas q_current current_q current cur i amps motorstrom strom motor_current_measured",
     ),
     (
         "link_position_rad",
@@ -52,7 +54,7 @@ const ALIASES: [(&str, &str); 15] = [
     ("link_velocity_rad_s", "link_velocity link_vel output_velocity output_speed load_velocity joint_velocity"),
     (
         "link_torque_nm",
-        "link_torque load_torque output_torque sensor_torque joint_torque torque tau load moment drehmoment last",
+        "link_torque load_torque output_torque sensor_torque joint_torque torque tau load moment abtriebsmoment drehmoment last",
     ),
     ("temperature_c", "temperature temp winding_temperature motor_temperature motor_temp t_motor"),
     ("brake_current_a", "brake_current i_brake current i"),
@@ -87,15 +89,37 @@ pub fn guess(columns: &[Column], kind: Kind) -> Vec<Proposal> {
 }
 
 /// The unit that a column states, in its name or as its name, where it can be one of the wanted column.
-fn unit_of(source: &Column, column: &str) -> Option<String> {
+pub fn unit_of(source: &Column, column: &str) -> Option<String> {
     let named = Named::of(source);
     let last = named.quantity.rsplit('_').next().unwrap_or_default().to_owned();
     let pair = named.quantity.rsplitn(3, '_').take(2).collect::<Vec<_>>();
     let ratio = if pair.len() == 2 { format!("{}/{}", pair[1], pair[0]) } else { String::new() };
-    let fits = |text: &String| {
-        Unit::parse(text).is_some_and(|unit| Some(unit.dimension) == dimension_of(column) || unit.is_linear())
+    let fits = |unit: Unit| Some(unit.dimension) == dimension_of(column);
+    // The m of `theta_m` is the motor.
+    let is_linear = |text: &str, unit: Unit| unit.is_linear() && text.len() > 1;
+    if let Some(stated) = &named.unit
+        && Unit::parse(stated).is_some_and(|unit| fits(unit) || unit.is_linear())
+    {
+        return Some(stated.clone());
+    }
+    let words = [named.unit.unwrap_or_default(), ratio, last].into_iter().filter(|text| !text.is_empty());
+    words.into_iter().find_map(|text| {
+        let unit = Unit::parse(&text).filter(|unit| fits(*unit) || is_linear(&text, *unit));
+        match unit {
+            Some(_) => Some(Unit::written(&text).unwrap_or(text)),
+            None => counts_of(&text, column).map(str::to_owned),
+        }
+    })
+}
+
+/// The unit of encoder counts, which is whole when their number per turn is known.
+pub fn counts_of(word: &str, column: &str) -> Option<&'static str> {
+    let per_turn = match dimension_of(column)? {
+        Dimension::Angle => "counts/N",
+        Dimension::AngularVelocity => "counts/N/s",
+        _ => return None,
     };
-    [named.unit.unwrap_or_default(), ratio, last].into_iter().filter(|text| !text.is_empty()).find(fits)
+    (is_count(word) || word == per_turn).then_some(per_turn)
 }
 
 /// How sure a source is; smaller is surer.

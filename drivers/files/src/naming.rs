@@ -24,7 +24,7 @@ impl Named {
 }
 
 /// `Torque [mNm]`, `t/s`, `speed in rpm` and `angle, deg` into quantity and unit.
-fn parted(name: &str) -> (&str, Option<&str>) {
+pub fn parted(name: &str) -> (&str, Option<&str>) {
     let name = name.trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('<', '>'), ('{', '}')] {
         let inner = name.strip_suffix(close).and_then(|name| name.rsplit_once(open));
@@ -66,7 +66,7 @@ fn snake(name: &str) -> String {
 }
 
 /// What people call the time.
-const TIMES: [&str; 22] = [
+const TIMES: [&str; 24] = [
     "time",
     "t",
     "times",
@@ -87,6 +87,8 @@ const TIMES: [&str; 22] = [
     "x_axis",
     "x_value",
     "index_time",
+    "micros",
+    "millis",
     "clock",
     "time_of_day",
 ];

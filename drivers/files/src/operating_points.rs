@@ -10,9 +10,14 @@ use jointbench_instrument::{Kind, Meta, TableFault};
 const ANGLE: &str = "motor_position_rad";
 const SPEED: &str = "motor_velocity_rad_s";
 
-/// Speeds without time and angle are points and no record of a motion.
-pub fn may_be(table: &RawTable) -> bool {
-    table.place(SPEED).is_some() && table.place(ANGLE).is_none()
+/// Speeds without time and angle are points and no record of a motion; currents and torques of a brake too.
+pub fn may_be(table: &RawTable, kind: Kind, guessed: &[Proposal]) -> bool {
+    let has = |name: &str| table.place(name).is_some() || guessed.iter().any(|one| one.column == name);
+    match kind {
+        Kind::Friction => has(SPEED) && !has(ANGLE),
+        Kind::Brake => kind.required_columns().iter().all(|name| *name == "time_s" || has(name)),
+        Kind::Encoder | Kind::Stiffness => false,
+    }
 }
 
 /// Numbers the rows in the place of a time, a second each. Of a friction table it makes the angle too: the sum of the speeds.

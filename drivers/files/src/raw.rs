@@ -3,8 +3,9 @@
 use crate::ReadOptions;
 use crate::column::Column;
 use crate::error::{FileError, FileFault, Place, Wrong};
+use crate::guess::unit_of;
 use crate::naming::Named;
-use crate::note::Note;
+use crate::note::{Note, counted, plural};
 use crate::text::{Decimal, Lines};
 use jointbench_instrument::Meta;
 
@@ -113,12 +114,30 @@ impl RawTable {
         let places: Vec<usize> = places.collect::<Result<_, _>>()?;
         for (place, (name, _)) in places.into_iter().zip(&options.map) {
             let column = &mut self.columns[place];
-            // Whoever renames a column says what it is, and not in which unit the file has it.
-            column.unit = Named::of(column).unit;
+            // Whoever renames a column says what it is; its unit is what the file states.
+            column.unit = Named::of(column).unit.or_else(|| unit_of(column, name));
             column.is_unit_open = name == "time_s" && column.name != *name && column.unit.is_none();
             column.name.clone_from(name);
         }
         Ok(())
+    }
+
+    /// `; empty cells: temperature_c 8,955 (--leave NAME omits a column); 45 of 9,000 rows have none`
+    fn gaps(&self, is_needed: impl Fn(&str) -> bool) -> String {
+        let with_gaps: Vec<&Column> =
+            self.columns.iter().filter(|column| is_needed(&column.name) && column.found.missing > 0).collect();
+        if with_gaps.is_empty() {
+            return String::new();
+        }
+        let named = with_gaps.iter().map(|column| format!("{} {}", column.name, counted(column.found.missing)));
+        let whole = |row: &usize| with_gaps.iter().all(|column| !column.values[*row].is_nan());
+        let left = (0..self.rows).filter(whole).count();
+        format!(
+            "; empty cells: {} (--leave NAME omits a column); {} of {} have none",
+            named.collect::<Vec<_>>().join(", "),
+            counted(left),
+            plural(self.rows, "row")
+        )
     }
 
     /// Refuses rows of another width and cells that should be numbers, all in one message.
@@ -163,7 +182,7 @@ impl RawTable {
         told.truncate(crate::error::TOLD_ROWS);
         match rows.len() {
             0 => Ok(()),
-            count => Err(FileError::of_rows(file, told, count, self.is_text)),
+            count => Err(FileError::of_rows(file, told, count, self.gaps(is_needed), self.is_text)),
         }
     }
 }

@@ -211,7 +211,7 @@ fn out_of_order(table: &RawTable, values: &[f64], starts: &[usize], file: &str) 
             });
             (
                 format!("{repeats} of {rows} {verb} a time stamp{ticks}"),
-                vec!["--spread-time".to_owned(), format!("--time-from-rate {rate}")],
+                vec![format!("--time-from-rate {rate}"), "--spread-time".to_owned()],
             )
         }
         back => {

@@ -2,12 +2,13 @@
 
 use crate::column::Column;
 use crate::error::{FileError, FileFault};
+use crate::guess::counts_of;
 use crate::note::{Note, counted, plural, shell};
 use crate::raw::RawTable;
 use crate::text::Decimal;
 use crate::unit::{Unit, dimension_of};
 use crate::{ReadOptions, contradiction, facts, guess, naming, operating_points, time};
-use jointbench_instrument::{Meta, RunTable, TableFault, Trace};
+use jointbench_instrument::{Meta, Motion, RunTable, TableFault, Trace};
 
 /// The fact that says how many rows of the file were left out for their empty cells.
 pub const LEFT_OUT_ROWS: &str = "left_out_rows";
@@ -52,8 +53,8 @@ impl RawTable {
         self.refuse_doubtful(file, options)?;
         let guessed = meta.kind.map(|kind| guess::guess(&self.columns, kind)).unwrap_or_default();
         let mut left = self.leave_unusable(is_needed, options);
-        self.settle_units(options).map_err(|fault| fault.at_line(file, self.names_line))?;
-        self.scale(options).map_err(in_file)?;
+        self.settle_units(options, meta.motion).map_err(|fault| fault.at_line(file, self.names_line))?;
+        self.scale(options, meta.motion).map_err(in_file)?;
         if options.leave_empty_rows {
             self.leave_empty_rows(&mut meta);
         }
@@ -147,36 +148,59 @@ impl RawTable {
     }
 
     /// The unit that the file states for a column. One that contradicts the name in the file is asked about: one of both is
-    /// wrong. A column that was renamed is converted.
-    fn settle_units(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
+    /// wrong. A column that was renamed is converted, and asked about where its unit is none of the quantity.
+    fn settle_units(&mut self, options: &ReadOptions, motion: Motion) -> Result<(), FileFault> {
         for column in self.columns.iter_mut().filter(|column| column.name != "time_s") {
-            let (name, Some(text)) = (&column.name, &column.unit) else { continue };
+            let (name, Some(text)) = (column.name.clone(), column.unit.clone()) else { continue };
             let is_said =
-                options.unit.iter().any(|(of, _)| of == name) || options.scale.iter().any(|(of, _)| of == name);
-            let (Some(dimension), Some(unit)) = (dimension_of(name), Unit::parse(text)) else { continue };
-            if is_said || unit.dimension != dimension || unit.is_si() {
+                options.unit.iter().any(|(of, _)| *of == name) || options.scale.iter().any(|(of, _)| *of == name);
+            let Some(dimension) = dimension_of(&name).filter(|_| !is_said) else { continue };
+            let si = jointbench_instrument::units::unit_of(&name).unwrap_or_default();
+            let option = |unit: &str| format!("--unit {}", shell(&format!("{name}={unit}")));
+            let asked = |units: &[&str]| {
+                let said = format!("the file says {text} for column {name}");
+                Err(FileFault::Choice { said, options: units.iter().map(|unit| option(unit)).collect() })
+            };
+            let is_renamed = column.source != name && options.map.iter().any(|(of, _)| *of == name);
+            let unit = Unit::parse(&text);
+            let fits = unit.is_some_and(|unit| unit.dimension == dimension);
+            if fits && unit.is_some_and(Unit::is_si) {
                 continue;
             }
-            if dimension_of(&column.source).is_some() {
-                let said = format!("the file says {text} for column {name}");
-                let si = jointbench_instrument::units::unit_of(name).unwrap_or_default();
-                let option = |unit: &str| format!("--unit {}", shell(&format!("{name}={unit}")));
-                return Err(FileFault::Choice { said, options: vec![option(text), option(si)] });
+            if !is_renamed {
+                match fits {
+                    true => return asked(&[&text, si]),
+                    false => continue,
+                }
             }
-            let said = format!("{name} is {}, converted from {text}", column.source);
+            let said = match unit {
+                Some(unit) if fits || (unit.is_linear() && motion == Motion::Linear) => {
+                    column.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
+                    format!("{name} is {}, converted from {text}", column.source)
+                }
+                Some(_) => return asked(&[si]),
+                None => match counts_of(&text, &name) {
+                    Some(counts) => return asked(&[counts, si]),
+                    None => format!("{name} is {}, read as {si}", column.source),
+                },
+            };
             self.notes.push(Note::with(said, format!("--unit {name}=UNIT")));
-            column.values.iter_mut().for_each(|value| *value = unit.to_si(*value));
             column.unit = None;
         }
         Ok(())
     }
 
-    fn scale(&mut self, options: &ReadOptions) -> Result<(), FileFault> {
+    fn scale(&mut self, options: &ReadOptions, motion: Motion) -> Result<(), FileFault> {
         let place = |table: &RawTable, wanted: &String| {
             let fault = || FileFault::Unscaled { wanted: wanted.clone(), there: table.names() };
             table.place(wanted).ok_or_else(fault)
         };
         for (wanted, unit) in &options.unit {
+            if unit.is_linear() && motion != Motion::Linear {
+                let si = jointbench_instrument::units::unit_of(wanted).unwrap_or_default();
+                let said = format!("{wanted} has a unit of a sliding axis, and the facts state none (motion = linear)");
+                return Err(FileFault::Choice { said, options: vec![format!("--unit {wanted}={si}")] });
+            }
             let place = place(self, wanted)?;
             let column = &mut self.columns[place];
             (column.is_unit_open, column.unit) = (false, None);
@@ -215,6 +239,16 @@ impl RawTable {
 }
 
 impl Understood {
+    /// Units that the file states for columns that no model knows, by their names.
+    pub fn stated_units(&self) -> Vec<(String, String)> {
+        let is_known = |name: &str| self.meta.kind.is_some_and(|kind| naming::known(kind).any(|known| known == name));
+        let stated = |column: &Column| {
+            let unit = column.unit.clone().filter(|_| naming::parted(&column.name).1.is_none())?;
+            (column.name != "time_s" && !is_known(&column.name)).then(|| (column.name.clone(), unit))
+        };
+        self.table.columns.iter().filter_map(stated).collect()
+    }
+
     /// What it lacks for a run of its kind, with what the file seems to hold instead. `None`: nothing.
     pub fn lacks(&self) -> Option<Note> {
         let Some(kind) = self.meta.kind else {
@@ -285,8 +319,9 @@ fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: &[guess::Pr
             let options = guessed.iter().map(guess::Proposal::option).collect();
             FileFault::Proposed { fault, said: "the file seems to hold it", options }
         }
-        TableFault::MissingColumn { column: "time_s", .. } if operating_points::may_be(table) => {
-            let options = vec!["--operating-points".to_owned()];
+        TableFault::MissingColumn { kind, column: "time_s", .. } if operating_points::may_be(table, *kind, guessed) => {
+            let maps = guessed.iter().map(guess::Proposal::option);
+            let options = std::iter::once("--operating-points".to_owned()).chain(maps).collect();
             FileFault::Proposed { fault, said: "each row may be the mean of one steady operating point", options }
         }
         TableFault::MissingColumn { column: "time_s", .. } => {

@@ -138,6 +138,16 @@ impl Unit {
         Some(Unit { dimension: *dimension, factor: *factor, offset })
     }
 
+    /// As the unit is usually written: `ma` is mA.
+    pub fn written(text: &str) -> Option<String> {
+        let unit = Unit::parse(text)?;
+        let same = |(dimension, factor, _): &&(Dimension, f64, &[&str])| {
+            *dimension == unit.dimension && *factor == unit.factor
+        };
+        let (_, _, names) = UNITS.iter().find(same).filter(|_| unit.offset == 0.0)?;
+        Some(names[0].to_owned())
+    }
+
     pub fn to_si(self, value: f64) -> f64 {
         value * self.factor + self.offset
     }
@@ -155,6 +165,19 @@ impl Unit {
     pub fn names_of(dimension: Dimension) -> Vec<&'static str> {
         UNITS.iter().filter(|(of, _, _)| *of == dimension).map(|(_, _, names)| names[0]).collect()
     }
+}
+
+/// Whether readings are counted by an encoder.
+pub fn is_count(word: &str) -> bool {
+    const WORDS: [&str; 12] =
+        ["count", "counts", "cnt", "cnts", "cts", "tick", "ticks", "inc", "incs", "increments", "lsb", "steps"];
+    WORDS.contains(&word.to_lowercase().as_str())
+}
+
+/// What may stand in a line of units and is no unit that can be converted.
+pub fn is_unit_word(word: &str) -> bool {
+    const WORDS: [&str; 10] = ["", "-", "1", "none", "grad", "raw", "digit", "digits", "bit", "bool"];
+    WORDS.contains(&word.to_lowercase().as_str()) || is_count(word)
 }
 
 /// `counts/4096`: a 4096th of a turn; `counts/4096/s` the same a second.

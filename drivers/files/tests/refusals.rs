@@ -272,3 +272,76 @@ fn a_column_with_a_gap_is_among_those_of_the_file() {
     assert!(refused.contains("angle_deg, Iq"), "{refused}");
     assert!(refused.contains("--map motor_current_a=Iq"), "{refused}");
 }
+
+fn mapped(text: &str, map: &[&str], unit: &[&str]) -> Result<jointbench_instrument::RunTable, String> {
+    let own = |list: &[&str]| list.iter().map(|one| one.to_string()).collect();
+    let options = Choices { map: own(map), unit: own(unit), ..Choices::default() }.options().unwrap();
+    let meta = Some(Meta { kind: Some(Kind::Friction), ..Meta::default() });
+    read_bytes("run.csv", text.as_bytes(), &ReadOptions { meta, ..options }).map_err(|fault| fault.to_string())
+}
+
+#[test]
+fn a_mapped_column_is_converted_from_the_unit_at_the_end_of_its_name() {
+    let run = mapped(
+        "t_ms,pos_deg,cur_ma\n0,90,500\n5,180,500\n",
+        &["time_s=t_ms", "motor_position_rad=pos_deg", "motor_current_a=cur_ma"],
+        &[],
+    )
+    .unwrap();
+    assert_eq!((run.column("motor_current_a"), run.column("time_s")), (Some(&[0.5, 0.5][..]), Some(&[0.0, 0.005][..])));
+    assert!((run.column("motor_position_rad").unwrap()[1] - std::f64::consts::PI).abs() < 1e-12);
+}
+
+#[test]
+fn counts_are_asked_for_their_number_per_turn() {
+    for name in ["Position [counts]", "pos_inc"] {
+        let text = format!("time_s,{name},i\n0,0,0.5\n1,1024,0.5\n");
+        let map = [&format!("motor_position_rad={name}")[..], "motor_current_a=i"];
+        let refused = mapped(&text, &map, &[]).unwrap_err();
+        assert!(refused.contains("--unit motor_position_rad=counts/N"), "{refused}");
+        let run = mapped(&text, &map, &["motor_position_rad=counts/4096"]).unwrap();
+        assert!((run.column("motor_position_rad").unwrap()[1] - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_unit_of_another_quantity_or_of_a_sliding_axis_is_refused() {
+    let text = "time_s,theta_m,Iq [V]\n0,0,0.5\n1,1,0.5\n";
+    let map = ["motor_position_rad=theta_m", "motor_current_a=Iq [V]"];
+    assert!(mapped(text, &map, &[]).unwrap_err().contains("the file says V for column motor_current_a"));
+    let said = mapped(text, &map, &["motor_current_a=A", "motor_position_rad=m"]).unwrap_err();
+    assert!(said.contains("sliding axis"), "{said}");
+    let run = mapped(text, &map, &["motor_current_a=A"]).unwrap();
+    assert_eq!(run.column("motor_position_rad"), Some(&[0.0, 1.0][..]), "the m of theta_m is the motor");
+}
+
+#[test]
+fn gaps_are_counted_by_column() {
+    let text = "time_s,motor_position_rad,motor_current_a,temperature_c\n0,0,1,20\n1,1,1,\n2,2,1,\n3,3,,\n";
+    let refused = take("run.csv", text.as_bytes()).unwrap_err().to_string();
+    assert!(
+        refused.contains("motor_current_a 1, temperature_c 3 (--leave NAME omits a column); 1 of 4 rows"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_table_of_points_is_proposed_as_one_line() {
+    let meta = Some(Meta { kind: Some(Kind::Friction), ..Meta::default() });
+    let text = "Speed [rpm];Current [A];Torque [Nm]\n10;1;0.5\n20;1;0.5\n";
+    let options = ReadOptions { meta, ..ReadOptions::default() };
+    let refused = read_bytes("run.csv", text.as_bytes(), &options).unwrap_err().to_string();
+    assert!(refused.contains("--operating-points"), "{refused}");
+    assert!(refused.contains("--unit motor_velocity_rad_s=rpm"), "{refused}");
+}
+
+#[test]
+fn a_line_of_units_may_hold_one_that_cannot_be_converted() {
+    let run = mapped(
+        "time,angle,current\ns,Grad,mA\n0,90,500\n1,91,500\n",
+        &["time_s=time", "motor_position_rad=angle", "motor_current_a=current"],
+        &["motor_position_rad=deg"],
+    )
+    .unwrap();
+    assert_eq!(run.column("motor_current_a"), Some(&[0.5, 0.5][..]));
+}

@@ -78,11 +78,7 @@ fn a_temperature_that_only_rose_with_time_is_no_drift_until_a_run_tells() {
         next_run(run, &Open::from(found), menu, &Options::default()).unwrap()
     };
     let next = ask(&run, &found, &[strokes(2.0)]).experiment.unwrap();
-    assert!(
-        next.why.starts_with("this run would distinguish temperature_coulomb from a drift over time ("),
-        "{}",
-        next.why
-    );
+    assert!(next.why.starts_with("it would distinguish temperature_coulomb from a drift over time ("), "{}", next.why);
     assert!(next.expected_z.unwrap() > 4.0 && next.separates == ["temperature_coulomb"], "{next:?}");
     assert_eq!(ask(&run, &found, &[]), Next::default());
     let run = self::run(waving_c, &[]);

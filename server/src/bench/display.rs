@@ -39,7 +39,7 @@ impl Display {
             return;
         }
         self.told_progress = Some(Instant::now());
-        let progress = self.on_the_wall(progress);
+        let progress = self.on_the_wall(shared.description.pace(), progress);
         shared.hub.tell(LiveMessage::Progress { bench, run, progress: progress.clone() });
         let channels = self.health.told(Timestamp::now());
         shared.status.send_modify(|status| {
@@ -53,10 +53,11 @@ impl Display {
         }
     }
 
-    /// The time of a mock bench may run faster than that of the person who waits.
-    fn on_the_wall(&self, progress: &procedure::Progress) -> Progress {
+    /// The time of a mock bench may run faster than that of the person who waits, but never faster than its pace.
+    fn on_the_wall(&self, pace: Option<f64>, progress: &procedure::Progress) -> Progress {
         let elapsed_s = self.began.elapsed().as_secs_f64();
-        let wall = if progress.elapsed_s > 0.0 { elapsed_s / progress.elapsed_s } else { 1.0 };
+        let least = pace.map_or(0.0, |pace| 1.0 / pace);
+        let wall = if progress.elapsed_s > 0.0 { (elapsed_s / progress.elapsed_s).max(least) } else { 1.0 };
         Progress {
             step: progress.step,
             steps: progress.steps,

@@ -112,6 +112,11 @@ impl Keeper {
 
     async fn keep_interrupted(&mut self, run: RunId, safe: Safe, reason: &'static str) {
         self.insist(&Work::Interruption { run, safe, reason }).await;
+        tracing::warn!(
+            run.id = run,
+            bench = self.shared.name(),
+            "{reason}; complete the run with `jointbench run --continue {run}`, or start it again"
+        );
         self.tell_events(run).await;
         self.tell_end(run);
         self.shared.settle(run, |run| (run.ended, run.stored) = (true, true));

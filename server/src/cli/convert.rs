@@ -5,6 +5,7 @@ use super::exit::{Done, Exit};
 use super::files;
 use super::offline::{json_out, understood};
 use jointbench_files::{Understood, meta_path_of, paragraph, write};
+use jointbench_instrument::Trace;
 use serde_json::json;
 
 pub fn convert(arguments: &Convert) -> Done {
@@ -18,6 +19,7 @@ pub fn convert(arguments: &Convert) -> Done {
             out.display()
         )));
     }
+    let units = understood.stated_units();
     // A measurement that says its kind is joined and looked at as a run; any other table is written as it was understood.
     let (meta, trace, notes, left) = match understood.lacks() {
         None => {
@@ -32,6 +34,12 @@ pub fn convert(arguments: &Convert) -> Done {
             (meta, trace, notes, left)
         }
     };
+    let (mut channels, values) = trace.into_parts();
+    for (name, unit) in &units {
+        let of = channels.iter_mut().filter(|channel| channel.name == *name);
+        of.for_each(|channel| channel.name = format!("{name} [{unit}]"));
+    }
+    let trace = Trace::from_columns(channels, values);
     write(out, &meta, &trace)?;
     if arguments.json {
         let names: Vec<&str> = trace.channels().iter().map(|channel| channel.name.as_str()).collect();

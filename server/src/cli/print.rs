@@ -77,7 +77,10 @@ pub fn comparison(file: &Path, comparison: &Comparison) {
     let (effect, name) = (wide(|p| &p.effect).unwrap_or(0), wide(|p| &p.name).unwrap_or(0));
     let unit = wide(|p| &p.unit).unwrap_or(0);
     let side = |p: &Option<Parameter>| match p {
-        Some(p) => format!("{} [{}]", figure(p.value), interval(p.ci95[0], p.ci95[1])),
+        Some(p) => {
+            let (value, interval) = with_interval(p.value, p.ci95);
+            format!("{value} [{interval}]")
+        }
         None => "–".to_owned(),
     };
     for p in &comparison.parameters {
@@ -157,14 +160,12 @@ pub fn parameters(parameters: &[Parameter]) {
     let unit = wide(|p| &p.unit);
     println!("{:effect$}  {:name$}  {:>11}  {:unit$}  95 % interval", "effect", "parameter", "value", "unit");
     for parameter in parameters {
-        let [low, high] = parameter.ci95;
-        let interval = interval(low, high);
+        let (value, interval) = with_interval(parameter.value, parameter.ci95);
         let state = state(parameter);
         println!(
-            "{:effect$}  {:name$}  {:>11}  {:unit$}  {interval}{state}",
+            "{:effect$}  {:name$}  {value:>11}  {:unit$}  {interval}{state}",
             parameter.effect,
             parameter.name,
-            figure(parameter.value),
             shown(&parameter.unit)
         );
     }
@@ -231,8 +232,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
         println!("  {}. {}: {gain}, {}", i + 1, suggestion.effect, chance(suggestion));
         println!("     {}", suggestion.why);
         for parameter in &suggestion.parameters {
-            let [low, high] = parameter.ci95;
-            let (value, interval) = (figure(parameter.value), interval(low, high));
+            let (value, interval) = with_interval(parameter.value, parameter.ci95);
             let state = state(parameter);
             println!("     {} = {value} {}  [{interval}]{state}", parameter.name, shown(&parameter.unit));
         }
@@ -243,20 +243,27 @@ fn chance(suggestion: &Suggestion) -> String {
     let bic = suggestion.bic_change.map(|change| format!(", ΔBIC {change:+.0}"));
     let sign = if suggestion.p_at_most { '≤' } else { '=' };
     let weak = if suggestion.evidence == Evidence::Weak { ", weak evidence" } else { "" };
-    format!("p {sign} {:.3}{}{weak}", suggestion.p_value, bic.unwrap_or_default())
+    let p_value = match suggestion.p_value {
+        p if p < 0.001 => "p < 0.001".to_owned(),
+        p => format!("p {sign} {p:.3}"),
+    };
+    format!("{p_value}{}{weak}", bic.unwrap_or_default())
 }
 
-/// A whole number that was chosen has no width, and neither has what the run cannot show.
-fn interval(low: f64, high: f64) -> String {
+/// A value and its interval, with as many digits as tell the ends apart. A whole number that was chosen has no width, and
+/// neither has what the run does not depend on.
+fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, String) {
     match (low == high, low == 0.0) {
-        (true, true) => "–".to_owned(),
-        (true, false) => "chosen".to_owned(),
-        // As many digits as tell the ends apart.
+        (true, true) => ("–".to_owned(), "–".to_owned()),
+        (true, false) => (figure(value), "chosen".to_owned()),
         (false, _) => {
-            let ends =
-                (3..9).map(|digits| (rounded(low, digits), rounded(high, digits))).find(|(low, high)| low != high);
-            let (low, high) = ends.unwrap_or_else(|| (figure(low), figure(high)));
-            format!("{low} … {high}")
+            let digits = (3..9).find(|digits| rounded(low, *digits) != rounded(high, *digits));
+            let (value, low, high) = match digits {
+                Some(digits) if digits > 3 => (rounded(value, digits), rounded(low, digits), rounded(high, digits)),
+                Some(digits) => (figure(value), rounded(low, digits), rounded(high, digits)),
+                None => (figure(value), figure(low), figure(high)),
+            };
+            (value, format!("{low} … {high}"))
         }
     }
 }
@@ -351,14 +358,16 @@ fn rounded(value: f64, digits: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{figure, interval};
+    use super::{figure, with_interval};
 
     #[test]
     fn the_ends_of_an_interval_are_told_apart() {
+        let interval = |low: f64, high: f64| with_interval(0.5 * (low + high), [low, high]).1;
         assert_eq!(interval(0.0306, 0.0312), "0.03060 … 0.03120");
         assert_eq!(interval(1.000012, 1.000031), "1.00001 … 1.00003");
         assert_eq!(interval(1.2e-7, 1.2000004e-7), "1.2000000e-7 … 1.2000004e-7");
         assert_eq!((interval(7.0, 7.0), interval(0.0, 0.0)), ("chosen".into(), "–".into()));
+        assert_eq!(with_interval(0.820308, [0.820307, 0.820309]).0, "0.820308", "inside its interval");
     }
 
     #[test]

@@ -35,7 +35,7 @@ export function without(choices: Choices, part: string, value: string): Choices 
 }
 
 /** Whether a proposal can be carried out as it stands: `--rate HZ` lacks its number. */
-export const isWhole = (option: string) => parseOption(option).every(([part, value]) => part !== 'rate' || Number.isFinite(+value));
+export const isWhole = (option: string) => parseOption(option).every(([part, value]) => (part !== 'rate' || Number.isFinite(+value)) && !value.includes('counts/N'));
 
 /** What was chosen for a file, to be chosen again for the next one of its shape. */
 export interface Remembered {

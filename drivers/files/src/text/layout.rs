@@ -6,7 +6,7 @@
 use super::cell::{self, Decimal};
 use super::line::{Holds, Line, SEPARATORS, Separator, cells, holds, is_comment, lines, uncommented};
 use super::stamp::{self, Stamp};
-use crate::unit::Unit;
+use crate::unit::{Unit, is_unit_word};
 
 /// Lines that are looked at; a logger's preface has fewer.
 const LOOKED_AT: usize = 400;
@@ -269,8 +269,7 @@ pub fn bare_unit(text: &str) -> String {
 fn are_units(cells: &[Vec<u8>]) -> bool {
     let texts: Vec<String> = cells.iter().map(|cell| bare_unit(&name_of(cell))).collect();
     let known = texts.iter().filter(|text| Unit::parse(text).is_some()).count();
-    let is_other = |text: &String| matches!(text.as_str(), "" | "-" | "1" | "none");
-    known > 0 && texts.iter().all(|text| is_other(text) || Unit::parse(text).is_some())
+    known > 0 && texts.iter().all(|text| is_unit_word(text) || Unit::parse(text).is_some())
 }
 
 fn content<'c>(cells: impl Iterator<Item = &'c [u8]>) -> Content {

@@ -68,7 +68,7 @@ fn a_clock_that_ticks_more_slowly_than_rows_come_is_told_and_spread() {
         &[
             "run.csv, line 3: column time_s: expected a time after 0 s, found 0 s",
             "206 of 300 rows repeat a time stamp: its clock ticks every 16 ms, rows come every 5 ms",
-            "Use --spread-time or --time-from-rate 200",
+            "Use --time-from-rate 200 or --spread-time",
         ],
     );
     let spread = take(&ticking, &Choices { spread_time: true, ..Choices::default() }).unwrap().0;

@@ -162,9 +162,7 @@ fn attention(found: &Findings, fits: &[&Fit]) -> String {
 /// The noise floor, and why an error may be smaller.
 fn floor(found: &Findings, end: &Fit, unit: &Scale) -> String {
     let Some(floor) = found.floor.rms else {
-        let why =
-            found.floor.source.strip_prefix("no noise floor").filter(|_| found.start.prepared.main.unlike.is_some());
-        return format!("noise floor unknown{}", why.unwrap_or_default());
+        return "noise floor unknown".to_owned();
     };
     // An error within the floor's own interval needs no excuse.
     let below = match end.validation_rms < found.floor.ci95.map_or(floor, |[low, _]| low) {

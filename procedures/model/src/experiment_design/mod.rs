@@ -268,7 +268,7 @@ fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "this run would {what} (expected separation {} standard deviations{}){enough}",
+            "it would {what} (expected separation {} standard deviations{}){enough}",
             in_words(bid.z),
             bid.choice.provided(),
         ),
