@@ -4,6 +4,7 @@ use super::extract::{Answer, Created, Json, Path, Query, created};
 use super::problem::{Problem, Refusals};
 use crate::job::Streamed;
 use crate::lab::{Caller, ExportRequest, FileFormat, ImportRequest, Lab, LabError};
+use crate::store::StoreError;
 use crate::view::{ImportPreview, Run};
 use axum::Extension;
 use axum::body::{Body, Bytes, HttpBody};
@@ -170,7 +171,10 @@ async fn read_form(lab: &Lab, mut form: Multipart, name: Option<String>) -> Resu
 }
 
 async fn write(mut part: Field<'_>, file: &mut tokio::fs::File) -> Result<(), Problem> {
-    let unkept = |fault: std::io::Error| LabError::Internal(format!("the file cannot be imported: {fault}"));
+    let unkept = |fault: std::io::Error| match fault.kind() {
+        std::io::ErrorKind::StorageFull => LabError::from(StoreError::DiskFull),
+        _ => LabError::Internal(format!("the file cannot be imported: {fault}")),
+    };
     while let Some(piece) = part.chunk().await.map_err(unreadable)? {
         file.write_all(&piece).await.map_err(unkept)?;
     }

@@ -17,8 +17,8 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
-const DAEMON_ENDED: &str = "the daemon terminated during the run; all recorded samples were kept";
-const WORKER_ENDED: &str = "the bench worker terminated during the run; all recorded samples were kept";
+const DAEMON_ENDED: &str = "the daemon terminated during the run; its stored samples are kept";
+const WORKER_ENDED: &str = "the bench worker terminated during the run; samples that were not stored yet are lost";
 /// At its end a daemon waits so long for a store that does not take what is left.
 const DRAINED: Duration = Duration::from_secs(5);
 /// And so long for a worker that has secured its bench.

@@ -9,7 +9,7 @@ use super::{files, identify};
 use crate::view::{Bench, Identification, NewRun, Run, RunState, word};
 use jointbench_procedure::procedure;
 use serde_json::{Map, Value};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(250);
 
@@ -141,6 +141,8 @@ fn start(client: &Client, arguments: &Arguments) -> Result<Run, Exit> {
     }
 }
 
+/// A daemon that does not answer is waited for so long.
+const RESTARTED: Duration = Duration::from_secs(15);
 /// As a shell says of a command that Ctrl-C has ended.
 const INTERRUPTED: i32 = 130;
 
@@ -206,8 +208,18 @@ pub(super) fn parameters(set: &[String]) -> Result<Map<String, Value>, Exit> {
 
 pub(super) fn wait(client: &Client, id: i64) -> Result<Run, Exit> {
     let mut shown = RunProgress::begin();
+    let mut answered = Instant::now();
     loop {
-        let run: Run = client.get(&format!("/runs/{id}"))?;
+        let run: Run = match client.get(&format!("/runs/{id}")) {
+            Ok(run) => run,
+            // A daemon that is started again knows how the run ended.
+            Err(_) if answered.elapsed() < RESTARTED && !client.is_answered() => {
+                std::thread::sleep(LOOK_EVERY);
+                continue;
+            }
+            Err(exit) => return Err(exit),
+        };
+        answered = Instant::now();
         // A run that its daemon has left is told in two strokes: its end, then how the bench was secured and why.
         // What has completed is only read when it is stored; any other end is final, whatever the disk does.
         let waits_for_the_disk = run.summary.state == RunState::Completed && run.summary.not_stored.is_some();

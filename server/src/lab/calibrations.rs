@@ -20,8 +20,6 @@ const USES: [(&str, &str); 3] = [
     ),
     (FRICTION, "friction compensation on this bench uses these values by default"),
 ];
-/// More entries than a bench has in years.
-const MOST: u32 = 500;
 
 /// What becomes of the result of a procedure when it is applied, or why it cannot be.
 pub(super) fn applies(procedure: &str) -> Applies {
@@ -50,7 +48,7 @@ impl Lab {
     pub async fn calibrations(&self, bench: &str) -> Answer<Vec<Calibration>> {
         self.handle(bench)?;
         let mut told: Vec<Calibration> = Vec::new();
-        for record in self.inner.store.calibrations(bench, MOST).await? {
+        for record in self.inner.store.calibrations(bench).await? {
             let holds = !told.iter().any(|one| one.procedure == record.procedure);
             let (id, procedure, run, by, at) = (record.id, record.procedure, record.run, record.by, record.at);
             told.push(Calibration { id, procedure, run, by, at, holds });

@@ -77,7 +77,7 @@ impl From<crate::store::StoreError> for LabError {
             E::NoModel(id) => LabError::no_model(id),
             _ if error.is_not_found() => LabError::NotFound(said),
             _ if error.is_setup() => LabError::Setup(said),
-            E::OtherRun { .. } | E::Search { .. } | E::Order { .. } => LabError::Invalid(said),
+            E::OtherRun { .. } | E::Search { .. } | E::Order { .. } | E::TokenExists(_) => LabError::Invalid(said),
             E::RunOver { .. } | E::EffectUsed { .. } => LabError::Conflict(said),
             E::Held | E::DiskFull => LabError::Busy(said),
             _ => LabError::Internal(said),

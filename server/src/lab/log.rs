@@ -35,7 +35,7 @@ impl Lab {
         for bench in &self.inner.benches {
             let record = store.safety(bench.name(), u32::MAX).await?;
             log.extend(record.into_iter().map(|entry| of_bench(bench.name(), entry)));
-            let applied = store.calibrations(bench.name(), u32::MAX).await?;
+            let applied = store.calibrations(bench.name()).await?;
             log.extend(applied.into_iter().map(|entry| applied_to(bench.name(), entry)));
         }
         log.extend(self.token_log().await?);

@@ -27,7 +27,7 @@ impl Store {
 
     /// Appends a step, numbers it and tells when. `step` is an object.
     pub async fn append_autopilot_step(&self, autopilot: i64, mut step: Value) -> Result<Value, StoreError> {
-        let mut writer = self.writer.begin().await?;
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         let last: i64 =
             sqlx::query_scalar("SELECT COALESCE(MAX(sequence), 0) FROM autopilot_steps WHERE autopilot = ?")
                 .bind(autopilot)

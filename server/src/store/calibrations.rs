@@ -8,10 +8,10 @@ use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
 
 impl Store {
-    /// The newest entries of a bench, newest first. A damaged one applies no run, and who applied it says what is wrong with it.
-    pub async fn calibrations(&self, bench: &str, limit: u32) -> Result<Vec<CalibrationRecord>, StoreError> {
-        let query = "SELECT * FROM calibrations WHERE bench = ? ORDER BY id DESC LIMIT ?";
-        let rows = sqlx::query(query).bind(bench).bind(limit).fetch_all(&self.readers).await?;
+    /// All entries of a bench, newest first. A damaged one applies no run, and who applied it says what is wrong with it.
+    pub async fn calibrations(&self, bench: &str) -> Result<Vec<CalibrationRecord>, StoreError> {
+        let query = "SELECT * FROM calibrations WHERE bench = ? ORDER BY id DESC";
+        let rows = sqlx::query(query).bind(bench).fetch_all(&self.readers).await?;
         let damaged = |row: &SqliteRow, fault: StoreError| CalibrationRecord {
             id: row.try_get("id").unwrap_or_default(),
             procedure: row.try_get("procedure").unwrap_or_default(),

@@ -28,6 +28,10 @@ pub enum StoreError {
     Held,
     #[error("run {run}: commit {number} was never stored")]
     CommitMissing { run: RunId, number: u64 },
+    #[error("name: {0} already exists, choose another name")]
+    TokenExists(String),
+    #[error("token {0} does not exist or is already revoked")]
+    NoToken(i64),
     #[error("there is no run {0}")]
     NoRun(RunId),
     #[error("search term {term}: {what}")]
@@ -92,7 +96,13 @@ impl StoreError {
         use StoreError as E;
         matches!(
             self,
-            E::NoRun(_) | E::NoModel(_) | E::NoDiagnosis(_) | E::NoEffect(_) | E::NoAutopilot(_) | E::NoChannel { .. }
+            E::NoRun(_)
+                | E::NoToken(_)
+                | E::NoModel(_)
+                | E::NoDiagnosis(_)
+                | E::NoEffect(_)
+                | E::NoAutopilot(_)
+                | E::NoChannel { .. }
         )
     }
 }

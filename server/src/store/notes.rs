@@ -25,7 +25,7 @@ impl Store {
 
     /// Keeps a note, about a moment of the run where one is given.
     pub async fn save_note(&self, run: RunId, at_s: Option<f64>, text: &str) -> Result<NoteRecord, StoreError> {
-        let mut writer = self.writer.begin().await?;
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         exists(&mut writer, run).await?;
         let created_at = now();
         let cells = [run.into(), at_s.into(), text.into(), (&created_at).into()];
@@ -44,7 +44,7 @@ impl Store {
 
     /// The run has these tags from now on, and no others.
     pub async fn set_tags(&self, run: RunId, tags: &[String]) -> Result<(), StoreError> {
-        let mut writer = self.writer.begin().await?;
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         exists(&mut writer, run).await?;
         sqlx::query("DELETE FROM tags WHERE run = ?").bind(run).execute(&mut *writer).await?;
         for tag in tags {

@@ -33,16 +33,24 @@ impl Store {
         Ok(sqlx::query_as(query).fetch_all(&self.readers).await?)
     }
 
+    /// In a transaction: the row comes before the commit, which may fail.
     pub async fn save_token(&self, name: &str, access: &str, hash: &[u8], by: &str) -> Result<TokenRecord, StoreError> {
-        let row =
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        let saved =
             sqlx::query("INSERT INTO tokens (name, access, hash, made_at, made_by) VALUES (?, ?, ?, ?, ?) RETURNING *")
                 .bind(name)
                 .bind(access)
                 .bind(hash)
                 .bind(now())
                 .bind(by)
-                .fetch_one(&self.writer)
-                .await?;
+                .fetch_one(&mut *writer)
+                .await;
+        let is_taken = |fault: &sqlx::Error| fault.as_database_error().is_some_and(|fault| fault.is_unique_violation());
+        let row = match saved {
+            Err(fault) if is_taken(&fault) => return Err(StoreError::TokenExists(name.to_owned())),
+            saved => saved?,
+        };
+        writer.commit().await?;
         record(&row)
     }
 
@@ -53,12 +61,8 @@ impl Store {
     }
 
     pub async fn revoke_token(&self, id: i64, by: &str) -> Result<(), StoreError> {
-        sqlx::query("UPDATE tokens SET revoked_at = ?, revoked_by = ? WHERE id = ?")
-            .bind(now())
-            .bind(by)
-            .bind(id)
-            .execute(&self.writer)
-            .await?;
-        Ok(())
+        let query = "UPDATE tokens SET revoked_at = ?, revoked_by = ? WHERE id = ? AND revoked_at IS NULL";
+        let done = sqlx::query(query).bind(now()).bind(by).bind(id).execute(&self.writer).await?;
+        if done.rows_affected() == 0 { Err(StoreError::NoToken(id)) } else { Ok(()) }
     }
 }

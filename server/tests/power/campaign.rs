@@ -63,6 +63,7 @@ async fn campaign(store: &Store) -> Result<(), StoreError> {
         .await?;
     }
     attempt("note", async || store.save_note(run, None, "smells of ozone").await).await?;
+    attempt("token", async || store.save_token("ci", "read", &[7; 32], "local").await).await?;
     attempt("block", async || store.block_bench(BENCH, Some(run), "cover open").await).await?;
     attempt("calibration", async || store.calibrate(BENCH, "brake", Some(run), "local").await).await?;
     attempt("end", async || store.commit(run, RunState::Completed, &[], Trace::default()).await).await
@@ -98,6 +99,7 @@ pub struct Acknowledged {
     runs: usize,
     commits: usize,
     notes: usize,
+    tokens: usize,
     blocks: usize,
     calibrations: usize,
     ends: usize,
@@ -112,6 +114,7 @@ impl Acknowledged {
                 "run" => told.runs += 1,
                 "commit" => told.commits += 1,
                 "note" => told.notes += 1,
+                "token" => told.tokens += 1,
                 "block" => told.blocks += 1,
                 "calibration" => told.calibrations += 1,
                 "end" => told.ends += 1,
@@ -147,8 +150,9 @@ pub fn check(folder: &Path, told: &Acknowledged, how: &str) {
         among(ended, told.ends, 1);
         let notes = runs.iter().filter(|run| run.note.is_some()).count();
         among(notes, told.notes, 1);
+        among(store.tokens().await.unwrap().len(), told.tokens, 1);
         among(store.safety(BENCH, 99).await.unwrap().len(), told.blocks, ATTEMPTS);
-        among(store.calibrations(BENCH, 99).await.unwrap().len(), told.calibrations, ATTEMPTS);
+        among(store.calibrations(BENCH).await.unwrap().len(), told.calibrations, ATTEMPTS);
         let report = verify(folder).await.unwrap();
         assert!(report.is_whole(), "{how}: {report:?}");
         store.close().await;

@@ -55,7 +55,7 @@ impl<'p> Findings<'p> {
         // The reversals of a joint are events of every repeat.
         let events = match prepared.kind {
             Kind::Friction => Vec::new(),
-            _ => Events::of(&prepared.main, &selected.residual).find(),
+            _ => Events::of(&prepared.main, &selected.residual).without_jumps(&selected.now).find(),
         };
         let remembers = selected.now.contains("hysteresis");
         let floor = noise_floor::noise_floor(prepared, &selected.residual, remembers, &events);

@@ -3,7 +3,9 @@
 //! No function of any axis predicts them, and in the difference of two repeats they look like noise. What tells them is that a
 //! few moments lie far out of what all the others scatter by, and that no repeat of the same moment does.
 
+use crate::effect::ShapeSearch;
 use crate::preprocess::Problem;
+use crate::regression::linear_model::LinearModel;
 use crate::signal::Signal;
 use crate::thresholds::EVENT_ERRORS;
 use std::collections::HashMap;
@@ -50,6 +52,17 @@ impl<'p> Events<'p> {
             is_out[row.saturating_sub(BESIDE)..(row + BESIDE).min(residual.len())].fill(true);
         }
         Self { problem, residual: residual.to_vec(), is_out, repeats }
+    }
+
+    /// A mean over the moment of a jump of the model holds both of its sides.
+    pub fn without_jumps(mut self, model: &LinearModel) -> Self {
+        let time = self.problem.view.get(Signal::Time);
+        let shapes = model.terms.iter().flat_map(|term| term.form.shape.iter().zip(&term.shape));
+        for (_, at_s) in shapes.filter(|(shape, _)| shape.search == ShapeSearch::Jump) {
+            let after = time.partition_point(|t| t < at_s);
+            self.is_out[after.saturating_sub(1)..(after + 1).min(time.len())].fill(true);
+        }
+        self
     }
 
     /// The events, the largest first.
