@@ -10,7 +10,7 @@ use std::time::Duration;
 pub const FOLDER: &str = "JOINTBENCH_POWER_FOLDER";
 pub const LIMIT: &str = "JOINTBENCH_POWER_LIMIT";
 /// Steps of a campaign that are acknowledged: a run, its commits, three records, its end.
-pub const STEPS: usize = 1 + COMMITS + 3 + 1;
+pub const STEPS: usize = 1 + COMMITS + 4 + 1;
 const COMMITS: usize = 8;
 /// The sixth commit fills a block.
 const ROWS: usize = 6_000;

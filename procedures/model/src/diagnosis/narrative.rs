@@ -10,7 +10,7 @@ use crate::residual_analysis::lack_of_fit;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::Left;
 use crate::selection::removal::{RemovalReason, Withdrawn};
-use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, TOLD_LOSS};
+use crate::thresholds::{NOTHING_IN_COMMON, PRACTICAL_SHARE, SECOND_AXIS_GAIN, SMALL_REDUCTION, TOLD_LOSS};
 use crate::words::{Scale, figure, list, percent, spoken_axis};
 use crate::{Fit, Options};
 
@@ -35,8 +35,14 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
         Ok(Regime::Transient) => "on ramps",
         _ => "around reversals",
     };
-    let gain = if with == error {
-        format!("It acts {place}. At steady state the validation error is {error} with it and without it; {floor}.")
+    let is_transient = found.start.spec.find(effect).is_ok_and(|e| e.regime() != Regime::SteadyState);
+    let is_apart = is_transient && first.validation_rms > (1.0 - SMALL_REDUCTION) * fit.validation_rms;
+    let gain = if is_apart {
+        format!(
+            "It acts {place}, where it reduces the error by {}; at steady state the validation error is {with} with it and \
+             {error} without it; {floor}.",
+            percent(first.error_reduction)
+        )
     } else {
         format!("Adding {effect} reduces the validation error from {error} to {with}{all}; {floor}.")
     };
@@ -214,7 +220,7 @@ fn structure(found: &Findings, end: &Fit, shown: Option<&PairMap>) -> String {
     }
     match shown_over(found, shown) {
         Some((axes, share)) => format!(
-            "it is largest over {}, and a function of that would remove {} of the remaining squared error ({error}{repeats})",
+            "it is largest over {}, and a function of that would remove {} of the remaining squared error (now {error} RMS{repeats})",
             list(&axes.iter().map(|axis| spoken_axis(axis, found.start.prepared.kind)).collect::<Vec<_>>()),
             percent(share),
         ),
@@ -297,7 +303,7 @@ fn impossible(fits: &[&Fit]) -> Option<String> {
 fn unexplained(found: &Findings) -> &'static str {
     let is_refused = found.decided.as_ref().is_some_and(|decided| !decided.refused.is_empty());
     match undetermined(found).next().is_some() || is_refused {
-        true => "No effect of the library certainly explains it.",
+        true => "No effect of the library explains it with certainty.",
         false => "No effect of the library explains it.",
     }
 }

@@ -74,8 +74,8 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Proble
         procedure: bid.choice.procedure.clone(),
         parameters: bid.choice.parameters.clone(),
         why: format!(
-            "that run would show {} of a size that the data so far could not show: {worth} would stand out by at least {:.1} \
-             standard deviations{}",
+            "it would make {} detectable, which the data so far could not show: {worth} would be at least {:.1} standard \
+             deviations{}",
             list(&effects),
             bid.z.min(100.0),
             bid.choice.provided(),
