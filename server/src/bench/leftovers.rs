@@ -14,6 +14,10 @@ use std::sync::Arc;
 
 const FOLDER: &str = "unstored";
 const ENDING: &str = "msgpack";
+/// Of a file that is being written.
+const UNFINISHED: &str = "part";
+const LOST_STOP: &str =
+    "a file in the folder unstored is damaged or unfinished; a stop may be lost: inspect the bench before the reset";
 /// Of a file that holds what no run takes: kept for a person to look at, never read again.
 const NO_PLACE: &str = "no-place";
 
@@ -50,7 +54,7 @@ fn write(folder: &Path, left: &Leftovers) -> io::Result<PathBuf> {
     send(&mut body, left)?;
     let stamp = Timestamp::now().strftime("%Y%m%dT%H%M%S%6fZ");
     let path = folder.join(format!("{}-{stamp}.{ENDING}", file_name(&left.bench)));
-    let unfinished = path.with_extension("part");
+    let unfinished = path.with_extension(UNFINISHED);
     let mut file = File::create(&unfinished)?;
     file.write_all(&Sha256::digest(&body))?;
     file.write_all(&body)?;
@@ -70,18 +74,20 @@ fn read(path: &Path) -> io::Result<Leftovers> {
     receive(&mut &*body)?.ok_or_else(damaged)
 }
 
-/// Stores what workers have left in the data folder. A file that is damaged stays where it is, and is told; so does one with
-/// commits that no run takes, under another ending.
+/// Stores what workers have left in the data folder. A file with commits that no run takes is set aside under another ending;
+/// so is one that is damaged or was never finished, behind which a stop may be lost: the benches are blocked.
 ///
 /// # Errors
 /// Where the store refuses; the file stays for the next start.
 pub async fn store_all(data: &Path, store: &Store) -> Result<(), StoreError> {
     let Ok(found) = fs::read_dir(data.join(FOLDER)) else { return Ok(()) };
     let mut files: Vec<PathBuf> = found.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    files.retain(|path| path.extension().is_some_and(|ending| ending == ENDING));
+    files.retain(|path| path.extension().is_some_and(|ending| ending == ENDING || ending == UNFINISHED));
     files.sort();
     for path in files {
-        match read(&path) {
+        let finished = path.extension().is_some_and(|ending| ending == ENDING);
+        let left = if finished { read(&path) } else { Err(ErrorKind::UnexpectedEof.into()) };
+        match left {
             Ok(left) => {
                 let done = match store_one(left, store).await? {
                     true => fs::remove_file(&path),
@@ -91,7 +97,13 @@ pub async fn store_all(data: &Path, store: &Store) -> Result<(), StoreError> {
                     tracing::warn!(file = %path.display(), %fault, "stored, but not removed");
                 }
             }
-            Err(fault) => tracing::error!(file = %path.display(), %fault, "what a worker has left cannot be read"),
+            Err(fault) => {
+                tracing::error!(file = %path.display(), %fault, "what a worker has left cannot be read");
+                store.block_benches(LOST_STOP).await?;
+                if let Err(fault) = fs::rename(&path, path.with_extension(NO_PLACE)) {
+                    tracing::warn!(file = %path.display(), %fault, "not set aside");
+                }
+            }
         }
     }
     Ok(())
@@ -161,5 +173,20 @@ mod tests {
         assert_eq!(left[0].extension().unwrap(), NO_PLACE);
         assert_eq!(read(&left[0]).unwrap().entries.len(), 2, "nothing of it is lost");
         store_all(data.path(), &store).await.unwrap();
+    }
+
+    #[tokio::test]
+    async fn a_file_that_was_never_finished_blocks_the_benches_once() {
+        let data = tempfile::tempdir().unwrap();
+        let store = Store::open(data.path()).await.unwrap();
+        store.block_bench("a", None, "stop").await.unwrap();
+        let count = async || store.safety("a", 99).await.unwrap().len();
+        fs::create_dir_all(data.path().join(FOLDER)).unwrap();
+        fs::write(data.path().join(FOLDER).join("a-1.part"), b"cut").unwrap();
+        store_all(data.path(), &store).await.unwrap();
+        assert_eq!(count().await, 2);
+        assert_eq!(store.safety("a", 1).await.unwrap()[0].reason, LOST_STOP);
+        store_all(data.path(), &store).await.unwrap();
+        assert_eq!(count().await, 2, "it is set aside");
     }
 }

@@ -242,13 +242,7 @@ pub(super) async fn look_back(database: &mut SqliteConnection, folder: &Path) ->
         .await?;
     // No number is given twice.
     sqlx::query("UPDATE store_log SET changes = ?").bind(loss.last).execute(&mut *writer).await?;
-    let benches: Vec<String> =
-        sqlx::query_scalar("SELECT bench FROM bench_safety UNION SELECT bench FROM runs WHERE procedure <> 'import'")
-            .fetch_all(&mut *writer)
-            .await?;
-    for bench in benches {
-        super::safety::block(&mut writer, &bench, &reason(&loss)).await?;
-    }
+    super::safety::block_all(&mut writer, &reason(&loss)).await?;
     writer.commit().await?;
     Ok(Some(loss))
 }

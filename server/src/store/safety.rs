@@ -61,6 +61,13 @@ impl Store {
         Ok(writer.commit().await?)
     }
 
+    /// Blocks every bench that the store knows, where a stop may be lost.
+    pub async fn block_benches(&self, reason: &str) -> Result<(), StoreError> {
+        let mut writer = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        block_all(&mut writer, reason).await?;
+        Ok(writer.commit().await?)
+    }
+
     pub async fn block_bench(&self, bench: &str, run: Option<RunId>, reason: &str) -> Result<(), StoreError> {
         enter(&mut *self.writer.acquire().await?, bench, Word::Block, run, reason, None).await
     }
@@ -157,6 +164,18 @@ async fn insert(writer: &mut SqliteConnection, bench: &str, record: &SafetyRecor
 /// Blocks a bench for a reason of the store's own.
 pub(super) async fn block(writer: &mut SqliteConnection, bench: &str, reason: &str) -> Result<(), StoreError> {
     enter(writer, bench, Word::Block, None, reason, None).await
+}
+
+/// The same for every bench that the store knows.
+pub(super) async fn block_all(writer: &mut SqliteConnection, reason: &str) -> Result<(), StoreError> {
+    let benches: Vec<String> =
+        sqlx::query_scalar("SELECT bench FROM bench_safety UNION SELECT bench FROM runs WHERE procedure <> 'import'")
+            .fetch_all(&mut *writer)
+            .await?;
+    for bench in benches {
+        block(writer, &bench, reason).await?;
+    }
+    Ok(())
 }
 
 /// Keeps what securing has reached with the run, and blocks the bench where that is not known to be safe.
