@@ -46,7 +46,12 @@ fn check_presses(entries: &[Value], history: &History, outcome: &mut Outcome) {
     for (by, possible) in possible {
         let found = pressed_by(by).len();
         if found > possible {
-            outcome.doubled(format!("{found} presses of {by}, who pressed {possible} times"));
+            let stops = history.operations.iter().filter(|one| one.kind == Kind::Stop && one.client == by);
+            let sent: Vec<_> = stops.map(|stop| (stop.sent_s, stop.ended_s, &stop.outcome)).collect();
+            outcome.doubled(format!(
+                "{found} presses of {by}, who pressed {possible} times: recorded at {:?}, sent {sent:?}",
+                pressed_by(by)
+            ));
         }
     }
 }
