@@ -23,9 +23,9 @@ impl Request {
         Self { method: "GET", path: path.into(), content_type: String::new(), body: String::new() }
     }
 
-    /// Without a body: a server need not wait for one before it answers.
-    pub fn delete(path: impl Into<String>) -> Self {
-        Self { method: "DELETE", ..Self::get(path) }
+    /// Without a body: one that is broken off after its head may be carried out all the same.
+    pub fn bare(method: &'static str, path: impl Into<String>) -> Self {
+        Self { method, ..Self::get(path) }
     }
 
     pub fn json(method: &'static str, path: impl Into<String>, body: &Value) -> Self {

@@ -85,7 +85,7 @@ impl Actor {
                 let body = json!({ "bench": BENCH, "procedure": "friction", "parameters": {} });
                 (Kind::Start, Request::post("/runs", &body))
             }
-            18..28 => (Kind::Stop, Request::post(format!("/bench/{BENCH}/stop"), &json!({}))),
+            18..28 => (Kind::Stop, Request::bare("POST", format!("/bench/{BENCH}/stop"))),
             28..44 => {
                 let request = Request::post(format!("/bench/{BENCH}/acknowledge"), &json!({ "reason": word }));
                 (Kind::Acknowledge { reason: word }, request)
@@ -119,7 +119,9 @@ impl Actor {
 
     fn revoke(&mut self, word: String) -> (Kind, Request) {
         match self.tokens.pop() {
-            Some((id, name, secret)) => (Kind::Revoke { name, secret }, Request::delete(format!("/tokens/{id}"))),
+            Some((id, name, secret)) => {
+                (Kind::Revoke { name, secret }, Request::bare("DELETE", format!("/tokens/{id}")))
+            }
             None => self.note(word),
         }
     }
