@@ -151,11 +151,11 @@ const CORRECT_ALL: &str =
 /// What a user has to correct before anything else counts: columns that contradict each other, a size that contradicts physics in all
 /// of the fits, and what the model takes as given and the run shows as a constant, which may not have been connected.
 fn attention(found: &Findings, fits: &[&Fit]) -> String {
-    let told = |what: &String| format!("Data problem: {what}. ");
+    let problem = |what: &String| format!("Data problem: {what}. ");
     let clashes = &found.start.prepared.clashes;
     let correct = || if clashes.void.is_empty() { CORRECT } else { CORRECT_ALL }.to_owned();
     let correct = (!clashes.is_empty()).then(correct);
-    let clashes = clashes.all().map(told).chain(correct);
+    let clashes = clashes.all().map(problem).chain(correct);
     let impossible = impossible(fits).map(|what| format!("Implausible: {what}. "));
     let spec = found.start.spec;
     let view = &found.start.main.problem.view;

@@ -183,8 +183,8 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         }
         let bid = together.or(first);
         if let Some(bid) = bid {
-            let tells = format!("distinguish {effect} from {}", list(&apart));
-            let mut next = told(bid, &tells, std::iter::once(effect).chain(&apart));
+            let question = format!("distinguish {effect} from {}", list(&apart));
+            let mut next = told(bid, &question, std::iter::once(effect).chain(&apart));
             next.why.extend(
                 vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")),
             );

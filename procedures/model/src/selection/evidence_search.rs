@@ -208,7 +208,7 @@ fn candidates<'l, 'p>(
     all
 }
 
-/// Columns of the form error beside a model that nothing holds near zero.
+/// Nuisance columns of a model that the ridge does not shrink.
 fn free_error<'a>(now: &'a TwoStageModel, solution: &'a Solution) -> impl Iterator<Item = &'a ErrorColumn> {
     let columns = now.main.problem.form_error.as_deref().map_or(&[][..], |form_error| &form_error.columns);
     solution.error.iter().filter_map(|(at, _)| columns.get(*at)).filter(|column| !column.lives.shrinks())
