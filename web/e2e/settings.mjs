@@ -8,7 +8,7 @@ const PATIENCE_MS = 30_000;
 export async function makeAndRevoke(page, another, base) {
 	await page.goto(`${base}/settings`);
 	await page.getByLabel('Name of the token').fill('wall screen');
-	await page.getByRole('button', { name: 'Make a token' }).click();
+	await page.getByRole('button', { name: 'Create a token' }).click();
 	const secret = await page.getByText('shown this once').locator('code').innerText({ timeout: PATIENCE_MS });
 	await audit(page, 'a token that was made');
 	const guest = await another();

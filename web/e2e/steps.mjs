@@ -185,15 +185,15 @@ export async function openWorkbench(another, address) {
 export async function firstUse(page, base) {
 	const answer = await page.goto(base);
 	await page.getByText('No run yet. Start a procedure, or bring a measurement.').waitFor({ timeout: 30_000 });
-	await page.getByRole('button', { name: 'Make a demo run' }).waitFor({ timeout: 30_000 });
+	await page.getByRole('button', { name: 'Start a demo run' }).waitFor({ timeout: 30_000 });
 	await page.waitForFunction(() => document.querySelector('.go button:enabled'), null, { timeout: 30_000 });
 	const jumps = await jumpsOf(page);
 	const started = page.waitForRequest((request) => request.method() === 'POST' && request.url().endsWith('/runs'), { timeout: 1000 });
 	await page.locator('.fields input').first().press('Enter');
 	expect(await started.then(() => false, () => true), 'Enter in a field starts the bench, which only its button may');
 	await page.goto(`${base}/live`);
-	await page.getByRole('link', { name: 'Make a demo run' }).click();
-	await page.getByRole('button', { name: 'Make a demo run' }).click();
+	await page.getByRole('link', { name: 'Start a demo run' }).click();
+	await page.getByRole('button', { name: 'Start a demo run' }).click();
 	await page.waitForURL(/\/runs\/\d+/, { timeout: 30_000 }).catch(() => expect(false, 'the demo run does not start where it is pressed'));
 	await page.getByRole('link', { name: 'Open in the workbench' }).waitFor({ timeout: RUN_MS });
 	return { jumps, policy: answer.headers()['content-security-policy'] ?? '' };
@@ -405,7 +405,7 @@ export async function writeEffect(page, run) {
 	expect((await form.locator('mark').count()) === 1, 'nothing is marked in the formula');
 	await form.getByLabel('name', { exact: true }).fill(name);
 	await formula.fill('a * direction');
-	await form.getByRole('button', { name: 'Make a a parameter' }).click();
+	await form.getByRole('button', { name: 'Declare a as a parameter' }).click();
 	const keep = form.getByRole('button', { name: 'Keep and add' });
 	await keep.click();
 	await form.getByText('Confounded with Coulomb friction').waitFor({ timeout: FIT_MS }).catch(() => expect(false, 'an effect that is another one is kept without a word'));

@@ -117,6 +117,28 @@ impl Column {
         self.found.append(found, rows);
     }
 
+    /// Without the rows from this one on.
+    pub fn truncate(&mut self, rows: usize) {
+        let found = &mut self.found;
+        found.wrong.retain(|cell| cell.row < rows);
+        let gone = found.wrong_rows.split_off(found.wrong_rows.partition_point(|row| *row < rows));
+        let values = self.values.split_off(rows.min(self.values.len()));
+        let empty = values.iter().filter(|value| value.is_nan()).count() - gone.len();
+        found.missing -= empty;
+        found.first_missing = found.first_missing.take().filter(|cell| cell.row < rows);
+        found.numbers = found.numbers.saturating_sub(values.len() - empty - gone.len());
+    }
+
+    /// Takes cells of this value as empty.
+    pub fn empty(&mut self, code: f64) {
+        for (row, value) in self.values.iter_mut().enumerate().filter(|(_, value)| **value == code) {
+            *value = f64::NAN;
+            self.found.missing += 1;
+            self.found.numbers = self.found.numbers.saturating_sub(1);
+            self.found.first_missing.get_or_insert_with(|| Cell { row, text: String::new() });
+        }
+    }
+
     /// Nothing for a model.
     pub fn is_words(&self) -> bool {
         self.content == Content::Words || self.found.wrong_rows.len() > self.found.numbers + self.found.truths

@@ -30,7 +30,8 @@ pub fn proposals(run: &RunTable) -> Vec<Note> {
     let (speed, angle) = motion(run.kind());
     // A wrapped angle has no slope.
     let slope = if wrapped.is_empty() { slope(run, speed, angle) } else { None };
-    wrapped.into_iter().chain(slope).collect()
+    let power = if wrapped.is_empty() && slope.is_none() { taken_power(run) } else { None };
+    wrapped.into_iter().chain(slope).chain(power).collect()
 }
 
 /// A velocity, and the angle whose slope it is.
@@ -83,6 +84,24 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     let said =
         format!("{name} leaps by {mean:.3} rad {} times, as an angle that begins anew after a turn", leaps.len());
     Some(Note::with(said, format!("--unwrap {name}{period}")))
+}
+
+/// Share of the work that the motor gives or takes, above which it only takes.
+const TAKES: f64 = 0.8;
+
+/// A motor that moves a joint against friction gives work. One that only takes it has a current of the other sign, or
+/// something else drives the joint.
+fn taken_power(run: &RunTable) -> Option<Note> {
+    if run.kind() != Kind::Friction || run.column("link_torque_nm").is_some() {
+        return None;
+    }
+    let (angles, currents) = (run.column("motor_position_rad")?, run.column("motor_current_a")?);
+    let work = |row: usize| 0.5 * (currents[row] + currents[row - 1]) * (angles[row] - angles[row - 1]);
+    let (sum, both) = (1..angles.len()).map(work).fold((0.0, 0.0), |(sum, both), work| (sum + work, both + work.abs()));
+    (sum < -TAKES * both).then(|| {
+        let said = "motor_current_a opposes nearly all motion, and a motor drives its joint: perhaps it has the other sign";
+        Note::with(said, "--scale motor_current_a=-1")
+    })
 }
 
 /// Rows over which a slope is taken.
@@ -153,6 +172,21 @@ mod tests {
         assert!(told(1.0, 57.29578).unwrap().ends_with("(--unit motor_position_rad=deg)"));
         assert!(told(0.02, 1.0).unwrap().contains("other side of the gear"));
         assert_eq!(told(1.5, 1.0), None, "no unit is like that");
+    }
+
+    #[test]
+    fn a_motor_that_only_takes_work_has_a_current_of_the_other_sign() {
+        let names = ["time_s", "motor_position_rad", "motor_current_a"];
+        let run = |sign: f64| {
+            let mut trace = Trace::new(names.map(Channel::new).to_vec());
+            for row in 0..2000 {
+                let t = f64::from(row) * 0.005;
+                trace.push_row(&[t, 20.0 * t.sin(), sign * (0.5 * t.cos().signum() - 0.05 * t.sin())]);
+            }
+            RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap()
+        };
+        assert_eq!(proposals(&run(1.0)), []);
+        assert_eq!(proposals(&run(-1.0))[0].option.as_deref(), Some("--scale motor_current_a=-1"));
     }
 
     #[test]

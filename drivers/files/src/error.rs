@@ -1,18 +1,19 @@
 //! Why a file is refused, and where in it.
 
+use crate::note::shell;
 use crate::text::Decimal;
-use jointbench_instrument::TableFault;
+use jointbench_instrument::{Kind, TableFault};
 use std::{fmt, io};
 
 /// So many wrong rows are told of, beside how many there are.
 pub(crate) const TOLD_ROWS: usize = 5;
 
+/// A word that stands for an empty cell has so many letters at most.
+const CODE: usize = 12;
+
 /// A file that is refused: where, and what was expected.
 #[derive(Debug, thiserror::Error)]
-#[error(
-    "{place}: {fault}{}",
-    if fault.is_of_empty_cells() { "; use --leave-empty-rows to omit rows with empty cells" } else { "" }
-)]
+#[error("{}{}", self.cause(), self.remedy())]
 pub struct FileError {
     pub place: Box<Place>,
     #[source]
@@ -69,26 +70,27 @@ pub enum FileFault {
         /// Columns with empty cells, and how many rows have none; empty where there are none.
         gaps: String,
     },
-    #[error(
-        "numbers stand where the line of column names is expected, in {columns} columns: write it above them, or name them with \
-         --names, such as --names {proposed}"
-    )]
-    NoNames { columns: usize, proposed: String },
+    #[error("numbers stand where the line of column names is expected; a {kind} run needs {}", kind.required_columns().join(", "))]
+    NoNames { kind: Kind, options: Vec<String> },
     /// What cannot be decided from the file, and the options that decide it.
-    #[error("{said}. Use {}", .options.join(" or "))]
+    #[error("{said}")]
     Choice { said: String, options: Vec<String> },
     /// A time that does not rise, what it looks like, and the options that mend it.
-    #[error("{fault}; {said}. Use {}", .options.join(" or "))]
+    #[error("{fault}; {said}")]
     Time { fault: TableFault, said: String, options: Vec<String> },
     /// What the file seems to hold under other names.
-    #[error("{fault}; {said}: {}", .options.join(" "))]
+    #[error("{fault}; {said}")]
     Proposed { fault: TableFault, said: &'static str, options: Vec<String> },
     #[error(
         "expected {expected} values as in the line of column names, found {found}{}",
         if found > expected { ": where numbers have commas, semicolons or tabs stand between the columns" } else { "" }
     )]
     Width { expected: usize, found: usize },
-    #[error("expected a number, found {}{}", shown(.found), other_sign(.found))]
+    #[error(
+        "expected a number, found {}{}",
+        shown(.found),
+        other_sign(.found).map_or_else(String::new, |decimal| format!(": it is one with --decimal NAME={}", decimal.word()))
+    )]
     NotNumber { found: String },
     #[error("expected numbers, found {found}")]
     NotNumeric { found: String },
@@ -143,13 +145,10 @@ fn io_words(fault: &io::Error) -> String {
     }
 }
 
-/// What is a number with the other decimal sign.
-fn other_sign(found: &str) -> String {
+/// The decimal sign with which it is a number.
+fn other_sign(found: &str) -> Option<Decimal> {
     let is_one = |decimal: &Decimal| crate::text::number(found.as_bytes(), *decimal).is_some();
-    match [Decimal::Point, Decimal::Comma].iter().find(|decimal| is_one(decimal)) {
-        Some(decimal) => format!(": it is one with --decimal NAME={}", decimal.word()),
-        None => String::new(),
-    }
+    [Decimal::Point, Decimal::Comma].into_iter().find(is_one)
 }
 
 fn shown(found: &str) -> String {
@@ -161,14 +160,26 @@ fn shown(found: &str) -> String {
 }
 
 impl FileFault {
-    fn is_of_empty_cells(&self) -> bool {
-        match self {
-            Self::NotNumber { found } => crate::text::is_missing(found.as_bytes()),
+    /// What takes cells without a number.
+    fn options_of_cells(&self) -> Vec<String> {
+        let cell = |fault: &Self| if let Self::NotNumber { found } = fault { Some(found.clone()) } else { None };
+        let cells: Option<Vec<String>> = match self {
             Self::Rows { first, more, .. } => {
-                first.is_of_empty_cells() || more.iter().any(|wrong| wrong.fault.is_of_empty_cells())
+                std::iter::once(first.as_ref()).chain(more.iter().map(|wrong| &wrong.fault)).map(cell).collect()
             }
-            _ => false,
+            fault => cell(fault).map(|cell| vec![cell]),
+        };
+        let Some(cells) = cells else { return Vec::new() };
+        let is_short = |cell: &str| cell.chars().count() <= CODE && other_sign(cell).is_none();
+        let mut codes: Vec<&str> = cells.iter().map(|cell| cell.trim()).collect();
+        codes.retain(|cell| !crate::text::is_missing(cell.as_bytes()));
+        codes.sort_unstable();
+        codes.dedup();
+        if !codes.iter().all(|cell| is_short(cell)) {
+            return Vec::new();
         }
+        let codes: String = codes.iter().map(|cell| format!("--missing {} ", shell(cell))).collect();
+        vec![format!("{codes}--leave-empty-rows")]
     }
 
     pub(crate) fn in_file(self, file: &str) -> FileError {
@@ -212,13 +223,28 @@ impl FileError {
         }
     }
 
+    /// Where, and what was expected; without the options that mend it.
+    pub fn cause(&self) -> String {
+        format!("{}: {}", self.place, self.fault)
+    }
+
     /// Options that are proposed, as they are written on the command line.
-    pub fn options(&self) -> &[String] {
+    pub fn options(&self) -> Vec<String> {
         match &self.fault {
             FileFault::Choice { options, .. }
+            | FileFault::NoNames { options, .. }
             | FileFault::Time { options, .. }
-            | FileFault::Proposed { options, .. } => options,
-            _ => &[],
+            | FileFault::Proposed { options, .. } => options.clone(),
+            fault => fault.options_of_cells(),
+        }
+    }
+
+    /// The options as they follow the cause.
+    fn remedy(&self) -> String {
+        match (&self.fault, self.options()) {
+            (_, options) if options.is_empty() => String::new(),
+            (FileFault::Proposed { .. }, options) => format!(": {}", options.join(" ")),
+            (_, options) => format!(". Use {}", options.join(" or ")),
         }
     }
 

@@ -16,6 +16,7 @@ mod facts;
 mod form;
 mod guess;
 mod mat_out;
+mod missing;
 mod naming;
 mod note;
 mod operating_points;

@@ -23,6 +23,8 @@ pub struct ReadOptions {
     pub leave: Vec<String>,
     /// A row with an empty cell stays out, and is a gap in time. How many did is a fact of the run.
     pub leave_empty_rows: bool,
+    /// What stands for an empty cell: words such as `OVLD`, numbers such as `-9999`. `none`: no number does.
+    pub missing: Vec<String>,
     /// Units of the file: (name in the run table, unit).
     pub unit: Vec<(String, Unit)>,
     /// Angles that begin anew after a turn, made continuous: (name in the run table, period in its SI unit).
@@ -86,6 +88,8 @@ pub struct Choices {
     /// Names in the file.
     pub leave: Vec<String>,
     pub leave_empty_rows: bool,
+    /// What stands for an empty cell, such as `-9999`.
+    pub missing: Vec<String>,
     /// Names with commas between.
     pub names: Option<String>,
     /// `point`, `comma` or `name in the file=comma`.
@@ -107,6 +111,7 @@ impl Choices {
             ("unit", &self.unit),
             ("unwrap", &self.unwrap),
             ("leave", &self.leave),
+            ("missing", &self.missing),
             ("decimal", &self.decimal),
         ] {
             parts.extend(list.iter().map(|text| (name, text.clone())));
@@ -135,6 +140,7 @@ impl Choices {
             "unit" => self.unit.push(text),
             "unwrap" => self.unwrap.push(text),
             "leave" => self.leave.push(text),
+            "missing" => self.missing.push(text),
             "decimal" => self.decimal.push(text),
             "rate" => self.rate = number(&text)?,
             "time_from_rate" => self.time_from_rate = number(&text)?,
@@ -158,6 +164,7 @@ impl Choices {
             unwrap: self.unwrap.iter().map(|text| parse_unwrap(text)).collect::<Result<_, _>>()?,
             leave: each(&self.leave),
             leave_empty_rows: self.leave_empty_rows,
+            missing: each(&self.missing),
             names: self.names.iter().flat_map(|names| names.split(',')).map(|name| name.trim().to_owned()).collect(),
             decimal: self.decimal.iter().map(|text| parse_decimal(text)).collect::<Result<_, _>>()?,
             time: self.time()?,

@@ -53,10 +53,10 @@ pub struct PreviewFault {
 impl From<&FileError> for PreviewFault {
     fn from(error: &FileError) -> Self {
         PreviewFault {
-            said: error.to_string(),
+            said: error.cause(),
             line: error.place.line.or(error.place.row),
             column: error.column().map(str::to_owned),
-            options: error.options().to_vec(),
+            options: error.options(),
         }
     }
 }

@@ -4,10 +4,10 @@ use crate::ReadOptions;
 use crate::column::Column;
 use crate::error::{FileError, FileFault, Place, Wrong};
 use crate::guess::unit_of;
-use crate::naming::Named;
+use crate::naming::{Named, known};
 use crate::note::{Note, counted, plural};
 use crate::text::{Decimal, Lines};
-use jointbench_instrument::Meta;
+use jointbench_instrument::{Kind, Meta};
 
 /// A row of another width.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +15,9 @@ pub(crate) struct Odd {
     pub line: u64,
     pub cells: usize,
 }
+
+/// Lines that may stand below the rows.
+const FOOTER_LINES: usize = 20;
 
 #[derive(Debug, Default)]
 pub(crate) struct RawTable {
@@ -26,6 +29,8 @@ pub(crate) struct RawTable {
     pub names_line: u64,
     pub odd: Vec<Odd>,
     pub comments: usize,
+    /// Of a text without a line of names: names to begin with.
+    pub proposed_names: Option<String>,
     pub is_cut: bool,
     /// Rows above which the names stand again.
     pub named_again: Vec<usize>,
@@ -61,12 +66,22 @@ impl RawTable {
 
     /// Names that nobody has given, or given twice, become names of their own.
     pub fn name_all(&mut self) {
-        self.leave_index();
+        match &self.proposed_names {
+            None => self.leave_index(),
+            Some(proposed) => {
+                let said = "no line names the columns: they are called column_1, column_2 and so on";
+                self.notes.push(Note::with(said, format!("--names {proposed}")));
+            }
+        }
+        let is_nameless = self.proposed_names.is_some();
         let mut taken: Vec<String> = Vec::new();
         for (place, column) in self.columns.iter_mut().enumerate() {
             if column.name.is_empty() {
                 column.name = format!("column_{}", place + 1);
-                self.notes.push(Note::new(format!("column {} has no name and is called {}", place + 1, column.name)));
+                if !is_nameless {
+                    let said = format!("column {} has no name and is called {}", place + 1, column.name);
+                    self.notes.push(Note::new(said));
+                }
             }
             if taken.contains(&column.name) {
                 let twice = column.name.clone();
@@ -83,6 +98,12 @@ impl RawTable {
         }
     }
 
+    /// No line names the columns, and nobody has said what one of them is.
+    pub fn is_unnamed(&self, kind: Kind) -> bool {
+        let is_named = |name: &str| name != "time_s" && self.place(name).is_some();
+        self.proposed_names.is_some() && !known(kind).any(is_named)
+    }
+
     /// A first column without a name that counts the rows, as data frames write it.
     fn leave_index(&mut self) {
         let counts = |column: &Column| {
@@ -95,6 +116,27 @@ impl RawTable {
             self.columns.remove(0);
             self.notes.push(Note::with("the first column counts the rows and is omitted", "--names to keep it"));
         }
+    }
+
+    /// Lines below the last row that hold no row, such as a mean or “End of file”. They end the table, where they are few.
+    pub fn leave_footer(&mut self) {
+        let begins_wrong = |row: usize| {
+            let first = self.columns.iter().find(|column| !column.values.is_empty());
+            first.is_some_and(|column| column.found.wrong_rows.binary_search(&row).is_ok())
+        };
+        let end = (0..self.rows).rev().find(|row| !begins_wrong(*row)).map_or(0, |row| row + 1);
+        let Some(last) = end.checked_sub(1).and_then(|row| self.lines.of(row)) else { return };
+        let odd = self.odd.iter().filter(|odd| odd.line > last).count();
+        let count = self.rows - end + odd;
+        // A short table that ends in words is none with a footer.
+        if count == 0 || count > FOOTER_LINES || end < 2 * count {
+            return;
+        }
+        self.columns.iter_mut().for_each(|column| column.truncate(end));
+        self.odd.retain(|odd| odd.line <= last);
+        self.rows = end;
+        let lines = plural(count, "line");
+        self.notes.push(Note::new(format!("{lines} below the last row skipped, from line {}", last + 1)));
     }
 
     pub fn leave(&mut self, options: &ReadOptions) -> Result<(), FileFault> {

@@ -1,6 +1,7 @@
 //! The time of a table: from its column, whatever its unit and clock, or from a rate.
 
 use crate::column::Column;
+use crate::contradiction;
 use crate::error::{FileError, FileFault};
 use crate::guess::Proposal;
 use crate::note::{Note, counted, plural};
@@ -31,6 +32,15 @@ pub(crate) fn settle(
     let stamped = table.place(TIME).map(|place| to_seconds(&mut table.columns[place], meta)).transpose();
     if let Some(note) = stamped.map_err(|fault| fault.at_line(file, table.names_line).in_column(TIME))?.flatten() {
         table.notes.push(note);
+    }
+    let period = options.unwrap.iter().find(|(name, _)| name == TIME).map(|(_, period)| *period);
+    if let Some(place) = table.place(TIME) {
+        let values = &mut table.columns[place].values;
+        match period {
+            Some(period) => contradiction::unwrap(values, period),
+            None if options.time == TimeFrom::Column => refuse_overflow(table, place, file)?,
+            None => {}
+        }
     }
     let order = table.place(TIME).map(|place| Order::of(&table.columns[place].values));
     let starts = order.as_ref().map_or_else(Vec::new, |order| starts(order, &table.named_again));
@@ -169,6 +179,23 @@ fn from_rate(table: &mut RawTable, hz: f64, whence: &str) {
         None => table.columns.insert(0, Column::new(TIME, values)),
     }
     table.notes.push(Note::new(format!("{TIME} counts the rows, {hz} a second, by {whence}")));
+}
+
+/// A counter of 32 bits begins anew after so many ticks.
+const OVERFLOW: f64 = 4_294_967_296.0;
+/// It loses so much of them at least with the step that overflows.
+const LOST: std::ops::RangeInclusive<f64> = 0.99..=1.0;
+
+/// Refuses a time that goes back by the range of a counter of ms, µs or ns.
+fn refuse_overflow(table: &RawTable, place: usize, file: &str) -> Result<(), FileError> {
+    let values = &table.columns[place].values;
+    let back: Vec<usize> = (1..values.len()).filter(|row| values[*row] < values[row - 1]).collect();
+    let is_of = |period: &f64| back.iter().all(|row| LOST.contains(&((values[row - 1] - values[*row]) / period)));
+    let period = [1e-3, 1e-6, 1e-9].map(|tick_s| tick_s * OVERFLOW).into_iter().find(is_of);
+    let (Some(period), Some(row)) = (period, back.first()) else { return Ok(()) };
+    let said = "the time begins anew as a counter of 32 bits does that overflows".to_owned();
+    let fault = FileFault::Choice { said, options: vec![format!("--unwrap {TIME}={period}")] };
+    Err(FileError { place: Box::new(table.located(file, *row)), fault }.in_column(TIME))
 }
 
 /// Rows of one stamp evenly up to the next one.

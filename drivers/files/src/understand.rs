@@ -40,6 +40,7 @@ impl RawTable {
         let in_file = |fault: FileFault| fault.in_file(file);
         self.name_all();
         self.leave(options).map_err(in_file)?;
+        self.settle_missing(file, options)?;
         self.rename(options).map_err(in_file)?;
         let mut notes = std::mem::take(&mut self.notes);
         naming::apply(&mut self.columns, &meta, &mut notes);
@@ -212,7 +213,8 @@ impl RawTable {
             (column.is_unit_open, column.unit) = (false, None);
             column.values.iter_mut().for_each(|value| *value *= factor);
         }
-        for (wanted, period) in &options.unwrap {
+        // The time is made continuous when it is in seconds.
+        for (wanted, period) in options.unwrap.iter().filter(|(wanted, _)| wanted != "time_s") {
             let place = place(self, wanted)?;
             contradiction::unwrap(&mut self.columns[place].values, *period);
         }
@@ -315,6 +317,10 @@ fn refusal(fault: TableFault, file: &str, table: &RawTable, guessed: &[guess::Pr
         place.line = Some(table.names_line);
     }
     let fault = match &fault {
+        TableFault::MissingColumn { kind, .. } if table.is_unnamed(*kind) => {
+            let options = table.proposed_names.iter().map(|proposed| format!("--names {proposed}")).collect();
+            FileFault::NoNames { kind: *kind, options }
+        }
         TableFault::MissingColumn { column, .. } if guessed.iter().any(|one| one.column == *column) => {
             let options = guessed.iter().map(guess::Proposal::option).collect();
             FileFault::Proposed { fault, said: "the file seems to hold it", options }

@@ -29,12 +29,12 @@ fn text_is_refused_where_it_is_wrong() {
     );
     check_refused(
         &with("0,1,2\n\n1,1,fast\n"),
-        "run.csv, line 4, column motor_current_a: expected a number, found “fast”",
+        "run.csv, line 4, column motor_current_a: expected a number, found “fast”. Use --missing fast \
+         --leave-empty-rows",
     );
     check_refused(
         &with("0,1,\n"),
-        "run.csv, line 2, column motor_current_a: expected a number, found nothing; use --leave-empty-rows to omit rows with \
-         empty cells",
+        "run.csv, line 2, column motor_current_a: expected a number, found nothing. Use --leave-empty-rows",
     );
     check_refused(
         &with("0,1,2\r\n1,1\r\n"),
@@ -42,8 +42,7 @@ fn text_is_refused_where_it_is_wrong() {
     );
     check_refused(
         &with("0,1,2\n\r\n1,NaN,2\n"),
-        "run.csv, line 4, column motor_position_rad: expected a number, found “NaN”; use --leave-empty-rows to omit rows with \
-         empty cells",
+        "run.csv, line 4, column motor_position_rad: expected a number, found “NaN”. Use --leave-empty-rows",
     );
     check_refused(
         &with("0,1,2\n1,1,2\n0.5,1,2\n"),
@@ -67,8 +66,8 @@ fn text_is_refused_where_it_is_wrong() {
     );
     check_refused(
         b"0,1.5,2\n0.004,1.6,2\n",
-        "run.csv, line 1: numbers stand where the line of column names is expected, in 3 columns: write it above them, or name \
-         them with --names, such as --names time_s,column_2,column_3",
+        "run.csv, line 1: numbers stand where the line of column names is expected; a friction run needs time_s, \
+         motor_position_rad, motor_current_a. Use --names time_s,column_2,column_3",
     );
     check_refused(
         b"PK\x03\x04\0\0\x08",

@@ -104,7 +104,7 @@ fn rows_with_empty_cells_stay_out_where_that_is_asked_for() {
     // What the table as a whole refuses is told by its line in the file, too.
     assert!(refused(&csv.replace("3,4,x", "2,4,4"), &options).contains("line 5"));
     let silent = ReadOptions { leave_empty_rows: false, ..options.clone() };
-    assert!(refused(csv, &silent).contains("--leave-empty-rows to omit rows"));
+    assert!(refused(csv, &silent).contains("Use --missing x --leave-empty-rows"));
 }
 
 #[test]

@@ -90,6 +90,8 @@ pub struct ImportForm {
     leave: Option<Vec<String>>,
     /// Whether to omit rows with an empty cell (rejected otherwise). The run states their number.
     leave_empty_rows: Option<bool>,
+    /// What stands for an empty cell, such as `OVLD` or `-9999`; `none`: no number does; may be repeated.
+    missing: Option<Vec<String>>,
     /// `column=unit`, such as `motor_position_rad=deg`; may be repeated.
     unit: Option<Vec<String>>,
     /// `column` or `column=period`: an angle that begins anew after a turn is made continuous; may be repeated.

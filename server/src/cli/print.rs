@@ -203,7 +203,7 @@ pub fn suggestions(suggestions: &[Suggestion], present_rms: f64, unit: &str) {
     println!();
     let several = suggestions.len() > 1;
     let beside = if several { " (parameters with all of these in the model)" } else { "" };
-    println!("missing effects, most important first{beside}:");
+    println!("missing effects, most important first{beside}; ΔBIC below 0 favours the effect:");
     for (i, suggestion) in suggestions.iter().enumerate() {
         let (share, rms) = (suggestion.error_reduction, suggestion.validation_rms);
         // Effects of reversals and ramps are judged there, and leave the settled motion as it was.
@@ -255,7 +255,7 @@ fn chance(suggestion: &Suggestion) -> String {
 fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, String) {
     match (low == high, low == 0.0) {
         (true, true) => ("–".to_owned(), "–".to_owned()),
-        (true, false) => (figure(value), "chosen".to_owned()),
+        (true, false) => (figure(value), "discrete".to_owned()),
         (false, _) => {
             let digits = (3..9).find(|digits| rounded(low, *digits) != rounded(high, *digits));
             let (value, low, high) = match digits {
@@ -366,7 +366,7 @@ mod tests {
         assert_eq!(interval(0.0306, 0.0312), "0.03060 … 0.03120");
         assert_eq!(interval(1.000012, 1.000031), "1.00001 … 1.00003");
         assert_eq!(interval(1.2e-7, 1.2000004e-7), "1.2000000e-7 … 1.2000004e-7");
-        assert_eq!((interval(7.0, 7.0), interval(0.0, 0.0)), ("chosen".into(), "–".into()));
+        assert_eq!((interval(7.0, 7.0), interval(0.0, 0.0)), ("discrete".into(), "–".into()));
         assert_eq!(with_interval(0.820308, [0.820307, 0.820309]).0, "0.820308", "inside its interval");
     }
 

@@ -34,8 +34,64 @@ export function without(choices: Choices, part: string, value: string): Choices 
 	return rest.length ? { ...others, [part]: rest } : others;
 }
 
-/** Whether a proposal can be carried out as it stands: `--rate HZ` lacks its number. */
-export const isWhole = (option: string) => parseOption(option).every(([part, value]) => (part !== 'rate' || Number.isFinite(+value)) && !value.includes('counts/N'));
+/** Whether a proposal can be carried out as it stands: `--rate HZ` lacks its number, and names are chosen in the table. */
+export const isWhole = (option: string) => parseOption(option).every(([part, value]) => (part !== 'rate' || Number.isFinite(+value)) && part !== 'names' && !value.includes('counts/N'));
+
+/** Where the time of a table comes from. */
+export type Timing = 'column' | 'rate' | 'spread_time' | 'operating_points';
+const TIMINGS = ['rate', 'time_from_rate', 'spread_time', 'operating_points'];
+
+export function timingOf(choices: Choices): Timing {
+	const part = TIMINGS.find((one) => choices[one]);
+	return part === 'time_from_rate' ? 'rate' : ((part as Timing | undefined) ?? 'column');
+}
+
+/** The time from another place. `rate`: rows a second, which replace the time of the file where it `hasTime`. */
+export function withTiming(choices: Choices, timing: Timing, rate: string, hasTime: boolean): Choices {
+	const others = Object.fromEntries(Object.entries(choices).filter(([part]) => !TIMINGS.includes(part)));
+	if (timing === 'column' || (timing === 'rate' && !rate.trim())) return others;
+	return { ...others, ...(timing === 'rate' ? { [hasTime ? 'time_from_rate' : 'rate']: [rate] } : { [timing]: ['true'] }) };
+}
+
+/** A choice in words: what a button does, and what was done. */
+export function inWords(part: string, value: string): string {
+	const [column, what = ''] = value.includes('=') ? [value.slice(0, value.lastIndexOf('=')), value.slice(value.lastIndexOf('=') + 1)] : [value];
+	switch (part) {
+		case 'map':
+			return `${column} is ${what}`;
+		case 'unit':
+			return `${column} in ${what}`;
+		case 'scale':
+			return `${column} × ${what.replace('-', '−')}`;
+		case 'unwrap':
+			return `make ${column} continuous`;
+		case 'leave':
+			return `omit ${value}`;
+		case 'decimal':
+			return what ? `${column}: decimal ${what}` : `decimal ${value}`;
+		case 'missing':
+			return value === 'none' ? 'no number stands for an empty cell' : `${value} is an empty cell`;
+		case 'rate':
+		case 'time_from_rate':
+			return `${value} rows a second`;
+		case 'spread_time':
+			return 'spread repeated time stamps';
+		case 'operating_points':
+			return 'each row is one operating point';
+		case 'split_runs':
+			return 'several recordings';
+		case 'leave_empty_rows':
+			return 'omit rows with empty cells';
+		default:
+			return `${part.replaceAll('_', ' ')} ${value}`;
+	}
+}
+
+/** A proposed option in words. */
+export const optionInWords = (option: string) =>
+	parseOption(option)
+		.map(([part, value]) => inWords(part, value))
+		.join(', ');
 
 /** What was chosen for a file, to be chosen again for the next one of its shape. */
 export interface Remembered {

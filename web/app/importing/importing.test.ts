@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import type { ImportPreview } from '../api/types';
-import { isWhole, parseOption, recall, remember, withOption, without } from './choices';
+import { isWhole, optionInWords, parseOption, recall, remember, timingOf, withOption, withTiming, without } from './choices';
 import { instructions, unitsOf } from './columns';
 import { unzip } from './unpack';
 
@@ -9,6 +9,21 @@ describe('options that the daemon proposes', () => {
 		expect(parseOption('--spread-time')).toEqual([['spread_time', 'true']]);
 		expect(parseOption("--map 'time_s=Time [ms]' --unit time_s=ms")).toEqual([['map', 'time_s=Time [ms]'], ['unit', 'time_s=ms']]);
 		expect([isWhole('--rate HZ'), isWhole('--rate 200'), isWhole('--split-runs')]).toEqual([false, true, true]);
+	});
+
+	it('are said in words', () => {
+		expect(optionInWords('--missing -9999 --leave-empty-rows')).toBe('-9999 is an empty cell, omit rows with empty cells');
+		expect(optionInWords("--decimal 'I [mA]=comma'")).toBe('I [mA]: decimal comma');
+		expect(optionInWords('--time-from-rate 200')).toBe('200 rows a second');
+		expect(optionInWords('--scale motor_current_a=-1')).toBe('motor_current_a × −1');
+	});
+
+	it('give the time from one place', () => {
+		const counted = withTiming({ spread_time: ['true'], leave: ['remark'] }, 'rate', '200', true);
+		expect([counted, timingOf(counted)]).toEqual([{ leave: ['remark'], time_from_rate: ['200'] }, 'rate']);
+		expect(withTiming(counted, 'rate', '200', false)).toEqual({ leave: ['remark'], rate: ['200'] });
+		expect(withTiming(counted, 'column', '', true)).toEqual({ leave: ['remark'] });
+		expect(timingOf({ operating_points: ['true'] })).toBe('operating_points');
 	});
 
 	it('are taken, exchanged and taken back', () => {

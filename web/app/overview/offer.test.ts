@@ -13,10 +13,10 @@ it('offers first what the bench can make', () => {
 		return offers(all).map((one) => [one.title, one.procedures.map(({ id }) => id).join()]);
 	};
 	expect(told('friction', 'brake_hysteresis')).toEqual([
-		['friction', 'friction,puma_friction'],
+		['friction', 'friction'],
 		['brake', 'brake_hysteresis'],
-		['encoder: not on this bench', 'encoder_delay'],
+		['Not available with the default settings', 'puma_friction,encoder_delay'],
 	]);
 	expect(told('friction', 'encoder_delay')[0]).toEqual(['encoder', 'encoder_delay']);
-	expect(told('puma_friction')[0]).toEqual(['friction', 'puma_friction,friction']);
+	expect(told('puma_friction')[0]).toEqual(['friction', 'puma_friction']);
 });

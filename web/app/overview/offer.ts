@@ -5,14 +5,15 @@ export interface Offer {
 	procedures: Procedure[];
 }
 
-/** Procedures by the kind of run that they bring; what the bench can make comes first, and encoders before all where one is under test. */
+const UNAVAILABLE = 'Not available with the default settings';
+
+/** Procedures by the kind of run, encoders first where one is under test; those that the bench refuses stand apart. */
 export function offers(procedures: readonly Procedure[]): Offer[] {
-	const kinds = [...new Set(procedures.map((one) => one.kind))].map((kind) => {
-		const all = procedures.filter((one) => one.kind === kind);
-		const can = all.filter((one) => !one.refused);
-		return { kind, here: can.length > 0, rank: can.length === 0 ? 2 : kind === 'encoder' ? 0 : 1, procedures: [...can, ...all.filter((one) => one.refused)] };
-	});
-	return kinds
-		.sort((a, b) => a.rank - b.rank)
-		.map(({ kind, here, procedures }) => ({ title: here ? kind : `${kind}: not on this bench`, procedures }));
+	const can = procedures.filter((one) => !one.refused);
+	const kinds = [...new Set(can.map((one) => one.kind))].sort((a, b) => Number(b === 'encoder') - Number(a === 'encoder'));
+	const refused = procedures.filter((one) => one.refused);
+	return [
+		...kinds.map((kind) => ({ title: kind, procedures: can.filter((one) => one.kind === kind) })),
+		...(refused.length ? [{ title: UNAVAILABLE, procedures: refused }] : []),
+	];
 }

@@ -106,7 +106,8 @@ impl Survey {
         let rows: Vec<Vec<Vec<u8>>> = lines.iter().map(|line| cells(line.text, separator)).collect();
         let held: Vec<Vec<Holds>> = rows.iter().map(|row| row.iter().map(|cell| holds(cell)).collect()).collect();
         let mut worth: Vec<(usize, f64)> = Vec::new();
-        for held in held.iter().filter(|held| held.len() > 1) {
+        // A preface stands above: its lines say nothing of the rows.
+        for held in held[held.len() / 2..].iter().filter(|held| held.len() > 1) {
             let filled = held.iter().filter(|one| **one != Holds::Nothing).count() as f64;
             let tell = held.iter().filter(|one| matches!(one, Holds::Number | Holds::Stamp)).count() as f64;
             if tell > 0.0 {
@@ -227,6 +228,9 @@ impl Survey {
         let mut extra = Vec::new();
         // A table of another width is told row by row.
         let width = if words.is_empty() || words.len().abs_diff(self.width) <= 1 { self.width } else { words.len() };
+        // A last name that some rows fill, as a comment, is a column.
+        let is_filled = |row: &Vec<Vec<u8>>| row.len() == words.len() && row.last().is_some_and(|cell| !cell.is_empty());
+        let width = if self.rows[after.min(self.rows.len())..].iter().any(is_filled) { words.len() } else { width };
         while words.len() > width && !rows.is_empty() {
             extra.extend(words.pop().filter(|name| !name.is_empty()));
         }
@@ -238,7 +242,10 @@ impl Survey {
         let width = if !words.is_empty() && words.len() + 1 == width && !is_last_empty { words.len() } else { width };
         let column = |i: usize| {
             let name = words.get(i).cloned().unwrap_or_default();
-            let found = contents.get(i).copied().unwrap_or(Content::Numbers);
+            let found = contents.get(i).copied().unwrap_or_else(|| {
+                let longer = self.rows[after.min(self.rows.len())..].iter().filter_map(|row| row.get(i));
+                content(longer.map(Vec::as_slice))
+            });
             Column {
                 content: if found == Content::Empty && !name.is_empty() { Content::Numbers } else { found },
                 unit: units.get(i).map(|unit| bare_unit(unit)).filter(|unit| !unit.is_empty() && unit != "-"),

@@ -47,8 +47,13 @@ pub(crate) fn read(
     let mut table = table(&layout, options).map_err(|fault| fault.at_line(name, names_line))?;
     table.notes = notes(&layout, &pieces);
     let names: Vec<String> = layout.columns.iter().map(|column| column.name.clone()).collect();
-    let rows =
-        Rows { separator: layout.separator, ways: ways(&layout, &table, options), names, bounds: &options.bounds };
+    let rows = Rows {
+        separator: layout.separator,
+        ways: ways(&layout, &table, options),
+        names,
+        missing: &options.missing,
+        bounds: &options.bounds,
+    };
     let guess = bytes.map_or(0, |bytes| guess_rows(&first, bytes)).min(options.bounds.rows);
     for (column, way) in table.columns.iter_mut().zip(&rows.ways) {
         column.values.reserve(if way.is_left { 0 } else { guess });
@@ -92,8 +97,6 @@ fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> 
             return Err(FileFault::Choice { said, options: vec![format!("--names {}", proposed_names(layout))] });
         }
         options.names.iter().zip(&mut names).for_each(|(given, name)| name.clone_from(given));
-    } else if !is_named {
-        return Err(FileFault::NoNames { columns: layout.width(), proposed: proposed_names(layout) });
     }
     options.bounds.check_columns(&names)?;
     let columns = layout.columns.iter().zip(names).map(|(column, name)| Column {
@@ -106,6 +109,7 @@ fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> 
     Ok(RawTable {
         names_line: layout.names_line.unwrap_or(1),
         decimal: layout.decimal,
+        proposed_names: (!is_named && options.names.is_empty()).then(|| proposed_names(layout)),
         ..RawTable::of_text(columns.collect())
     })
 }
@@ -182,6 +186,7 @@ fn finish(mut table: RawTable, layout: &Layout, name: &str) -> Result<RawTable, 
     let is_kept: Vec<bool> = layout.columns.iter().map(|column| column.content != Content::Empty).collect();
     let mut kept = is_kept.iter();
     table.columns.retain(|_| *kept.next().unwrap_or(&true));
+    table.leave_footer();
     if table.comments > 0 {
         table.notes.push(Note::new(format!("{} between the rows skipped", plural(table.comments, "comment line"))));
     }

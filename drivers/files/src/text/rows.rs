@@ -23,6 +23,8 @@ pub struct Rows<'o> {
     pub separator: Separator,
     pub ways: Vec<Way>,
     pub names: Vec<String>,
+    /// Words that stand for an empty cell.
+    pub missing: &'o [String],
     pub bounds: &'o Bounds,
 }
 
@@ -152,7 +154,7 @@ impl Rows<'_> {
                 return;
             }
             let (values, found) = &mut part.columns[place];
-            values.push(way.read(cell, row, found));
+            values.push(way.read(cell, row, self.missing, found));
         }
         part.lines.push(row, line());
         part.rows += 1;
@@ -165,19 +167,22 @@ impl Rows<'_> {
         named && record.len() == self.names.len() && record.iter().zip(&self.names).all(is_same)
     }
 
-    /// What is more may be empty, and what is less may lack what is always empty.
+    /// What is more may be empty, and what is less may lack what is always empty, or words: a comment stands in some rows
+    /// only.
     fn fits(&self, record: &ByteRecord) -> bool {
         let (found, expected) = (record.len(), self.ways.len());
         match found.cmp(&expected) {
             std::cmp::Ordering::Equal => true,
             std::cmp::Ordering::Greater => record.iter().skip(expected).all(|cell| cell.trim_ascii().is_empty()),
-            std::cmp::Ordering::Less => self.ways[found..].iter().all(|way| way.content == Content::Empty),
+            std::cmp::Ordering::Less => {
+                self.ways[found..].iter().all(|way| matches!(way.content, Content::Empty | Content::Words))
+            }
         }
     }
 }
 
 impl Way {
-    fn read(self, cell: &[u8], row: usize, found: &mut Found) -> f64 {
+    fn read(self, cell: &[u8], row: usize, missing: &[String], found: &mut Found) -> f64 {
         if let Content::Stamps(first) = self.content {
             if let Some(stamp) = stamp::parse(cell) {
                 found.numbers += 1;
@@ -192,6 +197,9 @@ impl Way {
             Some(truth) => {
                 found.truths += 1;
                 return f64::from(u8::from(truth));
+            }
+            None if missing.iter().any(|word| cell.trim_ascii().eq_ignore_ascii_case(word.as_bytes())) => {
+                found.missing(row, cell);
             }
             None => found.wrong(row, cell),
         }

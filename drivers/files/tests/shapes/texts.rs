@@ -150,3 +150,75 @@ fn names_that_are_empty_or_there_twice_are_given() {
     );
     assert!(notes.iter().any(|note| note.said.contains("motor_current_a stands twice")), "{notes:?}");
 }
+
+#[test]
+fn a_table_without_names_is_mapped_by_the_places_of_its_columns() {
+    let bare = "0,1.5,2\n0.004,1.6,2\n0.008,1.7,2\n";
+    refused(bare, &["a friction run needs time_s, motor_position_rad, motor_current_a. Use --names time_s,column_2,column_3"]);
+    let map = ["time_s=column_1", "motor_position_rad=column_2", "motor_current_a=column_3"];
+    let choices =
+        Choices { map: map.map(str::to_owned).to_vec(), unit: vec!["time_s=s".into()], ..Choices::default() };
+    let (run, notes) = take(bare, &choices).unwrap();
+    assert_eq!(run.column("motor_position_rad").unwrap(), [1.5, 1.6, 1.7]);
+    assert_eq!(notes[0].option.as_deref(), Some("--names time_s,column_2,column_3"));
+}
+
+#[test]
+fn codes_for_an_empty_cell_are_asked_about() {
+    let cells: Vec<String> = (0..40).map(|row| if row % 9 == 4 { "OVLD".into() } else { format!("0,{row}") }).collect();
+    let words = table("motor_current_a", &cells.iter().map(String::as_str).collect::<Vec<_>>());
+    refused(&words, &["expected a number, found “OVLD”", "Use --missing OVLD --leave-empty-rows"]);
+    let choices = |missing: &str| Choices { missing: vec![missing.into()], leave_empty_rows: true, ..Choices::default() };
+    assert_eq!(take(&words, &choices("ovld")).unwrap().0.len(), 36);
+
+    for (code, option) in [("-9999", "-9999"), ("9,9E+37", "9.9e37")] {
+        let numbers = words.replace("OVLD", code);
+        refused(
+            &numbers,
+            &[
+                "line 6, column motor_current_a",
+                "4 of 40 cells are",
+                "far from all others: perhaps a code for an empty cell",
+                &format!("Use --missing {option} --leave-empty-rows or --missing none"),
+            ],
+        );
+        assert_eq!(take(&numbers, &choices(option)).unwrap().0.len(), 36);
+        assert_eq!(take(&numbers, &choices("none")).unwrap().0.len(), 40, "they are what was measured");
+    }
+}
+
+#[test]
+fn lines_below_the_last_row_are_skipped_and_told() {
+    let whole = rows((0..30).map(|row| 0.01 * f64::from(row)));
+    let footed = format!("{whole}Mean,,0.1\nEnd of file\n");
+    let (run, notes) = take(&footed, &Choices::default()).unwrap();
+    assert_eq!(run.len(), 30);
+    assert_eq!(notes[0].said, "2 lines below the last row skipped, from line 32");
+    refused(&whole.replacen("0.05,", "broken,", 1), &["line 7, column time_s: expected a number, found “broken”"]);
+}
+
+#[test]
+fn a_comment_in_the_last_column_is_no_row_of_another_width() {
+    let mut text = String::from("time_s\tmotor_position_rad\tmotor_current_a\tComment\n0\t0.5\t0.1\tstart of test\n");
+    text.extend((1..30).map(|row| format!("0.{row:02}\t0.5\t0.1\n")));
+    let (run, notes) = take(&text, &Choices::default()).unwrap();
+    assert_eq!((run.len(), run.column("Comment")), (30, None));
+    assert!(notes.iter().any(|note| note.said.contains("column Comment is omitted: it holds words")), "{notes:?}");
+}
+
+#[test]
+fn a_counter_that_overflows_goes_on() {
+    let micros = |row: u64| (4_294_900_000 + 5000 * row) % 4_294_967_296;
+    let rows: String = (0..40).map(|row| format!("{},0.5,0.1\n", micros(row))).collect();
+    let text = format!("time_us,motor_position_rad,motor_current_a\n{rows}");
+    let choices = |unwrap: &[&str]| Choices {
+        map: vec!["time_s=time_us".into()],
+        unwrap: unwrap.iter().map(|text| (*text).to_owned()).collect(),
+        ..Choices::default()
+    };
+    let said = take(&text, &choices(&[])).unwrap_err().to_string();
+    assert!(said.ends_with("the time begins anew as a counter of 32 bits does that overflows. Use --unwrap time_s=4294.967296"), "{said}");
+    let (run, _) = take(&text, &choices(&["time_s=4294.967296"])).unwrap();
+    let time_s = run.column("time_s").unwrap();
+    assert!((time_s[39] - time_s[0] - 0.195).abs() < 1e-9, "{time_s:?}");
+}

@@ -5,26 +5,32 @@
 
 use super::legs::{Legs, sample_rate};
 use super::{Findable, Procedure, findable};
-use crate::findings::{Line, Unusable, curve, keep, legs, plateaus, quantity, scatter, settled, verdict};
+use crate::findings::{
+    Line, Plateau, Unusable, curve, keep, legs, plateaus, quantity, scatter, settled, solve, t95, verdict,
+};
 use crate::identification::{Axis, Figure, Form, Identification, Verdict};
 use crate::parameter::{Parameter, Values};
 use crate::plan::{BenchFacts, Plan, PlanFault};
 use jointbench_instrument::{Kind, RunTable};
+use jointbench_model::preprocess::Prepared;
+use jointbench_model::signal::Signal;
 use jointbench_model::words;
+use nalgebra::{Matrix2, Vector2};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 pub(super) struct Strokes;
 
 const SCHEMA: &[Parameter] = &[
-    Parameter::number("low_speed_rad_s", "Minimum speed (motor)", "rad/s", 15.0, [1e-3, 1000.0]),
-    Parameter::number("top_speed_rad_s", "Maximum speed (motor)", "rad/s", 150.0, [1e-3, 1000.0]),
+    Parameter::number("low_speed_rad_s", "Minimum stroke speed (motor)", "rad/s", 15.0, [1e-3, 1000.0]),
+    Parameter::number("top_speed_rad_s", "Maximum stroke speed (motor)", "rad/s", 150.0, [1e-3, 1000.0]),
     Parameter::count("speeds", "Number of speeds (logarithmically spaced)", 4, [1, 20]),
     Parameter::number("load", "Brake current, fraction of rated", "", 0.0, [0.0, 1.0]),
     Parameter::count("repeats", "Repeats of the profile", 2, [1, 50]),
     Parameter::number("dwell_s", "Maximum dwell time at each speed", "s", 3.0, [0.3, 60.0]),
-    Parameter::number("travel_rad", "Maximum stroke length (link)", "rad", 0.6, [1e-3, 100.0]),
+    Parameter::number("travel_rad", "Maximum stroke length (link)", "rad", 1.2, [1e-3, 100.0]),
     Parameter::number("acceleration_rad_s2", "Acceleration (motor)", "rad/s²", 400.0, [1e-2, 5000.0]),
     sample_rate(250.0),
     Parameter::count("order_seed", "Random seed (step order)", 1, [0, 1_000_000]),
@@ -33,8 +39,15 @@ const SCHEMA: &[Parameter] = &[
 /// The brake is magnetised and demagnetised at this share of the highest speed at least, however slow the strokes are.
 const TURNING_SHARE: f64 = 0.5;
 
-/// A plateau shorter than this holds no settled motion.
+/// A plateau shorter than this, or than so many times both ramps together, holds no settled motion that is found.
 const SHORTEST_S: f64 = 0.3;
+const OF_RAMPS: f64 = 1.0;
+/// A leg that is faster than the strokes by this ratio magnetises or demagnetises the brake.
+const FASTER: f64 = 1.05;
+/// Error probability of the test for gravity.
+const ALPHA: f64 = 0.05;
+/// An offset whose interval reaches so far, as a share of its size, is not determined.
+const VAGUE: f64 = 0.5;
 
 impl Procedure for Strokes {
     fn id(&self) -> &'static str {
@@ -92,31 +105,117 @@ impl Procedure for Strokes {
             ("Nm", "offset_positive offset_negative"),
             ("Nm·s/rad", "slope_positive slope_negative"),
             ("", "r2_positive r2_negative"),
+            ("Nm", "offset_half_difference"),
         ])
     }
 
-    fn identify(&self, _: &Values, run: &RunTable) -> Option<Identification> {
-        verdict(identify(run))
+    fn identify(&self, values: &Values, run: &RunTable) -> Option<Identification> {
+        verdict(identify(values, run))
     }
 }
 
+/// What the strokes of both directions say: a line for each.
+struct Lines {
+    /// Speed and friction of each stroke, and the line through them; positive direction, then negative.
+    sides: [(Vec<(f64, f64)>, Option<Line>); 2],
+    /// Half the difference of both offsets with its interval: gravity is not in it. Where no sensor measures the load.
+    half_difference: Option<(f64, [f64; 2])>,
+}
+
 /// A line through the strokes of each direction, under the load that they were made under.
-fn identify(run: &RunTable) -> Result<Identification, Unusable> {
+fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable> {
     let legs = legs(run);
     let heaviest = legs.iter().filter_map(|leg| leg.brake_nm).fold(0.0, f64::max);
-    let points = plateaus(&settled(&keep(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?);
+    let prepared = settled(&keep(run, legs.iter().filter(|leg| leg.brake_nm == Some(heaviest)))?)?;
+    let planned = values.number("top_speed_rad_s");
+    let is_stroke = |p: &Plateau| p.velocity_rad_s.abs() < FASTER * planned;
+    let points: Vec<Plateau> = plateaus(&prepared).into_iter().filter(is_stroke).collect();
+    let weighed = match run.column("link_torque_nm") {
+        Some(_) => None,
+        None => without_gravity(&prepared, &points, FASTER * planned),
+    };
+    let plain = || Lines { sides: [1.0, -1.0].map(|sign| side(&points, sign, [0.0; 2])), half_difference: None };
+    let lines = weighed.unwrap_or_else(plain);
+    Ok(told(&points, &lines, planned))
+}
+
+fn side(points: &[Plateau], sign: f64, gravity: [f64; 2]) -> (Vec<(f64, f64)>, Option<Line>) {
+    let friction = |p: &Plateau| p.target - p.load_nm - waves(p.link_rad).iter().zip(gravity).map(|(w, g)| w * g).sum::<f64>();
+    let of_side = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0);
+    let of_side: Vec<(f64, f64)> = of_side.map(|p| (p.velocity_rad_s, friction(p))).collect();
+    let line = Line::through(&of_side);
+    (of_side, line)
+}
+
+/// Gravity over the angle of the link, whatever its zero.
+fn waves(link_rad: f64) -> [f64; 2] {
+    [link_rad.sin(), link_rad.cos()]
+}
+
+/// Both lines and the gravity of the link, which no sensor measures: least squares over all settled rows, with intervals of a
+/// jackknife over the strokes. `None` where gravity is not significant (Wald test).
+fn without_gravity(prepared: &Prepared, points: &[Plateau], fastest_rad_s: f64) -> Option<Lines> {
+    let (problem, view) = (&prepared.main, &prepared.main.view);
+    let (speed, link) = (view.get(Signal::Velocity), view.get(Signal::Link));
+    let strokes: Vec<usize> = (0..problem.rows()).filter(|row| speed[*row].abs() < fastest_rad_s).collect();
+    let row = |i: usize| -> [f64; 6] {
+        let [forward, backward] = [f64::from(speed[i] > 0.0), f64::from(speed[i] < 0.0)];
+        let [sine, cosine] = waves(link[i]);
+        [forward, backward, forward * speed[i], backward * speed[i], sine, cosine]
+    };
+    let solved = |without: Option<i64>| {
+        let kept: Vec<usize> = strokes.iter().copied().filter(|i| without != Some(problem.segment[*i])).collect();
+        let rows: Vec<[f64; 6]> = kept.iter().map(|i| row(*i)).collect();
+        let response: Vec<f64> = kept.iter().map(|i| problem.target[*i]).collect();
+        solve(&rows, &response).map(|solved| solved.values)
+    };
+    let values = solved(None)?;
+    let mut segments: Vec<i64> = strokes.iter().map(|i| problem.segment[*i]).collect();
+    segments.dedup();
+    let replicates: Vec<[f64; 6]> = segments.iter().map(|segment| solved(Some(*segment))).collect::<Option<_>>()?;
+    let n = replicates.len() as f64;
+    let scaled = |v: &[f64; 6]| Vector2::new(v[4] - values[4], v[5] - values[5]);
+    let covariance: Matrix2<f64> = replicates.iter().map(scaled).map(|v| v * v.transpose() * ((n - 1.0) / n)).sum();
+    let gravity = Vector2::new(values[4], values[5]);
+    let wald = 0.5 * gravity.dot(&(covariance.try_inverse()? * gravity));
+    if FisherSnedecor::new(2.0, n - 2.0).ok()?.sf(wald) > ALPHA {
+        return None;
+    }
+    let interval = |of: &dyn Fn(&[f64; 6]) -> f64| {
+        let mean = replicates.iter().map(of).sum::<f64>() / n;
+        let variance = (n - 1.0) / n * replicates.iter().map(|r| (of(r) - mean).powi(2)).sum::<f64>();
+        let reach = t95(n - 1.0) * variance.sqrt();
+        [of(&values) - reach, of(&values) + reach]
+    };
+    let line = |k: usize| {
+        let (points, line) = side(points, [1.0, -1.0][k], [values[4], values[5]]);
+        let line = line.map(|line| Line {
+            offset: values[k],
+            slope: values[2 + k],
+            offset_ci95: interval(&|v| v[k]),
+            slope_ci95: interval(&|v| v[2 + k]),
+            r2: line.r2,
+        });
+        (points, line)
+    };
+    let half = |v: &[f64; 6]| 0.5 * (v[0] - v[1]);
+    Some(Lines { sides: [line(0), line(1)], half_difference: Some((half(&values), interval(&half))) })
+}
+
+fn told(points: &[Plateau], lines: &Lines, planned_rad_s: f64) -> Identification {
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let (mut quantities, mut series, mut flat, mut said) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (suffix, mark, sign) in [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)] {
-        let side = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0);
-        let side: Vec<(f64, f64)> = side.map(|p| (p.velocity_rad_s, p.target - p.load_nm)).collect();
-        let line = Line::through(&side);
-        series.push(scatter(suffix, side));
+    let mut vague = Vec::new();
+    for ((suffix, mark, sign), (points, line)) in [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)].into_iter().zip(&lines.sides) {
+        series.push(scatter(suffix, points.clone()));
         let Some(line) = line else { continue };
         let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };
         series.push(curve(&format!("line, {suffix}"), ends, 1, |v| line.at(v)));
         if line.slope_ci95[0] <= 0.0 && line.slope_ci95[1] >= 0.0 {
             flat.push(format!("{suffix} motion (r² {:.2})", line.r2));
+        }
+        if 0.5 * (line.offset_ci95[1] - line.offset_ci95[0]) > VAGUE * line.offset.abs() {
+            vague.push(suffix);
         }
         let [offset, slope] = [(line.offset, "Nm"), (line.slope, "Nm·s/rad")].map(|(v, unit)| words::figure(v, unit));
         said.push(format!("Line in {suffix} direction: {offset} at zero speed, slope {slope}."));
@@ -133,25 +232,43 @@ fn identify(run: &RunTable) -> Result<Identification, Unusable> {
     }
     let advice = if quantities.len() < 6 {
         Some("A line requires at least two speeds. Increase speeds.".to_owned())
+    } else if FASTER * top < planned_rad_s {
+        Some(format!(
+            "The strokes at {planned_rad_s:.1} rad/s held no steady state. Increase travel_rad or acceleration_rad_s2."
+        ))
+    } else if !vague.is_empty() && lines.half_difference.is_some() {
+        Some(format!(
+            "Friction at zero speed is not determined in {} direction: no sensor measures gravity. The half difference of both \
+             directions is free of it. Increase travel_rad, or run puma_friction.",
+            vague.join(" and ")
+        ))
     } else {
         let other = "Diagnose the run to find the cause of the differences, or increase top_speed_rad_s.";
         (!flat.is_empty()).then(|| format!("Speed has no significant linear effect in {}. {other}", flat.join(" and ")))
     };
-    Ok(Identification {
+    if let Some((value, ci95)) = lines.half_difference {
+        let title = "Friction at zero speed, half difference of both directions";
+        quantities.push(quantity(["offset_half_difference", "τ₀", title, "Nm"], value, Some(ci95)));
+    }
+    let title = match lines.half_difference {
+        Some(_) => "Friction over motor speed, gravity removed",
+        None => "Friction over motor speed",
+    };
+    Identification {
         verdict: if advice.is_none() { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!("{} strokes up to {top:.1} rad/s (motor). {}", points.len(), said.join(" ")),
         advice,
         quantities,
         figures: vec![Figure {
             name: "friction_over_speed".into(),
-            title: "Friction over motor speed".into(),
+            title: title.into(),
             form: Form::Cartesian,
             x: Axis::of("motor velocity", "rad/s"),
             y: Axis::of("friction torque (motor)", "Nm"),
             series,
         }],
         ..Identification::default()
-    })
+    }
 }
 
 /// Motor speeds with the time at each.
@@ -169,13 +286,19 @@ fn speeds(values: &Values, bench: &BenchFacts) -> Result<Vec<(f64, f64)>, PlanFa
         .map(|i| {
             let speed_rad_s = top_rad_s * (low_rad_s / top_rad_s).powf(f64::from(i) / steps);
             let room_s = way_rad / speed_rad_s - speed_rad_s / values.number("acceleration_rad_s2");
-            if room_s < SHORTEST_S {
+            let ramps_s = 2.0 * speed_rad_s / values.number("acceleration_rad_s2");
+            let held_s = room_s.min(values.number("dwell_s"));
+            if held_s < SHORTEST_S.max(OF_RAMPS * ramps_s) {
                 return Err(PlanFault::Contradiction {
-                    what: format!("{speed_rad_s:.3} rad/s would be held for only {:.2} s", room_s.max(0.0)),
-                    cure: "increase travel_rad or acceleration_rad_s2, or reduce top_speed_rad_s",
+                    what: format!(
+                        "{speed_rad_s:.3} rad/s would be held for only {:.2} s, between ramps of {:.2} s",
+                        held_s.max(0.0),
+                        0.5 * ramps_s
+                    ),
+                    cure: "increase travel_rad, dwell_s or acceleration_rad_s2, or reduce top_speed_rad_s",
                 });
             }
-            Ok((speed_rad_s, room_s.min(values.number("dwell_s"))))
+            Ok((speed_rad_s, held_s))
         })
         .collect()
 }
@@ -202,7 +325,7 @@ mod tests {
             let legs = plan.steps.iter().filter(|s| s.brake.largest() == load * 0.6 && s.velocity.largest() < 149.0);
             assert_eq!(legs.count(), 3 * 2 * 3, "three of the four speeds, out and back, thrice");
         }
-        assert!(plan(json!({})).unwrap().duration_s() < 60.0);
+        assert!(plan(json!({})).unwrap().duration_s() < 90.0);
     }
 
     #[test]

@@ -46,8 +46,12 @@ fn staircase(torque_nm: impl Fn(f64) -> f64) -> RunTable {
 }
 
 fn identified(id: &str, run: &RunTable) -> Identification {
+    identified_with(id, json!({}), run)
+}
+
+fn identified_with(id: &str, given: serde_json::Value, run: &RunTable) -> Identification {
     let procedure = procedure(id).unwrap();
-    let values = Values::parse(procedure.schema(), json!({}).as_object().unwrap()).unwrap();
+    let values = Values::parse(procedure.schema(), given.as_object().unwrap()).unwrap();
     procedure.identify(&values, run).unwrap()
 }
 
@@ -134,11 +138,12 @@ fn friction_that_drowns_in_something_else_is_not_asked_for_a_higher_speed() {
 
 #[test]
 fn strokes_draw_a_line_through_each_direction() {
-    let found = identified("strokes", &staircase(|v| 0.030 * v.signum() + 1.512e-4 * v));
+    let strokes = |run: &RunTable| identified_with("strokes", json!({"top_speed_rad_s": 180.0}), run);
+    let found = strokes(&staircase(|v| 0.030 * v.signum() + 1.512e-4 * v));
     check(&found, "slope_positive", 1.512e-4, 0.03);
     check(&found, "offset_positive", 0.030, 0.02);
     assert_eq!((found.verdict, found.advice), (Verdict::Identified, None));
-    let found = identified("strokes", &staircase(|v| 0.030 * v.signum() + 0.002 * (7.0 * v).sin()));
+    let found = strokes(&staircase(|v| 0.030 * v.signum() + 0.002 * (7.0 * v).sin()));
     assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.summary);
     let advice = found.advice.unwrap();
     assert!(

@@ -26,6 +26,9 @@ pub struct Columns {
     /// Omit rows with an empty cell (rejected otherwise) and print their number
     #[arg(long)]
     pub leave_empty_rows: bool,
+    /// What stands for an empty cell, such as OVLD or -9999 (none: no number does); may be given again
+    #[arg(long, value_name = "CELL", allow_hyphen_values = true)]
+    pub missing: Vec<String>,
     /// Names of the columns, for a table without a line of names
     #[arg(long, value_name = "NAME,NAME,…")]
     pub names: Option<String>,
@@ -58,6 +61,7 @@ impl Columns {
             unwrap: self.unwrap.clone(),
             leave: self.leave.clone(),
             leave_empty_rows: self.leave_empty_rows,
+            missing: self.missing.clone(),
             names: self.names.clone(),
             decimal: self.decimal.clone(),
             rate: self.rate,

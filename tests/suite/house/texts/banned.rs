@@ -1,7 +1,7 @@
 //! Words and phrases that the glossary replaces by standard terms.
 
 /// As lower-case words. A phrase matches these words in a row.
-const BANNED: [&str; 75] = [
+const BANNED: [&str; 82] = [
     "any more",
     "asked for",
     "at hand",
@@ -32,12 +32,14 @@ const BANNED: [&str; 75] = [
     "looks like this",
     "make it again",
     "make the rest",
+    "make a demo run",
     "make the run",
     "makes of",
     "mend",
     "mends",
     "no part in",
     "nobody",
+    "not with its defaults",
     "not known to be safe",
     "not seen",
     "not sure",
@@ -53,16 +55,19 @@ const BANNED: [&str; 75] = [
     "share of",
     "somebody",
     "take away",
+    "take out",
     "take off",
     "taken away",
     "taken back",
     "taken off",
     "takes away",
     "takes off",
+    "taken in",
     "tell",
     "telling",
     "tells",
     "the way down",
+    "that would tell",
     "the way up",
     "thesis on",
     "told",
@@ -73,10 +78,12 @@ const BANNED: [&str; 75] = [
     "waves over",
     "what is missing",
     "whatever",
+    "where it comes from",
     "whoever",
     "worked out",
     "would have been found",
     "would have been seen",
+    "would have it",
 ];
 
 /// Longer sentences need a second reading.
