@@ -32,13 +32,12 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
         .par_iter()
         .filter_map(|problem| {
             let other = Solution::of(&at_corner(model, problem))?;
-            let spread = spread(&factors_without(&other));
-            Some((other.factors.clone(), spread))
+            Some((other.factors.clone(), other.standard_errors()))
         })
         .collect();
-    let own = spread(&replicates);
+    let own = solution.standard_errors();
     let half_width = |k: usize| {
-        let error = others.iter().map(|(_, spread)| spread[k]).fold(own[k], f64::max);
+        let error = others.iter().map(|(_, errors)| errors[k]).fold(own[k], f64::max);
         let estimates: Vec<f64> = std::iter::once(solution.factors[k]).chain(others.iter().map(|o| o.0[k])).collect();
         (t * error).hypot(OF_CORNERS * deviation(&estimates))
     };
@@ -103,16 +102,6 @@ fn at_corner<'p>(model: &LinearModel<'p>, problem: &'p Problem) -> LinearModel<'
         |r: &Relative<'p>| Relative { columns: columns(r.effect, r.form.name, &r.shape, problem), ..r.clone() };
     other.relatives = Arc::new(model.relatives.par_iter().map(relative).collect());
     other
-}
-
-/// Standard error of each factor: jackknife over blocks.
-fn spread(replicates: &[Vec<f64>]) -> Vec<f64> {
-    let groups = replicates.len() as f64;
-    let of = |k: usize| {
-        let mean = replicates.iter().map(|r| r[k]).sum::<f64>() / groups;
-        ((groups - 1.0) / groups * replicates.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>()).sqrt()
-    };
-    (0..replicates.first().map_or(0, Vec::len)).map(of).collect()
 }
 
 fn deviation(values: &[f64]) -> f64 {

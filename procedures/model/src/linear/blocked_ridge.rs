@@ -45,8 +45,8 @@ pub struct BlockedRidge {
     pub(in crate::linear) base: Vec<Vec<f64>>,
     scale: Vec<f64>,
     pub(in crate::linear) response: Vec<f64>,
-    /// Weighted residual of the base.
-    left: Vec<f64>,
+    /// Share of the rows by which each column is held near zero.
+    held: Vec<f64>,
     pub(in crate::linear) each: Vec<Sums>,
     pub(in crate::linear) folds: Vec<Fold>,
     pub(in crate::linear) whole: Fold,
@@ -54,6 +54,43 @@ pub struct BlockedRidge {
     pub strength: f64,
     /// Held-out weighted squared error of each block.
     pub losses: Vec<f64>,
+}
+
+/// A base of columns projected out of a response over some of its rows.
+pub struct Outside {
+    rows: Vec<usize>,
+    base: Vec<Vec<f64>>,
+    weight: Vec<f64>,
+    inverse: Vec<f64>,
+    left: Vec<f64>,
+}
+
+impl Outside {
+    /// Weighted squared error of the base.
+    pub fn left(&self) -> f64 {
+        dot(&self.left, &self.left)
+    }
+
+    /// Coefficients of columns added to the base, and the weighted squared error that they take off. `None` where a column has less
+    /// than this share of its own.
+    pub fn added(&self, columns: &[impl AsRef<[f32]>], visible: f64) -> Option<(Vec<f64>, f64)> {
+        let weighted = |c: &[f32]| self.rows.iter().zip(&self.weight).map(|(row, w)| f64::from(c[*row]) * w).collect();
+        let rest = |column: Vec<f64>| {
+            let mut own = column.clone();
+            let side: Vec<f64> = self.base.iter().map(|b| dot(b, &own)).collect();
+            for (base, factor) in self.base.iter().zip(times(&self.inverse, &side)) {
+                own.iter_mut().zip(base).for_each(|(o, b)| *o -= factor * b);
+            }
+            (dot(&own, &own) > visible * dot(&column, &column)).then_some(own)
+        };
+        let own: Vec<Vec<f64>> = columns.iter().map(|c| rest(weighted(c.as_ref()))).collect::<Option<_>>()?;
+        let k = own.len();
+        let products: Vec<f64> = (0..k * k).map(|at| dot(&own[at / k], &own[at % k])).collect();
+        let side: Vec<f64> = own.iter().map(|own| dot(own, &self.left)).collect();
+        let factors = Cholesky::new(&products, k, 1e-12).solve(&side);
+        let taken = dot(&factors, &side);
+        Some((factors, taken))
+    }
 }
 
 /// Rows of equal block numbers.
@@ -101,11 +138,8 @@ impl BlockedRidge {
         let folds: Vec<Fold> = each.par_iter().map(|sums| all.without(sums).fold(&penalty)).collect();
         let losses = each.iter().zip(&folds).map(|(sums, fold)| sums.loss(&fold.factors)).collect();
         let whole = all.fold(&penalty);
-        let mut left = response.clone();
-        for (base, factor) in base.iter().zip(&whole.factors) {
-            left.iter_mut().zip(base).for_each(|(e, b)| *e -= factor * b);
-        }
-        Self { blocks, weight: weight.to_vec(), base, scale, response, left, each, folds, whole, strength, losses }
+        let held = penalty.iter().map(|penalty| penalty / n).collect();
+        Self { blocks, weight: weight.to_vec(), base, scale, response, held, each, folds, whole, strength, losses }
     }
 
     pub fn loss(&self) -> f64 {
@@ -122,26 +156,22 @@ impl BlockedRidge {
         self.folds.iter().map(|fold| fold.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect())
     }
 
-    /// Weighted squared error that columns with these factors take off the rows that are not `near`, and what is left there
-    /// without them.
-    pub fn taken_outside(&self, columns: &[Vec<f32>], factors: &[f64], near: &[bool]) -> (f64, f64) {
-        let weighted = |values: &[f32]| values.iter().zip(&self.weight).map(|(v, w)| f64::from(*v) * w).collect();
-        let mut sum = vec![0.0; self.response.len()];
-        for (column, factor) in columns.iter().zip(factors) {
-            let own: Vec<f64> = self.rest(weighted(column));
-            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += factor * own);
+    /// The same base on the rows that are not `near` alone. `None` where there are fewer of them than columns.
+    pub fn outside(&self, near: &[bool]) -> Option<Outside> {
+        let rows: Vec<usize> = (0..self.response.len()).filter(|row| near.get(*row) == Some(&false)).collect();
+        if rows.len() <= self.base.len() {
+            return None;
         }
-        let outside = sum.iter().zip(&self.left).zip(near).filter(|(_, near)| !**near).map(|(pair, _)| pair);
-        outside.fold((0.0, 0.0), |(taken, left), (own, e)| (taken + own * (2.0 * e - own), left + e * e))
-    }
-
-    /// What a column has beside the base.
-    fn rest(&self, mut own: Vec<f64>) -> Vec<f64> {
-        let side: Vec<f64> = self.base.iter().map(|b| dot(b, &own)).collect();
-        for (base, factor) in self.base.iter().zip(times(&self.whole.inverse, &side)) {
-            own.iter_mut().zip(base).for_each(|(o, b)| *o -= factor * b);
+        let of = |values: &[f64]| -> Vec<f64> { rows.iter().map(|row| values[*row]).collect() };
+        let base: Vec<Vec<f64>> = self.base.iter().map(|values| of(values)).collect();
+        let (weight, mut left) = (of(&self.weight), of(&self.response));
+        let sums = Sums::of(&base, &left, &(0..rows.len()));
+        let penalty: Vec<f64> = self.held.iter().map(|share| share * rows.len() as f64).collect();
+        let fold = sums.fold(&penalty);
+        for (base, factor) in base.iter().zip(&fold.factors) {
+            left.iter_mut().zip(base).for_each(|(e, b)| *e -= factor * b);
         }
-        own
+        Some(Outside { rows, base, weight, inverse: fold.inverse, left })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::effect::Regime;
 use crate::linear::added_columns::{Added, Gain};
-use crate::linear::blocked_ridge::BlockedRidge;
+use crate::linear::blocked_ridge::{BlockedRidge, Outside};
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
 use crate::thresholds::DECISION_SHARE;
@@ -50,15 +50,17 @@ struct Trial<'l, 'p> {
 
 /// The evidence for each effect of the candidates, the one that takes most first. `forms`: how many were tried in all.
 ///
-/// An effect of settled motion has to show beside reversals and rests: outside the rows that are `near` one it takes the practical
-/// share too.
+/// An effect of steady state has to show outside reversals and rests: on the rows that are not `near` one, with the model fitted to
+/// these rows alone, it takes the practical share too. A form that differs from the model at reversals only does not.
 pub fn evidence<'l, 'p>(
     ridge: &BlockedRidge,
     candidates: &[&'l Regressor<'p>],
     near: &[bool],
     forms: usize,
 ) -> Vec<Evidence<'l, 'p>> {
-    let trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ridge, form, near)).collect();
+    let outside = ridge.outside(near);
+    let trials: Vec<Trial> =
+        candidates.par_iter().filter_map(|form| trial(ridge, form, outside.as_ref())).collect();
     let mut all: Vec<Evidence> = trials
         .chunk_by(|a, b| a.form.id() == b.form.id())
         .filter_map(|forms_of_one| of_effect(ridge, forms_of_one, forms))
@@ -67,24 +69,30 @@ pub fn evidence<'l, 'p>(
     all
 }
 
-fn trial<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, near: &[bool]) -> Option<Trial<'l, 'p>> {
+fn trial<'l, 'p>(
+    ridge: &BlockedRidge,
+    form: &'l Regressor<'p>,
+    outside: Option<&Outside>,
+) -> Option<Trial<'l, 'p>> {
     let added = visible(ridge, form)?;
     let is_possible = |factors: &[f64]| allows(form.effect, &form.form, factors);
     if !is_possible(&added.factors()) {
         return None;
     }
     let is_settled = form.effect.regime() == Regime::SteadyState;
-    if is_settled && !shows_outside(ridge, form, &added.factors(), near) {
+    if is_settled && !outside.is_none_or(|outside| shows_outside(outside, form)) {
         return None;
     }
     let chance = chance(added.wald(), added.size, ridge.blocks.len());
     Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
 }
 
-/// It takes its share of what is left in the rows that are no reversal and no rest too, where there are any.
-fn shows_outside(ridge: &BlockedRidge, form: &Regressor, factors: &[f64], near: &[bool]) -> bool {
-    let (taken, left) = ridge.taken_outside(&form.columns, factors, near);
-    left == 0.0 || taken > DECISION_SHARE * left
+/// It takes its share of what is left in the rows that are no reversal and no rest too.
+fn shows_outside(outside: &Outside, form: &Regressor) -> bool {
+    let added = outside.added(&form.columns, LEAST_VISIBLE);
+    added.is_some_and(|(factors, taken)| {
+        allows(form.effect, &form.form, &factors) && taken > DECISION_SHARE * outside.left()
+    })
 }
 
 /// What a form would add, where it is none of what the model has.

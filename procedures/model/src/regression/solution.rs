@@ -129,6 +129,17 @@ impl Solution {
         }
     }
 
+    /// Standard errors of the factors of the effects: jackknife over blocks.
+    pub fn standard_errors(&self) -> Vec<f64> {
+        let replicates: Vec<Vec<f64>> = self.ridge.replicates().collect();
+        let groups = replicates.len() as f64;
+        let of = |k: usize| {
+            let mean = replicates.iter().map(|r| r[k]).sum::<f64>() / groups;
+            ((groups - 1.0) / groups * replicates.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>()).sqrt()
+        };
+        (0..self.factors.len()).map(of).collect()
+    }
+
     /// Sum of the nuisance terms at the rows.
     pub fn form_error(&self, model: &LinearModel) -> Vec<f64> {
         let mut sum = vec![0.0; model.problem.rows()];

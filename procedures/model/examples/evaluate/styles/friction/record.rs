@@ -69,7 +69,10 @@ pub fn run(joint: &Joint, asked: &Setup, laws: Vec<(&'static str, Law)>, dice: &
         if step.is_multiple_of(substeps) && step > 0 {
             rows.push((at.clone(), seen.velocity, tick));
         }
-        let torque = drive.torque(asked.speed[tick] * joint.fastest, plant.state.motor, dt);
+        // Steps of the wanted speed in time with the samples would show another torque than the mean.
+        let next = asked.speed[(tick + 1).min(asked.speed.len() - 1)];
+        let wanted = asked.speed[tick] + (next - asked.speed[tick]) * (at.time / TICK_S).fract();
+        let torque = drive.torque(wanted * joint.fastest, plant.state.motor, dt);
         plant.step(torque, asked.brake[tick], &mut at, dt);
         seen.follow(drive.reading(plant.state.motor), dt);
         step += 1;
