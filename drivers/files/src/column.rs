@@ -123,8 +123,8 @@ impl Column {
         found.wrong.retain(|cell| cell.row < rows);
         let gone = found.wrong_rows.split_off(found.wrong_rows.partition_point(|row| *row < rows));
         let values = self.values.split_off(rows.min(self.values.len()));
-        let empty = values.iter().filter(|value| value.is_nan()).count() - gone.len();
-        found.missing -= empty;
+        let empty = values.iter().filter(|value| value.is_nan()).count().saturating_sub(gone.len());
+        found.missing = found.missing.saturating_sub(empty);
         found.first_missing = found.first_missing.take().filter(|cell| cell.row < rows);
         found.numbers = found.numbers.saturating_sub(values.len() - empty - gone.len());
     }

@@ -71,8 +71,14 @@ fn wrapped(run: &RunTable, name: &str) -> Option<Note> {
     let values = run.column(name)?;
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let range = high - low;
-    let leaps: Vec<f64> =
-        values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > LEAP_OF_RANGE * range).collect();
+    // A leap is a turn less the step that it stands for, which is as long as the one before.
+    let leap = |w: &[f64]| (w[2] - w[1], (w[2] - w[1] - (w[1] - w[0])).abs());
+    let leaps: Vec<f64> = values
+        .windows(3)
+        .map(leap)
+        .filter(|(step, _)| step.abs() > LEAP_OF_RANGE * range)
+        .map(|(_, leap)| leap)
+        .collect();
     let mean = leaps.iter().sum::<f64>() / leaps.len() as f64;
     let is_one_size = leaps.iter().all(|leap| (leap / mean - 1.0).abs() < SAME_LEAP);
     // A turn is what most encoders begin anew after, also where their samples do not reach its ends.
@@ -99,7 +105,8 @@ fn taken_power(run: &RunTable) -> Option<Note> {
     let work = |row: usize| 0.5 * (currents[row] + currents[row - 1]) * (angles[row] - angles[row - 1]);
     let (sum, both) = (1..angles.len()).map(work).fold((0.0, 0.0), |(sum, both), work| (sum + work, both + work.abs()));
     (sum < -TAKES * both).then(|| {
-        let said = "motor_current_a opposes nearly all motion, and a motor drives its joint: perhaps it has the other sign";
+        let said =
+            "motor_current_a opposes nearly all motion, and a motor drives its joint: perhaps it has the other sign";
         Note::with(said, "--scale motor_current_a=-1")
     })
 }

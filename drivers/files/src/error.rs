@@ -98,6 +98,14 @@ pub enum FileFault {
     TooLong { found: String },
     #[error("not readable: {0}")]
     Columnar(String),
+    #[error(
+        "a row of words stands between the rows, as the names or units of another table: save each table as a file of its own"
+    )]
+    SecondTable,
+    #[error("no column holds numbers: name the columns with --names, or remove the lines above them")]
+    NoColumns,
+    #[error("two columns of time differ by up to {apart}: resample the channels to one clock")]
+    TwoClocks { apart: String, options: Vec<String> },
     #[error("{0}")]
     Bound(String),
     #[error("{what}: expected one object of facts, such as {{\"kind\": \"friction\", \"gear_ratio\": 50}}")]
@@ -170,7 +178,8 @@ impl FileFault {
             fault => cell(fault).map(|cell| vec![cell]),
         };
         let Some(cells) = cells else { return Vec::new() };
-        let is_short = |cell: &str| cell.chars().count() <= CODE && other_sign(cell).is_none();
+        // What holds a digit is a number in another notation.
+        let is_short = |cell: &str| cell.chars().count() <= CODE && !cell.contains(|c: char| c.is_ascii_digit());
         let mut codes: Vec<&str> = cells.iter().map(|cell| cell.trim()).collect();
         codes.retain(|cell| !crate::text::is_missing(cell.as_bytes()));
         codes.sort_unstable();
@@ -233,6 +242,7 @@ impl FileError {
         match &self.fault {
             FileFault::Choice { options, .. }
             | FileFault::NoNames { options, .. }
+            | FileFault::TwoClocks { options, .. }
             | FileFault::Time { options, .. }
             | FileFault::Proposed { options, .. } => options.clone(),
             fault => fault.options_of_cells(),
@@ -244,6 +254,9 @@ impl FileError {
         match (&self.fault, self.options()) {
             (_, options) if options.is_empty() => String::new(),
             (FileFault::Proposed { .. }, options) => format!(": {}", options.join(" ")),
+            (FileFault::Rows { gaps, .. }, options) if !gaps.is_empty() => {
+                format!(". Use {}, or --leave NAME to omit a column", options.join(" or "))
+            }
             (_, options) => format!(". Use {}", options.join(" or ")),
         }
     }

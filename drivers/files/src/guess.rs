@@ -34,17 +34,17 @@ impl Proposal {
 const ALIASES: [(&str, &str); 15] = [
     (
         "motor_position_rad",
-        "motor_position motor_pos motor_angle theta_m rotor_position motorwinkel encoder encoder_position position pos angle q phi theta \
+        "motor_position motor_pos motor_angle theta_m rotor_position motorwinkel motor_winkel motorposition encoder encoder_position position pos angle q phi theta \
          winkel",
     ),
     (
         "motor_velocity_rad_s",
-        "motor_velocity motor_vel motor_speed omega_m velocity velocity_measured vel speed omega qd dq rpm w drehzahl \
+        "motor_velocity motor_vel motor_speed omega_m velocity velocity_measured vel speed omega qd dq rpm w drehzahl motordrehzahl motorgeschwindigkeit motor_drehzahl vitesse_moteur \
          velocity_estimate",
     ),
     (
         "motor_current_a",
-        "motor_current iq i_q iq_measured iq_meas q_current current_q current cur i amps motorstrom strom motor_current_measured",
+        "motor_current iq i_q iq_measured iq_meas q_current current_q current cur i amps motorstrom motor_strom strom courant_moteur courant i_motor motor_current_measured",
     ),
     (
         "link_position_rad",
@@ -54,7 +54,7 @@ const ALIASES: [(&str, &str); 15] = [
     ("link_velocity_rad_s", "link_velocity link_vel output_velocity output_speed load_velocity joint_velocity"),
     (
         "link_torque_nm",
-        "link_torque load_torque output_torque sensor_torque joint_torque torque tau load moment abtriebsmoment drehmoment last",
+        "link_torque load_torque output_torque sensor_torque joint_torque tau_link link_tau trq torque tau couple load moment abtriebsmoment drehmoment last",
     ),
     ("temperature_c", "temperature temp winding_temperature motor_temperature motor_temp t_motor"),
     ("brake_current_a", "brake_current i_brake current i"),

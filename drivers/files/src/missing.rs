@@ -12,6 +12,9 @@ const SCPI: [f64; 2] = [9.9e37, 9.91e37];
 const SINGLE: f64 = 1e-6;
 /// A code stands so many times further from all other values than these stand from each other.
 const FAR: f64 = 10.0;
+/// It is in at most this share of the cells; more than once, and within 32 bits, if its digits are not all nines.
+const SHARE: f64 = 0.1;
+const LARGEST: f64 = 4_294_967_296.0;
 
 impl RawTable {
     /// Takes what the options say as empty, and asks about numbers that look like it.
@@ -39,7 +42,7 @@ impl RawTable {
     }
 }
 
-/// The number in a column that looks like a code: one of SCPI, or one of nines only and far from all others.
+/// The number in a column that looks like a code: one of SCPI, or one that is far from all others and of nines only or repeated.
 fn code_of(column: &Column) -> Option<f64> {
     if column.content != Content::Numbers {
         return None;
@@ -50,7 +53,10 @@ fn code_of(column: &Column) -> Option<f64> {
         let others = || finite().filter(|value| value != code);
         let (low, high) = (others().fold(f64::INFINITY, f64::min), others().fold(f64::NEG_INFINITY, f64::max));
         let distance = (code - low).abs().min((code - high).abs());
-        low <= high && (is_of_scpi(*code) || is_of_nines(*code) && distance > FAR * (high - low))
+        let count = finite().filter(|value| value == code).count();
+        let is_repeated =
+            low < high && code.abs() <= LARGEST && count > 1 && count as f64 <= SHARE * column.values.len() as f64;
+        low <= high && (is_of_scpi(*code) || (is_of_nines(*code) || is_repeated) && distance > FAR * (high - low))
     })
 }
 
@@ -77,6 +83,10 @@ mod tests {
         assert_eq!(code(&[0.1, 99999.99, f64::NAN, 0.3]), Some(99999.99));
         assert_eq!(code(&[0.0, 999.0, 1.0, 500.0]), None, "in the range of the others");
         assert_eq!(code(&[0.1, 9.0, 0.3]), None);
+        let often: Vec<f64> = (0..40).map(|i| if i % 13 == 0 { -2_147_483_648.0 } else { f64::from(i) }).collect();
+        assert_eq!(code(&often), Some(-2_147_483_648.0));
+        let levels: Vec<f64> = (0..40).map(|i| f64::from(i / 39)).collect();
+        assert_eq!(code(&levels), None, "a step");
         assert_eq!(code(&[999.0, 999.0]), None, "nothing else");
     }
 }

@@ -46,6 +46,12 @@ pub fn parted(name: &str) -> (&str, Option<&str>) {
 
 /// `Motor Position` → `motor_position`; `iqMeasured` → `iq_measured`.
 fn snake(name: &str) -> String {
+    // mA and mNm are one word each.
+    let unit = name.rsplit(|c: char| !c.is_alphanumeric()).next().filter(|word| Unit::parse(word).is_some());
+    let (name, unit) = match unit {
+        Some(unit) if unit.len() < name.len() => (&name[..name.len() - unit.len()], unit),
+        _ => (name, ""),
+    };
     let mut text = String::new();
     let mut was_lower = false;
     for c in name.chars() {
@@ -62,11 +68,12 @@ fn snake(name: &str) -> String {
             }
         }
     }
+    text.push_str(&unit.to_lowercase());
     text.trim_end_matches('_').to_owned()
 }
 
 /// What people call the time.
-const TIMES: [&str; 24] = [
+const TIMES: [&str; 27] = [
     "time",
     "t",
     "times",
@@ -79,6 +86,9 @@ const TIMES: [&str; 24] = [
     "elapsed",
     "elapsed_time",
     "zeit",
+    "temps",
+    "tiempo",
+    "tempo",
     "zeitstempel",
     "uhrzeit",
     "second",
@@ -208,6 +218,8 @@ mod tests {
             ("angle, deg", "angle", Some("deg")),
             ("motorCurrent", "motor_current", None),
             ("Iq", "iq", None),
+            ("motor_current_mA", "motor_current_ma", None),
+            ("trq mNm", "trq_mnm", None),
             ("[deg]", "deg", None),
             ("on/off", "on_off", None),
         ] {

@@ -16,6 +16,8 @@ pub(crate) struct Odd {
     pub cells: usize,
 }
 
+/// Words in so many columns of one row are no codes for empty cells.
+const SECOND_HEADER: usize = 2;
 /// Lines that may stand below the rows.
 const FOOTER_LINES: usize = 20;
 
@@ -68,10 +70,11 @@ impl RawTable {
     pub fn name_all(&mut self) {
         match &self.proposed_names {
             None => self.leave_index(),
-            Some(proposed) => {
+            Some(proposed) if self.columns.iter().any(|column| column.name.is_empty()) => {
                 let said = "no line names the columns: they are called column_1, column_2 and so on";
                 self.notes.push(Note::with(said, format!("--names {proposed}")));
             }
+            Some(_) => {}
         }
         let is_nameless = self.proposed_names.is_some();
         let mut taken: Vec<String> = Vec::new();
@@ -164,22 +167,34 @@ impl RawTable {
         Ok(())
     }
 
-    /// `; empty cells: temperature_c 8,955 (--leave NAME omits a column); 45 of 9,000 rows have none`
+    /// `; empty cells: temperature_c 8,955; 45 of 9,000 rows have none`
     fn gaps(&self, is_needed: impl Fn(&str) -> bool) -> String {
         let with_gaps: Vec<&Column> =
             self.columns.iter().filter(|column| is_needed(&column.name) && column.found.missing > 0).collect();
         if with_gaps.is_empty() {
             return String::new();
         }
-        let named = with_gaps.iter().map(|column| format!("{} {}", column.name, counted(column.found.missing)));
+        let named = with_gaps.iter().map(|column| format!("{} {}", column.source, counted(column.found.missing)));
         let whole = |row: &usize| with_gaps.iter().all(|column| !column.values[*row].is_nan());
         let left = (0..self.rows).filter(whole).count();
         format!(
-            "; empty cells: {} (--leave NAME omits a column); {} of {} have none",
+            "; empty cells: {}; {} of {} have none",
             named.collect::<Vec<_>>().join(", "),
             counted(left),
             plural(self.rows, "row")
         )
+    }
+
+    /// A row of words in several columns that hold numbers: names or units of another table.
+    fn words_between(&self, is_needed: impl Fn(&str) -> bool) -> Option<usize> {
+        let wrong: Vec<&[usize]> = self
+            .columns
+            .iter()
+            .filter(|column| is_needed(&column.name) && !column.is_words())
+            .map(|column| column.found.wrong_rows.as_slice())
+            .collect();
+        let is_in = |row: &usize| wrong.iter().filter(|rows| rows.binary_search(row).is_ok()).count() >= SECOND_HEADER;
+        wrong.iter().flat_map(|rows| rows.iter()).copied().filter(is_in).min()
     }
 
     /// Refuses rows of another width and cells that should be numbers, all in one message.
@@ -193,6 +208,9 @@ impl RawTable {
         if let Some(column) = self.columns.iter().find(other) {
             let found = column.other_type.clone().unwrap_or_default();
             return Err(FileFault::NotNumeric { found }.in_file(file).in_column(&column.name));
+        }
+        if let Some(row) = self.words_between(&is_needed) {
+            return Err(FileError { place: Box::new(self.located(file, row)), fault: FileFault::SecondTable });
         }
         let mut rows: Vec<u64> = self.odd.iter().map(|odd| odd.line).collect();
         let names = self.columns.len();

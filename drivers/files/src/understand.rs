@@ -7,7 +7,7 @@ use crate::note::{Note, counted, plural, shell};
 use crate::raw::RawTable;
 use crate::text::Decimal;
 use crate::unit::{Unit, dimension_of};
-use crate::{ReadOptions, contradiction, facts, guess, naming, operating_points, time};
+use crate::{ReadOptions, contradiction, facts, guess, naming, operating_points, order, time};
 use jointbench_instrument::{Meta, Motion, RunTable, TableFault, Trace};
 
 /// The fact that says how many rows of the file were left out for their empty cells.
@@ -54,6 +54,10 @@ impl RawTable {
         self.refuse_doubtful(file, options)?;
         let guessed = meta.kind.map(|kind| guess::guess(&self.columns, kind)).unwrap_or_default();
         let mut left = self.leave_unusable(is_needed, options);
+        if self.columns.is_empty() {
+            return Err(in_file(FileFault::NoColumns));
+        }
+        self.refuse_two_clocks().map_err(in_file)?;
         self.settle_units(options, meta.motion).map_err(|fault| fault.at_line(file, self.names_line))?;
         self.scale(options, meta.motion).map_err(in_file)?;
         if options.leave_empty_rows {
@@ -105,6 +109,25 @@ impl RawTable {
             let place = self.located(file, cell.row);
             return Err(FileError { place: Box::new(place), fault: FileFault::Choice { said, options } }
                 .in_column(&column.name));
+        }
+        Ok(())
+    }
+
+    /// Channels with clocks of their own: a second column of the time, of the same name, that differs by more than half a step.
+    fn refuse_two_clocks(&self) -> Result<(), FileFault> {
+        let Some(time) = self.place("time_s").map(|place| &self.columns[place]) else { return Ok(()) };
+        let (own, step) = (naming::parted(&time.source), order::usual_step(&time.values));
+        for other in self.columns.iter().filter(|other| other.name != "time_s") {
+            let again = other.source.rsplit_once('_').filter(|(_, number)| number.parse::<usize>().is_ok());
+            if again.is_none_or(|(name, _)| naming::parted(name) != own) || own.0.is_empty() {
+                continue;
+            }
+            let apart = time.values.iter().zip(&other.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if apart > 0.5 * step {
+                let unit = time.unit.as_deref().unwrap_or("its unit");
+                let options = vec![format!("--leave {}", shell(&other.source))];
+                return Err(FileFault::TwoClocks { apart: format!("{apart:.4} {unit}"), options });
+            }
         }
         Ok(())
     }

@@ -82,6 +82,9 @@ pub fn plain(cell: &[u8]) -> Option<f64> {
 /// A number of a table whose decimal sign is known.
 pub fn number(cell: &[u8], decimal: Decimal) -> Option<(f64, Shape)> {
     let cell = cell.trim_ascii();
+    if let Some(usual) = usual(cell) {
+        return number(&usual, decimal);
+    }
     let has = |sign: u8| cell.contains(&sign);
     if decimal == Decimal::Point && !has(b',') {
         let value = plain(cell).or_else(|| blank_groups(cell, decimal))?;
@@ -97,6 +100,23 @@ pub fn number(cell: &[u8], decimal: Decimal) -> Option<(f64, Shape)> {
     let value = swapped(&ungrouped, decimal)?;
     let is_certain = groups > 2 || has(decimal.sign());
     Some((value, if is_certain { Shape::Grouped } else { Shape::Doubtful }))
+}
+
+/// A number in the notation of Fortran (1.5D-3) or with a typographic minus as it is usually written.
+fn usual(cell: &[u8]) -> Option<Vec<u8>> {
+    const MINUS: &[u8] = "−".as_bytes();
+    let mut usual = match cell.strip_prefix(MINUS) {
+        Some(rest) => [b"-", rest].concat(),
+        None => cell.to_vec(),
+    };
+    let place = usual.iter().position(|byte| matches!(byte, b'D' | b'd'));
+    if let Some(place) =
+        place.filter(|place| *place > 0 && usual[place - 1].is_ascii_digit() | (usual[place - 1] == b'.'))
+    {
+        usual[place] = b'E';
+    }
+    (usual != cell && usual.first().is_some_and(|byte| byte.is_ascii_digit() || matches!(byte, b'-' | b'+' | b'.')))
+        .then_some(usual)
 }
 
 /// A number with this decimal sign, and no grouping.

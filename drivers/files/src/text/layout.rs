@@ -229,7 +229,8 @@ impl Survey {
         // A table of another width is told row by row.
         let width = if words.is_empty() || words.len().abs_diff(self.width) <= 1 { self.width } else { words.len() };
         // A last name that some rows fill, as a comment, is a column.
-        let is_filled = |row: &Vec<Vec<u8>>| row.len() == words.len() && row.last().is_some_and(|cell| !cell.is_empty());
+        let is_filled =
+            |row: &Vec<Vec<u8>>| row.len() == words.len() && row.last().is_some_and(|cell| !cell.is_empty());
         let width = if self.rows[after.min(self.rows.len())..].iter().any(is_filled) { words.len() } else { width };
         while words.len() > width && !rows.is_empty() {
             extra.extend(words.pop().filter(|name| !name.is_empty()));

@@ -58,7 +58,7 @@ fn date(text: &str, at: usize) -> Option<i64> {
         return utc(time);
     }
     let sign = text[..at].find(['-', '/', '.']).map(|place| text.as_bytes()[place] as char)?;
-    let mut parts = text[..at].split(sign).map(|part| part.trim().parse::<u16>().ok());
+    let mut parts = text[..at].split(sign).map(|part| part.trim().parse::<u16>().ok().or_else(|| month(part.trim())));
     let (a, b, c) = (parts.next()??, parts.next()??, parts.next()??);
     let (year, month, day) = match (a > 31, sign) {
         (true, _) => (a, b, c),
@@ -69,6 +69,12 @@ fn date(text: &str, at: usize) -> Option<i64> {
     let year = if year < 100 { year + 2000 } else { year };
     let day_ns = utc(format!("{year:04}-{month:02}-{day:02}T00:00:00").parse().ok()?)?;
     day_ns.checked_add(clock(text[at + 1..].trim())?)
+}
+
+/// `Mar` of 12-Mar-2026, as MATLAB writes it.
+fn month(name: &str) -> Option<u16> {
+    const MONTHS: [&str; 12] = ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+    MONTHS.iter().position(|month| name.eq_ignore_ascii_case(month)).map(|place| place as u16 + 1)
 }
 
 /// A century; a clock that shows more is none.
@@ -125,6 +131,7 @@ mod tests {
             "2026/01/02 10:00:00",
             "1/2/2026 10:00:00 AM",
             "01/02/26 10:00:00",
+            "02-Jan-2026 10:00:00.000",
         ] {
             assert_eq!(parse(text.as_bytes()), Some(Stamp::Date(first)), "{text}");
         }

@@ -154,10 +154,12 @@ fn names_that_are_empty_or_there_twice_are_given() {
 #[test]
 fn a_table_without_names_is_mapped_by_the_places_of_its_columns() {
     let bare = "0,1.5,2\n0.004,1.6,2\n0.008,1.7,2\n";
-    refused(bare, &["a friction run needs time_s, motor_position_rad, motor_current_a. Use --names time_s,column_2,column_3"]);
+    refused(
+        bare,
+        &["a friction run needs time_s, motor_position_rad, motor_current_a. Use --names time_s,column_2,column_3"],
+    );
     let map = ["time_s=column_1", "motor_position_rad=column_2", "motor_current_a=column_3"];
-    let choices =
-        Choices { map: map.map(str::to_owned).to_vec(), unit: vec!["time_s=s".into()], ..Choices::default() };
+    let choices = Choices { map: map.map(str::to_owned).to_vec(), unit: vec!["time_s=s".into()], ..Choices::default() };
     let (run, notes) = take(bare, &choices).unwrap();
     assert_eq!(run.column("motor_position_rad").unwrap(), [1.5, 1.6, 1.7]);
     assert_eq!(notes[0].option.as_deref(), Some("--names time_s,column_2,column_3"));
@@ -168,7 +170,8 @@ fn codes_for_an_empty_cell_are_asked_about() {
     let cells: Vec<String> = (0..40).map(|row| if row % 9 == 4 { "OVLD".into() } else { format!("0,{row}") }).collect();
     let words = table("motor_current_a", &cells.iter().map(String::as_str).collect::<Vec<_>>());
     refused(&words, &["expected a number, found “OVLD”", "Use --missing OVLD --leave-empty-rows"]);
-    let choices = |missing: &str| Choices { missing: vec![missing.into()], leave_empty_rows: true, ..Choices::default() };
+    let choices =
+        |missing: &str| Choices { missing: vec![missing.into()], leave_empty_rows: true, ..Choices::default() };
     assert_eq!(take(&words, &choices("ovld")).unwrap().0.len(), 36);
 
     for (code, option) in [("-9999", "-9999"), ("9,9E+37", "9.9e37")] {
@@ -217,8 +220,41 @@ fn a_counter_that_overflows_goes_on() {
         ..Choices::default()
     };
     let said = take(&text, &choices(&[])).unwrap_err().to_string();
-    assert!(said.ends_with("the time begins anew as a counter of 32 bits does that overflows. Use --unwrap time_s=4294.967296"), "{said}");
+    assert!(
+        said.ends_with(
+            "the time begins anew as a counter of 32 bits does that overflows. Use --unwrap time_s=4294.967296"
+        ),
+        "{said}"
+    );
     let (run, _) = take(&text, &choices(&["time_s=4294.967296"])).unwrap();
     let time_s = run.column("time_s").unwrap();
     assert!((time_s[39] - time_s[0] - 0.195).abs() < 1e-9, "{time_s:?}");
+}
+
+#[test]
+fn what_another_table_in_the_file_holds_is_never_taken_in() {
+    let first = rows((0..30).map(|row| 0.01 * f64::from(row)));
+    let second = "time_s,motor_position_rad,motor_current_a\ns,deg,mA\n0.5,90,100\n";
+    refused(&format!("{first}{second}"), &["line 33", "as the names or units of another table"]);
+    let own_clocks = "Time [s],motor_position_rad,Time [s],motor_current_a\n";
+    let clocks = |late: f64| -> String {
+        let row = |row: i32| format!("{},{row},{},0.{row}\n", 0.01 * f64::from(row), 0.01 * f64::from(row) + late);
+        own_clocks.to_owned() + &(0..30).map(row).collect::<String>()
+    };
+    refused(&clocks(0.25), &["two columns of time differ by up to 0.2500 s", "Use --leave 'Time [s]_2'"]);
+    assert_eq!(take(&clocks(0.0), &Choices::default()).unwrap().0.len(), 30);
+}
+
+#[test]
+fn units_at_the_end_of_a_name_keep_their_case() {
+    let text = "time_s,motor_position_rad,motor_current_mA\n0,1,100\n0.01,2,200\n";
+    refused(text, &["--map motor_current_a=motor_current_mA --unit motor_current_a=mA"]);
+    let choices = Choices { map: vec!["motor_current_a=motor_current_mA".into()], ..Choices::default() };
+    assert_eq!(take(text, &choices).unwrap().0.column("motor_current_a").unwrap(), [0.1, 0.2]);
+}
+
+#[test]
+fn fortran_and_typesetters_write_numbers_too() {
+    let text = table("motor_current_a", &["1,5D-01", "\u{2212}0,25", "1,0d+00"]);
+    assert_eq!(column(&text, "motor_current_a"), [0.15, -0.25, 1.0]);
 }

@@ -59,8 +59,7 @@ pub fn evidence<'l, 'p>(
     forms: usize,
 ) -> Vec<Evidence<'l, 'p>> {
     let outside = ridge.outside(near);
-    let trials: Vec<Trial> =
-        candidates.par_iter().filter_map(|form| trial(ridge, form, outside.as_ref())).collect();
+    let trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ridge, form, outside.as_ref())).collect();
     let mut all: Vec<Evidence> = trials
         .chunk_by(|a, b| a.form.id() == b.form.id())
         .filter_map(|forms_of_one| of_effect(ridge, forms_of_one, forms))
@@ -69,11 +68,7 @@ pub fn evidence<'l, 'p>(
     all
 }
 
-fn trial<'l, 'p>(
-    ridge: &BlockedRidge,
-    form: &'l Regressor<'p>,
-    outside: Option<&Outside>,
-) -> Option<Trial<'l, 'p>> {
+fn trial<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Option<&Outside>) -> Option<Trial<'l, 'p>> {
     let added = visible(ridge, form)?;
     let is_possible = |factors: &[f64]| allows(form.effect, &form.form, factors);
     if !is_possible(&added.factors()) {

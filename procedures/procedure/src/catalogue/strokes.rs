@@ -140,7 +140,8 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
 }
 
 fn side(points: &[Plateau], sign: f64, gravity: [f64; 2]) -> (Vec<(f64, f64)>, Option<Line>) {
-    let friction = |p: &Plateau| p.target - p.load_nm - waves(p.link_rad).iter().zip(gravity).map(|(w, g)| w * g).sum::<f64>();
+    let friction =
+        |p: &Plateau| p.target - p.load_nm - waves(p.link_rad).iter().zip(gravity).map(|(w, g)| w * g).sum::<f64>();
     let of_side = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0);
     let of_side: Vec<(f64, f64)> = of_side.map(|p| (p.velocity_rad_s, friction(p))).collect();
     let line = Line::through(&of_side);
@@ -206,7 +207,9 @@ fn told(points: &[Plateau], lines: &Lines, planned_rad_s: f64) -> Identification
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let (mut quantities, mut series, mut flat, mut said) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut vague = Vec::new();
-    for ((suffix, mark, sign), (points, line)) in [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)].into_iter().zip(&lines.sides) {
+    for ((suffix, mark, sign), (points, line)) in
+        [("positive", "⁺", 1.0), ("negative", "⁻", -1.0)].into_iter().zip(&lines.sides)
+    {
         series.push(scatter(suffix, points.clone()));
         let Some(line) = line else { continue };
         let ends = if sign > 0.0 { [0.0, top] } else { [-top, 0.0] };

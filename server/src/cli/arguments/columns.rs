@@ -24,7 +24,7 @@ pub struct Columns {
     #[arg(long, value_name = "NAME")]
     pub leave: Vec<String>,
     /// Omit rows with an empty cell (rejected otherwise) and print their number
-    #[arg(long)]
+    #[arg(long, overrides_with = "leave_empty_rows")]
     pub leave_empty_rows: bool,
     /// What stands for an empty cell, such as OVLD or -9999 (none: no number does); may be given again
     #[arg(long, value_name = "CELL", allow_hyphen_values = true)]
