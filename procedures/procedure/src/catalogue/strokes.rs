@@ -114,10 +114,13 @@ impl Procedure for Strokes {
     }
 }
 
-/// What the strokes of both directions say: a line for each.
+/// Speed and friction of each stroke of one direction, and the line through them.
+type Side = (Vec<(f64, f64)>, Option<Line>);
+
+/// What the strokes of both directions say.
 struct Lines {
-    /// Speed and friction of each stroke, and the line through them; positive direction, then negative.
-    sides: [(Vec<(f64, f64)>, Option<Line>); 2],
+    /// Positive direction, then negative.
+    sides: [Side; 2],
     /// Half the difference of both offsets with its interval: gravity is not in it. Where no sensor measures the load.
     half_difference: Option<(f64, [f64; 2])>,
 }
@@ -139,7 +142,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     Ok(told(&points, &lines, planned))
 }
 
-fn side(points: &[Plateau], sign: f64, gravity: [f64; 2]) -> (Vec<(f64, f64)>, Option<Line>) {
+fn side(points: &[Plateau], sign: f64, gravity: [f64; 2]) -> Side {
     let friction =
         |p: &Plateau| p.target - p.load_nm - waves(p.link_rad).iter().zip(gravity).map(|(w, g)| w * g).sum::<f64>();
     let of_side = points.iter().filter(|p| p.velocity_rad_s * sign > 0.0);
