@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 
 /// A mock bench outruns the clock on the wall; eyes do not.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+/// The pace of a mock bench weighs as much as this time of the run [s].
+const PACE_HOLDS_S: f64 = 2.0;
 /// Limits and channels of a bench.
 const BENCH_EVERY: Duration = Duration::from_millis(500);
 
@@ -53,11 +55,15 @@ impl Display {
         }
     }
 
-    /// The time of a mock bench may run faster than that of the person who waits, but never faster than its pace.
+    /// The time of a mock bench may run faster than that of the person who waits, but never faster than its pace. It begins with
+    /// that pace: the first moments of a run hold its start as well.
     fn on_the_wall(&self, pace: Option<f64>, progress: &procedure::Progress) -> Progress {
         let elapsed_s = self.began.elapsed().as_secs_f64();
-        let least = pace.map_or(0.0, |pace| 1.0 / pace);
-        let wall = if progress.elapsed_s > 0.0 { (elapsed_s / progress.elapsed_s).max(least) } else { 1.0 };
+        let wall = match pace {
+            Some(pace) => ((elapsed_s + PACE_HOLDS_S) / (progress.elapsed_s + PACE_HOLDS_S * pace)).max(1.0 / pace),
+            None if progress.elapsed_s > 0.0 => elapsed_s / progress.elapsed_s,
+            None => 1.0,
+        };
         Progress {
             step: progress.step,
             steps: progress.steps,
