@@ -14,6 +14,8 @@ use jointbench_instrument::{Kind, Meta};
 pub(crate) struct Odd {
     pub line: u64,
     pub cells: usize,
+    /// It begins with a number, as a row does that lacks some.
+    pub is_row: bool,
 }
 
 /// Words in so many columns of one row are no codes for empty cells.
@@ -129,10 +131,10 @@ impl RawTable {
         };
         let end = (0..self.rows).rev().find(|row| !begins_wrong(*row)).map_or(0, |row| row + 1);
         let Some(last) = end.checked_sub(1).and_then(|row| self.lines.of(row)) else { return };
-        let odd = self.odd.iter().filter(|odd| odd.line > last).count();
-        let count = self.rows - end + odd;
+        let below: Vec<&Odd> = self.odd.iter().filter(|odd| odd.line > last).collect();
+        let count = self.rows - end + below.len();
         // A short table that ends in words is none with a footer.
-        if count == 0 || count > FOOTER_LINES || end < 2 * count {
+        if count == 0 || count > FOOTER_LINES || end < 2 * count || below.iter().any(|odd| odd.is_row) {
             return;
         }
         self.columns.iter_mut().for_each(|column| column.truncate(end));

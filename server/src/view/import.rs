@@ -4,7 +4,7 @@ use jointbench_files as files;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What is shown of a file before it is taken in. Nothing of it is kept.
+/// What a file holds, before its import. Nothing of it is stored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ImportPreview {
     /// As the facts say, or as the columns look: `friction`, `encoder`, `stiffness` or `brake`.
@@ -17,7 +17,7 @@ pub struct ImportPreview {
     pub notes: Vec<ImportNote>,
     /// Columns that no model can use.
     pub left: Vec<String>,
-    /// Why the file is not taken in with these choices.
+    /// Why the file is not imported with these choices.
     pub refused: Option<ImportRefusal>,
 }
 

@@ -169,7 +169,8 @@ fn append(
     table.comments += part.comments;
     table.is_cut |= part.is_cut;
     table.named_again.extend(part.named_again.iter().map(|row| row + rows));
-    table.odd.extend(part.odd.iter().map(|(at, cells)| Odd { line: *line + at, cells: *cells }));
+    let odd = |(at, cells, is_row): (u64, usize, bool)| Odd { line: *line + at, cells, is_row };
+    table.odd.extend(part.odd.iter().copied().map(odd));
     table.lines.append(part.lines, rows, *line);
     *line += part.ends;
     let columns = table.columns.iter().filter(|column| !column.values.is_empty()).count();

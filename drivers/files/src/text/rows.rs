@@ -36,8 +36,8 @@ pub struct Part {
     pub lines: Lines,
     /// Line ends in it.
     pub ends: u64,
-    /// Rows of another width: their lines and cells.
-    pub odd: Vec<(u64, usize)>,
+    /// Rows of another width: their lines and cells, and whether they begin with a number.
+    pub odd: Vec<(u64, usize, bool)>,
     pub comments: usize,
     /// Rows above which the names stand again.
     pub named_again: Vec<usize>,
@@ -142,7 +142,7 @@ impl Rows<'_> {
         if !self.fits(record) {
             match is_end && record.len() < self.ways.len() {
                 true => part.is_cut = true,
-                false => part.odd.push((line(), record.len())),
+                false => part.odd.push((line(), record.len(), cell::is_number(first))),
             }
             return;
         }

@@ -197,6 +197,7 @@ fn lines_below_the_last_row_are_skipped_and_told() {
     let (run, notes) = take(&footed, &Choices::default()).unwrap();
     assert_eq!(run.len(), 30);
     assert_eq!(notes[0].said, "2 lines below the last row skipped, from line 32");
+    refused(&format!("{whole}0.3,0.3\n"), &["line 32: expected 3 values as in the line of column names, found 2"]);
     refused(&whole.replacen("0.05,", "broken,", 1), &["line 7, column time_s: expected a number, found “broken”"]);
 }
 
