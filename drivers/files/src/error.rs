@@ -232,7 +232,7 @@ impl FileError {
         }
     }
 
-    /// Where, and what was expected; without the options that mend it.
+    /// Where the fault is, and what was expected; without the proposed options.
     pub fn cause(&self) -> String {
         format!("{}: {}", self.place, self.fault)
     }

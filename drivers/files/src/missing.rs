@@ -23,7 +23,7 @@ impl RawTable {
         for column in &mut self.columns {
             codes.iter().for_each(|code| column.empty(*code));
         }
-        if !options.missing.is_empty() {
+        if options.missing.iter().any(|text| text == "none") {
             return Ok(());
         }
         let Some((column, code)) = self.columns.iter().find_map(|column| Some((column, code_of(column)?))) else {

@@ -103,7 +103,7 @@ impl RawTable {
         }
     }
 
-    /// No line names the columns, and nobody has said what one of them is.
+    /// No line and no option names a column.
     pub fn is_unnamed(&self, kind: Kind) -> bool {
         let is_named = |name: &str| name != "time_s" && self.place(name).is_some();
         self.proposed_names.is_some() && !known(kind).any(is_named)

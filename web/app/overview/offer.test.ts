@@ -3,7 +3,7 @@ import type { Procedure } from '../api/types';
 import { offers } from './offer';
 
 it('offers first what the bench can make', () => {
-	const told = (...possible: string[]) => {
+	const offered = (...possible: string[]) => {
 		const all = [
 			['friction', 'friction'],
 			['puma_friction', 'friction'],
@@ -12,11 +12,11 @@ it('offers first what the bench can make', () => {
 		].map(([id, kind]) => ({ id, kind, refused: possible.includes(id!) ? undefined : 'no such instrument' }) as Procedure);
 		return offers(all).map((one) => [one.title, one.procedures.map(({ id }) => id).join()]);
 	};
-	expect(told('friction', 'brake_hysteresis')).toEqual([
+	expect(offered('friction', 'brake_hysteresis')).toEqual([
 		['friction', 'friction'],
 		['brake', 'brake_hysteresis'],
 		['Not available with the default settings', 'puma_friction,encoder_delay'],
 	]);
-	expect(told('friction', 'encoder_delay')[0]).toEqual(['encoder', 'encoder_delay']);
-	expect(told('puma_friction')[0]).toEqual(['friction', 'puma_friction']);
+	expect(offered('friction', 'encoder_delay')[0]).toEqual(['encoder', 'encoder_delay']);
+	expect(offered('puma_friction')[0]).toEqual(['friction', 'puma_friction']);
 });

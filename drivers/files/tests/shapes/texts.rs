@@ -186,6 +186,7 @@ fn codes_for_an_empty_cell_are_asked_about() {
             ],
         );
         assert_eq!(take(&numbers, &choices(option)).unwrap().0.len(), 36);
+        assert!(take(&numbers, &choices("OVLD")).is_err(), "another code is still asked about");
         assert_eq!(take(&numbers, &choices("none")).unwrap().0.len(), 40, "they are what was measured");
     }
 }

@@ -139,7 +139,7 @@ fn identify(values: &Values, run: &RunTable) -> Result<Identification, Unusable>
     };
     let plain = || Lines { sides: [1.0, -1.0].map(|sign| side(&points, sign, [0.0; 2])), half_difference: None };
     let lines = weighed.unwrap_or_else(plain);
-    Ok(told(&points, &lines, planned))
+    Ok(identification(&points, &lines, planned))
 }
 
 fn side(points: &[Plateau], sign: f64, gravity: [f64; 2]) -> Side {
@@ -151,7 +151,7 @@ fn side(points: &[Plateau], sign: f64, gravity: [f64; 2]) -> Side {
     (of_side, line)
 }
 
-/// Gravity over the angle of the link, whatever its zero.
+/// Gravity as a function of the link angle, for any zero of the angle.
 fn waves(link_rad: f64) -> [f64; 2] {
     [link_rad.sin(), link_rad.cos()]
 }
@@ -206,7 +206,7 @@ fn without_gravity(prepared: &Prepared, points: &[Plateau], fastest_rad_s: f64) 
     Some(Lines { sides: [line(0), line(1)], half_difference: Some((half(&values), interval(&half))) })
 }
 
-fn told(points: &[Plateau], lines: &Lines, planned_rad_s: f64) -> Identification {
+fn identification(points: &[Plateau], lines: &Lines, planned_rad_s: f64) -> Identification {
     let top = points.iter().map(|p| p.velocity_rad_s.abs()).fold(0.0, f64::max);
     let (mut quantities, mut series, mut flat, mut said) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut vague = Vec::new();

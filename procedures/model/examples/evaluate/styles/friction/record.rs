@@ -97,7 +97,7 @@ fn shown(
     let velocity = *dice.pick(&["clean", "observer", "absent"]);
     let kept = |dice: &mut Dice| dice.uniform(0.0, 1.0) < 0.6;
     let (keeps_segment, keeps_temperature, has_repeats) = (kept(dice), kept(dice), joint.repeats > 1);
-    // What a law depends on is measured: without it nobody can name the law.
+    // Without a column of temperature a law of temperature is not identifiable.
     let keeps_temperature = keeps_temperature || laws.iter().any(|law| law.0.starts_with("temperature"));
     let quiet = 1e-3 * joint.fastest;
     let load_noise = joint.scale().heaviest * joint.gear * dice.size(5e-4, 3e-3);
