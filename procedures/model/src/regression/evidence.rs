@@ -41,6 +41,14 @@ impl Evidence<'_, '_> {
 }
 
 /// One form beside the base.
+enum Tried<'l, 'p> {
+    Judged(Trial<'l, 'p>),
+    /// It does not show where it has to, or no factor of it is possible.
+    Rejected,
+    /// It looks like the base.
+    Hidden(&'l Regressor<'p>),
+}
+
 struct Trial<'l, 'p> {
     form: &'l Regressor<'p>,
     taken: f64,
@@ -48,7 +56,8 @@ struct Trial<'l, 'p> {
     chance: f64,
 }
 
-/// The evidence for each effect of the candidates, the one that takes most first. `forms`: how many were tried in all.
+/// The evidence for each effect of the candidates, the one that takes most first, and the forms that the base hides. `forms`: how
+/// many were tried in all.
 ///
 /// An effect of steady state has to show outside reversals and rests: on the rows that are not `near` one, with the model fitted to
 /// these rows alone, it takes the practical share too. A form that differs from the model at reversals only does not.
@@ -57,37 +66,39 @@ pub fn evidence<'l, 'p>(
     candidates: &[&'l Regressor<'p>],
     near: &[bool],
     forms: usize,
-) -> Vec<Evidence<'l, 'p>> {
+) -> (Vec<Evidence<'l, 'p>>, Vec<&'l Regressor<'p>>) {
     let outside = ridge.outside(near);
-    let trials: Vec<Trial> = candidates.par_iter().filter_map(|form| trial(ridge, form, outside.as_ref())).collect();
+    let tried: Vec<Tried> = candidates.par_iter().map(|form| attempt(ridge, form, outside.as_ref())).collect();
+    let (mut trials, mut hidden) = (Vec::new(), Vec::new());
+    for tried in tried {
+        match tried {
+            Tried::Judged(trial) => trials.push(trial),
+            Tried::Rejected => {}
+            Tried::Hidden(form) => hidden.push(form),
+        }
+    }
     let mut all: Vec<Evidence> = trials
         .chunk_by(|a, b| a.form.id() == b.form.id())
         .filter_map(|forms_of_one| of_effect(ridge, forms_of_one, forms))
         .collect();
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    all
+    (all, hidden)
 }
 
-fn trial<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Option<&Outside>) -> Option<Trial<'l, 'p>> {
-    let added = visible(ridge, form)?;
+fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Option<&Outside>) -> Tried<'l, 'p> {
+    let Some(added) = visible(ridge, form) else { return Tried::Hidden(form) };
     let is_possible = |factors: &[f64]| allows(form.effect, &form.form, factors);
     if !is_possible(&added.factors()) {
-        return None;
+        return Tried::Rejected;
     }
-    let is_settled = form.effect.regime() == Regime::SteadyState;
-    if is_settled && !outside.is_none_or(|outside| shows_outside(outside, form)) {
-        return None;
+    if let Some(outside) = outside.filter(|_| form.effect.regime() == Regime::SteadyState) {
+        let Some((factors, taken)) = outside.added(&form.columns, LEAST_VISIBLE) else { return Tried::Hidden(form) };
+        if !is_possible(&factors) || taken <= DECISION_SHARE * outside.left() {
+            return Tried::Rejected;
+        }
     }
     let chance = chance(added.wald(), added.size, ridge.blocks.len());
-    Some(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
-}
-
-/// It takes its share of what is left in the rows that are no reversal and no rest too.
-fn shows_outside(outside: &Outside, form: &Regressor) -> bool {
-    let added = outside.added(&form.columns, LEAST_VISIBLE);
-    added.is_some_and(|(factors, taken)| {
-        allows(form.effect, &form.form, &factors) && taken > DECISION_SHARE * outside.left()
-    })
+    Tried::Judged(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
 }
 
 /// What a form would add, where it is none of what the model has.

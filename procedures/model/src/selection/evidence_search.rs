@@ -7,9 +7,9 @@
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
 use crate::preprocess::Prepared;
-use crate::preprocess::form_error::{ErrorColumn, Lives};
+use crate::preprocess::form_error::Lives;
 use crate::regression::candidates::{CandidateSet, Regressor};
-use crate::regression::evidence::{Evidence, LEAST_VISIBLE, chance, errors, evidence};
+use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_columns, effect_factor, nuisance, without};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -185,46 +185,32 @@ fn candidates<'l, 'p>(
         None => Vec::new(),
     };
     let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
-    let mut all = evidence(&solution.ridge, &of(&regime(Regime::SteadyState)), &near, forms);
+    let (mut all, mut hidden) = evidence(&solution.ridge, &of(&regime(Regime::SteadyState)), &near, forms);
     // What is form error of all others is judged without it.
     let late = of(&|c| c.id() == DELAY);
     if !late.is_empty() && is_late(now, solution) {
-        all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &late, &near, forms));
+        all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &late, &near, forms).0);
     }
     let bent = of(&regime(Regime::Hysteresis));
     if !bent.is_empty() {
-        all.extend(evidence(&without(&now.main, solution, Lives::Bristle), &bent, &near, forms));
+        all.extend(evidence(&without(&now.main, solution, Lives::Bristle), &bent, &near, forms).0);
     }
     let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
-    all.extend(evidence(&solution.ridge, &inertia, &near, forms));
+    let (beside, imitated) = evidence(&solution.ridge, &inertia, &near, forms);
+    all.extend(beside);
+    hidden.extend(imitated);
     // On one sine snap is the acceleration, turned over, and jerk the velocity.
-    for error in free_error(now, solution) {
-        let imitated = of(&|c| c.id() != DELAY && imitates(error, c));
-        if !imitated.is_empty() {
-            all.extend(evidence(&without(&now.main, solution, error.lives), &imitated, &near, forms));
-        }
+    for lives in free_error(now, solution) {
+        all.extend(evidence(&without(&now.main, solution, lives), &hidden, &near, forms).0);
     }
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     all
 }
 
-/// Nuisance columns of a model that the ridge does not shrink.
-fn free_error<'a>(now: &'a TwoStageModel, solution: &'a Solution) -> impl Iterator<Item = &'a ErrorColumn> {
+/// The form error of a model that the ridge does not shrink.
+fn free_error(now: &TwoStageModel, solution: &Solution) -> impl Iterator<Item = Lives> {
     let columns = now.main.problem.form_error.as_deref().map_or(&[][..], |form_error| &form_error.columns);
-    solution.error.iter().filter_map(|(at, _)| columns.get(*at)).filter(|column| !column.lives.shrinks())
-}
-
-/// Whether a column of the form error is the column of a candidate times a factor.
-fn imitates(error: &ErrorColumn, candidate: &Regressor) -> bool {
-    let [column] = &candidate.columns[..] else { return false };
-    let [mut own, mut both, mut other] = [0.0; 3];
-    for (e, c) in error.values.iter().zip(column) {
-        let c = f64::from(*c);
-        own += e * e;
-        both += e * c;
-        other += c * c;
-    }
-    own * other - both * both <= LEAST_VISIBLE * own * other
+    solution.error.iter().filter_map(|(at, _)| Some(columns.get(*at)?.lives)).filter(|lives| !lives.shrinks())
 }
 
 /// An effect that changes the direction of all others explains what free elements explain in its place: a torque that comes late
