@@ -1,7 +1,8 @@
 //! What the first lines of a text say of the rest: what parts the columns, where their names stand, and what they hold.
 //!
 //! A row is a line that holds numbers where most lines hold numbers. The names stand in the last line of words above the
-//! first rows, and a line of units may stand between.
+//! first rows, and a line of units may stand between. Some loggers write a block of such lines and say in the first cell of each
+//! what it holds.
 
 use super::cell::{self, Decimal};
 use super::line::{Holds, Line, SEPARATORS, Separator, cells, holds, is_comment, lines, uncommented};
@@ -131,7 +132,10 @@ impl Survey {
         let begin = self.begin();
         let names = self.names(lines, begin);
         let units = names.as_ref().and_then(|names| names.units.as_ref()).map(|(at, _)| *at);
-        let after = units.or(names.as_ref().map(|names| names.at)).map_or(begin.min(lines.len()), |at| at + 1);
+        let after = match &names {
+            Some(names) if !names.heads_block => units.unwrap_or(names.at) + 1,
+            _ => begin.min(lines.len()),
+        };
         let (start, start_line) = match (lines.get(after), lines.last()) {
             (Some(line), _) => (line.start, line.number),
             (None, Some(last)) => (end, last.number + 1),
@@ -163,11 +167,19 @@ impl Survey {
         (0..self.width).map(|i| 2 * rows.iter().filter(|held| tells(&held[i])).count() > rows.len()).collect()
     }
 
+    /// Nothing stands in the first column of most lines that hold numbers.
+    fn has_empty_side(&self) -> bool {
+        let rows = || self.held.iter().filter(|held| held.len() == self.width && held.contains(&Holds::Number));
+        2 * rows().filter(|held| held[0] == Holds::Nothing).count() > rows().count()
+    }
+
     /// The first of the lines with which the rows begin; behind the last line where there are none.
     fn begin(&self) -> usize {
         let usual = self.usual();
+        let is_labelled = |held: &Vec<Holds>| self.has_empty_side() && held[0] == Holds::Words;
         let is_row = |held: &Vec<Holds>| {
             held.len() == self.width
+                && !is_labelled(held)
                 && held.iter().any(|one| matches!(one, Holds::Number | Holds::Stamp))
                 && held.iter().zip(&usual).all(|(one, usual)| !usual || *one != Holds::Words)
         };
@@ -184,6 +196,18 @@ struct Names {
     /// The line of units, and its cells.
     units: Option<(usize, Vec<String>)>,
     cells: Vec<String>,
+    /// More lines that are no rows stand below it.
+    heads_block: bool,
+}
+
+/// What the first cell of a line in a block says, letters and digits alone.
+const NAMES: [&str; 9] =
+    ["name", "names", "tracename", "channel", "channelname", "signal", "signalname", "symbolname", "kanalname"];
+const UNITS: [&str; 5] = ["unit", "units", "unitstring", "vunit", "einheit"];
+
+fn is_label(cell: &[u8], labels: &[&str]) -> bool {
+    let plain: Vec<u8> = cell.iter().filter(|byte| byte.is_ascii_alphanumeric()).map(u8::to_ascii_lowercase).collect();
+    labels.iter().any(|label| label.as_bytes() == plain)
 }
 
 impl Survey {
@@ -191,6 +215,9 @@ impl Survey {
         let fits = |cells: &[Vec<u8>]| cells.len() > 1 && (cells.len() as i64 - self.width as i64).abs() <= 1;
         let words = |cells: &[Vec<u8>]| cells.iter().all(|cell| !matches!(holds(cell), Holds::Number | Holds::Stamp));
         let is_some = |cells: &[Vec<u8>]| cells.iter().any(|cell| holds(cell) == Holds::Words);
+        if let Some(names) = self.labelled(lines, begin) {
+            return Some(names);
+        }
         let plain = |at: usize| (!is_comment(lines[at].text)).then(|| self.rows[at].clone());
         // What stands in a comment may be parted in another way than the rows.
         let other = |at: usize| {
@@ -200,22 +227,64 @@ impl Survey {
         };
         let find = |of: &dyn Fn(usize) -> Option<Vec<Vec<u8>>>, is_wide: bool| {
             let found = (0..begin.min(lines.len())).rev().filter_map(|at| Some((at, of(at)?)));
-            found.into_iter().find(|(_, cells)| words(cells) && is_some(cells) && (is_wide || fits(cells)))
+            let mut found = found.into_iter().filter(|(_, c)| words(c) && is_some(c) && (is_wide || fits(c)));
+            let last = found.next()?;
+            // What stands below the names says the same word of several columns.
+            let is_of_names = |cells: &[Vec<u8>]| !self.repeats(cells) || self.are_units(cells);
+            let above = found.find(|(_, c)| !is_of_names(&last.1) && c.len() == last.1.len() && is_of_names(c));
+            Some(above.map_or((last.0, last.1, false), |(at, cells)| (at, cells, true)))
         };
         let wide = |at: usize| plain(at).filter(|cells| cells.len() > 1);
-        let (at, found) =
+        let (at, found, heads_block) =
             find(&plain, false).or_else(|| find(&other, false)).or_else(|| find(&wide, true)).or_else(|| {
                 // Not one number below: the first line is what there is.
-                (begin == lines.len() && !lines.is_empty()).then(|| (0, self.rows[0].clone()))
+                (begin == lines.len() && !lines.is_empty()).then(|| (0, self.rows[0].clone(), false))
             })?;
-        let text = |cells: &[Vec<u8>]| cells.iter().map(|cell| name_of(cell)).collect::<Vec<String>>();
-        if at > 0 && are_units(&found) {
+        let text = |cells: &[Vec<u8>]| self.words(cells);
+        if at > 0 && self.are_units(&found) {
             let above = plain(at - 1).filter(|cells| fits(cells)).or_else(|| other(at - 1));
             if let Some(above) = above.filter(|above| is_some(above) && above.len() + 1 >= found.len()) {
-                return Some(Names { at: at - 1, units: Some((at, text(&found))), cells: text(&above) });
+                return Some(Names { at: at - 1, units: Some((at, text(&found))), cells: text(&above), heads_block });
             }
         }
-        Some(Names { at, units: None, cells: text(&found) })
+        Some(Names { at, units: None, cells: text(&found), heads_block })
+    }
+
+    /// The names in a block of lines which say in their first cell what they hold.
+    fn labelled(&self, lines: &[Line<'_>], begin: usize) -> Option<Names> {
+        let block = || (0..begin.min(lines.len())).filter(|at| self.rows[*at].len().abs_diff(self.width) <= 1);
+        let find =
+            |labels: &[&str]| block().find(|at| self.rows[*at].len() > 1 && is_label(&self.rows[*at][0], labels));
+        let at = find(&NAMES)?;
+        let units = find(&UNITS).filter(|units| *units > at);
+        (units.is_some() || self.has_empty_side()).then(|| Names {
+            at,
+            units: units.map(|at| (at, self.words(&self.rows[at]))),
+            cells: self.words(&self.rows[at]),
+            heads_block: true,
+        })
+    }
+
+    /// One word stands in three cells or more, or in all.
+    fn repeats(&self, cells: &[Vec<u8>]) -> bool {
+        let words: Vec<String> = self.words(cells).into_iter().filter(|word| !word.is_empty()).collect();
+        let most = words.iter().map(|word| words.iter().filter(|other| *other == word).count()).max().unwrap_or(0);
+        most > 2 || (most == 2 && words.len() == 2)
+    }
+
+    /// The cells of a line above the rows; the label at its side is none of them, and *unit* is no unit.
+    fn words(&self, cells: &[Vec<u8>]) -> Vec<String> {
+        let is_side = |i: usize| i == 0 && self.has_empty_side();
+        let is_none = |i: usize, cell: &[u8]| is_side(i) || is_label(cell, &UNITS);
+        let text = |(i, cell): (usize, &Vec<u8>)| if is_none(i, cell) { String::new() } else { name_of(cell) };
+        cells.iter().enumerate().map(text).collect()
+    }
+
+    /// Units, or nothing, in each cell.
+    fn are_units(&self, cells: &[Vec<u8>]) -> bool {
+        let texts: Vec<String> = self.words(cells).iter().map(|text| bare_unit(text)).collect();
+        let known = texts.iter().filter(|text| Unit::parse(text).is_some()).count();
+        known > 0 && texts.iter().all(|text| is_unit_word(text) || Unit::parse(text).is_some())
     }
 
     /// The columns from what stands in the rows `after` the names, and the names that have no column.
@@ -271,13 +340,6 @@ fn name_of(cell: &[u8]) -> String {
 /// `[s]` or `(s)` → `s`.
 pub fn bare_unit(text: &str) -> String {
     text.trim().trim_matches(['[', ']', '(', ')', '<', '>']).trim().to_owned()
-}
-
-/// Units, or nothing, in each cell.
-fn are_units(cells: &[Vec<u8>]) -> bool {
-    let texts: Vec<String> = cells.iter().map(|cell| bare_unit(&name_of(cell))).collect();
-    let known = texts.iter().filter(|text| Unit::parse(text).is_some()).count();
-    known > 0 && texts.iter().all(|text| is_unit_word(text) || Unit::parse(text).is_some())
 }
 
 fn content<'c>(cells: impl Iterator<Item = &'c [u8]>) -> Content {

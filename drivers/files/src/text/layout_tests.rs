@@ -61,6 +61,28 @@ fn a_line_of_units_is_no_line_of_names() {
 }
 
 #[test]
+fn a_block_of_lines_says_what_each_of_them_holds() {
+    let expected = (vec!["phi", "n"], Some("rpm"));
+    for (text, start_line) in [
+        ("path,a/phi,a/n\nname,phi,n\nunit,rad,rpm\n,,\n,0.5,1\n,0.6,2\n,0.7,3\n", 5),
+        ("\tphi\tn\nunit_string\trad\trpm\nDatatype\tDBL\tDBL\nLength\t3\t3\n\t0.5\t1\n\t0.6\t2\n\t0.7\t3\n", 5),
+        ("TraceName,phi,n\nBlockSize,3,3\nVUnit,rad,rpm\nHUnit,s,s\n,0.5,1,\n,0.6,2,\n,0.7,3,\n", 5),
+    ] {
+        let layout = of(text);
+        let named = layout.columns.iter().filter(|column| !column.name.is_empty());
+        let units: Vec<Option<&str>> = named.map(|column| column.unit.as_deref()).collect();
+        assert_eq!((names(&layout), units[1]), expected, "{text}");
+        assert_eq!(layout.start_line, start_line, "{text}");
+    }
+    let text = "t [s]\tphi [rad]\tn [rpm]\tm [Nm]\nT1\tPMX\tPMX\tPMX\n0,5\t1\t2\t3\n0,6\t2\t3\t4\n0,7\t3\t4\t5\n";
+    assert_eq!((names(&of(text))[1], of(text).start_line), ("phi [rad]", 3));
+    assert_eq!(
+        names(&of("Name;phi;Name;n\nUnit;rad;Unit;rpm\n0;1;0;2\n5;2;5;3\n9;3;9;4\n")),
+        ["Name", "phi", "Name", "n"]
+    );
+}
+
+#[test]
 fn columns_say_what_they_hold() {
     let layout = of("t,on,remark,clock\n0,True,x,10:00:00.5\n1,False,y,10:00:01\n");
     let contents: Vec<Content> = layout.columns.iter().map(|column| column.content).collect();
