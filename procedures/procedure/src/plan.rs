@@ -141,9 +141,9 @@ impl Step {
         self.velocity.duration_s().max(self.brake.duration_s()).max(drive_s)
     }
 
-    /// Whether it ends when the joint breaks away, and not after its duration.
+    /// Whether its duration is the longest possible: it ends when the joint breaks away, or when the edge is found.
     pub fn may_end_early(&self) -> bool {
-        matches!(self.drive, Drive::Current { .. })
+        matches!(self.drive, Drive::Current { .. }) || matches!(self.place, Place::Edge(_))
     }
 
     /// The largest motor current that is commanded as such [A].

@@ -3,7 +3,7 @@
 use crate::plan::{Phase, Plan, Step};
 use crate::recorder::Progress;
 
-/// Durations of steps that end as planned, and of steps that end when the joint breaks away.
+/// Durations of steps that end as planned, and the longest durations of steps that may end earlier.
 #[derive(Debug, Clone, Copy, Default)]
 struct Durations {
     planned: f64,
@@ -100,8 +100,10 @@ impl Pace {
 mod tests {
     use super::*;
     use crate::plan::testing::plan_of;
+    use crate::place::{Edge, Place};
     use crate::plan::{Drive, Until};
     use crate::profile::Profile;
+    use jointbench_instrument::roles::Pose;
 
     #[test]
     fn slow_steps_stretch_what_remains() {
@@ -133,5 +135,14 @@ mod tests {
         pace.step_done(30.0);
         let progress = pace.progress(0.0, 30.0, true);
         assert_eq!((progress.remaining_s, progress.at_most), (30.0, false), "half of the longest ramp was needed");
+    }
+
+    #[test]
+    fn a_search_for_an_edge_is_at_most_so_long() {
+        let mut plan = plan_of(&[10.0, 40.0]);
+        let [from, to] = [Pose::default(), Pose { shift_m: [1e-3, 0.0, 0.0], ..Pose::default() }];
+        plan.steps[1].place = Place::Edge(Edge { from, to, strides: 8, halvings: 4, dwell_s: 1.0 });
+        let progress = Pace::new(&plan).progress(0.0, 0.0, true);
+        assert_eq!((progress.remaining_s, progress.at_most), (50.0, true));
     }
 }
