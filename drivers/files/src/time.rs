@@ -135,6 +135,9 @@ fn unroll_days(values: &mut [f64]) {
 const STEPS_S: std::ops::RangeInclusive<f64> = 1e-5..=0.1;
 /// Seconds since 1970, from 2000 to 2100.
 const EPOCH_S: std::ops::Range<f64> = 9.46e8..4.1e9;
+/// Step of a Windows file time, and the seconds from 1601 to 1970.
+const FILE_TIME_S: f64 = 1e-7;
+const FILE_TIME_EPOCH_S: f64 = 11_644_473_600.0;
 /// Days since 1900, from 1954 to 2119.
 const SHEET_DAYS: std::ops::Range<f64> = 20_000.0..80_000.0;
 
@@ -153,6 +156,9 @@ fn open_unit(values: &[f64], rate_hz: Option<f64>) -> Result<(&'static str, Stri
         |(_, factor): &&(&str, f64)| EPOCH_S.contains(&(first * factor)) && (1e-6..60.0).contains(&(step * factor));
     if let Some((name, _)) = UNITS[..4].iter().find(is_epoch) {
         return Ok((name, "since 1970".to_owned()));
+    }
+    if EPOCH_S.contains(&(first * FILE_TIME_S - FILE_TIME_EPOCH_S)) {
+        return Ok(("100ns", "since 1601, as Windows counts it".to_owned()));
     }
     if SHEET_DAYS.contains(&first) && step < 1e-3 {
         return Ok(("days", "as spreadsheets count them".to_owned()));

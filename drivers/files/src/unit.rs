@@ -38,12 +38,13 @@ const ICE_K: f64 = 273.15;
 type Row = (Dimension, f64, &'static [&'static str]);
 
 /// Names are as [`plain`] leaves them; the first of each row is the one to write.
-const UNITS: [Row; 52] = {
+const UNITS: [Row; 53] = {
     use Dimension as D;
     [
         (D::Time, 1.0, &["s", "sec", "secs", "second", "seconds", "sek", "sekunden"]),
         (D::Time, 1e-3, &["ms", "msec", "millisecond", "milliseconds", "millis"]),
         (D::Time, 1e-6, &["us", "usec", "microsecond", "microseconds", "micros"]),
+        (D::Time, 1e-7, &["100ns"]),
         (D::Time, 1e-9, &["ns", "nsec", "nanosecond", "nanoseconds", "nanos"]),
         (D::Time, 60.0, &["min", "minute", "minutes"]),
         (D::Time, 3600.0, &["h", "hour", "hours"]),

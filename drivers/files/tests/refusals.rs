@@ -67,7 +67,7 @@ fn text_is_refused_where_it_is_wrong() {
     check_refused(
         b"0,1.5,2\n0.004,1.6,2\n",
         "run.csv, line 1: numbers stand where the line of column names is expected; a friction run needs time_s, \
-         motor_position_rad, motor_current_a. Use --names time_s,column_2,column_3",
+         motor_position_rad, motor_current_a. Use --names time,column_2,column_3",
     );
     check_refused(
         b"PK\x03\x04\0\0\x08",

@@ -1,11 +1,11 @@
 //! Fitting a model to a run, and holding a fit against another run.
 
 use crate::inference::confounding;
-use crate::inference::form_error::{form_error, presliding};
+use crate::inference::form_error::{nuisance, presliding};
 use crate::inference::intervals::intervals;
 use crate::linear::basis::dot;
 use crate::linear::condition;
-use crate::prediction::{predict, prepare_alike};
+use crate::prediction::{predict_effects, predict_nuisance, prepare_alike};
 use crate::preprocess::{Prepared, prepare};
 use crate::regression::cross_validation::held_out;
 use crate::regression::linear_model::{LinearModel, Term};
@@ -68,7 +68,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         parameters.extend(found);
     }
     let undetermined = undetermined_inertia(&mut parameters, prepared);
-    let (form_error, said) = form_error(main, &prepared.unit());
+    let nuisance = nuisance(main, &prepared.unit());
     parameters.extend(assembly.hidden.iter().flat_map(|h| unseen(assembly, &h.effect, &h.why)));
     let order = |effect: &str| assembly.effects.iter().position(|e| e == effect);
     parameters.sort_by_key(|p| order(&p.effect));
@@ -76,7 +76,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
 
     let target = &prepared.main.target;
     let mut notes: Vec<String> = prepared.clashes.all().chain(&prepared.doubts).cloned().collect();
-    notes.extend(said);
+    notes.extend(nuisance.as_ref().map(|nuisance| nuisance.note.clone()));
     notes.extend(assembly.hidden.iter().map(|h| format!("{} is not testable with this run: {}", h.effect, h.why)));
     if assembly.effects.iter().any(|e| e == "direction_offset") {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
@@ -99,6 +99,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         own,
         rms: (linear.sse / n).sqrt(),
         validation_rms: (held_out(main).iter().sum::<f64>() / n).sqrt(),
+        effects_rms: nuisance.as_ref().map(|nuisance| nuisance.effects_rms),
         unit: prepared.unit(),
         residual: prepared.about.residual,
         relative_error: (linear.sse / dot(target, target)).sqrt(),
@@ -108,7 +109,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         notes,
         preparation: prepared.about.clone(),
         terms,
-        form_error,
+        form_error: nuisance.map(|nuisance| nuisance.terms).unwrap_or_default(),
         scope: Some(scope),
     };
     export::measure(&mut fit, &prepared.main)?;
@@ -181,12 +182,16 @@ fn unseen(assembly: &TwoStageModel, id: &str, why: &str) -> Vec<Parameter> {
 /// Holds a fit against a run that took no part in it. The run is prepared as the first one was.
 pub fn evaluate(fit: &Fit, run: &RunTable) -> Result<Evaluation, ModelError> {
     let prepared = prepare_alike(fit, run)?;
-    let predicted = predict(fit, prepared.judged(&fit.effects))?;
+    let problem = prepared.judged(&fit.effects);
+    let (effects, nuisance) = (predict_effects(fit, problem)?, predict_nuisance(fit, problem)?);
     let target = &prepared.main.target;
-    let sse: f64 = target.iter().zip(&predicted).map(|(y, p)| (y - p).powi(2)).sum();
+    let error = |predicted: &[f64]| target.iter().zip(predicted).map(|(y, p)| (y - p).powi(2)).sum::<f64>();
+    let whole: Vec<f64> = effects.iter().zip(&nuisance).map(|(effects, nuisance)| effects + nuisance).collect();
+    let sse = error(&whole);
     let settled = prepared.main.view.chunks.iter().map(|c| c.len()).sum::<usize>() as f64;
     Ok(Evaluation {
         rms: (sse / target.len() as f64).sqrt(),
+        effects_rms: (!fit.form_error.is_empty()).then(|| (error(&effects) / target.len() as f64).sqrt()),
         unit: prepared.unit(),
         residual: prepared.about.residual,
         relative_error: (sse / dot(target, target)).sqrt(),

@@ -3,7 +3,7 @@
 use crate::preprocess::{Prepared, Problem, prepare_with};
 use crate::regression::linear_model::columns;
 use crate::regression::solution::PRESLIDING;
-use crate::report::fit::Fit;
+use crate::report::fit::{Fit, Term};
 use crate::user_effects::find_with_own;
 use crate::view::View;
 use crate::{ModelError, Options};
@@ -24,18 +24,26 @@ pub(crate) fn prepare_alike(fit: &Fit, run: &RunTable) -> Result<Prepared, Model
     prepare_with(run, &options, about.bristles.as_ref())
 }
 
-/// What a fit predicts at the rows of a problem.
+/// What a fit predicts at the rows of a problem: its effects and its nuisance terms.
 pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
-    let Some(form_error) = problem.form_error.as_deref() else {
-        return predict_on(fit, &problem.view, problem.rows(), |column| problem.reduce.apply(column));
-    };
+    let (effects, nuisance) = (predict_effects(fit, problem)?, predict_nuisance(fit, problem)?);
+    Ok(effects.iter().zip(&nuisance).map(|(effects, nuisance)| effects + nuisance).collect())
+}
+
+/// What the effects of a fit predict at the rows of a problem.
+pub(crate) fn predict_effects(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
     // Contacts that bend are in the direction already.
-    let mut sampled = Fit { terms: Vec::new(), ..fit.clone() };
-    sampled.terms.extend(fit.terms.iter().filter(|term| term.effect != PRESLIDING).cloned());
-    let mut predicted = predict_on(&sampled, &problem.view, problem.rows(), |column| problem.reduce.apply(column))?;
+    let is_column = |term: &&Term| problem.form_error.is_none() || term.effect != PRESLIDING;
+    let sampled = Fit { terms: fit.terms.iter().filter(is_column).cloned().collect(), ..fit.clone() };
+    predict_on(&sampled, &problem.view, problem.rows(), |column| problem.reduce.apply(column))
+}
+
+/// What the nuisance terms of a fit predict there.
+pub(crate) fn predict_nuisance(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
+    let mut predicted = vec![0.0; problem.rows()];
+    let Some(form_error) = problem.form_error.as_deref() else { return Ok(predicted) };
     let mut add = |column: &[f64], factor: f64| predicted.iter_mut().zip(column).for_each(|(p, c)| *p += factor * c);
     for term in &fit.form_error {
-        let beside = form_error.columns.iter().filter(|column| column.lives.name() == term.name);
         match find_with_own(fit.kind, &fit.own, &term.name) {
             Ok(effect) => {
                 let columns = columns(effect, &term.form, &term.shape, problem);
@@ -43,7 +51,8 @@ pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelErr
             }
             Err(_) => {
                 let place = term.shape.first().map_or(0, |place| *place as usize);
-                let column = beside.skip(place).zip(&term.linear).next();
+                let mut of_name = form_error.columns.iter().filter(|column| column.lives.name() == term.name);
+                let column = of_name.nth(place).zip(term.linear.first());
                 column.into_iter().for_each(|(column, factor)| add(&column.values, *factor));
             }
         }

@@ -32,6 +32,12 @@ pub fn fit(fit: &Fit) {
         words::figure(fit.rms, &fit.unit),
         100.0 * fit.relative_error
     );
+    if let Some(rms) = fit.effects_rms {
+        println!(
+            "          effects    {} without nuisance terms, as an exported model predicts",
+            words::figure(rms, &fit.unit)
+        );
+    }
     for pair in &fit.trade_offs {
         println!(
             "note      parameter trade-off: {} and {} (correlation {:.2})",
@@ -50,6 +56,12 @@ pub fn evaluation(file: &Path, evaluation: &Evaluation) {
         words::figure(evaluation.rms, &evaluation.unit),
         100.0 * evaluation.relative_error,
     );
+    if let Some(rms) = evaluation.effects_rms {
+        println!(
+            "effects   {} without nuisance terms, as an exported model predicts",
+            words::figure(rms, &evaluation.unit)
+        );
+    }
     println!("basis     {}", judged(evaluation));
     for note in &evaluation.notes {
         println!("note      {note}");

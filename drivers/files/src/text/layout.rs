@@ -253,16 +253,24 @@ impl Survey {
     /// The names in a block of lines which say in their first cell what they hold.
     fn labelled(&self, lines: &[Line<'_>], begin: usize) -> Option<Names> {
         let block = || (0..begin.min(lines.len())).filter(|at| self.rows[*at].len().abs_diff(self.width) <= 1);
-        let find =
-            |labels: &[&str]| block().find(|at| self.rows[*at].len() > 1 && is_label(&self.rows[*at][0], labels));
+        let filled = |at: usize| self.rows[at].iter().filter(|cell| !cell.is_empty()).count();
+        // The fullest: a title has a label too. The first of equals.
+        let find = |labels: &[&str]| {
+            let found = block().filter(|at| self.rows[*at].len() > 1 && is_label(&self.rows[*at][0], labels));
+            found.rev().max_by_key(|at| filled(*at))
+        };
         let at = find(&NAMES)?;
         let units = find(&UNITS).filter(|units| *units > at);
-        (units.is_some() || self.has_empty_side()).then(|| Names {
-            at,
-            units: units.map(|at| (at, self.words(&self.rows[at]))),
-            cells: self.words(&self.rows[at]),
-            heads_block: true,
-        })
+        if units.is_none() && !self.has_empty_side() {
+            return None;
+        }
+        let mut cells = self.words(&self.rows[at]);
+        // Below the label stands what the others are recorded over.
+        if !self.has_empty_side() && !cells[1..].contains(&cells[0]) {
+            "time".clone_into(&mut cells[0]);
+        }
+        let units = units.map(|at| (at, self.words(&self.rows[at])));
+        Some(Names { at, units, cells, heads_block: true })
     }
 
     /// One word stands in three cells or more, or in all.

@@ -80,6 +80,8 @@ fn a_block_of_lines_says_what_each_of_them_holds() {
         names(&of("Name;phi;Name;n\nUnit;rad;Unit;rpm\n0;1;0;2\n5;2;5;3\n9;3;9;4\n")),
         ["Name", "phi", "Name", "n"]
     );
+    let text = "Name;a log;\nName;phi;n\nUnit;(None);(None)\nOffset;0;0\n132900081483250000;1;2\n132900081483350000;2;3\n132900081483450000;3;4\n";
+    assert_eq!(names(&of(text)), ["time", "phi", "n"]);
 }
 
 #[test]

@@ -114,10 +114,7 @@ fn table(layout: &Layout, options: &ReadOptions) -> Result<RawTable, FileFault> 
     })
 }
 
-/// Names that are proposed; of more the first.
-const PROPOSED: usize = 12;
-
-/// `time_s,column_2,…`: time where the first column rises evenly.
+/// `time,column_2,…`: time where the first column rises. Its unit is open.
 fn proposed_names(layout: &Layout) -> String {
     let rises = layout.columns.first().is_some_and(|column| {
         let values: Vec<f64> = column
@@ -128,11 +125,8 @@ fn proposed_names(layout: &Layout) -> String {
             .collect();
         values.len() > 1 && values.windows(2).all(|pair| pair[0] < pair[1])
     });
-    let name = |place: usize| if place == 0 && rises { "time_s".to_owned() } else { format!("column_{}", place + 1) };
-    let width = layout.width();
-    let mut names: Vec<String> = (0..width.min(PROPOSED)).map(name).collect();
-    names.extend((width > PROPOSED).then(|| "…".to_owned()));
-    names.join(",")
+    let name = |place: usize| if place == 0 && rises { "time".to_owned() } else { format!("column_{}", place + 1) };
+    (0..layout.width()).map(name).collect::<Vec<String>>().join(",")
 }
 
 fn ways(layout: &Layout, table: &RawTable, options: &ReadOptions) -> Vec<rows::Way> {

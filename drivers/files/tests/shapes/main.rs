@@ -16,8 +16,8 @@ fn options() -> Vec<(&'static str, &'static str, Choices)> {
     let unit = Choices { unit: vec!["time_s=ms".into()], ..Choices::default() };
     let comma = Choices { decimal: vec!["motor_current [mA]=comma".into()], ..Choices::default() };
     vec![
-        ("numpy_bare.txt", "--names time_s,column_2,column_3,column_4", named.clone()),
-        ("matlab_bare.csv", "--names time_s,column_2,column_3,column_4", named),
+        ("numpy_bare.txt", "--names time,column_2,column_3,column_4", named.clone()),
+        ("matlab_bare.csv", "--names time,column_2,column_3,column_4", named),
         ("arduino_millis.csv", "--unit time_s=ms", unit),
         ("mixed_signs.csv", "--decimal 'motor_current [mA]=comma'", comma),
     ]

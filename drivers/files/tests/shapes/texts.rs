@@ -156,13 +156,13 @@ fn a_table_without_names_is_mapped_by_the_places_of_its_columns() {
     let bare = "0,1.5,2\n0.004,1.6,2\n0.008,1.7,2\n";
     refused(
         bare,
-        &["a friction run needs time_s, motor_position_rad, motor_current_a. Use --names time_s,column_2,column_3"],
+        &["a friction run needs time_s, motor_position_rad, motor_current_a. Use --names time,column_2,column_3"],
     );
     let map = ["time_s=column_1", "motor_position_rad=column_2", "motor_current_a=column_3"];
     let choices = Choices { map: map.map(str::to_owned).to_vec(), unit: vec!["time_s=s".into()], ..Choices::default() };
     let (run, notes) = take(bare, &choices).unwrap();
     assert_eq!(run.column("motor_position_rad").unwrap(), [1.5, 1.6, 1.7]);
-    assert_eq!(notes[0].option.as_deref(), Some("--names time_s,column_2,column_3"));
+    assert_eq!(notes[0].option.as_deref(), Some("--names time,column_2,column_3"));
 }
 
 #[test]

@@ -200,6 +200,7 @@ fn suggestions(
         out.push(Suggestion {
             effect: id.into(),
             validation_rms: with.validation_rms,
+            effects_rms: with.effects_rms,
             error_reduction: reduction,
             error_reduction_ci95: reduction_ci95,
             bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),

@@ -37,7 +37,14 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
     };
     let is_transient = found.start.spec.find(effect).is_ok_and(|e| e.regime() != Regime::SteadyState);
     let is_apart = is_transient && first.validation_rms > (1.0 - SMALL_REDUCTION) * fit.validation_rms;
-    let gain = if is_apart {
+    let gain = if let (true, Some(without), Some(alone)) = (is_apart, fit.effects_rms, first.effects_rms) {
+        format!(
+            "It acts {place}: adding it reduces the error of the effects alone from {} to {}. With the nuisance terms of the fit \
+             the validation error is {with} with it and {error} without it; {floor}.",
+            unit.figure(without),
+            unit.figure(alone)
+        )
+    } else if is_apart {
         format!(
             "It acts {place}, where it reduces the error by {}; at steady state the validation error is {with} with it and \
              {error} without it; {floor}.",

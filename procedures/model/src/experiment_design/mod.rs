@@ -262,7 +262,7 @@ fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String
     let enough = if bid.z >= SEPARATED_Z {
         String::new()
     } else {
-        format!("; about {times:.0} such runs are needed for {SEPARATED_Z:.0}")
+        format!("; about {times:.0} such runs are needed for {SEPARATED_Z:.0} standard deviations")
     };
     Experiment {
         procedure: bid.choice.procedure.clone(),

@@ -119,7 +119,15 @@ fn about(fit: &Fit, parts: &Parts, left_out: &[(&str, String)], errors: Vec<Stri
 /// The error of the model, which is that of the export where nothing is left out.
 fn of_model(fit: &Fit, left_out: &[(&str, String)]) -> String {
     let of = if left_out.is_empty() { "" } else { " of the whole model, what is not carried over included" };
-    format!("Error{of}: {:.4e} {} rms on data excluded from the fit", fit.validation_rms, fit.unit)
+    format!("Error{of}: {}", error(fit))
+}
+
+/// The error of the effects, which are all that is exported.
+fn error(fit: &Fit) -> String {
+    match fit.effects_rms {
+        Some(rms) => format!("{rms:.4e} {} rms on the run that was fitted", fit.unit),
+        None => format!("{:.4e} {} rms on data excluded from the fit", fit.validation_rms, fit.unit),
+    }
 }
 
 /// Measures what leaves the program on the run that was fitted.

@@ -79,6 +79,7 @@ fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
         own,
         rms: 1.0,
         validation_rms: 1.1,
+        effects_rms: None,
         unit: kind.target_unit().into(),
         residual: ResidualKind::Raw,
         relative_error: 0.1,

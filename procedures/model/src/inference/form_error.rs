@@ -37,11 +37,18 @@ pub fn presliding(model: &TwoStageModel, parameters: &[Parameter]) -> Option<(Te
     Some((term, all))
 }
 
-/// Nuisance terms with their coefficients, and a sentence with their size.
-pub fn form_error(model: &LinearModel, unit: &str) -> (Vec<FormErrorTerm>, Option<String>) {
-    let (Some(solution), Some(form_error)) = (Solution::of(model), model.problem.form_error.as_deref()) else {
-        return (Vec::new(), None);
-    };
+/// Nuisance terms of a model, and what they explain.
+pub struct Nuisance {
+    pub terms: Vec<FormErrorTerm>,
+    /// RMS error of the effects alone.
+    pub effects_rms: f64,
+    /// Both sizes, in a sentence.
+    pub note: String,
+}
+
+/// `None` of a model that is fitted without nuisance terms.
+pub fn nuisance(model: &LinearModel, unit: &str) -> Option<Nuisance> {
+    let (solution, form_error) = (Solution::of(model)?, model.problem.form_error.as_deref()?);
     let mut terms = Vec::new();
     for (at, factor) in &solution.error {
         let column = &form_error.columns[*at];
@@ -64,11 +71,14 @@ pub fn form_error(model: &LinearModel, unit: &str) -> (Vec<FormErrorTerm>, Optio
     }
     let sum = solution.form_error(model);
     let (size, whole) = (rms(&sum), rms(&model.problem.target));
-    let said = format!(
+    let alone: Vec<f64> = solution.residual.iter().zip(&sum).map(|(residual, nuisance)| residual + nuisance).collect();
+    let effects_rms = rms(&alone);
+    let note = format!(
         "nuisance terms explain {} RMS ({} of the torque): displacement since a reversal, jerk, snap, load rate and other forms of the \
-         effects; an exported model has the effects only",
+         effects; an exported model has the effects only, and its error on this run is {} RMS",
         figure(size, unit),
-        percent(size / whole.max(f64::MIN_POSITIVE))
+        percent(size / whole.max(f64::MIN_POSITIVE)),
+        figure(effects_rms, unit)
     );
-    (terms, Some(said))
+    Some(Nuisance { terms, effects_rms, note })
 }

@@ -5,7 +5,7 @@ use crate::linear::added_columns::{Added, Gain};
 use crate::linear::blocked_ridge::{BlockedRidge, Outside};
 use crate::regression::candidates::Regressor;
 use crate::regression::linear_model::allows;
-use crate::thresholds::DECISION_SHARE;
+use crate::thresholds::{DECISION_SHARE, UNMISTAKABLE_SHARE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
@@ -27,6 +27,8 @@ pub struct Evidence<'l, 'p> {
     pub p_value: f64,
     /// Held-out squared error of each block with the effect.
     pub losses: Vec<f64>,
+    /// It takes the practical share of the error outside reversals too.
+    pub shows_outside: bool,
 }
 
 impl Evidence<'_, '_> {
@@ -34,9 +36,15 @@ impl Evidence<'_, '_> {
         self.best.id()
     }
 
-    /// It takes more than a share, surely, and by more than the scatter of its gain.
-    pub fn passes(&self, share: f64, alpha: f64) -> bool {
-        self.gain > share && self.p_value < alpha && self.errors > ONE_ERROR
+    /// The least share of the error to take. At reversals alone an effect competes with the form error of the model: there it has
+    /// to explain most of the residual.
+    pub fn least_share(&self) -> f64 {
+        if self.shows_outside { DECISION_SHARE } else { UNMISTAKABLE_SHARE }
+    }
+
+    /// It takes more than the least share, significantly, and by more than the scatter of its gain.
+    pub fn passes(&self, alpha: f64) -> bool {
+        self.gain > self.least_share() && self.p_value < alpha && self.errors > ONE_ERROR
     }
 }
 
@@ -54,13 +62,14 @@ struct Trial<'l, 'p> {
     taken: f64,
     gains: Vec<Gain>,
     chance: f64,
+    shows_outside: bool,
 }
 
 /// The evidence for each effect of the candidates, the one that takes most first, and the forms that the base hides. `forms`: how
 /// many were tried in all.
 ///
-/// An effect of steady state has to show outside reversals and rests: on the rows that are not `near` one, with the model fitted to
-/// these rows alone, it takes the practical share too. A form that differs from the model at reversals only does not.
+/// An effect shows outside reversals and rests where it takes the practical share on the rows that are not `near` one too, with the
+/// model fitted to these rows alone. An effect of steady state has to. A form that differs from the model at reversals only does not.
 pub fn evidence<'l, 'p>(
     ridge: &BlockedRidge,
     candidates: &[&'l Regressor<'p>],
@@ -91,14 +100,19 @@ fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Optio
     if !is_possible(&added.factors()) {
         return Tried::Rejected;
     }
-    if let Some(outside) = outside.filter(|_| form.effect.regime() == Regime::SteadyState) {
-        let Some((factors, taken)) = outside.added(&form.columns, LEAST_VISIBLE) else { return Tried::Hidden(form) };
-        if !is_possible(&factors) || taken <= DECISION_SHARE * outside.left() {
-            return Tried::Rejected;
-        }
+    let is_settled = form.effect.regime() == Regime::SteadyState;
+    let shows_outside = match outside.map(|outside| (outside.left(), outside.added(&form.columns, LEAST_VISIBLE))) {
+        None => is_settled,
+        Some((_, None)) if is_settled => return Tried::Hidden(form),
+        Some((_, None)) => false,
+        Some((left, Some((factors, taken)))) => is_possible(&factors) && taken > DECISION_SHARE * left,
+    };
+    if is_settled && !shows_outside {
+        return Tried::Rejected;
     }
     let chance = chance(added.wald(), added.size, ridge.blocks.len());
-    Tried::Judged(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
+    let gains = added.gains(0.0, is_possible);
+    Tried::Judged(Trial { form, taken: added.taken(), gains, chance, shows_outside })
 }
 
 /// What a form would add, where it is none of what the model has.
@@ -121,6 +135,7 @@ fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usiz
         errors: errors(&gains),
         p_value: (best.chance * forms as f64).min(1.0),
         losses: ridge.losses.iter().zip(&gains).map(|(loss, gain)| loss - gain).collect(),
+        shows_outside: best.shows_outside,
     })
 }
 

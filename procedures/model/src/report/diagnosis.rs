@@ -128,6 +128,9 @@ pub struct Suggestion {
     pub effect: String,
     /// Held-out error of the model with this effect.
     pub validation_rms: f64,
+    /// RMS error of the effects alone on the fitted data. `None` of a fit without nuisance terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects_rms: Option<f64>,
     /// 1 − validation_rms / validation_rms of the present model.
     pub error_reduction: f64,
     /// From the scatter over what was held out. `None` for an effect that is judged elsewhere than where the RMS looks.

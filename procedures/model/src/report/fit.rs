@@ -26,6 +26,9 @@ pub struct Fit {
     pub rms: f64,
     /// The same on data that did not take part in the fit: every condition is predicted by the others.
     pub validation_rms: f64,
+    /// RMS error of the effects alone on the fitted data, as an exported model predicts. `None` of a fit without nuisance terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects_rms: Option<f64>,
     pub unit: String,
     pub residual: ResidualKind,
     /// ‖residual‖ / ‖measured‖.
@@ -234,6 +237,9 @@ pub struct SignalRange {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     pub rms: f64,
+    /// The same of the effects alone. `None` of a fit without nuisance terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects_rms: Option<f64>,
     pub unit: String,
     pub residual: ResidualKind,
     /// ‖residual‖ / ‖measured‖.

@@ -1,8 +1,8 @@
 //! From a model to the one that is left when nothing more can be named, by one decision: an effect is named where what it
 //! takes off held-out data is more than a share of what is left, is significant and exceeds its own standard error.
 //!
-//! Size ranks, significance only gates. What shows only where everything else is imperfect too, around reversals and on
-//! ramps, has to take most of what is left.
+//! Size ranks, significance only gates. What shows at reversals alone, where everything else is imperfect too, has to take most
+//! of what is left.
 
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
@@ -20,7 +20,7 @@ use crate::selection::block_limits;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 use crate::selection::model_selection::ModelSelection;
-use crate::selection::refused::{Decided, Refused, least_share};
+use crate::selection::refused::{Decided, Refused};
 use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIMPLER_GAIN};
 use crate::{Effect, ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
@@ -87,14 +87,14 @@ impl<'p> Search<'_, 'p> {
             let Some(solution) = Solution::of(&now.main) else { return Ok(Vec::new()) };
             let forms = library.candidates.iter().filter(|c| !self.spec.contains(c.id())).count();
             let all = candidates(now, &solution, library, forms);
-            let passes = |e: &&Evidence| e.passes(least_share(e.best.effect), self.options.alpha);
+            let passes = |e: &&Evidence| e.passes(self.options.alpha);
             let added = self.path.advances.iter().filter(|a| a.added.is_some()).count();
             let mut named = None;
             let passing: Vec<&Evidence> = all.iter().filter(passes).filter(|_| added < most).collect();
             for e in in_turn(&passing) {
                 let effects = now.effects.iter().cloned().chain([e.id().to_owned()]).collect();
                 let after = TwoStageModel::decided(self.prepared, self.spec, effects)?;
-                if follows(now, &solution, &after) {
+                if follows(now, &solution, &after) && impossible(&after.main) <= impossible(&now.main) {
                     named = Some((e, after));
                     break;
                 }
@@ -104,7 +104,12 @@ impl<'p> Search<'_, 'p> {
                 return Ok(large.map(|e| Refused::of(e, self.options.alpha)).collect());
             };
             let id = best.best.id();
-            let ties = all.iter().filter(|e| e.id() != id && is_rival(best, e)).map(|e| e.best.id()).collect();
+            let mut ties = Vec::new();
+            for rival in all.iter().filter(|e| e.id() != id && is_rival(best, e)) {
+                if self.fits_alike(rival.best.id(), &after)? && !ties.contains(&rival.best.id()) {
+                    ties.push(rival.best.id());
+                }
+            }
             let rival = ScoredCandidate {
                 term: best.best.term(now.main.problem),
                 share: best.gain,
@@ -114,6 +119,17 @@ impl<'p> Search<'_, 'p> {
             };
             self.path.push(SelectionStep { added: Some(rival), removed: None, ties, after });
         }
+    }
+
+    /// In the place of the added effect it predicts held-out blocks as well, with coefficients that are as possible.
+    fn fits_alike(&self, rival: &str, after: &TwoStageModel<'p>) -> Result<bool, ModelError> {
+        let effects = self.path.end().effects.iter().cloned().chain([rival.to_owned()]).collect();
+        let other = TwoStageModel::decided(self.prepared, self.spec, effects)?;
+        let losses = |model: &LinearModel| Solution::of(model).map(|solution| solution.held_out(model));
+        Ok(match (losses(&after.main), losses(&other.main)) {
+            (Some(best), Some(losses)) => is_tie(&best, &losses) && impossible(&other.main) <= impossible(&after.main),
+            _ => true,
+        })
     }
 
     fn remove(&mut self, id: &'p str) -> Result<(), ModelError> {
@@ -220,6 +236,14 @@ fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> b
     std::ptr::eq(now.main.problem, after.main.problem)
         || Solution::weighted(&after.main, form_error, solution.weight.clone(), None).ridge.loss()
             < FLOOR_RATIO.powi(2) * solution.ridge.loss()
+}
+
+/// Coefficients that are surely beyond their physical bounds.
+fn impossible(model: &LinearModel) -> usize {
+    let Some(solution) = Solution::of(model) else { return 0 };
+    let least =
+        |term: &Term| term.form.linear.iter().map(|name| term.effect.info().bounds(name).0).collect::<Vec<f64>>();
+    model.terms.iter().flat_map(least).zip(&solution.factors).filter(|(least, factor)| **factor < *least).count()
 }
 
 /// The largest gain first; of those that tie with it the surest.

@@ -32,7 +32,7 @@ impl<'p> Refused<'p> {
             p_value: evidence.p_value,
             alpha,
             errors: evidence.errors,
-            least: least_share(evidence.best.effect),
+            least: evidence.least_share(),
         }
     }
 
@@ -45,7 +45,7 @@ impl<'p> Refused<'p> {
             }
             () if self.errors <= ONE_ERROR => format!("{reduces}, but only in a few blocks"),
             () if self.gain <= self.least => format!(
-                "{reduces}, but only at reversals and on ramps, where every model has form error; there at least {} is required",
+                "{reduces}, but only near reversals, where every model has form error; there at least {} is required",
                 percent(self.least)
             ),
             () => format!("{reduces}, but the largest number of added effects is reached"),

@@ -99,8 +99,8 @@ impl Pace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::testing::plan_of;
     use crate::place::{Edge, Place};
+    use crate::plan::testing::plan_of;
     use crate::plan::{Drive, Until};
     use crate::profile::Profile;
     use jointbench_instrument::roles::Pose;

@@ -16,7 +16,7 @@ static INFO: EffectInfo = EffectInfo {
     source: "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994",
     looks: "a curve over speed, sign changes with the direction, steepest at top speed",
     parameters: &[
-        parameter("c_2", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY),
+        parameter("c_2", "Nm·s²/rad²", 0.0, f64::INFINITY),
         parameter("c_2a", "Nm·s²/rad²", f64::NEG_INFINITY, f64::INFINITY),
     ],
     needs: &[],

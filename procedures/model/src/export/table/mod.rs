@@ -120,8 +120,8 @@ impl<'f> Layout<'f> {
 
     /// What the table is worth, a line each.
     fn worth(&self, fit: &Fit, values: &[f64]) -> Result<Vec<String>, ModelError> {
-        let (unit, validation_rms) = (&fit.unit, fit.validation_rms);
-        let of_model = format!("of the whole model {validation_rms:.4e} {unit} rms on data excluded from the fit");
+        let unit = &fit.unit;
+        let of_model = format!("of the whole model {}", super::error(fit));
         let mut lines = vec![match self.scope.table_rms {
             Some(rms) => format!("Error: of this table {rms:.4e} {unit} rms on the run that was fitted; {of_model}"),
             None => format!("Error: of this table not known, for the fit did not measure it; {of_model}"),

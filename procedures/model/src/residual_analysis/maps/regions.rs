@@ -193,12 +193,15 @@ impl Stretch<'_> {
             let [from, to] = [from, to].map(|repeat| repeat - x.bins[0].from + 1.0);
             return if from == to { format!("in repeat {from}") } else { format!("in repeats {from} to {to}") };
         }
-        let say = |value: f64| figure(value, &x.unit);
+        // Rounding of a computed signal is zero.
+        let widest = x.bins.iter().flat_map(|bin| [bin.from.abs(), bin.to.abs()]).fold(0.0, f64::max);
+        let say = |value: f64| figure(if value.abs() < f64::EPSILON * widest { 0.0 } else { value }, &x.unit);
         let quantity = spoken_axis(&x.name, kind);
         let article = if quantity.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" };
         let one = format!("{article} {quantity}");
         let end = x.bins.len() - 1;
-        if self.first == self.last && (say(from) == say(to) || (to - from).abs() < 0.03 * (to + from).abs() / 2.0) {
+        let is_narrow = self.first == self.last && (to - from).abs() < 0.03 * (to + from).abs() / 2.0;
+        if is_narrow || say(from) == say(to) {
             return format!("at {one} of about {}", say(x.bins[self.first].centre));
         }
         match (self.first == 0, self.last == end) {
