@@ -24,12 +24,12 @@ pub(crate) fn prepare_alike(fit: &Fit, run: &RunTable) -> Result<Prepared, Model
     prepare_with(run, &options, about.bristles.as_ref())
 }
 
-/// What a fit predicts at the rows of a problem.
+/// Prediction of a fit at the rows of a problem.
 pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelError> {
     let Some(form_error) = problem.form_error.as_deref() else {
         return predict_on(fit, &problem.view, problem.rows(), |column| problem.reduce.apply(column));
     };
-    // Contacts that bend are in the direction already.
+    // The direction signal already contains presliding.
     let mut sampled = Fit { terms: Vec::new(), ..fit.clone() };
     sampled.terms.extend(fit.terms.iter().filter(|term| term.effect != PRESLIDING).cloned());
     let mut predicted = predict_on(&sampled, &problem.view, problem.rows(), |column| problem.reduce.apply(column))?;
@@ -51,7 +51,7 @@ pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelErr
     Ok(predicted)
 }
 
-/// The same at the points of a view, each column reduced to rows.
+/// Prediction at the points of a view, each column reduced to rows.
 pub(crate) fn predict_on(
     fit: &Fit,
     view: &View,

@@ -1,4 +1,5 @@
-//! What became of the effects that are not in the last model: each is silent, invisible or left out, and none is forgotten.
+//! Effects that are not in the last model: each is below its detection limit, not testable, or rejected. No effect is
+//! omitted.
 
 use crate::effect::{Effect, Form, Regime, ShapeSearch};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -12,10 +13,10 @@ const TOO_LARGE: &str = "its detection limit exceeds the largest measured value"
 
 #[derive(Default)]
 pub struct ExcludedEffects {
-    /// Looked for and not found, with the smallest that would have been.
+    /// Not found, with the detection limit.
     pub silent: Vec<Silent>,
     pub invisible: Vec<Invisible>,
-    /// Tried, and left out for a reason.
+    /// Tested and rejected, with the reason.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -57,13 +58,13 @@ impl ExcludedEffects {
     }
 }
 
-/// What enters as it is has no size from which it would have been found.
+/// An offset term has a fixed size, so that it has no detection limit.
 fn given(effect: &dyn Effect, end: &TwoStageModel) -> Option<&'static str> {
     let is_tried = effect.is_offset() && effect.hidden(&end.prepared.main.view).is_none();
     is_tried.then_some("it is used as measured, and does not clearly reduce the error")
 }
 
-/// The numbers of waves that were tried.
+/// The tested numbers of waves.
 fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
     let forms = effect.forms(&end.prepared.main.view);
     let a_turn = |name: &str| effect.info().parameters.iter().any(|p| p.name == name && p.unit == "1/turn");
@@ -78,7 +79,7 @@ fn sought(effect: &dyn Effect, end: &TwoStageModel) -> Option<String> {
     }
 }
 
-/// What a run would have to hold that tells an effect from the others.
+/// Excitation of a run that would distinguish the effect from others.
 fn excitation(effect: &dyn Effect) -> &'static str {
     let needs = |column: &str| effect.info().needs.contains(&column);
     match effect.regime() {

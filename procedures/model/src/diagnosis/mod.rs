@@ -1,4 +1,4 @@
-//! Which effect is missing, and what is left when all that can be named is in the model.
+//! Diagnosis: the missing effects, and the unexplained structure of the final model.
 
 pub(crate) mod evidence;
 pub(crate) mod excluded_effects;
@@ -23,10 +23,10 @@ use crate::words::{figure, list, percent};
 use crate::{Fit, ModelError, ModelSpec, Options};
 use jointbench_instrument::RunTable;
 
-/// How far the search looks ahead for a diagnosis.
+/// Largest number of effects that a diagnosis adds.
 const MOST_EFFECTS: usize = 6;
 
-/// Compares a model with a run: where it fails, which effects are missing, how sure that is.
+/// Compares a model with a run: regions of large residuals, missing effects, and their significance.
 pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<Diagnosis, ModelError> {
     let prepared = prepare(run, options)?;
     let found = Findings::new(&prepared, spec, options, MOST_EFFECTS, &mut |_| {})?;
@@ -77,9 +77,9 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     })
 }
 
-/// Diagnoses, adds the best effect and fits again until nothing more can be named or `max_effects` were added.
+/// Diagnoses, adds the best effect and refits until no candidate passes or `max_effects` were added.
 ///
-/// `on_step` sees every step when it is made.
+/// `on_step` gets each step when it is made.
 pub fn discover(
     run: &RunTable,
     spec: &ModelSpec,
@@ -215,8 +215,8 @@ fn suggestions(
     Ok(out)
 }
 
-/// An interval of a parameter says nothing of an effect that is not in the model. Where that may be there as well, it reaches
-/// to what the parameter would be with it.
+/// The interval of a parameter assumes that no effect is missing. If an effect may be present as well, the interval
+/// is extended to the value with that effect.
 fn leave_open(fit: &mut Fit, found: &Findings) {
     let Some(open) = &found.open else { return };
     let is_meant = |p: &&mut Parameter| format!("{}.{}", p.effect, p.name) == open.parameter;
@@ -227,7 +227,7 @@ fn leave_open(fit: &mut Fit, found: &Findings) {
     }
 }
 
-/// Where a model fails. Nowhere that counts, where it is known to be adequate.
+/// Regions of large residuals. None for an adequate model.
 fn regions(maps: &Maps, fit: &Fit, found: &Findings, is_adequate: bool) -> Vec<Region> {
     match is_adequate {
         true => Vec::new(),
@@ -239,12 +239,12 @@ fn structure(found: &Findings, verdict: Verdict) -> Option<PairMap> {
     (verdict == Verdict::UnexplainedStructure).then(|| found.maps.structure(&found.start.prepared.main))?
 }
 
-/// The columns that the summary names, where structure remains.
+/// The columns that the summary names for unexplained structure.
 fn shows_over(found: &Findings, structure: Option<&PairMap>) -> Vec<String> {
     structure.and_then(|shown| narrative::shown_over(found, Some(shown))).unwrap_or_default().0
 }
 
-/// What to measure next.
+/// The recommended next run.
 fn experiment(found: &Findings, prepared: &Prepared) -> Option<Experiment> {
     if found.floor.rms.is_none() && prepared.clashes.is_empty() {
         let mut parameters = serde_json::Map::new();

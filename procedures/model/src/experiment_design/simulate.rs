@@ -1,4 +1,4 @@
-//! A run that has not been made, at the points at which it would be judged.
+//! Simulation of a proposed run at the points of its evaluation.
 
 use crate::experiment_design::separation::predict;
 use crate::experiment_design::{Choice, Stretch};
@@ -12,16 +12,16 @@ use jointbench_instrument::Kind;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// More points of one stretch say little more: what one stretch has in common is not averaged away. Waves over the turn of
-/// an encoder have to be followed.
+/// More points of one stretch add little information, because its common noise is not averaged out. Encoder waves
+/// need a finer spacing.
 fn most_points(kind: Kind) -> usize {
     if kind == Kind::Encoder { 400 } else { 48 }
 }
 
-/// The pause before the run [s].
+/// Pause before the run [s].
 const PAUSE_S: f64 = 60.0;
 
-/// Samples of the run, as they come.
+/// Samples of the simulated run.
 #[derive(Default)]
 struct Laid {
     time_s: Vec<f64>,
@@ -31,9 +31,9 @@ struct Laid {
     block: Vec<usize>,
 }
 
-/// Points are spaced as those of the run at hand, and so are the samples behind them: a periodic effect fades at speed as
-/// it would in the data. The joint is as warm as it was at the end of that run, or warmer by what the choice says; it
-/// starts where that one started. `gear`: turns of the motor for each of the link.
+/// Points and samples are spaced as in the measured run, so that periodic effects are attenuated at speed as in the
+/// data. The joint has the temperature of the end of that run, plus the warming of the choice. The run starts at the
+/// same position. `gear`: turns of the motor for each turn of the link.
 pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear: f64) -> Problem {
     let laid = lay_out(choice, prepared);
     let samples = signals(&laid, &choice.stretches, prepared, gear);
@@ -65,7 +65,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
         bandwidths: Vec::new(),
         memo: Memo::default(),
     };
-    // What the drive is follows from the response, and a part of the response may follow from it.
+    // The drive torque follows from the response, and a part of the response can follow from the drive torque.
     problem.view.points.set(Signal::Drive, vec![0.0; rows]);
     problem.target = predict(&model.main, &problem);
     let drive = if prepared.kind == Kind::Brake { brake_torque_of_current(&problem) } else { problem.target.clone() };
@@ -103,14 +103,14 @@ fn lay_out(choice: &Choice, prepared: &Prepared) -> Laid {
     laid
 }
 
-/// What the models of the kind know of such a run.
+/// Signals of the simulated run for the models of the kind.
 fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -> Signals {
     let measured = &prepared.main.view.samples;
     let at = |signal, first: bool| {
         let values = measured.find(signal)?;
         if first { values.first().copied() } else { values.last().copied() }
     };
-    // Position and velocity of the shaft that the run tells of, for each of the motor.
+    // Position and velocity of the reported shaft, relative to the motor.
     let link = 1.0 / gear;
     let [turned, turning] = match prepared.kind {
         Kind::Friction | Kind::Encoder => [1.0, 1.0],
@@ -148,7 +148,7 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
     let temperature_c = at(Signal::Temperature, false).unwrap_or(0.0);
     set(Signal::Temperature, each(&|s| temperature_c + s.warmer_k));
     set(Signal::Repeat, each(&|s| f64::from(s.power_ups)));
-    // What nobody steers stays as it was.
+    // Columns that are not controlled keep their last value.
     for (signal, values) in measured.iter().filter(|(signal, _)| matches!(signal, Signal::Column(_))) {
         signals.set(signal, vec![values.last().copied().unwrap_or(0.0); laid.time_s.len()]);
     }

@@ -1,4 +1,4 @@
-//! Effects that the run at hand could not have shown, and another run would.
+//! Effects that the measured run could not show, but another run would.
 
 use crate::effect::{Regime, ShapeSearch};
 use crate::experiment_design::separation::{Noise, Side};
@@ -12,10 +12,10 @@ use crate::thresholds::WORTH_SEEING;
 use crate::words::list;
 use jointbench_instrument::Kind;
 
-/// Below this an effect is not found with any certainty: z₀.₉₇₅ + z₀.₈.
+/// Below this an effect is not found reliably: z₀.₉₇₅ + z₀.₈.
 const FOUND_Z: f64 = 2.8;
 
-/// The run that shows most effects that could not be seen so far, of those the shortest.
+/// The run that makes most undetectable effects detectable, among equals the shortest.
 pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Problem)]) -> Option<Experiment> {
     let is_friction = model.spec.kind == Kind::Friction;
     let side = Side::new(&model.main, noise);
@@ -31,7 +31,7 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Proble
             }
             let forms = effect.forms(&run.view);
             let Some(form) = forms.first() else { continue };
-            // What happens at one moment is shown by the run in which it happens.
+            // A changepoint can only be shown by the run in which it occurs.
             if form.shape.iter().any(|shape| shape.search == ShapeSearch::Jump) {
                 continue;
             }

@@ -16,7 +16,7 @@ pub enum Dialect {
     Urdf,
 }
 
-/// The element with a comment that names what it cannot hold.
+/// The element, with a comment that names what it cannot contain.
 pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
     if fit.kind != Kind::Friction {
         return Err(ModelError::NoExport {
@@ -35,7 +35,7 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
     let gear = scope.load_scale;
     let of = |effect: &'static str, name: &str, scale: f64| {
         let found = fit.parameters.iter().find(|p| p.effect == effect && p.name == name);
-        // What is negative is no physical joint, and simulators refuse it.
+        // A negative value is not physical, and simulators reject it.
         Attribute { effect, of: found.map(|p| (p, p.value * scale)).filter(|(_, v)| *v >= 0.0 && v.is_finite()) }
     };
     let friction = of("coulomb", "tau_c", gear);
@@ -50,7 +50,7 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
         fit.effects.iter().filter(|id| !held(id)).map(|id| (id.as_str(), reason(id, dialect).to_owned())).collect();
     let attributes: Vec<String> =
         carried.iter().filter_map(|(name, a)| a.of.map(|(_, value)| format!("{name}=\"{value}\""))).collect();
-    // What a figure is worth stands beside it: the element follows at once.
+    // The comment follows directly before the element and states the uncertainty of its values.
     let beside = carried.iter().filter_map(|(name, a)| Some((name, a.of?.0)));
     let beside =
         beside.flat_map(|(name, told)| told.note.iter().map(move |note| format!("{name}, motor side: {note}")));
@@ -67,14 +67,14 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
     Ok(format!("<!--\n{comment}-->\n{beside}{element}\n"))
 }
 
-/// An attribute's effect, with the parameter that it holds and the value that it has at the link.
+/// The effect of an attribute, with its parameter and the value at the link.
 #[derive(Debug, Clone, Copy)]
 struct Attribute<'f> {
     effect: &'static str,
     of: Option<(&'f Parameter, f64)>,
 }
 
-/// Two hyphens end a comment.
+/// Two hyphens are not allowed in an XML comment.
 fn plain(words: &str) -> String {
     words.replace("--", "- -")
 }

@@ -11,7 +11,7 @@ use std::process::Command;
 const ROWS: usize = 240;
 const STEP_S: f64 = 0.004;
 
-/// Signals that move, turn and cross zero.
+/// Signals that move, reverse and cross zero.
 fn moments(kind: Kind) -> Vec<(&'static str, Vec<f64>)> {
     let wave = |rate: f64, size: f64| (0..ROWS).map(|i| size * (rate * i as f64 + 0.3).sin()).collect::<Vec<f64>>();
     let values = |place: usize, signal: Signal| match signal {
@@ -31,7 +31,7 @@ fn view(kind: Kind) -> View {
     for ((_, values), named) in moments(kind).into_iter().zip(signals(kind)) {
         given.set(named.signal, values);
     }
-    // Three repeats, for what changes from one to the next.
+    // Three repeats, for effects that change between repeats.
     given.set(Signal::Repeat, (0..ROWS).map(|i| (i / 60) as f64).collect());
     given.set(Signal::Drive, moments(kind)[1].1.clone());
     let mut view = View::new(given.clone(), given, Vec::new(), vec![0], STEP_S);
@@ -39,7 +39,7 @@ fn view(kind: Kind) -> View {
     view
 }
 
-/// A fit of all effects of a kind, each in one form: the `n`-th of those that it has.
+/// A fit of all effects of a kind, each in its `n`-th form.
 fn fit_of_all(kind: Kind, n: usize, own: Vec<OwnEffect>) -> Fit {
     let view = view(kind);
     let mut terms = Vec::new();
@@ -130,7 +130,7 @@ fn rub() -> Vec<OwnEffect> {
     vec![OwnEffect::inline(Kind::Friction, text).unwrap()]
 }
 
-/// The fit without what a controller cannot compute.
+/// The fit without the effects that a controller cannot compute.
 fn carried(mut fit: Fit) -> Fit {
     let left_out: Vec<String> =
         parts::Parts::of(&fit).unwrap().left_out.iter().map(|(effect, _)| (*effect).to_owned()).collect();
@@ -139,7 +139,7 @@ fn carried(mut fit: Fit) -> Fit {
     fit
 }
 
-/// Compiles the header with a main that prints the prediction at every moment.
+/// Compiles the header with a main function that prints the prediction at every moment.
 fn run_c(fit: &Fit) -> Option<Vec<f64>> {
     let Ok(version) = Command::new("cc").arg("--version").output() else {
         println!("SKIPPED: there is no C compiler (cc) to hold the exported header against");
@@ -201,7 +201,7 @@ fn c_computes_what_the_model_computes() {
     }
 }
 
-/// What remembers, in every form that a search can end with.
+/// Hysteresis effects in every form that a search can result in.
 #[test]
 fn c_remembers_as_the_model_does() {
     let (load, position) = ("torsional_hysteresis", "presliding");

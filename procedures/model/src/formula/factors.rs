@@ -1,25 +1,26 @@
-//! Which parameters enter linearly, and what each of them multiplies.
+//! Linear parameters of a formula and their regressors.
 //!
-//! Separable least squares (Golub, Pereyra 2003) need the model as Σ factor·column(shape): the columns are taken from
-//! the formula itself, so that nothing has to be told twice.
+//! Separable least squares (Golub, Pereyra 2003) needs the model as Σ coefficient·column(nonlinear parameters). The
+//! columns are derived from the formula, so that they need not be defined separately.
 
 use crate::formula::expression::{Expression, What};
 use crate::formula::syntax::Operator;
 
-/// A sum of parameters times expressions without them.
+/// A sum of parameters times expressions without these parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Factors {
-    /// Parameters that enter linearly, each with what it multiplies.
+    /// Linear parameters, each with its regressor.
     pub columns: Vec<(usize, Expression)>,
-    /// What none of them multiplies.
+    /// The part without a linear parameter.
     pub alone: Option<Expression>,
 }
 
-/// Finds the largest set of parameters in which the formula is linear; of equals the first in the order of the list.
+/// Finds the largest set of parameters in which the formula is linear; among equals the first in the order of the
+/// list.
 pub fn factors(formula: &Expression, parameters: usize) -> Factors {
     let mut sets: Vec<u32> = (0..1u32 << parameters).collect();
     sets.sort_by_key(|set| (std::cmp::Reverse(set.count_ones()), *set));
-    // Everything is linear in the empty set.
+    // Every formula is linear in the empty set.
     let mut found = sets.into_iter().filter_map(|set| split(formula, set)).next().unwrap_or_default();
     found.columns.sort_by_key(|(parameter, _)| *parameter);
     found

@@ -5,7 +5,7 @@ fn parse(text: &str, parameters: &[&str]) -> Result<Formula, Mistake> {
     Formula::parse(Kind::Friction, text, parameters, &vec!["1"; parameters.len()])
 }
 
-/// A mistake from where `§` stands on, with some of its words.
+/// An error that starts at `§`, with some words of its message.
 fn check_mistake(marked: &str, parameters: &[&str], words: &str) {
     let text = marked.replacen('§', "", 1);
     let at = marked.find('§').unwrap();
@@ -120,7 +120,7 @@ fn a_wave_is_known() {
     assert!(!parse("tau = a * cos(b) * velocity", &["a", "b"]).unwrap().is_periodic);
 }
 
-/// Parameters a, b and w with these units; where `§` stands something contradicts.
+/// Parameters a, b and w with these units; the contradiction is at `§`.
 fn check_units(kind: Kind, marked: &str, units: [&str; 3], words: &str) {
     let text = marked.replacen('§', "", 1);
     let found = Formula::parse(kind, &text, &["a", "b", "w"], &units);

@@ -1,15 +1,14 @@
-//! The number of waves in a turn, where the run saw a part of a turn only: numbers beside the one that was found may explain
-//! it as well.
+//! The order of a wave over a partial turn: neighbouring orders may explain the data equally well.
 
 use crate::effect::ShapeSearch;
 use crate::preprocess::independent_blocks::pieces;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
 
-/// So many standard deviations of what they lose from piece to piece part two numbers.
+/// Two orders are distinguished if their loss difference exceeds this number of standard errors over the blocks.
 const APART: f64 = 2.0;
 
-/// Opens the numbers of waves that a run over a part of a turn does not decide, and with them the factors.
+/// Extends the interval of an order that a partial turn does not determine, and the intervals of its coefficients.
 pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter]) {
     for (i, term) in terms.terms.iter().enumerate() {
         let Some(turns) = term.effect.wave().map(|angle| terms.problem.view.turns(angle)).filter(|t| *t < 1.0) else {
@@ -36,7 +35,7 @@ pub fn open(terms: &LinearModel, residual: &[f64], parameters: &mut [Parameter])
     }
 }
 
-/// Other numbers next to the one that was found with which the model is as good, in order, each with its factors.
+/// Other orders with which the model is as good, in rising order, each with its coefficients.
 fn alike(terms: &LinearModel, residual: &[f64], term: usize, shape: usize) -> Vec<(f64, Vec<f64>)> {
     let Term { effect, form, shape: found, .. } = &terms.terms[term];
     let bounds = form.shape[shape];

@@ -1,4 +1,5 @@
-//! Candidate columns for a blocked ridge regression: their explained error in the whole run and in each block that was left out.
+//! Candidate columns added to a blocked ridge regression: their error reduction in the whole run and in each left-out
+//! block.
 
 use crate::linear::basis::dot;
 use crate::linear::blocked_ridge::{BlockedRidge, FREE, Fold, Sums, times};
@@ -8,18 +9,19 @@ use std::ops::Range;
 /// Products of columns with each other and with the response.
 type Normal = (Vec<f64>, Vec<f64>);
 
-/// Candidate columns projected out of a base, as sums of products: for the fit without each block, and for that block.
+/// Candidate columns orthogonalized against a base, as sums of products: for the fit without each block, and for that
+/// block.
 pub struct Added {
     pub size: usize,
-    /// Products of what the columns have of their own with themselves and with the response.
+    /// Products of the orthogonalized columns with themselves and with the response.
     own: Vec<f64>,
     side: Vec<f64>,
-    /// Share of the columns that is their own.
+    /// Tolerance: share of the columns that is orthogonal to the base.
     pub visible: f64,
-    /// The same without each block, and of that block alone.
+    /// The same without each block, and for that block alone.
     without: Vec<Normal>,
     held_out: Vec<Normal>,
-    /// The same of each block, projected by the whole run.
+    /// The same for each block, orthogonalized by the fit of the whole run.
     within: Vec<Normal>,
     diagonal: Vec<f64>,
 }
@@ -35,7 +37,7 @@ impl Added {
         sums.iter().for_each(|s| all.add(s, 1.0));
         let solved =
             |fold: &Fold, of: &Products| -> Vec<Vec<f64>> { of.jb.iter().map(|jb| times(&fold.inverse, jb)).collect() };
-        // In the whole: of what is left of the columns, with a base that is held near zero only in part.
+        // In the whole run: from the residual of the columns, because the penalty shrinks only a part of the base.
         let along = solved(&ridge.whole, &all);
         let (own, side) = all.projected(&along, &ridge.whole.factors);
         let diagonal: Vec<f64> = (0..k).map(|a| all.jj[a * k + a]).collect();
@@ -60,22 +62,22 @@ impl Added {
         out
     }
 
-    /// Factors in the whole run.
+    /// Coefficients in the whole run.
     pub fn factors(&self) -> Vec<f64> {
         Cholesky::new(&self.own, self.size, 1e-12).solve(&self.side)
     }
 
-    /// Weighted squared error that the columns take off in the whole run.
+    /// Weighted squared error that the columns explain in the whole run.
     pub fn taken(&self) -> f64 {
         dot(&self.factors(), &self.side)
     }
 
-    /// Squared size of what each column has of its own.
+    /// Squared norm of the orthogonal part of each column.
     pub fn squares(&self) -> impl Iterator<Item = f64> {
         (0..self.size).map(|a| self.own[a * self.size + a])
     }
 
-    /// How sure the factors are not zero: the Wald statistic with the scatter of whole blocks under the alternative.
+    /// Wald statistic of the coefficients, with the scatter of whole blocks under the alternative.
     pub fn wald(&self) -> f64 {
         let covariance = self.scatter(&self.factors());
         let white = Cholesky::new(&covariance, self.size, 1e-12).whiten(&self.side);
@@ -95,8 +97,8 @@ impl Added {
         covariance
     }
 
-    /// What the columns take off each held-out block with factors that the others decide, and what they take off those.
-    /// `strength` holds the factors near zero; factors of which `allows` says no are zero.
+    /// Reduction of the squared error in each left-out block, with coefficients fitted to the other blocks, and the
+    /// reduction in those. `strength` is a ridge penalty; coefficients that `allows` rejects are zero.
     pub fn gains(&self, strength: f64, allows: impl Fn(&[f64]) -> bool) -> Vec<Gain> {
         let k = self.size;
         let gain = |((own, side), (there, side_there)): (&Normal, &Normal)| {
@@ -113,7 +115,7 @@ impl Added {
     }
 }
 
-/// What a candidate takes off one block, and off the rest that chose its factors.
+/// Reduction of the squared error in one block, and in the other blocks that the coefficients were fitted to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain {
     pub held_out: f64,
@@ -164,7 +166,8 @@ impl Products {
         rest
     }
 
-    /// What the columns have of their own beside a base with these factors for them and for the response.
+    /// Products of the orthogonal part of the columns, with base coefficients `along` for the columns and `factors`
+    /// for the response.
     fn projected(&self, along: &[Vec<f64>], factors: &[f64]) -> Normal {
         let k = along.len();
         let own = (0..k * k).map(|at| self.jj[at] - dot(&self.jb[at / k], &along[at % k])).collect();
@@ -172,7 +175,7 @@ impl Products {
         (own, side)
     }
 
-    /// The same over rows that had no part in these factors.
+    /// The same over rows that were left out of the fit of these coefficients.
     fn left(&self, base: &Sums, along: &[Vec<f64>], factors: &[f64]) -> Normal {
         let k = along.len();
         let inner: Vec<Vec<f64>> = along.iter().map(|a| times(&base.bb, a)).collect();

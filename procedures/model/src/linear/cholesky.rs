@@ -2,10 +2,10 @@
 
 use crate::linear::basis::dot;
 
-/// Longer rows are multiplied in whole registers.
+/// Longer rows are multiplied with whole registers.
 const LONG: usize = 32;
 
-/// Symmetric positive definite system, factored on scaled columns. A column that depends on others is left at zero.
+/// Symmetric positive definite system, factorized on scaled columns. A dependent column gets the coefficient zero.
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     n: usize,
@@ -21,7 +21,8 @@ impl Cholesky {
         Self::shown(matrix, n, ridge, &vec![0.0; n])
     }
 
-    /// The same, where a column is left at zero as well that has less than so much of its own beside those before it, squared.
+    /// The same, where a column also gets zero if its squared orthogonal part (given the columns before it) is less
+    /// than `least`.
     pub fn shown(matrix: &[f64], n: usize, ridge: f64, least: &[f64]) -> Self {
         let scale: Vec<f64> =
             (0..n).map(|i| if matrix[i * n + i] > 0.0 { matrix[i * n + i].sqrt().recip() } else { 0.0 }).collect();
@@ -57,7 +58,7 @@ impl Cholesky {
         Self { n, l, scale, dead }
     }
 
-    /// The inverse of the matrix, row by row; columns that depend on others are zero in it.
+    /// The inverse of the matrix, row by row, with zeros for dependent columns.
     pub fn inverse(&self) -> Vec<f64> {
         let n = self.n;
         // Rows of the inverse of L.
@@ -87,13 +88,13 @@ impl Cholesky {
         self.dead[i]
     }
 
-    /// What each column has of its own beside those before it, squared.
+    /// Squared orthogonal part of each column, given the columns before it.
     pub fn own(&self) -> impl Iterator<Item = f64> {
         let square = |i: usize| if self.dead[i] { 0.0 } else { (self.l[i * self.n + i] / self.scale[i]).powi(2) };
         (0..self.n).map(square)
     }
 
-    /// L⁻¹·D·b: what makes the squared length of the result bᵀA⁻¹b.
+    /// L⁻¹·D·b, whose squared norm is bᵀA⁻¹b.
     pub fn whiten(&self, b: &[f64]) -> Vec<f64> {
         let n = self.n;
         let mut x = vec![0.0; n];

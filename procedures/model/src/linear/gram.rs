@@ -1,4 +1,4 @@
-//! Gram matrices of blocks: cross-validation, jackknife and sign flips are functions of these alone.
+//! Gram matrices of blocks, from which cross-validation, jackknife and sign flips are computed.
 
 use crate::linear::cholesky::Cholesky;
 use crate::thresholds::FOLD_COVERAGE;
@@ -28,7 +28,7 @@ impl BlockGrams {
         &self.xy[group * self.columns..(group + 1) * self.columns]
     }
 
-    /// Σ xxᵀ and Σ xy over some groups; one may come several times.
+    /// Σ xxᵀ and Σ xy over some groups; a group may occur several times.
     pub fn sum(&self, groups: impl IntoIterator<Item = usize>) -> (Vec<f64>, Vec<f64>) {
         let p = self.columns;
         let mut xx = vec![0.0; p * p];
@@ -44,7 +44,8 @@ impl BlockGrams {
         self.sum(0..self.groups)
     }
 
-    /// Squared error of each group when it is predicted from all others. What these hardly show of a column they do not predict.
+    /// Squared error of each group, predicted from all others. A column that the others hardly contain is not used
+    /// for the prediction.
     pub fn held_out(&self) -> Vec<f64> {
         let p = self.columns;
         let (xx, xy) = self.total();
@@ -93,7 +94,7 @@ mod tests {
 
     #[test]
     fn what_only_one_group_shows_the_others_do_not_predict() {
-        // The second column leaves the line in the third group only, but for noise.
+        // The second column differs from the first in the third group only, except for noise.
         let x: Vec<f64> = (0..12).map(|i| f64::from(i % 4) - 1.0).collect();
         let play: Vec<f64> =
             (0..12).map(|i| x[i] + if i >= 8 { x[i].powi(2) } else { 0.02 * (i as f64 * 2.3).sin() }).collect();

@@ -1,4 +1,4 @@
-//! How a set of effects becomes a model: in one way only, whatever order they came together in.
+//! Canonical fit: a set of effects gives the same model, independent of the order in which they were added.
 
 use crate::Options;
 use crate::effect::Effect;
@@ -10,10 +10,11 @@ use crate::regression::partial_regression::PartialRegression;
 use crate::thresholds::BETTER_FORM;
 use rayon::prelude::*;
 
-/// How often the forms are chosen again, each beside all others.
+/// How many times the forms are reselected, each together with all other effects.
 const PASSES: usize = 3;
 
-/// Lays effects out on the problem of `bare`: those of one form first, then always the one that explains most.
+/// Fits effects to the problem of `bare`: effects with a single form first, then repeatedly the effect that explains
+/// most.
 pub fn lay<'p>(
     bare: &LinearModel<'p>,
     effects: &[&str],
@@ -43,12 +44,12 @@ pub fn lay<'p>(
     laid
 }
 
-/// There is nothing to choose about the effect.
+/// Whether the effect has only one form and one grid point.
 fn is_fixed(effect: &dyn Effect, problem: &Problem) -> bool {
     matches!(&effect.forms(&problem.view)[..], [form] if form.grid.len() == 1)
 }
 
-/// The shape of each form of an effect that explains most of what is left, with its share.
+/// The best grid point of each form of an effect, with its partial R².
 fn best_of_forms<'l, 'p>(
     effect: &dyn Effect,
     library: &'l CandidateSet<'p>,
@@ -66,7 +67,7 @@ fn best_of_forms<'l, 'p>(
     best
 }
 
-/// Enters an effect in the form that explains most of what is left, each form at its own best shape.
+/// Adds an effect in the form that explains most of the residual, each form at its best grid point.
 pub fn enter<'p>(terms: &mut LinearModel<'p>, effect: &'p dyn Effect) {
     let problem: &Problem = terms.problem;
     let forms = effect.forms(&problem.view);
@@ -86,8 +87,8 @@ pub fn enter<'p>(terms: &mut LinearModel<'p>, effect: &'p dyn Effect) {
     terms.terms.extend(choose(best, &ground, problem));
 }
 
-/// The form that explains most, a longer one only where it is worth it. What is physically impossible is chosen only where
-/// nothing else is possible.
+/// The form that explains most. A form with more parameters has to explain sufficiently more. A physically impossible
+/// form is chosen only if no form is possible.
 fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &PartialRegression, problem: &Problem) -> Option<Term<'p>> {
     forms.sort_by_key(Term::size);
     let polished = |term: Term<'p>| {

@@ -1,4 +1,5 @@
-//! What speaks for an effect: what it takes off data that had no part in choosing its form and its factors.
+//! Evidence for an effect: the reduction of the validation error, on data that was not used to choose its form and
+//! coefficients.
 
 use crate::effect::Regime;
 use crate::linear::added_columns::{Added, Gain};
@@ -9,23 +10,23 @@ use crate::thresholds::DECISION_SHARE;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
-/// A candidate with less than this share of its own looks like the model.
+/// A candidate with a smaller tolerance (1 − R² on the model) is collinear with the model.
 pub const LEAST_VISIBLE: f64 = 1e-5;
 
-/// The rule of one standard error (Breiman and others 1984, ch. 3).
+/// One-standard-error rule (Breiman and others 1984, ch. 3).
 pub const ONE_ERROR: f64 = 1.0;
 
-/// The evidence for one effect beside a model.
+/// The evidence for one candidate effect.
 pub struct Evidence<'l, 'p> {
     /// The form that explains most of the whole run.
     pub best: &'l Regressor<'p>,
-    /// Share of the held-out squared error that the effect takes away.
+    /// Error reduction: share of the squared validation error that the effect explains.
     pub gain: f64,
-    /// The gain in its standard errors over blocks.
+    /// The error reduction in units of its standard error over blocks.
     pub errors: f64,
-    /// How often chance would bring any form of the library as far.
+    /// p-value, corrected for all forms of the library (Bonferroni).
     pub p_value: f64,
-    /// Held-out squared error of each block with the effect.
+    /// Squared validation error of each block with the effect.
     pub losses: Vec<f64>,
 }
 
@@ -34,18 +35,18 @@ impl Evidence<'_, '_> {
         self.best.id()
     }
 
-    /// It takes more than a share, surely, and by more than the scatter of its gain.
+    /// Whether the reduction exceeds a minimum share, is significant, and exceeds its standard error.
     pub fn passes(&self, share: f64, alpha: f64) -> bool {
         self.gain > share && self.p_value < alpha && self.errors > ONE_ERROR
     }
 }
 
-/// One form beside the base.
+/// Result of one form added to the base model.
 enum Tried<'l, 'p> {
     Judged(Trial<'l, 'p>),
-    /// It does not show where it has to, or no factor of it is possible.
+    /// It does not show outside reversals, or its coefficients are physically impossible.
     Rejected,
-    /// It looks like the base.
+    /// It is collinear with the base model.
     Hidden(&'l Regressor<'p>),
 }
 
@@ -56,11 +57,12 @@ struct Trial<'l, 'p> {
     chance: f64,
 }
 
-/// The evidence for each effect of the candidates, the one that takes most first, and the forms that the base hides. `forms`: how
-/// many were tried in all.
+/// The evidence for each candidate effect, by decreasing error reduction, and the forms that are collinear with the
+/// base model. `forms` is the number of tested forms.
 ///
-/// An effect of steady state has to show outside reversals and rests: on the rows that are not `near` one, with the model fitted to
-/// these rows alone, it takes the practical share too. A form that differs from the model at reversals only does not.
+/// A steady-state effect has to show outside reversals and rests. On the rows that are not `near` one, with the model
+/// fitted to these rows alone, it has to reach the practical share too. A form that differs from the model only at
+/// reversals does not.
 pub fn evidence<'l, 'p>(
     ridge: &BlockedRidge,
     candidates: &[&'l Regressor<'p>],
@@ -101,13 +103,13 @@ fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Optio
     Tried::Judged(Trial { form, taken: added.taken(), gains: added.gains(0.0, is_possible), chance })
 }
 
-/// What a form would add, where it is none of what the model has.
+/// The regression with this form added, unless the form is collinear with the model.
 pub fn visible(ridge: &BlockedRidge, form: &Regressor) -> Option<Added> {
     let added = Added::new(ridge, &form.columns);
     (added.visible > LEAST_VISIBLE).then_some(added)
 }
 
-/// The form is chosen by the rest for every block that it is judged on.
+/// The form for each block is chosen on the other blocks, so that the choice does not bias the validation error.
 fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usize) -> Option<Evidence<'l, 'p>> {
     let best = trials.iter().max_by(|a, b| a.taken.total_cmp(&b.taken))?;
     let of_block = |block: usize| {
@@ -124,7 +126,7 @@ fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usiz
     })
 }
 
-/// A mean in its standard errors.
+/// A mean in units of its standard error.
 pub fn errors(values: &[f64]) -> f64 {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -132,8 +134,8 @@ pub fn errors(values: &[f64]) -> f64 {
     mean / (square / (n - 1.0) / n).sqrt().max(f64::MIN_POSITIVE)
 }
 
-/// How often chance alone makes a Wald statistic of so many factors that large, with the scatter of so many blocks: Student's
-/// t, or Hotelling's T² for several factors.
+/// p-value of a Wald statistic with this number of coefficients, estimated from this number of blocks: Student's t
+/// for one coefficient, Hotelling's T² for several.
 pub fn chance(wald: f64, factors: usize, blocks: usize) -> f64 {
     let (k, g) = (factors as f64, blocks as f64);
     let none = |law: Result<f64, _>| law.unwrap_or(1.0);

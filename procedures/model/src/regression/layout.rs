@@ -1,4 +1,5 @@
-//! A set of effects as a model of a run that is judged sample by sample: one model, in whatever order they came together.
+//! Canonical model of a run that is judged sample by sample: the same set of effects gives the same model,
+//! independent of their order.
 
 use crate::effect::Effect;
 use crate::regression::candidates::{CandidateSet, Regressor};
@@ -9,8 +10,9 @@ use crate::thresholds::DECISION_SHARE;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Lays effects out beside what `bare` takes as given: those of one form first, then always the one that explains most. The
-/// other forms of an effect stand beside it, held near zero: no grid is too coarse then.
+/// Fits effects in addition to the offset terms of `bare`: effects with a single form first, then repeatedly the
+/// effect that explains most. The other forms of an effect are added with a ridge penalty, so that the grid need not
+/// be fine.
 pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &CandidateSet<'p>) -> LinearModel<'p> {
     let problem = bare.problem;
     let mut model = LinearModel { terms: Vec::new(), relatives: Arc::default(), ..bare.clone() };
@@ -40,14 +42,14 @@ pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &Can
         let relatives = model.relatives.iter().cloned().chain(others).collect();
         model.relatives = Arc::new(relatives);
     }
-    // In the order of the library, whichever came first.
+    // In the order of the library, independent of the order of entry.
     let place = |term: &Term| library.effects.iter().position(|effect| effect.info().id == term.id());
     model.terms.sort_by_key(place);
     model
 }
 
-/// Gives an effect of several like parts, which entered last with one, those that take enough of held-out data as well: they are
-/// a matter of its form, as which shape it has. Returns its parts.
+/// Adds components to the last entered effect, if it is a sum of components, while they reduce the validation error
+/// sufficiently. Returns the components. Components belong to the form of the effect, like its nonlinear parameters.
 fn extend<'l, 'p>(
     model: &mut LinearModel<'p>,
     chosen: &'l Regressor<'p>,
@@ -74,7 +76,7 @@ fn extend<'l, 'p>(
     parts
 }
 
-/// The form that takes most of what a model leaves, and what it takes. What is physically possible comes first.
+/// The form that explains most of the residual, and how much it explains. Physically possible forms are preferred.
 fn most_telling(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
     let taken = |form: &&Regressor| {
         let added = visible(&solution.ridge, form)?;

@@ -1,4 +1,5 @@
-//! A model laid out on a prepared run: settled effects on the plateaus, ramps and memory where the motion changes.
+//! A model on a prepared run in two stages: steady-state effects on the means, ramp and hysteresis effects on the
+//! data with changing motion.
 
 use crate::effect::Regime;
 use crate::preprocess::{Prepared, Problem};
@@ -13,21 +14,22 @@ use crate::{Effect, ModelError, ModelSpec, Options};
 #[derive(Clone)]
 pub struct TwoStageModel<'p> {
     pub prepared: &'p Prepared,
-    /// What the model was at first, and the effects that it may hold.
+    /// The initial model, and the effects that it may contain.
     pub spec: &'p ModelSpec,
     /// Ids in the order of the model.
     pub effects: Vec<String>,
     pub main: LinearModel<'p>,
     pub moving: Option<LinearModel<'p>>,
-    /// What the main part takes as given of effects that ramps have decided: a slow step over teeth accelerates as well.
+    /// Torque of the ramp effects at the rows of the main part, as an offset: a slow step over gear teeth accelerates
+    /// as well.
     wavering: Vec<f64>,
     /// Effects of the model that this data cannot show.
     pub hidden: Vec<Invisible>,
 }
 
 impl<'p> TwoStageModel<'p> {
-    /// Finds forms and shapes of every effect: the same set of effects is laid out in one way only, whether it was asked
-    /// for or found.
+    /// Finds forms and nonlinear parameters of every effect. The fit is canonical: it does not depend on whether an
+    /// effect was requested or found.
     pub fn new(prepared: &'p Prepared, spec: &'p ModelSpec, options: &Options) -> Result<Self, ModelError> {
         Self::of_effects(prepared, spec, spec.effects.clone(), options)
     }
@@ -70,7 +72,7 @@ impl<'p> TwoStageModel<'p> {
             }
         }
         let library = CandidateSet::for_layout(spec, &prepared.main, prepared.regimes(), &settled);
-        // What the ramps decide needs the settled part, and that a little of what they decide.
+        // The ramps depend on the steady-state part, and the steady-state part depends a little on the ramp effects.
         for _ in 0..2 {
             assembly.main.terms.clear();
             assembly.main = lay(&assembly.main, &settled, &library, options);
@@ -82,7 +84,7 @@ impl<'p> TwoStageModel<'p> {
         Ok(assembly)
     }
 
-    /// The same of a run that is judged sample by sample.
+    /// The model of a run that is judged sample by sample.
     pub fn decided(prepared: &'p Prepared, spec: &'p ModelSpec, effects: Vec<String>) -> Result<Self, ModelError> {
         let main = LinearModel::new(prepared.judged(&effects));
         let mut assembly =
@@ -110,12 +112,12 @@ impl<'p> TwoStageModel<'p> {
         Ok(assembly)
     }
 
-    /// Plateaus say nothing about the effect: it is judged where the motion changes.
+    /// Whether steady-state means cannot show the effect, so that it is fitted where the motion changes.
     pub fn is_apart(&self, effect: &dyn Effect) -> bool {
         !self.prepared.regimes().contains(&effect.regime())
     }
 
-    /// What the model predicts at the rows of another problem of the same run.
+    /// Prediction of the model at the rows of another problem of the same run.
     pub fn predict(&self, problem: &Problem) -> Vec<f64> {
         let mut sum = vec![0.0; problem.rows()];
         for id in &self.effects {
@@ -132,7 +134,8 @@ impl<'p> TwoStageModel<'p> {
         sum
     }
 
-    /// Lays the settled part under the moving problem, which then holds nothing else.
+    /// Sets the prediction of the steady-state part as the offset of the moving problem, and removes all other terms
+    /// from it.
     fn relay(&mut self) {
         let Some(moving) = &mut self.moving else { return };
         moving.given.fill(0.0);
@@ -149,7 +152,7 @@ impl<'p> TwoStageModel<'p> {
         }
     }
 
-    /// Enters the effects that are judged where the motion changes.
+    /// Adds the effects that are fitted where the motion changes.
     fn enter_moving(&mut self) {
         let is_in = |id: &str| self.effects.iter().any(|e| e == id) && !self.hidden.iter().any(|h| h.effect == id);
         let apart = self.spec.known().filter(|e| self.is_apart(*e) && is_in(e.info().id));
@@ -179,7 +182,7 @@ impl<'p> TwoStageModel<'p> {
         }
     }
 
-    /// Takes what ramps tell into the main part, where it has anything to say there.
+    /// Adds the torque of the ramp effects to the main part as an offset. Returns whether it is not zero there.
     fn take_wavering(&mut self) -> bool {
         let mut wavering = vec![0.0; self.wavering.len()];
         if let Some(moving) = &self.moving {
@@ -194,8 +197,8 @@ impl<'p> TwoStageModel<'p> {
         self.wavering.iter().any(|torque| *torque != 0.0)
     }
 
-    /// The same from the beginning, where ramps reach into the main part: the order in which effects came in would show there
-    /// in the last digits.
+    /// Refits the model from scratch if ramp effects contribute to the main part. Otherwise the order of entry would
+    /// change the last digits.
     pub fn settled(self, options: &Options) -> Result<Self, ModelError> {
         match self.wavering.iter().any(|torque| *torque != 0.0) {
             true => Self::of_effects(self.prepared, self.spec, self.effects, options),
@@ -203,7 +206,7 @@ impl<'p> TwoStageModel<'p> {
         }
     }
 
-    /// The model of other effects, whose settled part is laid out already.
+    /// The model of other effects whose steady-state part is given.
     pub fn of(&self, main: LinearModel<'p>, effects: Vec<String>) -> Self {
         let mut next = Self { main, effects, ..self.clone() };
         next.enter_moving();

@@ -1,4 +1,4 @@
-//! Lack of fit: what is left over an axis, and whether it is more than whole stretches of motion scatter by.
+//! Lack of fit: structure of the residual over an axis, compared with the scatter of whole stretches of motion.
 
 use crate::Options;
 use crate::preprocess::Prepared;
@@ -16,8 +16,8 @@ pub fn structured(maps: &Maps) -> Option<&str> {
     maps.removable().filter(|(_, share)| *share > STRUCTURE_SHARE).map(|(axis, _)| axis)
 }
 
-/// What shows over an axis is what whole stretches of motion differ by, a zero that wanders or lies elsewhere after every
-/// reversal: little of it comes again for sure in another repeat, and no part of any axis stands out of that scatter.
+/// Whether the structure over an axis is only scatter between stretches of motion, such as an offset that drifts or
+/// changes after every reversal. Then little of it is repeatable, and no part of an axis exceeds that scatter.
 pub fn is_scatter(
     now: &LinearModel,
     maps: &Maps,
@@ -38,13 +38,15 @@ pub fn is_scatter(
     }
 }
 
-/// Nothing shows over any axis but a zero that wanders over time: a little everywhere, and no figure of the model leaps.
+/// Whether a random-walk offset explains all structure: no axis shows structure without it, its innovations are not
+/// heavy-tailed, and no coefficient has a changepoint.
 fn only_wanders(wander: &Ar1Offset, residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
     let beside = Maps::new(prepared, wander.taken_off(residual), options);
     structured(&beside).is_none() && !beside.stand_out() && !wander.is_heavy_tailed() && !wander.leaps(options)
 }
 
-/// Where legs are too few to tell what they scatter by, some part of an axis stands out within them, each with a zero of its own.
+/// Whether a part of an axis is significant within legs, with a separate offset for each. If the blocks already are
+/// the legs, there are too few to compare.
 fn stands_out_within_legs(residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
     let problem = &prepared.main;
     let leg = legs(problem);

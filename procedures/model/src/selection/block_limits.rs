@@ -1,4 +1,4 @@
-//! What was looked for and not found, and how large it would have been.
+//! Detection limits of effects that the evidence search did not find.
 
 use crate::Options;
 use crate::effect::Regime;
@@ -15,8 +15,8 @@ use crate::thresholds::{DELAY_ROWS, DETECTION_POWER};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The smallest size of each effect that is not in the model which would have been named with 80 % power, in the middle of its
-/// forms.
+/// Detection limit of each effect that is not in the model: the smallest size that is found with 80 % power, as the
+/// median over the forms of the effect.
 pub fn silences<'p>(
     end: &TwoStageModel<'p>,
     solution: &Solution,
@@ -46,7 +46,7 @@ pub fn silences<'p>(
     sizes.chunk_by(|a, b| a.0 == b.0).map(of_effect).collect()
 }
 
-/// RMS of the smallest effect of a form that would have been named.
+/// RMS of the smallest effect of this form that is found.
 fn smallest(
     form: &Regressor,
     ridge: &BlockedRidge,

@@ -1,8 +1,8 @@
-//! From a model to the one that is left when nothing more can be named, by one decision: an effect is named where what it
-//! takes off held-out data is more than a share of what is left, is significant and exceeds its own standard error.
+//! Adds effects by one decision rule. An effect is added if it reduces the validation error by a minimum share, is
+//! significant, and exceeds its own standard error.
 //!
-//! Size ranks, significance only gates. What shows only where everything else is imperfect too, around reversals and on
-//! ramps, has to take most of what is left.
+//! The error reduction ranks the candidates; significance is only a condition. Form error concentrates at reversals
+//! and on ramps. A candidate that shows only there has to explain most of the residual.
 
 use crate::effect::Regime;
 use crate::linear::blocked_ridge::BlockedRidge;
@@ -25,17 +25,17 @@ use crate::thresholds::{DECISION_SHARE, DELAY_ROWS, FLOOR_RATIO, LEFT_SHARE, SIM
 use crate::{Effect, ModelError, ModelSpec, Options};
 use std::cell::OnceCell;
 
-/// Effects that are added at most.
+/// Largest number of added effects.
 const MOST_NAMED: usize = 4;
 
-/// The libraries of a run: beside a direction that turns at once, and beside one that bends.
+/// Candidate sets of a run: for a friction direction that switches at once, and for one with presliding.
 struct Libraries<'p> {
     plain: OnceCell<CandidateSet<'p>>,
     bristled: OnceCell<CandidateSet<'p>>,
 }
 
 impl<'p> Libraries<'p> {
-    /// The one beside the direction of a model.
+    /// The candidate set that matches the friction direction of a model.
     fn of(&self, model: &LinearModel<'p>, prepared: &'p Prepared, spec: &'p ModelSpec) -> &CandidateSet<'p> {
         let is_plain = std::ptr::eq(model.problem, &prepared.main);
         let known = if is_plain { &self.plain } else { &self.bristled };
@@ -43,7 +43,7 @@ impl<'p> Libraries<'p> {
     }
 }
 
-/// What the steps are chosen from.
+/// Data and state of the search.
 struct Search<'a, 'p> {
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
@@ -52,7 +52,7 @@ struct Search<'a, 'p> {
     libraries: Libraries<'p>,
 }
 
-/// `on_advance` sees every move when it is made.
+/// `on_advance` gets each step when it is made.
 pub fn search<'p>(
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
@@ -63,7 +63,7 @@ pub fn search<'p>(
     let start = TwoStageModel::new(prepared, spec, options)?;
     let libraries = Libraries { plain: OnceCell::new(), bristled: OnceCell::new() };
     let mut search = Search { prepared, spec, options, path: Path::new(start, on_advance), libraries };
-    // Of columns that cannot be right every effect is made up.
+    // Contradicting columns make every effect spurious.
     let most = if prepared.clashes.void.is_empty() { most.min(MOST_NAMED) } else { 0 };
     if most > 0
         && let Some(step) = offset(&search.path.start, options)
@@ -79,7 +79,8 @@ pub fn search<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Adds the effect that takes most, as long as one passes. Returns those that take much and do not.
+    /// Adds the effect with the largest error reduction as long as one passes. Returns the rejected effects with a
+    /// large error reduction.
     fn grow(&mut self, most: usize) -> Result<Vec<Refused<'p>>, ModelError> {
         loop {
             let now = self.path.end();
@@ -123,7 +124,8 @@ impl<'p> Search<'_, 'p> {
         Ok(())
     }
 
-    /// What remains. Where a function of one axis says more than all that was named, nothing of the library is it.
+    /// Unexplained structure. If a function of one axis explains more than all added effects together, these effects
+    /// are removed.
     fn left(&mut self) -> Result<Option<Left>, ModelError> {
         let of = |Self { path, .. }: &Self| {
             Solution::of(&path.end().main).and_then(|solution| structure::left(&path.start, path.end(), &solution))
@@ -167,7 +169,7 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-/// The evidence for every effect that is not in the model, the one that takes most first.
+/// Evidence for every effect that is not in the model, sorted by decreasing error reduction.
 fn candidates<'l, 'p>(
     now: &TwoStageModel<'p>,
     solution: &Solution,
@@ -186,7 +188,7 @@ fn candidates<'l, 'p>(
     };
     let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
     let (mut all, mut hidden) = evidence(&solution.ridge, &of(&regime(Regime::SteadyState)), &near, forms);
-    // What is form error of all others is judged without it.
+    // A candidate is judged without the form-error columns that represent the same effect.
     let late = of(&|c| c.id() == DELAY);
     if !late.is_empty() && is_late(now, solution) {
         all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &late, &near, forms).0);
@@ -199,7 +201,7 @@ fn candidates<'l, 'p>(
     let (beside, imitated) = evidence(&solution.ridge, &inertia, &near, forms);
     all.extend(beside);
     hidden.extend(imitated);
-    // On one sine snap is the acceleration, turned over, and jerk the velocity.
+    // On one sine the snap is the acceleration with the opposite sign, and the jerk is the velocity.
     for lives in free_error(now, solution) {
         all.extend(evidence(&without(&now.main, solution, lives), &hidden, &near, forms).0);
     }
@@ -207,14 +209,14 @@ fn candidates<'l, 'p>(
     all
 }
 
-/// The form error of a model that the ridge does not shrink.
+/// Form-error columns of a model that the ridge penalty does not shrink.
 fn free_error(now: &TwoStageModel, solution: &Solution) -> impl Iterator<Item = Lives> {
     let columns = now.main.problem.form_error.as_deref().map_or(&[][..], |form_error| &form_error.columns);
     solution.error.iter().filter_map(|(at, _)| Some(columns.get(*at)?.lives)).filter(|lives| !lives.shrinks())
 }
 
-/// An effect that changes the direction of all others explains what free elements explain in its place: a torque that comes late
-/// bends around reversals as well, and no direction follows it.
+/// A candidate that changes the direction of all friction terms has to explain as much as free form-error columns in
+/// its place. A delayed torque also bends around reversals, but friction directions do not follow it.
 fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> bool {
     let Some(form_error) = after.main.problem.form_error.as_deref() else { return true };
     std::ptr::eq(now.main.problem, after.main.problem)
@@ -222,7 +224,7 @@ fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> b
             < FLOOR_RATIO.powi(2) * solution.ridge.loss()
 }
 
-/// The largest gain first; of those that tie with it the surest.
+/// Candidates by decreasing error reduction; those that tie with the first one by increasing p-value.
 fn in_turn<'e, 'l, 'p>(passing: &[&'e Evidence<'l, 'p>]) -> Vec<&'e Evidence<'l, 'p>> {
     let mut in_turn = passing.to_vec();
     if let Some(first) = passing.first() {
@@ -232,12 +234,13 @@ fn in_turn<'e, 'l, 'p>(passing: &[&'e Evidence<'l, 'p>]) -> Vec<&'e Evidence<'l,
     in_turn
 }
 
-/// Takes about as much, block by block.
+/// Whether two candidates reduce the error about equally, compared over the blocks.
 fn is_rival(best: &Evidence, other: &Evidence) -> bool {
     other.gain > SIMPLER_GAIN * best.gain && is_tie(&best.losses, &other.losses)
 }
 
-/// The torque is later or earlier than the motion by more than a sample: of which moment of it a reading is nobody knows.
+/// Whether torque and motion are shifted by more than a sample. Below that, the moment of a reading within its sample
+/// is unknown.
 fn is_late(now: &TwoStageModel, solution: &Solution) -> bool {
     let model = &now.main;
     let Some(form_error) = model.problem.form_error.as_deref() else { return false };
@@ -247,7 +250,7 @@ fn is_late(now: &TwoStageModel, solution: &Solution) -> bool {
     (jerk / inertia).abs() > DELAY_ROWS * form_error.sample_s
 }
 
-/// The added effect without which the others predict held-out data as well, where there is one beside others.
+/// The added effect without which the validation error does not increase, if other effects were added too.
 fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     let added: Vec<&'p str> =
         end.effects.iter().filter(|e| !spec.contains(e)).filter_map(|e| Some(spec.find(e).ok()?.info().id)).collect();
@@ -255,7 +258,7 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     if added.len() < 2 {
         return None;
     }
-    // Other forms of the others would imitate it.
+    // Other forms of the remaining effects would imitate the effect under test.
     let mut plain = end.main.clone();
     plain.relatives = Default::default();
     let weight = Solution::of(&plain)?.weight.clone();
@@ -278,7 +281,7 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     judged.filter(|(_, loss)| *loss < DECISION_SHARE).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }
 
-/// The power balance, where the model lacks it and the run shows it.
+/// The power balance, if the model lacks it and the data supports it.
 fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionStep<'p>> {
     let problem = start.main.problem;
     let is_out = |id: &str| !start.effects.iter().any(|e| e == id);

@@ -1,4 +1,4 @@
-//! From a model to the model that is left when nothing more can be named.
+//! Floating forward selection of effects: one added or removed effect at a time.
 
 use crate::Options;
 use crate::effect::{Effect, Form};
@@ -14,7 +14,7 @@ use crate::thresholds::{MOST_EXCHANGES, SIMPLER_GAIN, STAND_IN_LOSS};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Effects of a model with their forms and shapes.
+/// Effects of a model with their forms and nonlinear parameters.
 type Laid<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
 
 pub enum Move<'p> {
@@ -22,38 +22,39 @@ pub enum Move<'p> {
     Removed(&'p str),
 }
 
-/// An effect with what the run cannot tell it from.
+/// A scored candidate with the effects that are confounded with it.
 pub(crate) type Found<'p> = (ScoredCandidate<'p>, Vec<&'p str>);
 
-/// Adds the best effect again and again until none passes, and drops what lost its reason: one move at a time.
+/// Adds the best candidate until none passes, and removes effects that became redundant, one move at a time.
 pub struct FloatingSearch<'l, 'p> {
     pub now: LinearModel<'p>,
     pub(crate) library: &'l CandidateSet<'p>,
     pub(crate) options: &'l Options,
-    /// Squared error of the model without any effect but those of the baseline and those whose formula is exact.
+    /// Squared error of the model with only the baseline effects and those with an exact formula.
     plain: f64,
-    /// Effects of the model that was given.
+    /// Effects of the given model.
     pub(crate) initial_terms: Vec<&'p str>,
-    /// Effects that were withdrawn and are not tried again.
+    /// Effects that were removed and are not tried again.
     pub(crate) withdrawn: Vec<&'p str>,
-    /// Effects whose reason is not the error, but what the others would be without them.
+    /// Effects that are kept because the other coefficients are biased without them, not because of the error.
     pub retained_for_bias: Vec<&'p str>,
-    /// Held-out squared errors, fold by fold, of the models that they were withdrawn from.
+    /// Squared validation errors, fold by fold, of the models before each removal.
     rejected_losses: Vec<Vec<f64>>,
     /// The effect that was added last.
     pub(crate) last: Option<&'p str>,
     pub(crate) left: usize,
     exchanges: usize,
-    /// What takes the place of an effect that was just removed.
+    /// The effect that replaces the one that was just removed.
     pending_swap: Option<Found<'p>>,
-    /// Models that were laid out, without their columns.
+    /// Cache of canonical models, without their columns.
     laid: Mutex<BTreeMap<Vec<&'p str>, Laid<'p>>>,
-    /// Something from outside the library was seen: whatever entered now would stand for it.
+    /// Structure from outside the library was found. Any effect that is added now would only imitate it.
     pub unmodelled_structure: bool,
 }
 
 impl<'l, 'p> FloatingSearch<'l, 'p> {
-    /// `most` effects are added at most. `baseline` is what the run's own facts take for granted.
+    /// `most` limits the number of added effects. `baseline` names the effects that the test conditions of the run
+    /// imply.
     pub fn new(
         start: LinearModel<'p>,
         library: &'l CandidateSet<'p>,
@@ -94,14 +95,14 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         AcceptanceThreshold { plain: self.plain, kind: self.library.kind, options: self.options }
     }
 
-    /// Takes an effect back that turned out not to be the answer.
+    /// Removes an effect that was found to be wrong.
     pub fn withdraw(&mut self, id: &'p str) -> Move<'p> {
         self.withdrawn.push(id);
         self.rejected_losses.push(held_out(&self.now));
         self.remove(id)
     }
 
-    /// Adds an effect that hardly shows in the error, and keeps it.
+    /// Adds an effect that hardly changes the error, and keeps it.
     pub fn uphold(&mut self, rival: ScoredCandidate<'p>) -> Move<'p> {
         self.retained_for_bias.push(rival.term.id());
         self.add(rival, Vec::new())
@@ -125,7 +126,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         Move::Removed(id)
     }
 
-    /// What to add next.
+    /// The next effect to add.
     fn best(&self) -> Option<Found<'p>> {
         let plain = self.step(&self.now);
         if !self.now.terms.iter().any(|term| self.bends(term)) {
@@ -135,9 +136,9 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         self.behind_bent(&self.now, None, &than).or(plain)
     }
 
-    /// A given effect may have bent into the place of another one until nothing of that shows beside it: without a viscous
-    /// torque a Stribeck peak becomes negative and wide. What is missing without the given one, and makes the model with
-    /// both clearly better than one that has these held-out errors, is what it stands for.
+    /// A given effect with several coefficients can absorb a missing effect completely: without a viscous torque a
+    /// Stribeck peak becomes negative and wide. This step searches for a candidate without that given effect. The
+    /// candidate is returned if the model with both has a significantly smaller validation error than `than`.
     pub(crate) fn behind_bent(&self, now: &LinearModel<'p>, but: Option<&'p str>, than: &[f64]) -> Option<Found<'p>> {
         now.terms.iter().filter(|term| self.bends(term)).find_map(|given| {
             let out: Vec<&str> = self.withdrawn.iter().copied().chain([given.id()]).chain(but).collect();
@@ -148,12 +149,12 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         })
     }
 
-    /// A given effect of which the data decides more than one factor.
+    /// Whether a given effect has more than one free parameter, so that it can absorb another one.
     fn bends(&self, term: &Term) -> bool {
         self.initial_terms.contains(&term.id()) && term.size() > 1
     }
 
-    /// The model with one effect more.
+    /// The model with one additional effect.
     pub fn model_with(&self, id: &'p str) -> LinearModel<'p> {
         self.lay(self.now.terms.iter().map(Term::id).chain([id]))
     }
@@ -162,7 +163,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         self.lay(self.now.terms.iter().map(Term::id).filter(|other| *other != id))
     }
 
-    /// The model of these effects, which is asked for more than once.
+    /// The canonical model of these effects, from the cache if it was built before.
     fn lay(&self, effects: impl Iterator<Item = &'p str>) -> LinearModel<'p> {
         let mut effects: Vec<&str> = effects.collect();
         effects.sort_unstable();
@@ -179,18 +180,18 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         made
     }
 
-    /// The model is as good with another effect in place of one, of a size that is physically possible.
+    /// Whether `rival` replaces an effect without loss and with physically possible coefficients.
     pub fn ties(&self, effect: &str, rival: &'p str) -> bool {
         let others = self.now.terms.iter().map(Term::id).filter(|id| *id != effect);
         let other = self.lay(others.chain([rival]));
         let mut sized = other.terms.iter().zip(other.linear().factors);
         let is_possible = sized.all(|(term, factors)| term.id() != rival || term.allows(&factors));
-        // What stands in for an effect that hardly shows in the error leaves the others where it does.
+        // The replacement of an effect that is kept for its bias must not bias the others.
         let is_elsewhere = self.retained_for_bias.contains(&effect) && self.is_wrong_beside(&other);
         is_possible && !is_elsewhere && is_tie(&held_out(&self.now), &held_out(&other))
     }
 
-    /// Effects that explain nearly as much in the place of one, and with which the model is as good.
+    /// Effects that explain nearly as much in place of a term, and are confounded with it.
     pub fn stand_ins(&self, term: &Term<'p>) -> Vec<&'p str> {
         let without = self.now.without(term.id());
         let ground = PartialRegression::of(&without);
@@ -215,17 +216,17 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         near.into_iter().map(|(_, candidate)| candidate.id()).collect()
     }
 
-    /// Effects that were added and are still there.
+    /// Effects that were added and are still in the model.
     pub fn added(&self) -> impl Iterator<Item = &Term<'p>> {
         self.now.terms.iter().filter(|t| !self.initial_terms.contains(&t.id()))
     }
 
-    /// Added effects that have to be worth their error.
+    /// Added effects that have to be justified by the error.
     pub(crate) fn on_trial(&self) -> impl Iterator<Item = &Term<'p>> {
         self.added().filter(|term| !self.retained_for_bias.contains(&term.id()))
     }
 
-    /// Effects that were withdrawn and stayed out.
+    /// Effects that were removed and are not in the model.
     pub fn given_back(&self) -> impl Iterator<Item = &'p str> {
         self.withdrawn.iter().copied().filter(|id| !self.now.contains(id))
     }
@@ -241,7 +242,7 @@ impl<'p> Iterator for FloatingSearch<'_, 'p> {
         if self.unmodelled_structure {
             return None;
         }
-        // What explains clearly less than an effect that was withdrawn only stands in for it.
+        // A candidate that explains clearly less than a removed effect is only a substitute for it.
         let stands_in = |rival: &ScoredCandidate| {
             let clearly = |losses: &Vec<f64>| {
                 let rejected: f64 = losses.iter().sum();

@@ -1,4 +1,4 @@
-//! The candidates of one step: which is best, whether it is more than luck, and what the run cannot tell it from.
+//! One forward step: the best candidate, its significance, and the effects that are confounded with it.
 
 use crate::linear::augmented_gram::AugmentedGrams;
 use crate::regression::candidates::CandidateSet;
@@ -11,30 +11,30 @@ use crate::selection::equivalence::{encompasses, is_tie};
 use crate::thresholds::SIMPLER_GAIN;
 use rayon::prelude::*;
 
-/// Candidates that are refined and held against each other at each step.
+/// Candidates that are refined and cross-validated in each step.
 const SHORT_LIST: usize = 8;
 
 /// A candidate of one step with its evidence.
 #[derive(Clone)]
 pub struct ScoredCandidate<'p> {
     pub term: Term<'p>,
-    /// Share of the remaining squared error.
+    /// Partial R²: share of the remaining squared error.
     pub share: f64,
-    /// Held-out squared error of the model with it.
+    /// Squared validation error of the model with this candidate.
     pub held_out: f64,
     pub p_value: f64,
-    /// Held-out squared error of each fold.
+    /// Squared validation error of each fold.
     pub(crate) losses: Vec<f64>,
 }
 
 impl<'p> ScoredCandidate<'p> {
-    /// A candidate that was judged apart from the others, without folds.
+    /// A candidate that was tested alone, without folds.
     pub fn alone(term: Term<'p>, share: f64, p_value: f64) -> Self {
         Self { term, share, held_out: f64::NAN, p_value, losses: Vec::new() }
     }
 }
 
-/// The effect that makes the model best, with those that it ties with.
+/// The effect with the smallest validation error, and the effects that tie with it.
 pub fn step<'p>(
     now: &LinearModel<'p>,
     library: &CandidateSet<'p>,
@@ -53,7 +53,7 @@ pub fn step<'p>(
     let open: Vec<usize> = (0..library.candidates.len()).filter(|i| is_open(library.candidates[*i].id())).collect();
     let gains: Vec<Orthogonalized> = open.par_iter().map(|i| ground.own(&library.candidates[*i].columns)).collect();
 
-    // The best shape of each form of each effect, the most telling first.
+    // The best grid point of each form of each effect, by decreasing partial R².
     let mut best: Vec<usize> = Vec::new();
     let form = |at: usize| (library.candidates[open[at]].id(), library.candidates[open[at]].form.name);
     for at in 0..open.len() {
@@ -100,7 +100,7 @@ pub fn step<'p>(
         .filter(|r| r.held_out < present)
         .collect();
     rivals.sort_by(|a, b| a.held_out.total_cmp(&b.held_out));
-    // The forms of one effect are one group: the best of them speaks for it.
+    // The best form of an effect represents all its forms.
     let mut seen: Vec<&str> = Vec::new();
     rivals.retain(|r| {
         !seen.contains(&r.term.id()) && {
@@ -111,7 +111,7 @@ pub fn step<'p>(
     let first = rivals.first()?;
 
     let mut ties: Vec<usize> = (1..rivals.len()).filter(|i| is_tie(&first.losses, &rivals[*i].losses)).collect();
-    // Of what explains the data equally well, the simplest, and of those the one that the contract names first.
+    // Among equal candidates the one with the fewest columns wins, then the first one in the order of the library.
     let near = |i: &usize| {
         let gain = |i: usize| present - rivals[i].held_out;
         let as_good = rivals[*i].held_out < (1.0 + options.practical_share) * rivals[0].held_out;

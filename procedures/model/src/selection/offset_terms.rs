@@ -1,4 +1,4 @@
-//! What enters a model with a factor of one has no size that a search could find: it is there or it is not.
+//! Offset terms have a fixed coefficient of one, so that no size is searched: the model includes the effect or not.
 
 use crate::Options;
 use crate::regression::candidates::CandidateSet;
@@ -11,7 +11,8 @@ use crate::selection::advance::SelectionStep;
 use crate::selection::equivalence::is_tie;
 use crate::selection::forward_step::ScoredCandidate;
 
-/// The power balance that a model lacks and its data shows. Effects of friction must not explain what the joint only passes on.
+/// Adds the power balance if the model lacks it and the data supports it. Friction effects must not explain power
+/// that the joint only transmits.
 pub fn advance<'p>(
     start: &TwoStageModel<'p>,
     library: &CandidateSet<'p>,

@@ -1,4 +1,5 @@
-//! An effect that the shape of another one imitates: the error would hardly miss it, and the parameters are wrong without it.
+//! Omitted-variable bias: an effect that another one imitates hardly changes the error, but its absence biases the
+//! coefficients.
 
 use crate::linear::basis::dot;
 use crate::regression::candidates::Regressor;
@@ -12,19 +13,20 @@ use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{BIAS_TOLERANCE, BIASED_COEFFICIENT};
 use rayon::prelude::*;
 
-/// An effect that hardly shows, in the model that has it.
+/// An effect that hardly changes the error, with the model that includes it.
 pub struct Imitated<'p> {
     pub rival: ScoredCandidate<'p>,
     pub with: LinearModel<'p>,
-    /// What was held out decides that it is there.
+    /// The validation error confirms the effect.
     pub is_clear: bool,
 }
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// The effect that one of a free shape imitates best, at the cost of a factor of the given model: a Stribeck
-    /// effect that fades slowly is a curve over speed and a part of Coulomb friction as well.
+    /// The effect that a term with free nonlinear parameters imitates best, at the cost of a biased coefficient of
+    /// the given model. A Stribeck effect that fades slowly also fits a curve over speed and a part of Coulomb
+    /// friction.
     ///
-    /// `decides` says whether a model decides an effect.
+    /// `decides` returns whether a model identifies an effect.
     pub fn imitated(&self, decides: impl Fn(&LinearModel<'p>, &Term<'p>) -> bool + Sync) -> Option<Imitated<'p>> {
         let bends = |term: &Term| term.form.shape.iter().any(|shape| shape.is_smooth());
         if self.left == 0 || !self.now.terms.iter().any(bends) {
@@ -56,14 +58,15 @@ impl<'p> FloatingSearch<'_, 'p> {
             let term = with.terms.iter().find(|term| term.id() == candidate.id())?.clone();
             let linear = with.linear();
             let is_possible = with.terms.iter().zip(&linear.factors).all(|(term, factors)| term.allows(factors));
-            // What shows and could be the remainder of another formula was refused, unless that formula has given way to its
-            // edge.
+            // A reduction within the formula error was rejected before. It counts only if the formula of an added
+            // effect has reached its bound.
             let share = 1.0 - linear.sse / sse;
             let is_remainder = (self.options.practical_share..least_share).contains(&share) && !is_at_edge;
             if !is_possible || is_remainder || !self.is_wrong_beside(&with) || !decides(&with, &term) {
                 return None;
             }
-            // Its score counts beside the shapes that the others have with it: without it they imitate it.
+            // The score uses the nonlinear parameters of the model with this effect; refitted without it, the other
+            // terms would imitate it.
             let mut beside = with.clone();
             beside.terms.retain(|other| other.id() != candidate.id());
             let p_value = significance(&term, self.library, &PartialRegression::of(&beside), self.options);
@@ -77,13 +80,13 @@ impl<'p> FloatingSearch<'_, 'p> {
         imitated.min_by(|a, b| b.is_clear.cmp(&a.is_clear).then(better(a, b)))
     }
 
-    /// A factor of the given model is elsewhere in another one.
+    /// Whether a coefficient of the given model differs from its value in another model.
     pub(crate) fn is_wrong_beside(&self, other: &LinearModel<'p>) -> bool {
         moved(&self.now, other, &self.initial_terms).is_some()
     }
 }
 
-/// A factor in two models.
+/// A coefficient in two models.
 pub struct Moved<'p> {
     pub term: Term<'p>,
     pub factor: &'p str,
@@ -91,11 +94,11 @@ pub struct Moved<'p> {
     pub is: f64,
 }
 
-/// The first factor of these effects that is wrong in one model if it is right in another, by more than the error.
+/// The first coefficient of these effects whose change between two models exceeds the error.
 pub fn moved<'p>(was: &LinearModel<'p>, is: &LinearModel<'p>, effects: &[impl AsRef<str>]) -> Option<Moved<'p>> {
     let (then, now) = (was.linear(), is.linear());
     let both = was.terms.iter().enumerate().filter(|(_, term)| effects.iter().any(|id| id.as_ref() == term.id()));
-    // In another form its factors mean something else.
+    // In another form the coefficients have another meaning.
     let same = |a: &Term, b: &Term| a.id() == b.id() && a.form.linear == b.form.linear;
     let mut both = both.filter_map(|(at, term)| Some((at, term, is.terms.iter().position(|t| same(t, term))?)));
     both.find_map(|(at, term, there)| {

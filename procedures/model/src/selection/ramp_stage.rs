@@ -1,7 +1,7 @@
-//! A torque that is recorded later than its motion, in a run in steps: judged on the ramps, where plateaus say nothing.
+//! A torque delay in a run in steps: judged on the ramps, because steady-state means contain no delay.
 //!
-//! There the instruments are not aligned. A drive tells a velocity that it has filtered, so that a torque looks early with
-//! nothing hidden: by 0 to 30 ms on simulated joints. A torque that is late is no such thing.
+//! The instruments are not aligned there. A drive reports a filtered velocity, so that the torque looks early without
+//! any hidden effect: by 0 to 30 ms on simulated joints. Only a torque that follows the motion counts as delay.
 
 use crate::Options;
 use crate::effect::Effect;
@@ -16,16 +16,16 @@ use crate::selection::forward_step::ScoredCandidate;
 use crate::thresholds::{DELAY_HALF_WIDTHS, DELAY_POWER, DELAY_ROWS};
 
 const DELAY: &str = "signal_delay";
-/// Divides the delay's factor into its time.
+/// The coefficient of the delay divided by the inertia is the delay time.
 const INERTIA: &str = "inertia";
 
-/// The delay that this run shows beyond the model, with the model that has it.
+/// The delay that this run supports, with the model that includes it.
 pub fn late<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
     let Delayed { after, factor, half, by_s } = with_delay(now)?;
     let moving = after.moving.as_ref()?;
     let term = moving.terms.iter().find(|term| term.id() == DELAY)?.clone();
     let without = moving.without(DELAY);
-    // A late torque jumps late where the direction changes, and no change of an acceleration is that.
+    // A delayed friction torque jumps after the direction changes. The jerk column does not represent that jump.
     let asked = |residual: Vec<f64>| -> f64 {
         let column = &term.columns[0];
         residual.iter().zip(column).filter(|(_, jerk)| **jerk != 0.0).map(|(r, _)| r * r).sum()
@@ -39,7 +39,7 @@ pub fn late<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCan
     is_late.then(|| (ScoredCandidate::alone(term, share, p_value), after))
 }
 
-/// The smallest delay that would have been found, where none was and one could have been.
+/// The detection limit of the delay, if none was found and one could have been.
 pub fn silence<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
     let Delayed { after, half, .. } = with_delay(now)?;
     let column = after.moving.as_ref()?.terms.iter().find(|term| term.id() == DELAY)?.columns.first()?.clone();
@@ -47,7 +47,7 @@ pub fn silence<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
     Some(DetectionLimit { effect: DELAY, detectable_rms: (DELAY_HALF_WIDTHS + DELAY_POWER) * half * rms })
 }
 
-/// A model with a delay on its ramps, the delay's factor with half its 95 % interval, and its time.
+/// A model with a delay on its ramps, the coefficient of the delay with half its 95 % interval, and the delay time.
 struct Delayed<'p> {
     after: TwoStageModel<'p>,
     factor: f64,
@@ -68,7 +68,7 @@ fn with_delay<'p>(now: &TwoStageModel<'p>) -> Option<Delayed<'p>> {
     (inertia.value > 0.0 && half.is_finite()).then_some(Delayed { after, factor, half, by_s })
 }
 
-/// Nothing but ramps would show the delay, and the model has an inertia to tell its time by.
+/// Whether only ramps can show the delay and the model has an inertia, which scales the delay to a time.
 fn is_asked(effect: &dyn Effect, now: &TwoStageModel) -> bool {
     let is_in = |id: &str| now.effects.iter().any(|effect| effect == id);
     now.is_apart(effect) && is_in(INERTIA) && !is_in(DELAY)

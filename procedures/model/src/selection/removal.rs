@@ -1,9 +1,9 @@
-//! Effects that came in and were taken back.
+//! Effects that were added and removed again.
 
 use crate::regression::cross_validation::held_out_rms;
 use crate::selection::floating_search::FloatingSearch;
 
-/// An effect that came in and was taken back, with the held-out RMS that the last model would have with it.
+/// An effect that was added and removed again, with the validation RMS that the last model has with it.
 pub struct Withdrawn<'p> {
     pub effect: &'p str,
     pub why: RemovalReason,
@@ -12,17 +12,17 @@ pub struct Withdrawn<'p> {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum RemovalReason {
-    /// The run does not decide its size or shape.
+    /// The run does not determine its size or shape.
     Unidentified,
-    /// It explains only a part of what shows over its own axis.
+    /// It explains only a part of the structure over its own axis.
     PartialExplanation,
-    /// Beside any function of the axis over which structure remains it explains nothing.
+    /// Together with a free function of the axis with structure it explains nothing.
     Spurious,
-    /// It shows no more than a zero that wanders over time.
+    /// A random-walk offset explains as much.
     RandomWalk,
-    /// It would have to be of an impossible size.
+    /// Its coefficients are physically impossible.
     Infeasible,
-    /// Whatever came in since explains the rest of it.
+    /// Later effects explain the same.
     Insignificant,
 }
 
@@ -39,7 +39,7 @@ impl RemovalReason {
     }
 }
 
-/// What was withdrawn and stayed out, for the reasons that are known or those of the search itself.
+/// Effects that were removed and stayed out, with the known reason or the one of the search itself.
 pub fn all<'p>(search: &FloatingSearch<'_, 'p>, reasons: &[(&'p str, RemovalReason)]) -> Vec<Withdrawn<'p>> {
     let of = |effect: &'p str| {
         let with = search.model_with(effect);

@@ -1,4 +1,4 @@
-//! From a model to the one that is left when nothing more can be named, in stages: steady state first, then ramps, then reversals.
+//! Selection of effects in stages: steady state first, then ramps, then reversals.
 
 use crate::inference::intervals::intervals;
 use crate::preprocess::Prepared;
@@ -21,17 +21,17 @@ use crate::selection::ramp_stage::late;
 use crate::selection::removal::{self, RemovalReason};
 use crate::{ModelError, ModelSpec, Options};
 
-/// What the search of the steady-state part ends with.
+/// Result of the search on the steady-state part.
 struct SteadyState<'p> {
     maps: Maps,
     residual: Vec<f64>,
-    /// An effect that may be there as well, in the model that has it.
+    /// An effect that may be present as well, with the model that includes it.
     open: Option<Found<'p>>,
-    /// Why effects were taken back, where the search itself did not ask for it.
+    /// Reasons of removals that the search itself did not cause.
     taken_back: Vec<(&'p str, RemovalReason)>,
 }
 
-/// `on_advance` sees every move when it is made.
+/// `on_advance` gets each step when it is made.
 pub fn search<'p>(
     prepared: &'p Prepared,
     spec: &'p ModelSpec,
@@ -41,7 +41,7 @@ pub fn search<'p>(
 ) -> Result<ModelSelection<'p>, ModelError> {
     let start = TwoStageModel::new(prepared, spec, options)?;
     let library = CandidateSet::new(spec, &prepared.main, prepared.regimes());
-    // Of columns that cannot be right every effect is made up.
+    // Contradicting columns make every effect spurious.
     let most = if prepared.clashes.void.is_empty() { most } else { 0 };
     let offset = (most > 0).then(|| offset_terms::advance(&start, &library, options)).flatten();
     let mut path = Path::new(start, on_advance);
@@ -70,7 +70,7 @@ pub fn search<'p>(
     Ok(ModelSelection { start, advances, withdrawn, now, residual, maps, silences, ties, upheld, open, decided: None })
 }
 
-/// First phase: what shows in steady-state motion, or in all of a trajectory.
+/// First stage: effects that show in steady-state motion, or in the whole of a trajectory.
 fn steady_state<'p>(
     search: &mut FloatingSearch<'_, 'p>,
     path: &mut Path<'_, 'p>,
@@ -126,7 +126,7 @@ fn steady_state<'p>(
     }
 }
 
-/// An added effect that is only a relative of what lies outside the library.
+/// An added effect that only imitates structure from outside the library.
 fn outside_the_library<'p>(
     search: &FloatingSearch<'_, 'p>,
     maps: &Maps,
@@ -139,12 +139,12 @@ fn outside_the_library<'p>(
     whole.or_else(bump)
 }
 
-/// At most so many effects are added.
+/// Whether fewer than `most` effects were added.
 fn may_grow(path: &Path, most: usize) -> bool {
     path.end().effects.len() < path.start.effects.len() + most
 }
 
-/// Second phase: a torque that is recorded late, on the ramps of a run in steps.
+/// Second stage: a torque delay, on the ramps of a run in steps.
 fn ramps<'p>(path: &mut Path<'_, 'p>, most: usize, options: &Options) -> Result<(), ModelError> {
     if may_grow(path, most)
         && let Some((rival, after)) = late(path.end(), options)
@@ -155,7 +155,7 @@ fn ramps<'p>(path: &mut Path<'_, 'p>, most: usize, options: &Options) -> Result<
     Ok(())
 }
 
-/// Third phase: effects with a memory, around the reversals of a run in steps.
+/// Third stage: hysteresis effects, around the reversals of a run in steps.
 fn reversals<'p>(
     path: &mut Path<'_, 'p>,
     most: usize,
@@ -175,7 +175,7 @@ fn reversals<'p>(
     Ok(())
 }
 
-/// An added effect that is taken back where structure remains over an axis.
+/// An added effect to remove because structure remains over an axis.
 fn taken_back<'p>(
     search: &FloatingSearch<'_, 'p>,
     maps: &Maps,
@@ -187,8 +187,7 @@ fn taken_back<'p>(
     half.or_else(|| Some((borrowing(search, maps, axis, options)?, RemovalReason::Spurious)))
 }
 
-/// Of what tied with an effect when it came in, what still does beside everything that came later, and what does only
-/// since then.
+/// Confounded pairs of the final model: ties from the time of addition that still hold, and new ones.
 fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]) -> Vec<(&'p str, &'p str)> {
     let mut open = Vec::new();
     for advance in advances {
@@ -207,18 +206,18 @@ fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]
     open
 }
 
-/// Maps of what a model leaves.
+/// Residual maps of a model.
 fn maps_of(terms: &LinearModel, residual: Vec<f64>, prepared: &Prepared, options: &Options) -> Maps {
     Maps::new(prepared, undersampled_harmonics::without_swift_waves(terms, residual), options)
 }
 
-/// Nothing of what a model leaves shows over any axis.
+/// Whether no structure remains over any axis.
 fn leaves_nothing(terms: &LinearModel, prepared: &Prepared, options: &Options) -> bool {
     let residual = terms.tangent().rest(&terms.response());
     lack_of_fit::structured(&maps_of(terms, residual, prepared, options)).is_none()
 }
 
-/// What another effect imitates, with the figure of the given model that it costs.
+/// The effect that another one imitates, with the biased coefficient of the given model.
 fn imitated(
     id: &str,
     without: &LinearModel,

@@ -7,7 +7,7 @@ fn rub() -> OwnEffect {
     OwnEffect::inline(Kind::Friction, RUB).unwrap()
 }
 
-/// Mistake where `§` stands.
+/// An error at `§`.
 fn check_mistake(marked: &str, words: &str) {
     let fault = OwnEffect::inline(Kind::Friction, &marked.replacen('§', "", 1)).unwrap_err();
     let at = marked.chars().position(|c| c == '§').unwrap();

@@ -31,7 +31,7 @@ impl Effect for FrictionRipple {
     }
 
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        // Beside what the way since a reversal and the speed explain, a wave that was hardly there once is one.
+        // With nuisance columns for reversals and speed, a wave of nearly one period is sufficient.
         if view.constants.followed_hz.is_some() {
             const SEEN: f64 = 0.8;
             let first = (SEEN / view.turns(Signal::Link)).ceil().clamp(1.0, 25.0) as u32;

@@ -37,7 +37,7 @@ impl Effect for Presliding {
         let grid: Vec<Vec<f64>> = crate::effects::log_grid(low, high, 7).into_iter().map(|d| vec![d]).collect();
         let one = |name| Form { name, linear: vec!["tau_p"], shape: vec![reach], grid: grid.clone() };
         let mut forms = vec![one("dahl"), one("stop"), one("maxwell_slip")];
-        // A trajectory that is judged sample by sample decides the fall with speed through the Stribeck effect.
+        // For a trajectory judged sample by sample, the Stribeck effect determines the decrease with speed.
         let apart = !view.chunks.is_empty();
         let range = crate::effects::speed_range(view).filter(|(slow, fast)| apart && *fast > 3.0 * slow);
         if let Some((slow, fast)) = range {

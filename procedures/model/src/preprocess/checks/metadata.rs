@@ -1,11 +1,11 @@
-//! Facts that are missing or contradict the columns without making what is computed wrong by themselves.
+//! Test conditions that are missing or contradict the columns, without making the results wrong.
 
 use jointbench_instrument::{Kind, Motion, RunTable};
 
-/// A rate this many times off the time column is no rounding.
+/// A ratio beyond this between stated and actual sample rate is no rounding.
 const OTHER_RATE: f64 = 1.2;
 
-/// Each in a sentence.
+/// The doubts about the test conditions, each in a sentence.
 pub fn doubts(run: &RunTable) -> Vec<String> {
     [rate(run), gear(run), segments(run), crate::preprocess::checks::sensor_faults::spikes(run)]
         .into_iter()
@@ -24,7 +24,8 @@ fn rate(run: &RunTable) -> Option<String> {
     })
 }
 
-/// A joint without a gear has none to tell of, and one with a gear that nobody told of looks the same.
+/// Warns about a missing gear ratio. A joint without a gear cannot be distinguished from a joint whose gear ratio is
+/// missing.
 fn gear(run: &RunTable) -> Option<String> {
     let meta = run.meta();
     let asked = run.kind() == Kind::Friction && meta.motion != Motion::Linear && meta.gear_ratio.is_none();

@@ -1,4 +1,4 @@
-//! Columns and facts that contradict each other: found before anything is fitted.
+//! Data checks before the fit: columns and test conditions that contradict each other.
 
 pub(crate) mod brake_range;
 pub(crate) mod metadata;

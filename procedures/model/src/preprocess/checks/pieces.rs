@@ -1,14 +1,14 @@
-//! Pieces of a run over which columns are compared.
+//! Blocks of a run over which columns are compared.
 
 use std::ops::Range;
 
-/// Ways are taken over pieces of this length: short enough for a reversal, long enough for coarse encoders.
+/// Length of a block [s]: short enough for a reversal, long enough for coarse encoders.
 pub const PIECE_S: f64 = 0.2;
 
-/// A piece of the run that does not reach over the end of a recording, and the time that passes in it [s].
+/// A block that does not cross the end of a recording, and its duration [s].
 pub type Piece = (Range<usize>, f64);
 
-/// All of them, in the order of time.
+/// All blocks in the order of time.
 pub fn pieces(time_s: &[f64]) -> Vec<Piece> {
     let step_s = crate::preprocess::sample_s(time_s);
     let n = ((PIECE_S / step_s) as usize).max(1);

@@ -1,28 +1,30 @@
-//! What a sensor tells that cannot be: a value that stays while all else goes on, a range that ends, samples that stand alone.
+//! Sensor faults: a constant value during motion, saturation, and single outliers.
 
 use crate::words::figure;
 use jointbench_instrument::units::unit_of;
 use jointbench_instrument::{Kind, RunTable};
 use std::ops::Range;
 
-/// Where fewer neighbours than this differ, the column is too coarse for its values to tell.
+/// A column is too coarse for these checks if fewer than this share of neighbouring samples differ.
 const FINE: f64 = 0.9;
-/// A value that is the same for so long is stuck, where the run goes on.
+/// Shortest time and number of samples with one value during motion that indicate a stuck sensor.
 const STUCK_S: f64 = 0.3;
 const STUCK_SAMPLES: usize = 40;
-/// Samples in a row at the end of the range, and their share of the run.
+/// Number of consecutive samples at the end of the range, and their share of the run, that indicate saturation.
 const CLIPPED_SAMPLES: usize = 4;
 const CLIPPED_SHARE: f64 = 0.003;
-/// A sample that stands alone lies so many of the usual changes, and this share of the column's range, off both neighbours,
-/// which agree to a fifth of that.
+/// A single outlier differs from both neighbours by this multiple of the usual change and by this share of the
+/// column's range. Its neighbours agree to a fifth of that.
 const ALONE: f64 = 25.0;
 const ALONE_RANGE: f64 = 0.15;
 const AGREE: f64 = 0.2;
-/// Where the speed before and after so many samples differs by this share of the largest, a drive pushes: its pulse is no fault.
+/// A pulse is no fault if the speed before and after it changes by more than this share of the largest speed: the
+/// drive accelerates.
 const BESIDE: usize = 5;
 const PUSHED: f64 = 0.02;
 
-/// The columns of measured torque and current, in which noise never rests, and the angle that says whether the run goes on.
+/// Columns of measured torque and current, which always contain noise, and the angle that shows whether the joint
+/// moves.
 fn columns(kind: Kind) -> (&'static [&'static str], &'static str) {
     match kind {
         Kind::Friction => (&["motor_current_a", "link_torque_nm"], "motor_position_rad"),
@@ -32,7 +34,7 @@ fn columns(kind: Kind) -> (&'static [&'static str], &'static str) {
     }
 }
 
-/// Columns whose sensor stuck or reached the end of its range, each in a sentence.
+/// Columns with a stuck or saturated sensor, each in a sentence.
 pub fn failed(run: &RunTable) -> Vec<String> {
     let (names, angle) = columns(run.kind());
     let found = names.iter().filter_map(|name| {
@@ -48,7 +50,7 @@ pub fn failed(run: &RunTable) -> Vec<String> {
     found.collect()
 }
 
-/// Where neighbours are equal.
+/// Ranges of equal neighbouring values.
 fn stretches_of_one_value(values: &[f64]) -> Vec<Range<usize>> {
     let mut start = 0;
     let ends = values.chunk_by(|a, b| a == b).map(|part| {
@@ -88,12 +90,12 @@ fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], ang
     })
 }
 
-/// Samples that stand alone, in a sentence.
+/// Single outliers, in a sentence.
 pub fn spikes(run: &RunTable) -> Option<String> {
     let (torques, angle) = columns(run.kind());
     let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
     let way = |i: usize, j: usize| angle[j.min(angle.len() - 1)] - angle[i];
-    // Where a drive pushes.
+    // Whether the drive accelerates at this sample.
     let is_pushed = |i: usize, fastest: f64| {
         let before = way((i - 1).saturating_sub(BESIDE), i - 1);
         (way(i + 1, i + 1 + BESIDE) - before).abs() > PUSHED * fastest
@@ -126,7 +128,7 @@ pub fn spikes(run: &RunTable) -> Option<String> {
     })
 }
 
-/// Between which nearly all values lie.
+/// The range of all values but 1 % at each end.
 fn middle_of(mut values: Vec<f64>) -> (f64, f64) {
     let (low, high) = (values.len() / 100, values.len() - 1 - values.len() / 100);
     let low = *values.select_nth_unstable_by(low, f64::total_cmp).1;

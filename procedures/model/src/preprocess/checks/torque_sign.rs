@@ -1,22 +1,23 @@
-//! A load that the motor does not carry: one of the two torques has another unit or sign.
+//! Contradiction between motor and link torque: one of them has a wrong unit or sign.
 
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::checks::pieces;
 use jointbench_instrument::RunTable;
 use std::ops::Range;
 
-/// Torques of motor and link differ by the gear's efficiency too, and by friction that grows with the load.
+/// Motor and link torque also differ by the gear's efficiency and by load-dependent friction, up to this ratio.
 const TORQUE_CLASH: f64 = 2.0;
-/// Share of the variance in common, below which the torques do not tell the same at all.
+/// Least common share of the variance to compare the two torques.
 const SAME: f64 = 0.9;
-/// Where a slip of the unit or the sign shows less is enough: much of a motor's torque is friction of which the link knows nothing.
+/// Least common share for a typical unit or sign error: much of the motor torque is friction that the link torque
+/// does not contain.
 const SAME_TORQUE: f64 = 0.7;
-/// Without one what is in common is a load: this share of the torque that varies while the speed changes by less than
-/// [`STEADY`] of itself. What ramps and reversals have in common is inertia on both sides of the sensor.
+/// Otherwise the common part has to be a load: at least this share of the torque varies while the speed changes by
+/// less than [`STEADY`] of itself. Ramps and reversals share inertia on both sides of the sensor.
 const LOADED: f64 = 0.25;
 const STEADY: f64 = 0.5;
 
-/// What the load asks of the motor beside friction and inertia should be the link's torque over the gear ratio.
+/// The motor torque without friction and inertia has to match the link torque divided by the gear ratio.
 pub fn clash(run: &RunTable, pieces: &[pieces::Piece]) -> Option<String> {
     let column = |name: &str| run.column(name);
     let (position, current) = (column("motor_position_rad")?, column("motor_current_a")?);
@@ -39,11 +40,12 @@ pub fn clash(run: &RunTable, pieces: &[pieces::Piece]) -> Option<String> {
     let all: Vec<Piece> = ranges.into_iter().enumerate().map(piece).collect();
     let (torque, link) = beside_motion(&all);
     let (tt, tl, ll) = (dot(&torque, &torque), dot(&torque, &link), dot(&link, &link));
-    // Neither side's noise makes it larger.
+    // This ratio is not biased by the noise of either side.
     let times = (tt / ll).sqrt().copysign(tl);
     let near = |unit: f64| (1.0 / TORQUE_CLASH..=TORQUE_CLASH).contains(&(times.abs() / unit));
     let agree = times > 0.0 && near(1.0);
-    // At rest a motor pushes against its own friction, and a sensor that bears no load follows loosely by some hundredth of it.
+    // At rest a motor works against its own friction, and an unloaded sensor follows that loosely with about a
+    // hundredth of it.
     let slips = [1e3, 1e-3].into_iter().any(near) || times < 0.0 && near(1.0);
     let common = tl * tl / (tt * ll);
     let tells = !agree && if slips { common > SAME_TORQUE } else { common > SAME && is_loaded(all) };
@@ -55,7 +57,7 @@ pub fn clash(run: &RunTable, pieces: &[pieces::Piece]) -> Option<String> {
     })
 }
 
-/// Means over a piece of the run, and by how much the velocity changes around it.
+/// Means over a block, and the change of velocity around it.
 struct Piece {
     velocity: f64,
     change: f64,
@@ -63,14 +65,14 @@ struct Piece {
     link_nm: f64,
 }
 
-/// What friction and inertia leave of both torques.
+/// Both torques without the parts that friction and inertia explain.
 fn beside_motion(pieces: &[Piece]) -> (Vec<f64>, Vec<f64>) {
     let each = |value: fn(&Piece) -> f64| pieces.iter().map(value).collect::<Vec<f64>>();
     let motion = Basis::of(&[each(|_| 1.0), each(|p| p.velocity.signum()), each(|p| p.change), each(|p| p.velocity)]);
     (motion.rest(&each(|p| p.motor_nm)), motion.rest(&each(|p| p.link_nm)))
 }
 
-/// Whether the motor's torque varies beside its motion where that is steady.
+/// Whether the motor torque varies at steady speed.
 fn is_loaded(mut pieces: Vec<Piece>) -> bool {
     pieces.retain(|p| p.change.abs() < STEADY * p.velocity.abs());
     let (beside, _) = beside_motion(&pieces);
@@ -134,7 +136,8 @@ mod tests {
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
         let (mut q, mut v) = (0.0, 0.0);
         for i in 0..20_000 {
-            // To and fro in steps of 4 s, faster each time; the drive is there within a tenth of a second.
+            // Back and forth in steps of 4 s, faster each time; the drive reaches its speed within a tenth of a
+            // second.
             let step = i / 400;
             let to = f64::from(1 + step / 2) * if step % 2 == 0 { 2.0 } else { -2.0 };
             let speeds_up = (to - v) / 0.1;

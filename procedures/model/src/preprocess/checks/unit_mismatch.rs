@@ -1,5 +1,5 @@
-//! Columns that tell the same motion or torque in different units or signs: what is fitted to them is wrong, however well it
-//! fits.
+//! Contradictions between columns of the same motion or torque, in unit or sign. A fit to such columns is wrong, even
+//! with a small residual.
 
 use crate::preprocess::checks::pieces::{PIECE_S, Piece, pieces};
 use crate::preprocess::held_side::is_held;
@@ -7,25 +7,26 @@ use jointbench_instrument::{Kind, Motion, RunTable};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Columns that differ by less may be filtered, late, or have a joint that winds up between them.
+/// A smaller ratio between columns can come from filtering, delay or torsion of the joint.
 const CLASH: f64 = 1.2;
-/// At speed the angles of motor and link go the same ways but for this share of them, where the link turns by so much [rad].
+/// Largest relative difference of motor and link travel at speed, and the least travel of the link for this check
+/// [rad].
 const GEAR_CLASH: f64 = 0.01;
 const GEAR_WAY: f64 = 1.0;
-/// Share of the variance in common, below which one of the angles is too coarse to tell.
+/// Least common share of the variance; below it one of the angles is too coarse.
 const SAME_ANGLE: f64 = 0.999;
-/// An angle moves by so much, rad, or it may have been held fast.
+/// Least motion of an angle [rad]; with less motion it may have been clamped.
 const WAY: f64 = 0.1;
-/// Share of the variance in common, below which the columns do not tell the same at all.
+/// Least common share of the variance to compare two columns.
 const SAME: f64 = 0.9;
 
-/// Share of the work that is done against the motion, from which on the motion is not the motor's.
+/// Share of the work done against the motion from which on the sign is wrong.
 const DRIVEN: f64 = 0.5;
 
-/// What contradicts, each in a sentence.
+/// Contradictions, each in a sentence.
 #[derive(Debug, Clone, Default)]
 pub struct DataErrors {
-    /// Whatever is fitted to these columns means nothing: no effect is named.
+    /// Fatal contradictions: every fit to these columns is meaningless, so that no effect is named.
     pub void: Vec<String>,
     pub others: Vec<String>,
 }
@@ -88,7 +89,8 @@ pub fn clashes(run: &RunTable) -> DataErrors {
     }
 }
 
-/// Without a load that was measured nothing turns a motor both ways: what brakes it in both has another sign.
+/// Without a measured load nothing drives the motor in both directions: a torque that brakes it in both has the wrong
+/// sign.
 fn driven(run: &RunTable, pieces: &[Piece]) -> Option<String> {
     let is_alone = run.kind() == Kind::Friction && run.column("link_torque_nm").is_none();
     let column = |name: &str| run.column(name).filter(|_| is_alone);
@@ -107,7 +109,7 @@ fn driven(run: &RunTable, pieces: &[Piece]) -> Option<String> {
     })
 }
 
-/// `factor · one` should move as `other` does.
+/// A contradiction unless `factor · one` moves like `other`.
 fn clash(run: &RunTable, pieces: &[Piece], one: &str, other: &str, factor: f64) -> Option<Clash> {
     let (a, b) = (run.column(one)?, run.column(other)?);
     let is_speed = one.ends_with("_rad_s");
@@ -131,7 +133,7 @@ fn clash(run: &RunTable, pieces: &[Piece], one: &str, other: &str, factor: f64) 
     Some(Clash::void(said))
 }
 
-/// How far `factor · one` and `other` go in each piece of a run.
+/// Travel of `factor · one` and of `other` in each block of a run.
 fn ways(pieces: &[Piece], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> Vec<(f64, f64)> {
     pieces
         .iter()
@@ -149,13 +151,13 @@ fn ways(pieces: &[Piece], a: &[f64], b: &[f64], is_speed: bool, factor: f64) -> 
         .collect()
 }
 
-/// A gear ratio that is a tooth or two beside the right one: what is left of the load with it looks like an effect.
+/// A gear ratio that is wrong by a tooth or two: the wrong share of the load looks like an effect.
 fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
     let fast = 0.5 * ways.iter().fold(0.0f64, |most, w| most.max(w.1.abs()));
-    // A joint winds up where it turns back.
+    // Blocks at low speed are excluded, because the joint twists at reversals.
     let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().filter(|w| w.1.abs() >= fast).map(f).sum::<f64>();
     let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
-    // The motor's angle is fine beside the link's: its noise makes nothing larger.
+    // The motor angle is much finer than the link angle, so that its noise does not bias this ratio.
     let found = ratio * bb / ab;
     let turned = sum(|w| w.1.abs()) / ratio.abs();
     let tells = ab * ab > SAME_ANGLE * aa * bb && turned > GEAR_WAY && (found / ratio - 1.0).abs() > GEAR_CLASH;
@@ -166,7 +168,7 @@ fn other_gear(ways: &[(f64, f64)], ratio: f64) -> Option<String> {
     })
 }
 
-/// An angle that never changes while the other one moves on.
+/// An angle that never changes while the other one moves.
 fn rests(one: &str, a: &[f64], other: &str, b: &[f64], factor: f64) -> Option<String> {
     let (low, high) = b.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let moved = (high - low) / factor;
@@ -175,14 +177,14 @@ fn rests(one: &str, a: &[f64], other: &str, b: &[f64], factor: f64) -> Option<St
     })
 }
 
-/// How many times the second the first is, where both move alike.
+/// Ratio of the first to the second travel, if both are correlated.
 fn alike(ways: &[(f64, f64)]) -> Option<f64> {
     let sum = |f: fn(&(f64, f64)) -> f64| ways.iter().map(f).sum::<f64>();
     let (aa, ab, bb) = (sum(|w| w.0 * w.0), sum(|w| w.0 * w.1), sum(|w| w.1 * w.1));
     (ab * ab > SAME * aa * bb).then_some(aa / ab)
 }
 
-/// The same of most pieces: an angle within a turn leaps in the others.
+/// The same by the median over the blocks: an angle within one turn jumps in the others.
 fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
     const MOST: f64 = 0.6;
     const NEAR: f64 = 0.1;
@@ -192,7 +194,7 @@ fn mostly(ways: &[(f64, f64)]) -> Option<f64> {
     (near as f64 > MOST * ways.len() as f64).then_some(middle)
 }
 
-/// An encoder that turns by more than a turn between two samples: nobody knows where it was.
+/// An encoder that moves by more than a turn between two samples: its position is ambiguous.
 fn too_fast(run: &RunTable) -> Option<String> {
     let angle = run.column("reference_position_rad").filter(|_| run.kind() == Kind::Encoder)?;
     let step = crate::preprocess::median(angle.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
@@ -204,18 +206,18 @@ fn too_fast(run: &RunTable) -> Option<String> {
     })
 }
 
-/// A load that is the same in every sample, and not zero: no sensor tells that.
+/// A load that is constant and not zero: a connected sensor has noise.
 fn dead_load(run: &RunTable) -> Option<String> {
     let load = run.column("link_torque_nm").filter(|_| run.kind() == Kind::Friction)?;
     let is_dependent = load[0] != 0.0 && load.iter().all(|v| *v == load[0]);
     is_dependent.then(|| format!("link_torque_nm is {} Nm in every sample: the sensor was not connected", load[0]))
 }
 
-/// A current of which neither a sample nor a piece of the run tells anything of the next: an open input. Where it holds still
-/// and only its noise is left, it has a mean.
+/// A current without correlation between neighbouring samples and between neighbouring blocks: an open input. A
+/// constant current with noise has a mean and does not count.
 fn noise(run: &RunTable, pieces: &[Piece]) -> Option<String> {
     const LEAST_PIECES: usize = 40;
-    /// Noise comes this near to the noise before it, in standard deviations.
+    /// Correlation of white noise by chance, in standard deviations.
     const LIKE_CHANCE: f64 = 3.0;
     let column = match run.kind() {
         Kind::Friction => "motor_current_a",

@@ -1,8 +1,9 @@
-//! Rows into blocks, folds and replicate pairs.
+//! Design of the data: rows to blocks, folds and replicate pairs.
 
 use std::collections::{BTreeSet, HashMap};
 
-/// Cuts groups of consecutive rows into blocks of about equal length, so that a slow trend cannot hide in one of them.
+/// Divides groups of consecutive rows into blocks of about equal length, so that a slow trend is not contained in one
+/// block.
 ///
 /// `group` numbers stretches of consecutive rows. Returns the block of every row and the number of blocks.
 pub fn blocks(group: &[usize], least: usize) -> (Vec<usize>, usize) {
@@ -27,7 +28,7 @@ pub fn blocks(group: &[usize], least: usize) -> (Vec<usize>, usize) {
     (block, next)
 }
 
-/// Numbers values that lie close together alike: a gap wider than `tolerance(value)` starts a new cluster.
+/// Clusters close values: a gap wider than `tolerance(value)` starts a new cluster.
 pub fn clusters(values: &[f64], tolerance: impl Fn(f64) -> f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
@@ -42,13 +43,13 @@ pub fn clusters(values: &[f64], tolerance: impl Fn(f64) -> f64) -> Vec<usize> {
     cluster
 }
 
-/// Fewer conditions than these have no neighbours that would predict them.
+/// With fewer conditions than these a condition is not predicted by its neighbours.
 const NEIGHBOURS: usize = 12;
 
-/// Folds from conditions: every n-th condition together, so that each fold is predicted by its neighbours.
+/// Folds from conditions: every n-th condition together, so that neighbouring conditions predict each fold.
 ///
-/// Fewer conditions than a dozen have no neighbours, and a first magnetisation or warm-up is there only once: then every
-/// n-th stretch of a block is held out, its rest kept.
+/// With fewer conditions than a dozen this is not possible, and a first magnetisation or warm-up occurs only once.
+/// Then every n-th stretch of a block is left out, and the rest of the block is kept.
 pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, usize) {
     let conditions = condition.iter().max().map_or(0, |c| c + 1);
     if conditions >= NEIGHBOURS {
@@ -61,16 +62,17 @@ pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, 
     ((0..block.len()).map(|i| i / stretch % n).collect(), n)
 }
 
-/// What is held out as one: a condition with its repeats, or where these are few, each stretch of consecutive rows (`group`) of
-/// them, which is then predicted by its repeats. Half a stretch would be predicted by what is that stretch's own.
+/// The unit that is left out together: a condition with its repeats. With few conditions it is a stretch of
+/// consecutive rows (`group`), which its repeats predict. The rest of a stretch would predict a part of it by the
+/// individual error of that stretch.
 pub fn held_out<'a>(condition: &'a [usize], group: &'a [usize]) -> &'a [usize] {
     let count = |of: &[usize]| of.iter().max().map_or(0, |c| c + 1);
     let is_few = count(condition) < NEIGHBOURS && count(group) >= NEIGHBOURS.max(2 * count(condition));
     if is_few { group } else { condition }
 }
 
-/// Stretches of consecutive rows (`group`) that alone reach beyond everything that the other folds hold can be predicted from
-/// nothing: they are held out in parts.
+/// Distributes stretches (`group`) whose values exceed the range of all other folds over several folds, because other
+/// stretches cannot predict them.
 pub fn share_edges(fold: &mut [usize], folds: usize, group: &[usize], values: &[f64]) {
     const BEYOND: f64 = 0.02;
     let range = |without: Option<usize>| {
@@ -90,13 +92,13 @@ pub fn share_edges(fold: &mut [usize], folds: usize, group: &[usize], values: &[
     rows.into_iter().enumerate().for_each(|(i, row)| fold[row] = i / stretch % folds);
 }
 
-/// Pairs of one row at most: a run of hundreds of repeats says no more by pairing each with each.
+/// Largest number of pairs for each row: more pairs of the same repeats add no information.
 const MOST_TWINS: usize = 8;
 
-/// Pairs of rows of the same condition in different repeats whose phases are `apart` rows from each other.
+/// Pairs of rows of the same condition in different repeats whose phases differ by `apart` rows.
 ///
-/// Neighbours instead of the very same phase where rows are chunks: what changes from chunk to chunk, such as the
-/// chatter of a control loop that happens to start alike, is nothing that a model of the joint could explain.
+/// For chunks, neighbouring phases are paired instead of equal ones. A change from chunk to chunk, such as the ripple
+/// of a control loop that starts alike in every repeat, is no repeatable effect of the joint.
 pub fn replicate_pairs(condition: &[usize], phase: &[usize], repeat: &[i64], apart: usize) -> Vec<(usize, usize)> {
     let mut seen: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
     for row in 0..condition.len() {

@@ -29,11 +29,12 @@ pub fn prepare(run: &RunTable, options: &Options, bristles: Option<&Bristles>) -
     let samples = read(run, options)?;
     let plateaus = steady_state::find(&samples, run.meta().gear_ratio.unwrap_or(1.0), options);
     let settled: usize = plateaus.iter().map(|p| p.len()).sum();
-    // A few steady moments of a trajectory are not a measurement in steps; but a long part without any motion beside
-    // many steps does not take them away.
+    // A few steady moments of a trajectory are no measurement in steps. A long rest in addition to many steps still
+    // is one.
     let in_steps = settled * 2 > run.len()
         || (samples.segment.is_some() && plateaus.len() >= 12 && plateaus.len() * 2 > samples.legs().len());
-    // Where contacts are known to bend, ramps and reversals say as much as settled motion, and more of it.
+    // If presliding is known, ramps and reversals are as informative as steady-state motion, and there are more of
+    // them.
     let bends = run.meta().baseline.iter().any(|effect| effect == BENDS);
     match options.residual {
         None if !in_steps || bends => trajectory::prepare(run, options, bristles),
@@ -127,8 +128,8 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
     })
 }
 
-/// The motor torque as load, direction, speed and acceleration explain it: the measured one without its own noise, which
-/// would be found again in any power of itself, and without what the cube of itself adds when the iron saturates.
+/// The motor torque as explained by load, direction, speed and acceleration. It excludes the noise of the measured
+/// torque, which would correlate with any power of itself, and the cubic part due to magnetic saturation.
 fn drive(signals: &Signals, torque_nm: &[f64]) -> Vec<f64> {
     let of = |signal| signals.find(signal).map(<[f64]>::to_vec);
     let inputs = [Signal::Direction, Signal::Velocity, Signal::Load, Signal::Acceleration];

@@ -1,8 +1,8 @@
-//! Whether what looks like a wave over an angle is one.
+//! Rejects aliased periodic candidates: signals that only look like a wave over an angle.
 //!
-//! Whatever repeats with time at one speed is a wave over the angle there, with the number that fits: the counts of an
-//! encoder that beat with the samples, and how a drive settles behind every reversal. A wave over the angle shows at
-//! every speed at which it passes slowly enough, and it is in the samples as well as in their means.
+//! A signal that repeats with time looks at one speed like a wave over the angle with a suitable order. Examples are
+//! encoder counts that beat with the sampling, and the settling of a drive after each reversal. A real wave over the
+//! angle shows at every speed at which it passes slowly enough. It shows in the samples as well as in their means.
 
 use crate::linear::basis::{Basis, dot};
 use crate::preprocess::Problem;
@@ -16,16 +16,16 @@ use crate::thresholds::{
 use crate::view::View;
 use std::ops::Range;
 
-/// The samples of more rows than these say no more.
+/// More sample rows than these add no information.
 const MOST_ROWS: usize = 4_000;
 
-/// The least share of the squared error that an effect must take for its waves' sake.
+/// Least partial R² of a periodic effect whose order was searched among many.
 pub fn least_share(term: &Term) -> f64 {
     let sought = term.effect.wave().is_some() && term.form.grid.len() >= MANY_ORDERS as usize;
     if sought { PERIODIC_SHARE } else { 0.0 }
 }
 
-/// The wave is not in the data where it has to be.
+/// Whether the wave is missing in data where it has to be present.
 pub fn is_none(term: &Term, now: &LinearModel, ground: &PartialRegression) -> bool {
     if term.effect.wave().is_none() || !now.problem.settled || term.columns.is_empty() {
         return false;
@@ -34,11 +34,12 @@ pub fn is_none(term: &Term, now: &LinearModel, ground: &PartialRegression) -> bo
     part.shows_at_one_speed(now.problem) || part.is_beat(term, now.problem)
 }
 
-/// A wave beside the model, of the size that explains most.
+/// A candidate wave, orthogonal to the model, with its least-squares coefficients.
 struct Part {
     stretches: Vec<Range<usize>>,
     factors: Vec<f64>,
-    /// What it takes of the residual in each stretch, and what it would take where it is there as it should be.
+    /// Error reduction in each stretch, and the reduction that is expected if the wave is present with the same
+    /// amplitude.
     found: Vec<f64>,
     asked: Vec<f64>,
 }
@@ -55,7 +56,7 @@ impl Part {
         Self { stretches, factors, found, asked }
     }
 
-    /// Nothing of it shows at any other speed than the one at which it explains most, though it would.
+    /// Whether the wave shows only at the speed at which it explains most, although other speeds would show it too.
     fn shows_at_one_speed(&self, problem: &Problem) -> bool {
         let velocity = problem.view.get(Signal::Velocity);
         let mean = |rows: &Range<usize>| velocity[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
@@ -74,7 +75,8 @@ impl Part {
         is_missing(&found, &asked)
     }
 
-    /// It shows where means follow it too slowly to tell, and the samples behind these know nothing of it.
+    /// Whether the wave shows only where the means follow it too slowly, and the samples behind those means do not
+    /// contain it.
     fn is_beat(&self, term: &Term, problem: &Problem) -> bool {
         let view = &problem.view;
         let Some(angle) = term.effect.wave().and_then(|angle| view.samples.find(angle)) else { return false };
@@ -100,7 +102,7 @@ impl Part {
         is_missing(&found, &asked)
     }
 
-    /// What it takes of the samples of a stretch, as a share of what it should.
+    /// Found amplitude in the samples of a stretch, relative to the expected amplitude.
     fn share_of_samples(&self, term: &Term, problem: &Problem, rows: &Range<usize>) -> f64 {
         let view = &problem.view;
         let range = view.chunks[rows.start].start..view.chunks[rows.end - 1].end;
@@ -118,7 +120,7 @@ impl Part {
     }
 }
 
-/// Clearly less than half of what is asked was found.
+/// Whether the found share is significantly less than `ALIAS_SHARE` of the expected one.
 fn is_missing(found: &[f64], asked: &[f64]) -> bool {
     let (sum, all) = (found.iter().sum::<f64>(), asked.iter().sum::<f64>());
     if all <= 0.0 {

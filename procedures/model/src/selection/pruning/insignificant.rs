@@ -1,4 +1,4 @@
-//! An added effect that brings too little on held-out data.
+//! Removes an added effect that hardly reduces the validation error.
 
 use crate::regression::cross_validation::held_out;
 use crate::regression::linear_model::Term;
@@ -6,8 +6,9 @@ use crate::selection::floating_search::FloatingSearch;
 use rayon::prelude::*;
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// The added effect that brings least on what was held out, where that is not worth a name: whatever came in since
-    /// explains the rest of it. Asked when nothing more can be added, because on the way two effects may mask each other.
+    /// The added effect with the smallest reduction of the validation error, if that is too small because later
+    /// effects explain the same. This rule runs after the last addition, because two effects may mask each other
+    /// before.
     pub(crate) fn idle(&self) -> Option<&'p str> {
         let present = held_out(&self.now).iter().sum::<f64>();
         let on_trial: Vec<&Term<'p>> = self.on_trial().collect();

@@ -1,4 +1,4 @@
-//! An added effect that drives a given one below zero.
+//! Removes an added effect that makes a coefficient of a given effect negative.
 
 use crate::effect::Regime;
 use crate::regression::cross_validation::held_out;
@@ -8,8 +8,8 @@ use jointbench_instrument::Kind;
 use rayon::prelude::*;
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// The added effect of friction that drives a given one below zero in the shapes in which all of them ended, as two
-    /// that cancel each other do; of several that without which the model is best.
+    /// The added friction effect that makes a given coefficient negative at the final nonlinear parameters: the two
+    /// cancel each other. If several do, the one without which the validation error is smallest.
     pub(crate) fn mutually_cancelling(&self) -> Option<&'p str> {
         if self.library.kind != Kind::Friction {
             return None;

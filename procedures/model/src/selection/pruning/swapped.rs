@@ -1,4 +1,4 @@
-//! An added effect gives way to another one with which the model is clearly better.
+//! Replaces an added effect by another one with which the model is clearly better.
 
 use crate::regression::cross_validation::held_out;
 use crate::regression::linear_model::Term;
@@ -7,8 +7,8 @@ use crate::selection::floating_search::{FloatingSearch, Found};
 use rayon::prelude::*;
 
 impl<'p> FloatingSearch<'_, 'p> {
-    /// An added effect in whose place another one makes the model clearly better, with that one: an effect that came first
-    /// because it looks a little like two that are missing. No effect gives way to one that this run cannot tell it from.
+    /// An added effect that another one replaces with a clearly smaller validation error, and the replacement. Such
+    /// an effect entered first because it resembles two missing ones. Confounded effects do not replace each other.
     pub(crate) fn swapped(&self) -> Option<(&'p str, Found<'p>)> {
         let losses = held_out(&self.now);
         let present: f64 = losses.iter().sum();
