@@ -45,8 +45,8 @@ fn only_wanders(wander: &Ar1Offset, residual: &[f64], prepared: &Prepared, optio
     structured(&beside).is_none() && !beside.stand_out() && !wander.is_heavy_tailed() && !wander.leaps(options)
 }
 
-/// Whether a part of an axis is significant within legs, with a separate offset for each. If the blocks already are
-/// the legs, there are too few to compare.
+/// Whether a part of an axis is significant within legs, with a separate offset for each. The test only applies with
+/// too few legs to estimate their scatter; otherwise the result is true.
 fn stands_out_within_legs(residual: &[f64], prepared: &Prepared, options: &Options) -> bool {
     let problem = &prepared.main;
     let leg = legs(problem);

@@ -111,7 +111,8 @@ fn clipped(residual: &[f64], weight: &[f64]) -> Vec<f64> {
     weighted.into_iter().map(|e| e.clamp(-most, most)).collect()
 }
 
-/// Cross-validated error reduction by the strongest spectral line in time, in absolute terms and in standard errors.
+/// Cross-validated error reduction by the strongest spectral line in time, as a share of the squared residual and in
+/// standard errors.
 fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
     let blocks = ranges(&problem.block);
     let whole_s = values.len() as f64 * row_s;

@@ -1,16 +1,17 @@
-//! One request to one instrument: a reply that was missed or garbled is asked for once more, on a link made sure of.
+//! One request to one instrument: after a missing or corrupted reply the link is recovered and the request repeated
+//! once.
 
 use jointbench_instrument::Fault;
 use jointbench_instrument::roles::Instrument;
 
-/// What became of a request that did not go well.
+/// A failed or repeated request.
 pub(super) struct Trouble {
     pub fault: Fault,
     pub recovered: bool,
 }
 
-/// Asks; on a retryable fault recovers the link and asks once more. Trouble is told, recovered or not, and
-/// that another instrument answers.
+/// Sends a request. After a retryable fault it recovers the link and repeats the request once. Every fault is
+/// reported, recovered or not, and so is another instrument that answers.
 pub(super) fn ask<I: Instrument + ?Sized, T>(
     instrument: &mut I,
     mut request: impl FnMut(&mut I) -> Result<T, Fault>,

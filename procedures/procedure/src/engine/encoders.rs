@@ -1,4 +1,4 @@
-//! What an encoder bench has beside its motor: two counters to read, and a stage to move.
+//! Additional instruments of an encoder bench: two counters and a stage.
 
 use super::ask::ask;
 use super::ending::Ending;
@@ -14,14 +14,14 @@ use jointbench_instrument::roles::{AlignmentStage, Pose, PositionCounter};
 use jointbench_instrument::{Fault, FaultKind, Kind};
 use std::sync::Arc;
 
-/// An accepted move is not under way yet (gcs2-hexapod, timing).
+/// Time until an accepted move starts (gcs2-hexapod, timing).
 const SET_OFF_S: f64 = 0.2;
-/// The stage is asked this often whether it has arrived.
+/// Polling period of the stage during a move.
 const ARRIVED_EVERY_S: f64 = 0.05;
-/// Longest move, and longest search for the axes' zeros.
+/// Longest move, and longest search for the zeros of the axes.
 const LONGEST_MOVE_S: f64 = 60.0;
 
-/// How well the stage stood where it was told to, whenever it was read.
+/// Deviation of the stage from its commanded pose over all readings.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Stood {
     readings: u32,
@@ -43,7 +43,7 @@ impl Stood {
         }
     }
 
-    /// For people.
+    /// Text for users.
     pub fn told(self) -> String {
         format!(
             "Stage position after settling ({} readings, time uncertainty ±{:.2} ms): within {:.2} µm and {:.1} µrad \
@@ -57,7 +57,7 @@ impl Stood {
 }
 
 impl Session<'_> {
-    /// Both encoders, in a run of encoders.
+    /// Reads both encoders in a run of encoders.
     pub(super) fn feel_encoders(&mut self) -> Result<Option<Encoders>, Ending> {
         if self.plan.kind != Kind::Encoder || self.lost.sensor {
             return Ok(None);
@@ -97,7 +97,7 @@ impl Session<'_> {
         ask(stage.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map_err(Ending::OtherFault)
     }
 
-    /// Before anything is armed: who is there, and a stage that knows its zeros where the plan needs it.
+    /// Before arming: identity of the encoders, and a stage that knows its zeros if the plan needs it.
     pub(super) fn meet_encoders(&mut self) -> Result<(), Ending> {
         if self.plan.kind == Kind::Encoder {
             for under_test in [false, true] {
@@ -130,13 +130,13 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Takes a pose while the shaft goes on as it is told, and waits until it is settled.
+    /// Moves to a pose while the shaft follows its set-points, and waits until the stage is settled.
     pub(super) fn place(&mut self, pose: Pose) -> Result<(), Ending> {
         if self.pose == Some(pose) {
             return Ok(());
         }
         self.ask_stage(|stage| stage.move_to(pose))?;
-        // Nothing is kept until it is there.
+        // No row is kept before the stage has arrived.
         self.pose = Some(pose);
         let here = Profile::from(self.commanded.velocity_rad_s);
         let brake = Profile::constant(self.commanded.brake_a);
@@ -172,7 +172,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// One hunt for an edge: the rows of every try are kept, the ways between are not.
+    /// One edge search: the rows of every try are kept, those of the moves between are not.
     pub(super) fn hunt(&mut self, step: &Step, segment: u32, edge: &Edge) -> Result<Left, Ending> {
         self.place(edge.from)?;
         let speed_rad_s =

@@ -1,8 +1,7 @@
-//! Instruments that tell the position of one shaft: how much later they tell it than the first by the bench's clock, and by
-//! what they tell.
+//! Delays between instruments that measure the position of one shaft, by the bench's clock and by their readings.
 //!
-//! Only such are held against each other. What torque and current tell of one motion differs by friction, compliance and the
-//! drive's own control: a lag between them is physics.
+//! Only instruments on one shaft are compared. Torque and current of one motion differ by friction, compliance and
+//! the drive's control, so that a lag between them is physical.
 
 use super::skew::Skews;
 use crate::encoder_columns::Encoders;
@@ -10,10 +9,10 @@ use crate::findings::{Lag, Told, lag};
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::skew::Skew;
 
-/// More rows than this tell a lag no better.
+/// More rows do not improve the estimate of a lag.
 const MOST_ROWS: usize = 50_000;
 
-/// One instrument against the reference encoder.
+/// One instrument compared with the reference encoder.
 #[derive(Debug, Clone, Default)]
 struct Pair {
     told: Vec<Told>,
@@ -42,7 +41,7 @@ impl Shaft {
         }
     }
 
-    /// For people. Nothing where no two instruments were on one shaft.
+    /// Texts for users. Empty without two instruments on one shaft.
     pub fn told(&self) -> Vec<String> {
         let motor = ("the motor's own encoder", &self.motor, UNKNOWN);
         let test = ("the encoder under test", &self.test, OWN);
@@ -51,7 +50,7 @@ impl Shaft {
     }
 }
 
-/// What causes a lag that the time stamps do not show.
+/// Cause of a lag that the time stamps do not show.
 const UNKNOWN: &str = "Unrecorded latency: check filters, buffers and adapters";
 const OWN: &str = "Cause: delay of this encoder (measure it with encoder_delay) or an unrecorded latency";
 

@@ -1,10 +1,11 @@
-//! How much later one instrument is read than another, by the bench's clock: earlier, where a stream has sent it before.
+//! Delay between the readings of two instruments, by the bench's clock; negative if a stream has sent the reading
+//! earlier.
 
 use jointbench_instrument::clock::Timed;
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::skew::Skew;
 
-/// All skews of a run.
+/// Range of all delays of a run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Skews {
     least_s: f64,
@@ -26,7 +27,8 @@ impl Skews {
         }
     }
 
-    /// For people. `None` where the clock stood still between the two, as that of a mock bench without a pace does.
+    /// Text for users. `None` if the clock did not advance between the readings, as on a mock bench without real
+    /// time.
     pub fn told(self) -> Option<String> {
         let Self { least_s, most_s, .. } = self;
         if (least_s, most_s) == (0.0, 0.0) {

@@ -1,16 +1,16 @@
-//! How much later one instrument tells of a motion than another, from what both have told: what no clock knows.
+//! Delay between two instruments that measure one motion, estimated from their readings, because no clock shows it.
 //!
-//! Where both sit on one shaft, the later one tells where the shaft was a while before: their difference follows the speed. The
-//! lag is the one at which it no longer does, with the first one's positions taken between its readings. What an encoder adds
-//! once and twice a turn is no lag and is fitted beside it; zeros and hysteresis, which differ from one stretch of the motion to
-//! the next, are left to each stretch.
+//! If both are on one shaft, the delayed one reports an earlier position, so that their difference is proportional to
+//! the speed. The estimated lag removes this proportionality, with the first instrument's positions interpolated
+//! between its readings. Errors once and twice in a turn are no lag and are fitted too. Zeros and hysteresis differ
+//! between stretches of motion, so that each stretch has its own offset.
 
 use super::solve::{solve, t95};
 
-/// Readings of both in one tick, each with its moment by the bench's clock.
+/// Readings of both instruments in one tick, each with its time by the bench's clock.
 #[derive(Debug, Clone, Copy)]
 pub struct Told {
-    /// Readings of one stretch follow each other without a break.
+    /// Readings of one stretch are consecutive.
     pub stretch: u32,
     pub first_s: f64,
     pub first_rad: f64,
@@ -18,26 +18,26 @@ pub struct Told {
     pub second_rad: f64,
 }
 
-/// So much later the second tells than its moments say, with half the width of the 95 % interval.
+/// Delay of the second instrument beyond its time stamps, with half the width of the 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lag {
     pub s: f64,
     pub reach_s: f64,
 }
 
-/// Of the lag: the difference falls with it as the speed rises. Beside it cosine and sine of an angle and of twice the angle.
+/// Derivative with respect to the lag (the difference falls as the speed rises), then cosine and sine of the angle
+/// and of twice the angle.
 type Row = [f64; 5];
 
 const ROUNDS: usize = 10;
-/// A tenth of what a moment is kept in.
+/// A tenth of the resolution of time stamps.
 const FOUND_S: f64 = 1e-7;
-/// The interval is that of the estimates that each leave one of so many parts of the run out: readings near to each other err
-/// alike.
+/// Parts of the run that are left out in turn for the interval, because neighbouring readings have correlated errors.
 const PARTS: usize = 10;
-/// Less than this is no motion to tell a lag from.
+/// Least rotation for an estimate of the lag.
 const TURNED_RAD: f64 = 1.0;
 
-/// `None` where the motion does not tell it to less than half a period of the readings.
+/// `None` if the motion does not determine the lag to half a reading period.
 pub fn lag(told: &[Told]) -> Option<Lag> {
     let stretches: Vec<&[Told]> = told.chunk_by(|a, b| a.stretch == b.stretch).collect();
     let turned_rad =
@@ -64,7 +64,7 @@ fn period_s(told: &[Told]) -> Option<f64> {
     steps_s.get(steps_s.len() / 2).copied()
 }
 
-/// What is left between both if the second lags by this.
+/// The remaining difference for a lag of the second instrument.
 fn equations(stretches: &[&[Told]], lag_s: f64) -> (Vec<Row>, Vec<f64>) {
     let (mut rows, mut y) = (Vec::new(), Vec::new());
     for stretch in stretches {
@@ -98,7 +98,7 @@ fn about_their_mean(rows: &mut [Row], y: &mut [f64]) {
     y.iter_mut().for_each(|y| *y -= mean_y);
 }
 
-/// The jackknife's, with whole parts of the run left out.
+/// Half width of the jackknife interval over parts of the run.
 fn reach(rows: &[Row], y: &[f64]) -> Option<f64> {
     let without = |part: usize| {
         let [from, to] = [part, part + 1].map(|end| end * rows.len() / PARTS);
@@ -118,8 +118,8 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Strokes there and back at 250 Hz, with a once-a-turn error and counts, the second `lag_s` behind its moments, which are
-    /// 0.8 ms behind the first's.
+    /// Strokes back and forth at 250 Hz, with a once-per-turn error and counts. The second instrument has a lag of
+    /// `lag_s` against its time stamps, which are 0.8 ms after those of the first.
     fn strokes(lag_s: f64, top_rad_s: f64) -> Vec<Told> {
         let counted = |rad: f64, counts: f64| (rad / TAU * counts).floor() / counts * TAU;
         let shaft = |t_s: f64| -top_rad_s / 3.0 * (3.0 * t_s).cos();
@@ -148,7 +148,7 @@ mod tests {
             assert_eq!(lag(&strokes(1e-3, top_rad_s)), None, "{top_rad_s} rad/s");
         }
         assert_eq!(lag(&[]), None);
-        // At one speed a lag and a shifted zero are one and the same.
+        // At one speed a lag and a zero offset are identical.
         let even: Vec<Told> = strokes(0.0, 0.0)
             .iter()
             .map(|told| Told { first_rad: 40.0 * told.first_s, second_rad: 40.0 * told.second_s - 0.01, ..*told })

@@ -1,4 +1,4 @@
-//! What identifications share: parts of a run, means of its settled stretches, straight lines, small least squares,
+//! Shared functions of identifications: parts of a run, steady-state means, straight lines, small least squares,
 //! parameters as quantities.
 
 mod holds;

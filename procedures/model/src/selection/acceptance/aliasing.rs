@@ -120,7 +120,8 @@ impl Part {
     }
 }
 
-/// Whether the found share is significantly less than `ALIAS_SHARE` of the expected one.
+/// Whether less than `ALIAS_SHARE` of the expected reduction was found, and the difference to all of it is
+/// significant.
 fn is_missing(found: &[f64], asked: &[f64]) -> bool {
     let (sum, all) = (found.iter().sum::<f64>(), asked.iter().sum::<f64>());
     if all <= 0.0 {
