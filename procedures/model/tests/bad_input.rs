@@ -1,4 +1,4 @@
-//! A clear verdict or error on whatever a run may hold, never a panic, never a suggestion out of nothing.
+//! Diagnoses of any run content give a clear verdict or error: no panic, and no suggestion without evidence.
 
 mod common;
 
@@ -138,7 +138,7 @@ fn options_out_of_range_are_refused_by_name() {
     }
 }
 
-/// What is said is said in numbers, and nothing is suggested without evidence.
+/// All figures are finite, and nothing is suggested without evidence.
 fn assert_finite(found: &Diagnosis) {
     assert!(found.fit.rms.is_finite() && found.fit.validation_rms.is_finite(), "{}", found.summary);
     assert!(found.suggestions.is_empty() || found.verdict == Verdict::MissingEffect, "{}", found.summary);
@@ -150,7 +150,7 @@ fn assert_finite(found: &Diagnosis) {
     assert!(!found.summary.contains("NaN") && !found.summary.contains("inf"), "{}", found.summary);
 }
 
-/// Every effect that is not in the model is told of once: suggested, silent, not visible or left out.
+/// Every effect that is not in the model is reported once: suggested, silent, not visible or rejected.
 fn assert_each_told_once(found: &Diagnosis, spec: &ModelSpec) {
     for effect in spec.known().map(|effect| effect.info().id).filter(|id| !spec.contains(id)) {
         let told = [
@@ -163,7 +163,7 @@ fn assert_each_told_once(found: &Diagnosis, spec: &ModelSpec) {
     }
 }
 
-/// Five speeds in both directions, from one to the next in 0.4 s.
+/// Five speeds in both directions, with ramps of 0.4 s.
 fn with_ramps() -> RunTable {
     let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).into());
@@ -228,7 +228,7 @@ proptest! {
         let shape = Shape { rows, turn, size, noise, mix, segment, repeats };
         let run = common::tables::table(kind, &shape);
         let given = ModelSpec::baseline(&run).unwrap();
-        // Models that hold more than the baseline bend in other ways.
+        // Models with more than the baseline may fail differently.
         let more = given.known().map(|effect| effect.info().id).filter(|id| !given.contains(id));
         let every = mix as usize % 5 + 1;
         let spec = ModelSpec::new(kind, given.effects.iter().map(String::as_str).chain(more.skip(every).step_by(every))).unwrap();

@@ -1,4 +1,4 @@
-//! A torque that is recorded later than its motion, in a run in steps: only its ramps can show it.
+//! A torque delay in a run in steps: only its ramps can show it.
 
 mod common;
 
@@ -14,7 +14,7 @@ const SPEEDS_RAD_S: [f64; 8] = [2.0, 4.0, 7.0, 12.0, 20.0, 35.0, 60.0, 90.0];
 const INERTIA_KG_M2: f64 = 3e-5;
 const NOISE_NM: f64 = 4e-3;
 
-/// Speed at every sample: up to each of the speeds and down again, one way and the other.
+/// Speed at every sample: up to each of the speeds and down again, in both directions.
 fn velocities() -> Vec<f64> {
     let mut out = Vec::new();
     for leg in 0..2 * REPEATS * SPEEDS_RAD_S.len() {
@@ -26,7 +26,7 @@ fn velocities() -> Vec<f64> {
     out
 }
 
-/// The torque is read so many samples later than the angle, the speed as many as its filter takes.
+/// The torque is read with a delay of this many samples against the angle, the speed with that of its filter.
 fn run(torque_late: usize, speed_late: usize) -> RunTable {
     let velocity = velocities();
     let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];

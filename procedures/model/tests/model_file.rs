@@ -1,4 +1,4 @@
-//! A model file that somebody changed is refused in words or taken for what it says, never a panic.
+//! A modified model file is refused with a message or used as it is, without a panic.
 
 mod common;
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::sync::LazyLock;
 
-/// A run of each kind with a model of its baseline and an effect with shape parameters or several columns.
+/// A run of each kind with a model of its baseline and an effect with nonlinear parameters or several columns.
 static FITTED: LazyLock<Vec<(RunTable, Value)>> = LazyLock::new(|| {
     let fitted = |kind| {
         let run = table(kind, &Shape { segment: 300, repeats: 3, noise: 0.1, ..Shape::default() });
@@ -31,7 +31,7 @@ static FITTED: LazyLock<Vec<(RunTable, Value)>> = LazyLock::new(|| {
     Kind::ALL.map(fitted).into()
 });
 
-/// Everything that a file is used for.
+/// All uses of a file.
 fn use_it(fit: &Fit, run: &RunTable) {
     let _ = evaluate(fit, run);
     for format in Format::ALL {
@@ -94,7 +94,7 @@ fn places(value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Another value in place of one, or one more or less of it.
+/// Replaces a value, or adds or removes one.
 fn change(value: &mut Value, how: usize) {
     let others = [
         json!(null),

@@ -1,4 +1,5 @@
-//! A run that goes one way only: Coulomb friction and an offset are one and the same there, cogging and friction ripple too.
+//! A run in one direction: Coulomb friction and an offset are identical there, and so are cogging and friction
+//! ripple.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Effects that users write, on made-up runs: fitted, suggested, discovered, refused.
+//! User effects on simulated runs: fitted, suggested, discovered, refused.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! A run that begins where an earlier one has left its memory: what is remembered is no structure.
+//! A run that starts with a loading history of an earlier one, which is no structure.
 
 mod common;
 
@@ -6,10 +6,10 @@ use common::tables::{meta, scatter, stiffness};
 use jointbench_instrument::{Channel, Kind, RunTable, Trace};
 use jointbench_model::{ModelSpec, Options, Verdict, discover, fit};
 
-/// Currents at which dry contacts slip, many enough for a smooth curve [A].
+/// Currents at which dry contacts slip, enough for a smooth curve [A].
 const SLIPS: [f64; 12] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6];
 
-/// States of dry contacts after a way from rest to `past` and back to zero.
+/// States of dry contacts after a path from rest to `past` and back to zero.
 fn after(past: f64, slips: f64) -> f64 {
     (past.clamp(-slips, slips) - past).clamp(-slips, slips)
 }

@@ -1,4 +1,4 @@
-//! Measurements with a hidden effect from a simulator that shares nothing with the library.
+//! Measurements with a hidden effect from a simulator that is independent of the library.
 
 mod common;
 
@@ -35,7 +35,7 @@ fn check_family(family: &str) {
                 assert_eq!(first.verdict, Verdict::UnexplainedStructure, "{name}: {}", first.summary);
                 assert_eq!(whole.verdict, Verdict::UnexplainedStructure, "{name}: {}", whole.summary);
                 assert!(first.suggestions.is_empty() && added.is_empty(), "{name}: {added:?}");
-                // What one direction hides from the other is shown by direction.
+                // Structure that cancels between the directions is shown by direction.
                 let map = first.structure.unwrap();
                 assert!(answer["notes"].get(&map.x).is_some() && map.y == "direction", "{name}: {}", first.summary);
             }
@@ -50,7 +50,7 @@ fn check_family(family: &str) {
     }
 }
 
-/// What is taken out of a complete model is what is named, where the error clearly misses it.
+/// The effect that was removed from a complete model is named, if its absence clearly increases the error.
 fn check_removed(name: &str, run: &RunTable, complete: &Fit) {
     for removed in &complete.effects {
         let rest = complete.effects.iter().filter(|e| *e != removed);
@@ -85,7 +85,7 @@ fn brake() {
     check_family("brake");
 }
 
-/// As few numbers as the loops need: bands up to the largest current were mostly undecided.
+/// As few bands as the loops need: bands up to the largest current were mostly not identified.
 #[test]
 fn a_brake_decides_the_bands_of_its_hysteresis() {
     let Some(folder) = shared("hidden-effects") else { return };

@@ -1,4 +1,5 @@
-//! A column with the wrong sign fits as well as the right one. What the model then has to be is impossible, and that is told first.
+//! A column with the wrong sign fits as well as the right one. The resulting parameters are impossible, which is
+//! reported first.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Instruments on one shaft of the mock bench: how much later they tell of it than their moments say, by what they tell.
+//! Instruments on one shaft of the mock bench: their lag beyond their time stamps, from their readings.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::roles::{CounterReading, EncoderStatus, Identity, Instrument, PositionCounter};
@@ -42,7 +42,7 @@ fn strokes(bench: &Bench) -> Plan {
     procedure("encoder_delay").unwrap().plan(short.as_object().unwrap(), &BenchFacts::of(bench)).unwrap()
 }
 
-/// What is told of the motor's own encoder and of the one under test.
+/// Notes about the motor's own encoder and the encoder under test.
 fn told(bench: &mut Bench, plan: &Plan) -> [String; 2] {
     let (_held, controls) = channel();
     let mut notes = Notes::default();
@@ -58,7 +58,7 @@ fn told(bench: &mut Bench, plan: &Plan) -> [String; 2] {
     })
 }
 
-/// The lag of a note and half the width of its interval [s].
+/// The lag of a note and the half width of its interval [s].
 fn lag(note: &str) -> [f64; 2] {
     let (_, told) = note.split_once("by a further ").unwrap_or_else(|| panic!("{note}"));
     let mut words = told.split(' ');
@@ -80,7 +80,7 @@ fn clock_and_values_agree_but_for_the_delay_of_the_encoder_under_test() {
     assert!(test.contains("delay of this encoder"), "{test}");
 }
 
-/// A counter behind a buffer that always holds one reply back, and a clock that knows nothing of it.
+/// A counter behind a buffer that always holds one reply back, with a clock that does not include it.
 struct Buffered {
     counter: Box<dyn PositionCounter>,
     held: Option<Radians>,
@@ -140,7 +140,7 @@ fn a_delay_that_no_clock_knows_contradicts_it() {
     let plan = strokes(&bench);
     let [motor, _] = told(&mut bench, &plan);
     let [lag_s, reach_s] = lag(&motor);
-    // What a drive tells may be one turn of its control loop old.
+    // The reading of a drive may be one period of its control loop old.
     let held_s = -1.0 / plan.rate_hz;
     assert!((lag_s - held_s).abs() <= reach_s + 125e-6 && reach_s < 0.1e-3, "{held_s} s: {motor}");
     assert!(motor.contains("Unrecorded latency"), "{motor}");

@@ -1,4 +1,4 @@
-//! Linear fits from one pass over the rows: the Gram matrices of stretches, on which selection and intervals are built.
+//! Linear fits from one pass over the rows: the Gram matrices of blocks, on which selection and intervals are based.
 
 use crate::{least_s, line, peer, show};
 use jointbench_model::linear::{AugmentedGrams, BlockGrams, Cholesky};
@@ -11,10 +11,10 @@ const MODEL: usize = 12;
 const CANDIDATES: usize = 28;
 const BLOCKS: usize = 100;
 const REPLICATES: usize = 1000;
-/// The candidate that is in the response.
+/// The candidate that the response contains.
 const HIDDEN: usize = 17;
 
-/// Columns are of very different size.
+/// Columns have very different sizes.
 fn size(column: usize) -> f64 {
     10f64.powi(column as i32 % 5)
 }
@@ -69,7 +69,7 @@ pub fn measure(rows: usize) {
     line(&what, here_s, "SciPy, extrapolated from one", beside_s, 5000.0);
 }
 
-/// As fast as memory can be read: sums that do not wait for each other.
+/// Speed limit of memory: sums that are independent of each other.
 fn sum(column: &[f64]) -> f64 {
     let mut sums = [0.0; 16];
     for numbers in column.chunks_exact(16) {
@@ -78,12 +78,12 @@ fn sum(column: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
-/// The candidate with which the model predicts best what was left out.
+/// The candidate with the smallest validation error of the model.
 fn ranking(each: &[BlockGrams]) -> usize {
     best_of(&each.par_iter().map(|grams| grams.held_out().iter().sum()).collect::<Vec<f64>>())
 }
 
-/// The candidate that takes most of the squared error from a sample of blocks.
+/// The candidate with the largest error reduction in a bootstrap sample of blocks.
 fn bootstrap(each: &[BlockGrams], random: &mut ChaCha8Rng) -> usize {
     let drawn: Vec<usize> = (0..BLOCKS).map(|_| random.random_range(0..BLOCKS)).collect();
     let left = |grams: &BlockGrams| {

@@ -10,9 +10,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 const STEP_S: f64 = 1e-3;
-/// Way over which the bristles bend [rad], Stribeck speed [rad/s] and rise of the static friction: as in peer.py.
+/// Presliding displacement [rad], Stribeck speed [rad/s] and rise of the static friction, as in peer.py.
 const SHAPE: [f64; 3] = [1e-5, 0.05, 0.5];
-/// LSODA is that slow.
+/// Rows for LSODA, which is slower.
 const OF_PEER: usize = 20_000;
 
 pub fn measure(rows: usize) {
@@ -28,7 +28,7 @@ pub fn measure(rows: usize) {
     let mut signals = Signals::new(rows);
     signals.set(Signal::Position, position.collect());
     signals.set(Signal::Velocity, velocity.clone());
-    // The effect is the state beside what it ends at in this direction: the state itself without any.
+    // The effect is the state minus its limit in this direction, so that a zero direction gives the state itself.
     signals.set(Signal::Direction, vec![0.0; rows]);
     let view = View::new(signals.clone(), signals, Vec::new(), vec![0], STEP_S);
     let effect = find(Kind::Friction, "presliding").expect("the library has it");

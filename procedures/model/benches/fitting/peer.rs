@@ -1,9 +1,9 @@
-//! SciPy at the same task.
+//! SciPy with the same task.
 
 use std::path::Path;
 use std::process::Command;
 
-/// Seconds that it takes, without starting and reading, and its answer. `None` where python3 or SciPy is missing.
+/// Its duration in seconds, without starting and reading, and its answer. `None` if python3 or SciPy is missing.
 pub fn ask(task: &str, columns: &[&[f64]]) -> Option<(f64, Vec<f64>)> {
     let file = std::env::temp_dir().join(format!("jointbench-{task}-{}.f64", std::process::id()));
     let bytes: Vec<u8> = columns.iter().flat_map(|c| c.iter()).flat_map(|v| v.to_le_bytes()).collect();

@@ -1,4 +1,4 @@
-//! A Stribeck curve beside friction: six parameters, two of them searched for.
+//! A Stribeck curve with Coulomb and viscous friction: six parameters, two of them nonlinear.
 
 use crate::{least_s, line, peer};
 use jointbench_instrument::{Channel, Kind, Meta, RunTable, Trace};
@@ -41,7 +41,7 @@ fn value(fit: &Fit, name: &str) -> f64 {
     fit.parameters.iter().find(|p| p.name == name).expect("every effect is visible").value
 }
 
-/// Steps of nine speeds both ways, 250 samples each.
+/// Steps of nine speeds in both directions, 250 samples each.
 fn columns(rows: usize) -> Vec<Vec<f64>> {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let mut noise = || -> f64 { StandardNormal.sample(&mut random) };

@@ -4,7 +4,7 @@ use jointbench_model::Fit;
 use jointbench_model::export::{Format, export};
 use std::process::Command;
 
-/// What the header's function returns at every row of its inputs, in the order of its struct. `None` without a compiler.
+/// Result of the header's function at every row of its inputs, in the order of its struct. `None` without a compiler.
 pub fn on_controller(fit: &Fit, unit: &str, rows: &[Vec<f64>]) -> Option<Vec<f64>> {
     if Command::new("cc").arg("--version").output().is_err() {
         println!("SKIPPED: there is no C compiler (cc) to run the exported header with");

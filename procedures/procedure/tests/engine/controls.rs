@@ -6,7 +6,7 @@ use jointbench_procedure::profile::Profile;
 use jointbench_procedure::*;
 use proptest::prelude::*;
 
-/// Bench time from the control to the last set-point that was not zero.
+/// Bench time from the control to the last non-zero set-point.
 fn moved_on_s(done: &Done, from_s: f64) -> f64 {
     let moving = done.world.commands(|call| matches!(call, Call::SetVelocity(v) if *v != 0.0));
     moving.last().map_or(0.0, |(at_s, _)| at_s - 100.0 - from_s)
@@ -34,7 +34,7 @@ fn abort_comes_to_rest_within_its_ramp() {
         // A step may end one and a half ticks before its last set-point, at rest.
         assert!(jump <= 2.41, "a ramp of 400 rad/s² moves 1.6 rad/s in a tick, not {jump}");
         assert_eq!(values.last(), Some(&0.0));
-        // No supply answers in time for a fall while the shaft turns: what is left in the brake is told.
+        // No supply answers in time for a fall during rotation: the remanence of the brake is reported.
         let brake = done.world.commands(|call| matches!(call, Call::SetCurrent(_) | Call::Disarm));
         let held = brake.iter().take_while(|(_, call)| *call != Call::Disarm).last();
         let told = match held {
@@ -82,7 +82,7 @@ fn an_abort_hurries_a_stop() {
     assert!(moved_on_s(&done, at_s) <= 1.2, "{} s", moved_on_s(&done, at_s));
 }
 
-/// The supply takes a command ten times a second: where the last one would find the shaft at rest, the current stays.
+/// The supply accepts ten commands in a second: if the last one would find the shaft at rest, the current stays.
 #[test]
 fn an_abort_on_the_way_to_rest_drops_no_current_at_standstill() {
     for rate_hz in [50.0, 250.0] {
@@ -113,7 +113,8 @@ fn nobody_left_to_control_is_a_stop() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Any sequence of controls at any times and any rate: the run ends, secured, its states legal and its table valid.
+    /// Any sequence of controls at any times and any rate: the run ends, secured, its states legal and its table
+    /// valid.
     #[test]
     fn any_history_ends_safely(
         history in prop::collection::vec((0.0..20.0, 0usize..6), 0..8),
@@ -121,7 +122,7 @@ proptest! {
     ) {
         let all = [Control::Pause, Control::Resume, Control::Stop, Control::Abort, Control::Quit, Control::EStop];
         let mut controls: Vec<_> = history.iter().map(|(at_s, pick)| (*at_s, all[*pick])).collect();
-        // Nobody may be left waiting in a pause.
+        // The run must not stay paused.
         controls.push((21.0, Control::Resume));
         controls.push((60.0, Control::Abort));
         let done = play_controlled_at(rate_hz, &controls);
@@ -137,8 +138,8 @@ proptest! {
     }
 }
 
-/// Too slow to demagnetise: the brake is not let go at standstill while the drive could still turn it, and no time is
-/// spent on a turn that never ends.
+/// Too slow to demagnetise: the brake current is not removed at standstill while the drive could still turn the
+/// shaft, and no time is spent on a turn that never ends.
 #[test]
 fn a_creeping_plan_is_stopped_without_speeding_up() {
     let (fakes, mut bench) = crate::fakes::Fakes::quiet();

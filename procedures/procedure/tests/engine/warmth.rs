@@ -1,4 +1,4 @@
-//! A bench with a thermometer: what it feels is in every run.
+//! A bench with a thermometer: its readings are in every run.
 
 use crate::fakes::{Call, Fakes, World};
 use crate::ledger::{Done, loaded_plan, play};
@@ -24,7 +24,7 @@ fn every_channel_is_a_column_beside_the_joints_own_temperature() {
     let behind = |(felt_c, at_s): (&f64, &f64)| (-1e-5..=2.01).contains(&(at_s - felt_c));
     let (felt_c, time_s) = (table.column("thermometer_1_c").unwrap(), table.column("time_s").unwrap());
     assert!(felt_c.iter().zip(time_s).all(behind), "never older than two seconds");
-    // As kept, each row tells when; as read, it is moved to the rows' moments.
+    // A stored row has the time of its reading; a table has it moved to the time of the row.
     for kept in done.ledger.kept.iter().filter(|kept| !kept.rows.is_empty()) {
         let [felt_c, time_s, skew_s] =
             ["thermometer_1_c", "time_s", "thermometer_skew_s"].map(|name| kept.rows.column(name).unwrap());

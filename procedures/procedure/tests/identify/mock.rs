@@ -1,4 +1,4 @@
-//! Short runs on the mock bench. Its truth is read only to be compared with.
+//! Short runs on the mock bench. Its truth is only read for comparison.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_procedure::catalogue::brake_model;
@@ -69,11 +69,11 @@ fn a_sensor_of_two_ranges_has_two_zeros_and_one_torque() {
 fn the_inverse_of_the_hysteresis_holds_on_a_history_that_it_has_not_seen() {
     let given = json!({"levels": 5, "loops": 1, "random_turns": 6, "dwell_s": 0.8, "speed_rad_s": 3.0});
     let (_, found) = found(MockSettings::new(Joint::JointB, 3), "brake_hysteresis", given);
-    // Five levels are coarse: a straight line in their place errs three times as much at least.
+    // Five levels are coarse: a straight line instead has at least three times the error.
     let [error, line] = ["error_max", "error_line"].map(|name| found.quantity(name).unwrap().value);
     assert!(error < 0.04 && 3.0 * error < line, "{error} {line}");
     assert!(found.quantity("width").unwrap().value > 0.2, "{}", found.summary);
-    // Beside every history that was not seen stands what the model says of it.
+    // Every validation history is shown with the prediction of the model.
     let rated_nm = found.quantity("torque_top").unwrap().value;
     for name in ["minor_loops", "random_history"] {
         let figure = found.figures.iter().find(|figure| figure.name == name).unwrap();
@@ -154,7 +154,7 @@ fn friction_under_load_is_told_apart_from_a_rise_towards_standstill() {
 fn a_joint_breaks_away_where_its_friction_at_rest_lies() {
     let given = json!({"positions": 3, "sample_rate_hz": 250.0, "ramp_nm_s": 0.04});
     let (mock, found) = found(MockSettings::new(Joint::JointA, 1), "breakaway", given);
-    // Without a Stribeck part the joint holds what Coulomb friction holds.
+    // Without a Stribeck part the breakaway torque equals Coulomb friction.
     let quantity = found.quantity("tau_b").unwrap();
     assert!((quantity.value / mock.truth().coulomb_nm - 1.0).abs() < 0.02, "{}", found.summary);
 }
@@ -235,7 +235,7 @@ fn the_full_model_halves_the_error_without_over_compensating() {
     assert!(ratio("observer") < 1.0);
 }
 
-/// The arm's constants lie in the intervals that the run gives, and the directions are told apart.
+/// The arm's constants are within the intervals of the run, and the directions are distinguished.
 #[test]
 fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
     let given = json!({"speeds": 4, "repeats": 2, "breakaways": 2, "warm_up_s": 5.0, "ramp_nm_s": 0.03});

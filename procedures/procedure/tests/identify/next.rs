@@ -1,4 +1,4 @@
-//! What one run leaves open, the run that is asked for, and what both together say: on the mock bench.
+//! Open questions of one run, the recommended run, and the result of both together, on the mock bench.
 
 use jointbench_devices::{Joint, MockBench, MockSettings};
 use jointbench_instrument::{Bench, RunTable};
@@ -7,9 +7,9 @@ use jointbench_procedure::conduct::conduct;
 use jointbench_procedure::{BenchFacts, menu, procedure};
 use serde_json::{Map, Value, json};
 
-/// A bench with what it has measured so far.
+/// A bench with its measurements so far.
 struct Laboratory {
-    /// Its instruments answer as long as it lives.
+    /// Its instruments answer as long as it exists.
     _mock: MockBench,
     bench: Bench,
     spec: ModelSpec,

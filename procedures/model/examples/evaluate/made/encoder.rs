@@ -1,4 +1,4 @@
-//! Encoder runs: two encoders on one shaft, one of them off centre, tilted, late, warm, loose.
+//! Encoder runs: two encoders on one shaft, one of them eccentric, tilted, delayed, warm, loose.
 
 use super::{Coloured, Dice, rounded, table};
 use jointbench_instrument::{Kind, Meta, RunTable};
@@ -25,7 +25,7 @@ pub const PAIRS: &[[&str; 2]] = &[
 
 const STEP_S: f64 = 1e-3;
 
-/// What the test encoder makes of the true angle. What is hidden is zero where it is not there.
+/// Error of the test encoder over the true angle. Parameters are zero if an effect is not hidden.
 #[derive(Default)]
 struct Ring {
     pole_pairs: f64,
@@ -33,7 +33,7 @@ struct Ring {
     off_centre: f64,
     tilt: f64,
     waves: (f64, f64),
-    /// Offset and unequal size of the two waves inside a pole pair.
+    /// Offset and unequal size of the two waves within a pole pair.
     crooked: (f64, f64),
     play: f64,
     warm: f64,

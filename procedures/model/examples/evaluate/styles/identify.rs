@@ -1,13 +1,13 @@
-//! How far the data of a run decides what is hidden in it, given the truth.
+//! Identifiability of hidden effects in the data of a run, given the truth.
 
 use super::answer::Answer;
 use super::least_squares::regression;
 use super::recording::{Part, Recording};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An effect is identifiable from so many standard errors on.
+/// Standard errors from which on an effect is identifiable.
 const IDENTIFIABLE: f64 = 6.0;
-/// A rival stands for an effect that differs from it by fewer standard errors than this.
+/// Standard errors from which on an alternative is distinguished from an effect.
 const TOLD_APART: f64 = 3.0;
 
 pub fn answer(recording: &Recording) -> Answer {
@@ -38,7 +38,7 @@ pub fn answer(recording: &Recording) -> Answer {
     }
 }
 
-/// Standard errors of a part beside all others that are there, and beside a rival.
+/// Standard errors of a part, given all other present parts and an alternative.
 fn size(recording: &Recording, part: &Part, rival: Option<&Part>) -> f64 {
     let others = recording.base.iter().chain(&recording.hidden).chain(&recording.outside);
     let others = others.filter(|o| !std::ptr::eq(*o, part)).chain(rival);

@@ -1,5 +1,5 @@
-//! How a hysteresis brake holds: laws of the literature of which the library uses others. Currents as shares of the rated
-//! one.
+//! Torque of a hysteresis brake, by laws of the literature that differ from the library's. Currents as shares of the
+//! rated current.
 
 use super::Run;
 use crate::made::Dice;
@@ -9,7 +9,7 @@ pub const EFFECTS: &[&str] =
     &["drag", "saturation", "hysteresis", "velocity_dependence", "cogging", "temperature_dependence"];
 pub const OUTSIDE: &[&str] = &["current_window", "intermittent", "rub_at_angle"];
 
-/// What a cause adds to the torque [Nm].
+/// Contribution of a cause to the torque [Nm].
 pub fn torque(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
     let full = run.full_nm;
     let rows = 0..run.time.len();
@@ -24,7 +24,7 @@ pub fn torque(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
             let inputs: Vec<f64> = run.current.iter().map(|i| 2.0 * i - 1.0).collect();
             let bent = preisach(&inputs, dice.uniform(-0.3, 0.3), dice.uniform(0.3, 0.8));
             let size = full * dice.size(0.02, 0.12);
-            // Magnetisation lags: more torque on the way down.
+            // Magnetisation has hysteresis: more torque while the current falls.
             bent.iter().zip(&inputs).map(|(b, i)| size * (i - b)).collect()
         }
         "velocity_dependence" => {

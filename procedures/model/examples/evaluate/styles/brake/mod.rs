@@ -1,4 +1,4 @@
-//! Brake runs: currents of all shapes on a shaft that is turned.
+//! Brake runs: currents of all shapes on a rotating shaft.
 
 mod laws;
 
@@ -100,7 +100,7 @@ fn run(style: &str, rate_hz: f64, repeats: usize, dice: &mut Dice) -> Run {
     let one = profile(style, rate_hz, dice);
     let one = lag(&one, 1.0 - (-1.0 / (0.02 * rate_hz)).exp());
     let (rows, fastest) = (one.len() * repeats, dice.uniform(4.0, 25.0));
-    // The drive keeps to a few speeds, each for a while.
+    // The drive uses a few speeds, each for a while.
     let speeds: Vec<f64> = (0..3 * repeats).map(|_| fastest * dice.size(0.15, 1.0)).collect();
     let wished: Vec<f64> = (0..rows).map(|i| speeds[i * speeds.len() / rows]).collect();
     let velocity = lag(&wished, 1.0 - (-1.0 / (0.2 * rate_hz)).exp());

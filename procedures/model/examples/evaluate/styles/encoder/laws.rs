@@ -18,7 +18,7 @@ pub const EFFECTS: &[&str] = &[
 ];
 pub const OUTSIDE: &[&str] = &["intermittent", "scratch_at_angle"];
 
-/// What a cause adds to the difference of the two readings [rad].
+/// Contribution of a cause to the difference of the two readings [rad].
 pub fn error(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
     let size = run.noise * dice.size(0.3, 6.0);
     let phase = dice.phase();
@@ -33,7 +33,7 @@ pub fn error(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
             }
             after.iter().zip(&run.angle).map(|(a, q)| a - q).collect()
         }
-        // A disc off its centre: the angle under which its true centre is seen.
+        // An eccentric disc: the angle relative to its true centre.
         "harmonic_1" => of_angle(&|a| (size * (a + phase).sin()).atan2(1.0 + size * (a + phase).cos())),
         // A tilted disc: the projection of a circle is an ellipse.
         "harmonic_2" => of_angle(&|a| {

@@ -1,4 +1,4 @@
-//! Encoder runs: two encoders on one shaft that sweeps, stops, goes to and fro.
+//! Encoder runs: two encoders on one shaft that sweeps, stops, and moves back and forth.
 
 mod laws;
 
@@ -42,7 +42,7 @@ pub fn make(dice: &mut Dice) -> Recording {
     let outside = plan.outside.as_ref().map(&mut part);
     let shapes: Vec<&str> = effects.iter().flat_map(|id| [*id; SHAPES]).collect();
     let mut rivals: Vec<Part> = if hidden.is_empty() { Vec::new() } else { shapes.iter().map(&mut part).collect() };
-    // A step between two repeats is a start-up as well.
+    // A step between two repeats is a start-up offset as well.
     if repeats == 2 && !rivals.is_empty() {
         rivals.push(Part { id: "slip", values: run.repeat.clone() });
     }

@@ -15,10 +15,10 @@ use laws::{EFFECTS, Law, Moment, OF_LOAD, OUTSIDE, law};
 use record::Rows;
 use serde_json::json;
 
-/// Shapes of each rival that are held against a hidden effect.
+/// Shapes of each candidate that are compared with a hidden effect.
 const SHAPES: usize = 5;
 const RATES_HZ: [f64; 5] = [100.0, 200.0, 250.0, 500.0, 1000.0];
-/// A run is recorded at a rate at which it has no more rows.
+/// A run is recorded at a rate that gives no more rows.
 const MOST_ROWS: f64 = 60_000.0;
 
 pub fn make(dice: &mut Dice) -> Recording {
@@ -68,7 +68,7 @@ fn recording(joint: &Joint, plan: &Plan, rows: Rows, rivals: Vec<Part>) -> Recor
     let mut ids = vec!["inertia", "coulomb", "viscous"];
     ids.extend(has_load.then_some("load_transmission"));
     let (mut hidden, mut outside) = (Vec::new(), None);
-    // What bends is told from what does not by the difference of the two.
+    // Presliding is identified by its difference from instantaneous dry friction.
     if plan.hides("presliding") {
         let jumps = part("coulomb", &|m| joint.dry * m.velocity.signum());
         let values = bends.values.iter().zip(&jumps.values).map(|(b, j)| b - j).collect();
