@@ -7,7 +7,7 @@ use crate::linear::basis::dot;
 use crate::linear::condition;
 use crate::prediction::{predict, prepare_alike};
 use crate::preprocess::{Prepared, prepare};
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::fit::{Evaluation, Fit, Parameter, ParameterState, Scope, Term as TermReport};
@@ -47,12 +47,12 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         let found = intervals(part, prepared.motion);
         parameters.extend(found.parameters);
         trade_offs.extend(found.trade_offs);
-        for (term, factors) in part.terms.iter().zip(part.linear().factors) {
+        for (term, coefficients) in part.terms.iter().zip(part.linear().coefficients) {
             terms.push(TermReport {
                 effect: term.id().into(),
                 form: term.form.name.into(),
                 shape: term.shape.clone(),
-                linear: factors,
+                linear: coefficients,
                 names: term
                     .form
                     .linear
@@ -82,7 +82,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
     if assembly.effects.iter().any(|e| e == "direction_offset") {
         notes.push("on a moving joint a direction offset is the same as a constant torque offset".into());
     }
-    if prepared.main.view.goes_one_way() && main.contains("coulomb") {
+    if prepared.main.view.is_one_directional() && main.contains("coulomb") {
         let note = "the motion has one direction only (less than a tenth of a trajectory in the other is omitted): Coulomb \
                     friction and an offset are confounded, and tau_c contains both; measure the other direction as well";
         notes.push(note.into());
@@ -99,7 +99,7 @@ pub(crate) fn report(assembly: &TwoStageModel) -> Result<Fit, ModelError> {
         effects: assembly.effects.clone(),
         own,
         rms: (linear.sse / n).sqrt(),
-        validation_rms: (held_out(main).iter().sum::<f64>() / n).sqrt(),
+        validation_rms: (validation_losses(main).iter().sum::<f64>() / n).sqrt(),
         unit: prepared.unit(),
         residual: prepared.about.residual,
         relative_error: (linear.sse / dot(target, target)).sqrt(),

@@ -33,18 +33,19 @@ pub(crate) fn predict(fit: &Fit, problem: &Problem) -> Result<Vec<f64>, ModelErr
     let mut sampled = Fit { terms: Vec::new(), ..fit.clone() };
     sampled.terms.extend(fit.terms.iter().filter(|term| term.effect != PRESLIDING).cloned());
     let mut predicted = predict_on(&sampled, &problem.view, problem.rows(), |column| problem.reduce.apply(column))?;
-    let mut add = |column: &[f64], factor: f64| predicted.iter_mut().zip(column).for_each(|(p, c)| *p += factor * c);
+    let mut add =
+        |column: &[f64], coefficient: f64| predicted.iter_mut().zip(column).for_each(|(p, c)| *p += coefficient * c);
     for term in &fit.form_error {
-        let beside = form_error.columns.iter().filter(|column| column.lives.name() == term.name);
+        let columns_of_kind = form_error.columns.iter().filter(|column| column.lives.name() == term.name);
         match find_with_own(fit.kind, &fit.own, &term.name) {
             Ok(effect) => {
                 let columns = columns(effect, &term.form, &term.shape, problem);
-                columns.iter().zip(&term.linear).for_each(|(column, factor)| add(column, *factor));
+                columns.iter().zip(&term.linear).for_each(|(column, coefficient)| add(column, *coefficient));
             }
             Err(_) => {
                 let place = term.shape.first().map_or(0, |place| *place as usize);
-                let column = beside.skip(place).zip(&term.linear).next();
-                column.into_iter().for_each(|(column, factor)| add(&column.values, *factor));
+                let column = columns_of_kind.skip(place).zip(&term.linear).next();
+                column.into_iter().for_each(|(column, coefficient)| add(&column.values, *coefficient));
             }
         }
     }
@@ -59,9 +60,9 @@ pub(crate) fn predict_on(
     reduce: impl Fn(Vec<f64>) -> Vec<f64>,
 ) -> Result<Vec<f64>, ModelError> {
     let mut predicted = vec![0.0; rows];
-    let mut add = |columns: Vec<Vec<f64>>, factors: &[f64]| {
-        for (column, factor) in columns.into_iter().zip(factors) {
-            predicted.iter_mut().zip(reduce(column)).for_each(|(p, c)| *p += factor * c);
+    let mut add = |columns: Vec<Vec<f64>>, coefficients: &[f64]| {
+        for (column, coefficient) in columns.into_iter().zip(coefficients) {
+            predicted.iter_mut().zip(reduce(column)).for_each(|(p, c)| *p += coefficient * c);
         }
     };
     for id in &fit.effects {

@@ -1,7 +1,7 @@
 //! The residual of a fit at every point, with all quantities that it may depend on.
 
 use crate::prediction::{predict, prepare_alike};
-use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::independent_blocks::independent_blocks;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::fit::Fit;
 use crate::report::residuals::{Axis, ResidualSet};
@@ -80,6 +80,6 @@ fn append(
     set.segment.extend_from_slice(&problem.segment);
     set.repeat.extend_from_slice(&problem.repeat);
     let next = set.piece.last().map_or(0, |last| last + 1);
-    set.piece.extend(pieces(problem, 1).0.into_iter().map(|piece| next + piece));
+    set.piece.extend(independent_blocks(problem, 1).0.into_iter().map(|piece| next + piece));
     Ok(())
 }

@@ -95,7 +95,7 @@ impl View {
     }
 
     /// All motion has one direction, so that effects with and without a sign change are confounded.
-    pub fn goes_one_way(&self) -> bool {
+    pub fn is_one_directional(&self) -> bool {
         let direction = self.get(Signal::Direction);
         direction.first().is_some_and(|first| *first != 0.0 && direction.iter().all(|d| d == first))
     }

@@ -17,8 +17,8 @@ pub fn prefix(size: f64) -> (f64, &'static str) {
 pub fn figure(value: f64, unit: &str) -> String {
     let unit = if unit == "1" { "" } else { unit };
     let size = value.abs();
-    let (factor, prefix) = if is_prefixed(unit) { prefix(size) } else { (1.0, "") };
-    let scaled = value * factor;
+    let (scale, prefix) = if is_prefixed(unit) { prefix(size) } else { (1.0, "") };
+    let scaled = value * scale;
     if scaled != 0.0 && scaled.abs() < 0.01 {
         return format!("{scaled:.2e} {prefix}{unit}").trim_end().to_owned();
     }
@@ -32,21 +32,21 @@ pub fn figure(value: f64, unit: &str) -> String {
 
 /// The prefixed unit of one figure, for others in the same sentence.
 pub struct Scale {
-    factor: f64,
+    scale: f64,
     unit: String,
 }
 
 impl Scale {
     /// The unit in which `value` is written.
     pub fn of(value: f64, unit: &str) -> Self {
-        let (factor, prefix) = if is_prefixed(unit) { prefix(value.abs()) } else { (1.0, "") };
+        let (scale, prefix) = if is_prefixed(unit) { prefix(value.abs()) } else { (1.0, "") };
         let unit = if unit == "1" { "" } else { unit };
-        Self { factor, unit: format!("{prefix}{unit}") }
+        Self { scale, unit: format!("{prefix}{unit}") }
     }
 
     /// Three digits.
     pub fn figure(&self, value: f64) -> String {
-        let scaled = value * self.factor;
+        let scaled = value * self.scale;
         let digits = match scaled.abs() {
             s if s >= 100.0 => 0,
             s if s >= 10.0 => 1,

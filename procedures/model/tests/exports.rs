@@ -35,7 +35,7 @@ fn slipping_joint() -> RunTable {
 }
 
 /// The figure after some words of an export.
-fn told(text: &str, words: &str) -> f64 {
+fn reported(text: &str, words: &str) -> f64 {
     let rest = text.split(words).nth(1).unwrap_or_else(|| panic!("{words} in {text}"));
     rest.split_whitespace().next().unwrap().parse().unwrap()
 }
@@ -66,7 +66,7 @@ fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
     assert!(apart < fit.rms, "C and model are {apart} apart, and the model errs by {}", fit.rms);
     let error = rms(c.iter().zip(&of_fit.measured).map(|(c, measured)| c - measured));
     let header = export(&fit, Format::C).unwrap();
-    let said = told(&header, "Error with the measured load of that run, sample by sample: ");
+    let said = reported(&header, "Error with the measured load of that run, sample by sample: ");
     assert!((said / error - 1.0).abs() < 0.02, "the header says {said}, and it is {error}");
     assert!(header.contains("torsional_hysteresis_dead_band"), "{header}");
 
@@ -82,7 +82,7 @@ fn c_remembers_a_torque_with_noise_as_the_model_does_a_smooth_one() {
 
 /// An exported figure includes the known problems of the fit.
 #[test]
-fn an_inertia_that_is_not_the_set_ups_says_so_wherever_it_goes() {
+fn an_inertia_that_is_not_the_set_ups_says_so_in_every_export() {
     let mut stairs = Staircase { noise_nm: 0.002, scatter_nm: 0.0, seed: 1 }.run(|at| 0.02 * at.velocity.signum());
     let (mut meta, trace) = stairs.into_parts();
     meta.rotor_inertia_kg_m2 = Some(1.0);
@@ -162,7 +162,7 @@ fn brake() -> RunTable {
 
 /// The table contains the mean torque of a brake over its branches, and its header the deviation from it.
 #[test]
-fn a_table_holds_the_mean_of_what_remembers_and_tells_its_own_error() {
+fn a_table_contains_the_mean_of_hysteresis_and_states_its_error() {
     let run = brake();
     let fit = fitted(&run, "drag,torque_per_current,saturation,hysteresis");
     let text = export(&fit, Format::Table).unwrap();
@@ -178,7 +178,7 @@ fn a_table_holds_the_mean_of_what_remembers_and_tells_its_own_error() {
     }
     let best = rms(current.iter().zip(torque).map(|(i, t)| means[stretch(i)].0 / means[stretch(i)].1 - t));
     assert!(best > 0.1 && error < 1.02 * best, "the table errs by {error}, the best single curve by {best}\n{text}");
-    let said = told(&text, "# Error: of this table ");
+    let said = reported(&text, "# Error: of this table ");
     assert!((said / error - 1.0).abs() < 0.05, "the header says {said}, and it is {error}");
     assert!(text.contains("# hysteresis remembers: the table holds its mean over current"), "{text}");
     assert!(!text.contains("NOT CARRIED OVER"), "{text}");
@@ -205,6 +205,6 @@ fn a_table_has_points_enough_for_its_fastest_wave() {
     let model = predict(&flat, &moments, 0.004).unwrap();
     let off = rms(asked.iter().zip(&model).map(|(at, model)| lut.at(at) - model));
     assert!(off < 0.02 * 0.006, "{off}");
-    let said = told(&text, "it is off what it is a table of by ");
+    let said = reported(&text, "it is off what it is a table of by ");
     assert!(off < 1.5 * said && said < 0.02 * 0.006, "the header says {said}, and it is {off}");
 }

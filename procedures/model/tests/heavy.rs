@@ -51,7 +51,7 @@ fn teeth_that_bear_load_and_weight_rub_by_both() {
 }
 
 #[test]
-fn friction_that_grows_with_the_square_of_both_is_told_as_that() {
+fn friction_that_grows_with_the_square_of_both_is_named() {
     let run = run(6, 0.3, |borne| 0.5 * borne * borne);
     let missing = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     let why = |effect: &str| missing.suggestions.iter().find(|s| s.effect == effect).unwrap().why.clone();

@@ -53,7 +53,7 @@ fn a_hump_that_few_speeds_show_is_structure_too() {
 
 /// Each speed occurs twice: no part of the axis has a band, and the start angles of slow steps would be reported.
 #[test]
-fn where_a_model_fails_over_speeds_that_came_twice_is_told_by_the_speed() {
+fn a_residual_over_speeds_with_one_repeat_is_reported_over_speed() {
     let (mut meta, trace) = friction_in_steps(&SPEEDS_RAD_S[..10], 2, 220, |now| {
         let speed = now.velocity.abs();
         now.velocity.signum() * (0.02 + 0.012 * (-speed / 4.0).exp() + 1e-4 * speed) + 1e-3 * scatter(now.row, 3)

@@ -51,7 +51,7 @@ fn run(lost: f64, seed: u64) -> RunTable {
 }
 
 #[test]
-fn only_the_iron_is_named_whatever_its_curve() {
+fn only_the_iron_is_named_for_any_curve() {
     for (lost, seed) in [(0.05, 1), (0.1, 2)] {
         let spec = ModelSpec::parse(Kind::Friction, "inertia,load_transmission,coulomb,viscous").unwrap();
         let found = diagnose(&run(lost, seed), &spec, &Options::default()).unwrap();

@@ -27,7 +27,7 @@ fn velocities() -> Vec<f64> {
 }
 
 /// The torque is read with a delay of this many samples against the angle, the speed with that of its filter.
-fn run(torque_late: usize, speed_late: usize) -> RunTable {
+fn run(torque_delay: usize, speed_delay: usize) -> RunTable {
     let velocity = velocities();
     let names = ["time_s", "motor_position_rad", "motor_velocity_rad_s", "motor_current_a", "segment", "repeat"];
     let mut trace = Trace::new(names.map(Channel::new).into());
@@ -39,9 +39,9 @@ fn run(torque_late: usize, speed_late: usize) -> RunTable {
     for (i, v) in velocity.iter().enumerate() {
         angle += v * STEP_S;
         let leg = i / (2 * RAMP + PLATEAU);
-        let (felt, told) = (torque(i.saturating_sub(torque_late)), velocity[i.saturating_sub(speed_late)]);
+        let (felt, reported) = (torque(i.saturating_sub(torque_delay)), velocity[i.saturating_sub(speed_delay)]);
         let (segment, repeat) = (leg as f64, (leg / (2 * SPEEDS_RAD_S.len())) as f64);
-        trace.push_row(&[i as f64 * STEP_S, angle, told, felt + NOISE_NM * scatter(i, 1), segment, repeat]);
+        trace.push_row(&[i as f64 * STEP_S, angle, reported, felt + NOISE_NM * scatter(i, 1), segment, repeat]);
     }
     let mut meta = meta(Kind::Friction);
     meta.torque_constant_nm_per_a = Some(1.0);
@@ -54,7 +54,7 @@ fn diagnosed(run: &RunTable) -> Diagnosis {
 }
 
 #[test]
-fn a_late_torque_is_named_with_its_delay() {
+fn a_delayed_torque_is_named_with_its_delay() {
     let run = run(3, 0);
     let found = diagnosed(&run);
     let named: Vec<&str> = found.suggestions.iter().map(|s| s.effect.as_str()).collect();
@@ -69,9 +69,9 @@ fn a_late_torque_is_named_with_its_delay() {
 
 #[test]
 fn a_torque_in_time_and_a_speed_that_is_filtered_are_no_delay() {
-    for speed_late in [0, 1, 3] {
-        let found = diagnosed(&run(0, speed_late));
-        assert!(found.suggestions.is_empty(), "{speed_late}: {}", found.summary);
+    for speed_delay in [0, 1, 3] {
+        let found = diagnosed(&run(0, speed_delay));
+        assert!(found.suggestions.is_empty(), "{speed_delay}: {}", found.summary);
         let silent = found.silent.iter().find(|s| s.effect == "signal_delay");
         assert!(silent.is_some_and(|s| s.minimum_detectable_rms > 0.0), "{:?}", found.not_visible);
     }

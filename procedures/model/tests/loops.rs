@@ -108,7 +108,7 @@ fn drag(run: &RunTable) -> Parameter {
 /// After a fall to zero current the iron has remanence, and only the time before any current separates it from the
 /// drag.
 #[test]
-fn drag_beside_hysteresis_is_told_with_the_remanence_that_it_holds() {
+fn drag_with_hysteresis_is_reported_with_its_remanence() {
     for (from, word) in [(0, "before any current"), (20, "trades off with hysteresis")] {
         let found = drag(&recorded(0.0125, false, from));
         let [low, high] = found.ci95;

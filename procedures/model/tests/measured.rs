@@ -44,7 +44,7 @@ fn emps_gives_the_published_parameters() {
 }
 
 #[test]
-fn emps_goes_on_to_the_flexibility() {
+fn emps_continues_to_the_flexibility() {
     let Some(data) = shared("data") else { return };
     let train = recording(&data, EMPS);
     let spec = ModelSpec::baseline(&train).unwrap();
@@ -61,43 +61,49 @@ fn emps_goes_on_to_the_flexibility() {
 
 /// A sixth of the servo's motor torque without friction does not depend on the load.
 #[test]
-fn a_current_of_another_unit_or_sign_is_told_before_all_else() {
+fn a_current_of_another_unit_or_sign_is_reported_first() {
     let Some(data) = shared("data") else { return };
     let run = recording(&data, BAM);
-    let diagnosed = |factor: f64| {
+    let diagnosed = |coefficient: f64| {
         let mut columns = run.trace().columns().to_vec();
         let place = run.trace().channels().iter().position(|channel| channel.name == "motor_current_a").unwrap();
-        columns[place].iter_mut().for_each(|current_a| *current_a *= factor);
+        columns[place].iter_mut().for_each(|current_a| *current_a *= coefficient);
         let run =
             RunTable::new(run.meta().clone(), Trace::from_columns(run.trace().channels().to_vec(), columns)).unwrap();
         diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap()
     };
     assert!(!diagnosed(1.0).summary.contains("Data problem"));
-    for factor in [1000.0, -1.0] {
-        let found = diagnosed(factor);
+    for coefficient in [1000.0, -1.0] {
+        let found = diagnosed(coefficient);
         let first = found.summary.split(". Correct this first").next().unwrap();
         assert!(first.starts_with("Data problem: motor_current_a with the torque constant"), "{}", found.summary);
-        assert!(first.len() < found.summary.len() && found.undecided.is_some(), "{factor}: {}", found.summary);
+        assert!(first.len() < found.summary.len() && found.undecided.is_some(), "{coefficient}: {}", found.summary);
     }
 }
 
 /// Every available run, by its column of a brake current, and brake runs by their torque.
 #[test]
 fn what_measured_brakes_reach_is_no_slip_of_a_unit() {
-    let scaled = |run: &RunTable, name: &str, factor: f64| {
+    let scaled = |run: &RunTable, name: &str, coefficient: f64| {
         let mut columns = run.trace().columns().to_vec();
         let place = run.trace().channels().iter().position(|channel| channel.name == name).unwrap();
-        columns[place].iter_mut().for_each(|value| *value *= factor);
+        columns[place].iter_mut().for_each(|value| *value *= coefficient);
         RunTable::new(run.meta().clone(), Trace::from_columns(run.trace().channels().to_vec(), columns)).unwrap()
     };
-    let told = |run: &RunTable| attention(run).iter().any(|said| said.contains("another unit"));
+    let reported = |run: &RunTable| attention(run).iter().any(|said| said.contains("another unit"));
     for folder in ["data", "hidden-effects"].into_iter().filter_map(shared) {
         for case in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
             let run = read(&case);
-            assert!(!told(&run), "{}: {:?}", case.display(), attention(&run));
+            assert!(!reported(&run), "{}: {:?}", case.display(), attention(&run));
             if run.kind() == Kind::Brake {
-                for (name, factor) in [("brake_current_a", 1e3), ("brake_current_a", 1e-3), ("brake_torque_nm", 1e-3)] {
-                    assert!(told(&scaled(&run, name, factor)), "{}: {name} times {factor}", case.display());
+                for (name, coefficient) in
+                    [("brake_current_a", 1e3), ("brake_current_a", 1e-3), ("brake_torque_nm", 1e-3)]
+                {
+                    assert!(
+                        reported(&scaled(&run, name, coefficient)),
+                        "{}: {name} times {coefficient}",
+                        case.display()
+                    );
                 }
             }
         }
@@ -159,7 +165,7 @@ fn placid_starts_like_a_square_and_cannot_show_hysteresis() {
 /// included no delay. A delay of three quarters of a sample between the two encoders explains 99 % of the squared
 /// difference. The torque, which follows speed here, had explained a part of it.
 #[test]
-fn kr300_has_a_late_encoder_where_its_authors_saw_compliance() {
+fn kr300_has_a_delayed_encoder_where_its_authors_saw_compliance() {
     let Some(data) = shared("data") else { return };
     let run = recording(&data, KR300);
     let spec = ModelSpec::baseline(&run).unwrap();
@@ -170,8 +176,8 @@ fn kr300_has_a_late_encoder_where_its_authors_saw_compliance() {
     let published = [mdeg(&[]), mdeg(&["compliance"]), mdeg(&["compliance", "transmission_error"])];
     let bounds = [(34.0, 41.0), (21.0, 27.0), (10.0, 20.0)];
     assert!(published.iter().zip(bounds).all(|(e, (low, high))| (low..high).contains(e)), "{published:?} mdeg");
-    let late = mdeg(&["delay"]);
-    assert!(late < 0.11 * published[0], "{late} mdeg");
+    let delayed = mdeg(&["delay"]);
+    assert!(delayed < 0.11 * published[0], "{delayed} mdeg");
     let found = discover(&run, &spec, &Options::default(), most(KR300), |_| {}).unwrap();
     let added: Vec<&str> = found.steps.iter().filter_map(|s| s.added.as_deref()).collect();
     assert_eq!(added[..2], ["delay", "transmission_error"], "{:?}", found.steps);

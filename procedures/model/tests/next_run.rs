@@ -64,7 +64,7 @@ fn strokes(name: &str, speeds: &[f64], load_nm: f64, duration_s: f64) -> Choice 
 const SPEEDS: [f64; 4] = [8.0, 20.0, 50.0, 100.0];
 
 #[test]
-fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
+fn a_third_load_distinguishes_a_line_from_a_square_and_the_same_load_does_not() {
     let first = bench(1).run_at(&[0.0, 8.0], with_square_of_load);
     let before = diagnosed(&first);
     let open = Open::from(&before);
@@ -99,10 +99,11 @@ fn a_third_load_tells_a_line_from_a_square_and_the_same_load_does_not() {
 
     // The user effect equals the named effect: it does not hide a candidate that a run can distinguish.
     let formula = if open.ties[0].0 == "load_linear" { "abs(load)" } else { "load^2" };
-    let twin = OwnEffect::inline(Kind::Friction, &format!("twin: tau = mu * {formula} * sign(velocity); mu")).unwrap();
-    let mut with_twin = Open { own: vec![twin], ..open.clone() };
-    with_twin.ties[0].1.push("twin".into());
-    let spared = next_run(&first, &with_twin, &menu, &Options::default()).unwrap().experiment.unwrap();
+    let is_replicate =
+        OwnEffect::inline(Kind::Friction, &format!("twin: tau = mu * {formula} * sign(velocity); mu")).unwrap();
+    let mut with_copy = Open { own: vec![is_replicate], ..open.clone() };
+    with_copy.ties[0].1.push("twin".into());
+    let spared = next_run(&first, &with_copy, &menu, &Options::default()).unwrap().experiment.unwrap();
     assert_eq!((&spared.procedure, spared.expected_z), (&next.procedure, next.expected_z), "{}", spared.why);
     assert!(spared.why.ends_with(&format!("distinguish {} from twin", open.ties[0].0)), "{}", spared.why);
 
@@ -170,7 +171,7 @@ fn diagnosed_with(run: &RunTable, model: &[&str]) -> Diagnosis {
 }
 
 #[test]
-fn another_speed_tells_play_in_a_coupling_from_a_delay() {
+fn another_speed_distinguishes_backlash_in_a_coupling_from_a_delay() {
     let names = ["velocity_rad_s", "reference_position_rad", "test_position_rad", "temperature_c"];
     let turned = |speeds: &[(f64, f64)]| {
         legs(Kind::Encoder, names, speeds, |angle, speed, _, noise| {
@@ -194,7 +195,7 @@ fn another_speed_tells_play_in_a_coupling_from_a_delay() {
 }
 
 #[test]
-fn more_power_ups_tell_a_zero_that_each_of_them_moves_from_a_slip() {
+fn more_power_ups_distinguish_a_start_up_offset_from_a_slip() {
     let names = ["velocity_rad_s", "reference_position_rad", "test_position_rad", "temperature_c"];
     let out_and_back = [(20.0, 0.0), (-20.0, 0.0)];
     // The second half has an offset of 0.5 mrad: a slip, or the second of two power-ups.

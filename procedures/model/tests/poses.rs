@@ -40,7 +40,7 @@ fn placed() -> RunTable {
 }
 
 #[test]
-fn where_the_stage_stands_is_an_axis_and_no_noise() {
+fn the_pose_of_the_stage_is_an_axis_and_no_noise() {
     let (run, options) = (placed(), Options::default());
     let spec = ModelSpec::new(Kind::Encoder, ["offset", "delay"]).unwrap();
     let found = diagnose(&run, &spec, &options).unwrap();

@@ -101,13 +101,13 @@ fn a_brake_decides_the_bands_of_its_hysteresis() {
 fn an_inertia_that_settled_motion_hardly_shows_is_held_against_the_set_up() {
     let Some(folder) = shared("hidden-effects") else { return };
     let run = read(&folder.join("friction-load_linear"));
-    let told = |run: &RunTable| fit(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap();
-    let found = told(&run);
+    let reported = |run: &RunTable| fit(run, &ModelSpec::baseline(run).unwrap(), &Options::default()).unwrap();
+    let found = reported(&run);
     let note = found.notes.iter().find(|note| note.contains("the set-up states")).unwrap();
     assert!(note.starts_with("the run does not determine the inertia") && note.contains("4.48e-5 kg·m²"), "{note}");
     let inertia = found.parameters.iter().find(|p| p.effect == "inertia").unwrap();
     assert!(inertia.state == ParameterState::Unidentified && inertia.ci95[1] >= 4.48e-5, "{inertia:?}");
     let meta = jointbench_instrument::Meta { rotor_inertia_kg_m2: Some(inertia.value), ..run.meta().clone() };
-    let agreed = told(&RunTable::new(meta, run.trace().clone()).unwrap());
+    let agreed = reported(&RunTable::new(meta, run.trace().clone()).unwrap());
     assert_eq!(agreed.notes.iter().find(|note| note.contains("the set-up states")), None);
 }

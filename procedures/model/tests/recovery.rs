@@ -96,8 +96,8 @@ fn what_is_taken_out_of_a_complete_model_is_what_is_named() {
 fn a_run_of_many_chunks_says_the_same_in_fewer_rows() {
     let run = bench(8).run(|m| dry(m) + 0.004 * m.link.cos());
     let spec = ModelSpec::baseline(&run).unwrap();
-    let told = |chunk_s| diagnose(&run, &spec, &Options { chunk_s, ..Options::default() }).unwrap();
-    let (few, many) = (told(None), told(Some(0.004)));
+    let reported = |chunk_s| diagnose(&run, &spec, &Options { chunk_s, ..Options::default() }).unwrap();
+    let (few, many) = (reported(None), reported(Some(0.004)));
     let settled = run.len() * 3 / 4;
     assert!((2_000..12_000).contains(&many.fit.preparation.rows) && settled > 12_000, "{:?}", many.fit.preparation);
     for found in [&few, &many] {
@@ -133,7 +133,7 @@ fn what_the_library_does_not_know_is_called_structure_and_shown() {
 }
 
 #[test]
-fn where_a_model_fails_is_told_by_what_it_leaves() {
+fn regions_follow_from_the_residual() {
     // A Stribeck effect at the end of its range imitates the viscous friction.
     let run = bench(9).run(dry);
     let spec = ModelSpec::new(run.kind(), ["load_transmission", "coulomb", "stribeck"]).unwrap();

@@ -30,14 +30,14 @@ fn swings(shift: f64) -> Diagnosis {
 }
 
 #[test]
-fn repeats_of_one_motion_tell_the_noise() {
+fn repeats_of_one_motion_determine_the_noise() {
     let found = swings(0.0);
     assert!(found.noise_floor_rms.is_some_and(|rms| rms < 1e-3), "{:?}", found.noise_floor);
     assert_eq!((found.verdict, &found.undecided), (Verdict::Adequate, &None), "{}", found.summary);
 }
 
 #[test]
-fn repeats_of_different_motions_tell_nothing() {
+fn repeats_of_different_motions_determine_no_noise() {
     let found = swings(1.3);
     assert_eq!(found.noise_floor_rms, None);
     assert!(found.noise_floor.source.contains("different motions; their"), "{}", found.noise_floor.source);
@@ -118,7 +118,7 @@ fn kr300_repeats_are_different_motions() {
 
 /// Slow legs with repeats, and fast legs with 50 % more noise without repeats.
 #[test]
-fn an_error_above_what_repeats_show_is_told() {
+fn an_error_above_the_noise_floor_is_reported() {
     const STEP_S: f64 = 0.004;
     let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a segment repeat";
     let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());

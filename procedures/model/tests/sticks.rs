@@ -29,15 +29,15 @@ fn wanted(step: usize) -> f64 {
     40.0 * (wave(2.0, 0.4) + 0.7 * wave(5.0, 1.9) + 0.6 * wave(11.0, 4.0) + 0.5 * wave(17.0, 2.5))
 }
 
-/// Four repeats of one motion under a speed controller. The current is read with a delay of `late` steps, and the
+/// Four repeats of one motion under a speed controller. The current is read with a delay of `delayed` steps, and the
 /// presliding displacement is `reach` [rad].
-fn moving(late: usize, reach: f64) -> RunTable {
+fn moving(delayed: usize, reach: f64) -> RunTable {
     let names = "time_s motor_position_rad motor_velocity_rad_s motor_current_a repeat";
     let mut trace = Trace::new(names.split(' ').map(Channel::new).collect());
     let gain = INERTIA * TAU * 18.0;
     let (mut speed, mut estimate) = (wanted(0), wanted(0));
     let (mut position, mut sum, mut bent) = (0.0, 0.0, 1.0f64);
-    let mut torques = vec![0.0; late + 1];
+    let mut torques = vec![0.0; delayed + 1];
     for i in 0..4 * PERIOD {
         let wanted = wanted(i);
         let error = wanted - estimate;
@@ -54,7 +54,7 @@ fn moving(late: usize, reach: f64) -> RunTable {
         estimate += (speed - estimate) * STEP_S / ESTIMATE_S;
         torques.push(torque);
         if i % EVERY == 0 {
-            let read = torques[torques.len() - 1 - late] + 1e-3 * scatter(i, 5);
+            let read = torques[torques.len() - 1 - delayed] + 1e-3 * scatter(i, 5);
             let velocity = estimate + 0.05 * scatter(i, 7);
             trace.push_row(&[STEP_S * i as f64, position, velocity, read / 0.08, (i / PERIOD) as f64]);
         }
@@ -63,8 +63,8 @@ fn moving(late: usize, reach: f64) -> RunTable {
     RunTable::new(Meta { gear_ratio: Some(1.0), baseline, ..meta(Kind::Friction) }, trace).unwrap()
 }
 
-fn diagnosed(late: usize, reach: f64) -> (Vec<String>, Diagnosis) {
-    let run = moving(late, reach);
+fn diagnosed(delayed: usize, reach: f64) -> (Vec<String>, Diagnosis) {
+    let run = moving(delayed, reach);
     let found = diagnose(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();
     (found.suggestions.iter().map(|s| s.effect.clone()).collect(), found)
 }
@@ -84,14 +84,14 @@ fn a_joint_that_sticks_hides_nothing() {
 }
 
 #[test]
-fn a_late_current_is_named_alone() {
+fn a_delayed_current_is_named_alone() {
     let (named, found) = diagnosed(16, 0.0);
     assert_eq!(named, ["signal_delay"], "{}", found.summary);
 }
 
 /// Which of two possible moments the torque of a row belongs to is unknown.
 #[test]
-fn a_current_between_position_and_velocity_is_not_late() {
+fn a_current_between_position_and_velocity_has_no_delay() {
     let (named, found) = diagnosed(2, 0.0);
     assert!(named.is_empty(), "{}", found.summary);
 }

@@ -67,7 +67,7 @@ fn a_weak_bump_is_no_wave_either() {
 
 /// A quarter of a period, which a slower and a faster wave fit as well, and one and a half periods, which none does.
 #[test]
-fn a_number_of_waves_that_the_run_does_not_tell_stays_open() {
+fn a_number_of_waves_that_the_run_does_not_determine_stays_open() {
     for (waves, size, is_open) in [(2.0, 3e-4, true), (12.0, 3e-4, false)] {
         let found = end(&run(|link: f64| size * (waves * link + 0.3).sin()));
         assert_eq!(found.model.last().map(String::as_str), Some("transmission_error"), "{}", found.summary);
@@ -76,8 +76,8 @@ fn a_number_of_waves_that_the_run_does_not_tell_stays_open() {
         assert_eq!(number.state != ParameterState::Ok, is_open, "{number:?}");
         assert_eq!(number.note.as_ref().is_some_and(|n| n.contains("over more of the turn")), is_open, "{number:?}");
         let of_truth = |name: &str, value: f64| {
-            let factor = found.fit.parameters.iter().find(|p| p.effect == "transmission_error" && p.name == name);
-            let [low, high] = factor.unwrap().ci95;
+            let coefficient = found.fit.parameters.iter().find(|p| p.effect == "transmission_error" && p.name == name);
+            let [low, high] = coefficient.unwrap().ci95;
             assert!(low <= value && value <= high, "{name}: {low} to {high} around {value}");
         };
         of_truth("a", size * 0.3f64.sin());

@@ -40,7 +40,7 @@ fn diagnosed(run: &RunTable) -> Diagnosis {
 }
 
 #[test]
-fn a_column_that_moves_with_the_temperature_is_told_beside_it() {
+fn a_column_that_moves_with_the_temperature_is_reported_with_it() {
     let oil = |time_s: f64| 1e5 - 2e3 * (waving_c(time_s) - 25.0) + 2e3 * (3.0 * time_s).sin();
     let air = |time_s: f64| 1e5 + 2e3 * (0.31 * time_s).sin();
     let run = run(waving_c, &[("oil_pressure_pa", &oil), ("air_pressure_pa", &air)]);
@@ -48,8 +48,8 @@ fn a_column_that_moves_with_the_temperature_is_told_beside_it() {
     assert!(why.contains("oil_pressure_pa moves with temperature_c in this data (r = -0.9"), "{why}");
     assert!(!why.contains("air_pressure_pa") && !why.contains("drift over time"), "{why}");
     let found = discover(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default(), 4, |_| {}).unwrap();
-    let told = found.fit.notes.iter().filter(|note| note.starts_with("oil_pressure_pa moves with")).count();
-    assert_eq!(told, 1, "{:?}", found.fit.notes);
+    let reported = found.fit.notes.iter().filter(|note| note.starts_with("oil_pressure_pa moves with")).count();
+    assert_eq!(reported, 1, "{:?}", found.fit.notes);
 }
 
 /// Speeds up and down, at the temperature of the end of the run.
@@ -66,7 +66,7 @@ fn strokes(duration_s: f64) -> Choice {
 }
 
 #[test]
-fn a_temperature_that_only_rose_with_time_is_no_drift_until_a_run_tells() {
+fn a_temperature_that_only_rose_with_time_is_no_drift_until_a_run_decides() {
     let run = run(warming_c, &[]);
     let found = diagnosed(&run);
     let why = &found.suggestions[0].why;

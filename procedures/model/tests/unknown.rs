@@ -43,7 +43,7 @@ fn diagnosed(run: &RunTable) -> Diagnosis {
 }
 
 #[test]
-fn structure_over_an_unknown_column_is_told_over_it() {
+fn structure_over_an_unknown_column_is_reported_over_it() {
     let run = run(COLUMN, 3e-3);
     let found = diagnosed(&run);
     assert_eq!(found.verdict, Verdict::UnexplainedStructure, "{}", found.summary);
@@ -60,7 +60,7 @@ fn structure_over_an_unknown_column_is_told_over_it() {
 }
 
 #[test]
-fn friction_that_grows_with_an_unknown_column_is_told_too() {
+fn friction_that_grows_with_an_unknown_column_is_reported_too() {
     // Over the column alone both directions cancel, and as no two repeats have the same pressure it would count as
     // noise.
     let found = diagnosed(&run_with(COLUMN, |sign| 6e-3 * sign));
@@ -75,7 +75,7 @@ fn a_column_that_moves_nothing_is_no_cause() {
 }
 
 #[test]
-fn what_the_drive_tells_of_its_own_effort_is_no_axis() {
+fn the_effort_of_the_drive_is_no_axis() {
     for column in ["bus_current_a", "other_torque_nm", "output_position_rad", "torque_skew_s", "state"] {
         let run = run(column, 0.0);
         let fitted = fit(&run, &ModelSpec::baseline(&run).unwrap(), &Options::default()).unwrap();

@@ -34,7 +34,7 @@ fn run() -> RunTable {
 }
 
 #[test]
-fn what_is_small_beside_eccentricity_is_found_all_the_same() {
+fn small_waves_are_found_next_to_a_large_eccentricity() {
     let run = run();
     let spec = ModelSpec::parse(Kind::Encoder, "offset,delay").unwrap();
     let found = discover(&run, &spec, &Options::default(), 6, |_| {}).unwrap();

@@ -84,7 +84,7 @@ pub(crate) struct Columns {
     /// Set for a brake run: the last commanded direction of the shaft.
     braked_way: Option<f64>,
     /// Motor turns for each turn of the shaft whose velocity is also recorded.
-    told_gear_ratio: Option<f64>,
+    velocity_gear_ratio: Option<f64>,
     /// The plan commands motor current, which is recorded in motor_current_setpoint_a.
     commands_current: bool,
     /// Thermometer channels that replace the joint's temperature: 0 or 1.
@@ -147,13 +147,13 @@ impl Columns {
         if commands_current {
             channels.push(channel(MOTOR_CURRENT_SETPOINT, None));
         }
-        let told = match plan.kind {
+        let velocity_name = match plan.kind {
             Kind::Brake => Some("velocity_rad_s"),
             Kind::Stiffness => Some("link_velocity_rad_s"),
             Kind::Encoder => Some("velocity_rad_s"),
             Kind::Friction => None,
         };
-        channels.extend(told.map(|name| channel(name, None)));
+        channels.extend(velocity_name.map(|name| channel(name, None)));
         if plan.kind == Kind::Encoder {
             channels.extend(encoder_columns::channels(bench, placed));
         }
@@ -165,7 +165,8 @@ impl Columns {
             brake_nm_per_a,
             braked_way: is_brake.then_some(1.0),
             // The encoders of an encoder bench are on the motor's shaft.
-            told_gear_ratio: told.map(|_| if plan.kind == Kind::Encoder { 1.0 } else { bench.constants.gear_ratio }),
+            velocity_gear_ratio: velocity_name
+                .map(|_| if plan.kind == Kind::Encoder { 1.0 } else { bench.constants.gear_ratio }),
             commands_current,
             standing_in,
         }
@@ -202,7 +203,7 @@ impl Columns {
         }
         row.push(moment.velocity_setpoint_rad_s);
         row.extend(self.commands_current.then_some(moment.motor_current_setpoint_a));
-        row.extend(self.told_gear_ratio.map(|gear_ratio| moment.joint.motor_velocity.0 / gear_ratio));
+        row.extend(self.velocity_gear_ratio.map(|gear_ratio| moment.joint.motor_velocity.0 / gear_ratio));
         if let Some(encoders) = &moment.encoders {
             encoder_columns::row(encoders, moment.pose, row);
         }

@@ -52,7 +52,7 @@ impl Edge {
 
 /// Progress of the search, in parts of the direction.
 #[derive(Debug, Clone)]
-pub(crate) struct Hunt {
+pub(crate) struct EdgeSearch {
     edge: Edge,
     at: u32,
     /// The farthest consistent part.
@@ -61,7 +61,7 @@ pub(crate) struct Hunt {
     bad: Option<u32>,
 }
 
-impl Hunt {
+impl EdgeSearch {
     pub fn new(edge: Edge) -> Self {
         Self { edge, at: 0, good: 0, bad: None }
     }
@@ -102,19 +102,19 @@ mod tests {
     };
 
     /// Number of tries and the last consistent position [m].
-    fn hunt(consistent: impl Fn(f64) -> bool) -> (u32, f64, Option<u32>) {
-        let mut hunt = Hunt::new(WAY);
+    fn search(consistent: impl Fn(f64) -> bool) -> (u32, f64, Option<u32>) {
+        let mut search = EdgeSearch::new(WAY);
         let (mut tries, mut at) = (1, 0);
-        while let Some(next) = hunt.next(consistent(WAY.pose(at).shift_m[0])) {
+        while let Some(next) = search.next(consistent(WAY.pose(at).shift_m[0])) {
             (tries, at) = (tries + 1, next);
         }
-        (tries, WAY.pose(hunt.good).shift_m[0], hunt.bad)
+        (tries, WAY.pose(search.good).shift_m[0], search.bad)
     }
 
     #[test]
     fn an_edge_is_found_within_one_part_and_in_the_tries_that_were_planned() {
         for edge_mm in [-0.005, -0.08, -0.25, -0.2501, -0.399] {
-            let (tries, good_m, bad) = hunt(|at_m| at_m >= 1e-3 * edge_mm);
+            let (tries, good_m, bad) = search(|at_m| at_m >= 1e-3 * edge_mm);
             assert!(tries <= WAY.tries(), "{tries} tries");
             assert!((0.0..0.0101).contains(&(1e3 * good_m - edge_mm)), "{good_m} m for {edge_mm} mm");
             assert!(bad.is_some());
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn no_edge_is_none_and_a_bad_start_ends_at_once() {
-        assert_eq!(hunt(|_| true), (6, -0.4e-3, None));
-        assert_eq!(hunt(|_| false), (1, 0.0, Some(0)));
+        assert_eq!(search(|_| true), (6, -0.4e-3, None));
+        assert_eq!(search(|_| false), (1, 0.0, Some(0)));
     }
 }

@@ -83,10 +83,10 @@ impl Profile {
     /// The integral from the start to each knot.
     pub fn integral(&self) -> Vec<f64> {
         let mut sum = 0.0;
-        let pieces = self.knots.windows(2).map(|pair| (pair[1].0 - pair[0].0) * 0.5 * (pair[0].1 + pair[1].1));
+        let areas = self.knots.windows(2).map(|pair| (pair[1].0 - pair[0].0) * 0.5 * (pair[0].1 + pair[1].1));
         std::iter::once(0.0)
-            .chain(pieces.map(|piece| {
-                sum += piece;
+            .chain(areas.map(|area| {
+                sum += area;
                 sum
             }))
             .collect()
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plateau_rises_holds_and_falls() {
+    fn a_leg_rises_holds_and_falls() {
         let profile = Profile::plateau(-10.0, 20.0, 2.0);
         assert_eq!(profile.duration_s(), 3.0);
         for (t_s, value) in

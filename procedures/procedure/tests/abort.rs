@@ -78,7 +78,7 @@ fn ended_by(control: Control) -> (RunState, Vec<String>, f64) {
 }
 
 #[test]
-fn a_stop_unloads_the_brake_and_an_abort_tells_what_it_leaves() {
+fn a_stop_unloads_the_brake_and_an_abort_reports_its_remanence() {
     let (state, notes, stopped_nm) = ended_by(Control::Stop);
     assert_eq!(state, RunState::Stopped);
     assert!(!notes.iter().any(|note| note.contains("Demagnetise")), "{notes:?}");

@@ -78,14 +78,14 @@ fn check(id: &str, instrument: MockInstrument, trouble: Trouble, named: &str, sa
     assert_eq!(end.rows, times_s.len() as u64, "{case}");
     assert!(end.rows > 0 && times_s.windows(2).all(|pair| pair[0] < pair[1]), "{case}");
     // A loose contact shows when the brake has to hold a current; of gaps only many are a failure.
-    let shows_late = [Trouble::CurrentLost, Trouble::StreamGap].contains(&trouble);
-    let latest_s = if shows_late { f64::INFINITY } else { FROM_S + NOTICED_S };
+    let shows_with_delay = [Trouble::CurrentLost, Trouble::StreamGap].contains(&trouble);
+    let latest_s = if shows_with_delay { f64::INFINITY } else { FROM_S + NOTICED_S };
     assert!(times_s.last().is_some_and(|last_s| *last_s <= latest_s), "{case}: {:?}", times_s.last());
 
     mock.trouble(instrument, Trouble::None);
     bench.clock.sleep_until_s(bench.clock.now_s() + 3.0);
     // The first reply of an instrument after a loss of power reports that loss.
-    let _told = bench.joint.recover();
+    let _reply = bench.joint.recover();
     let secured = secure(&mut bench);
     assert_eq!(secured.safe, Safe::SafeVerified, "{case}: {:?}", secured.notes);
     assert!(!bench.joint.health().unwrap().armed, "{case}");
@@ -189,7 +189,7 @@ fn a_torque_stream_that_fails_ends_its_run_and_the_bench_is_read_back_safe() {
 }
 
 #[test]
-fn a_gap_in_the_torque_stream_is_told_and_stays_one() {
+fn a_gap_in_the_torque_stream_is_reported_and_not_filled() {
     let short = json!({"load_levels": 3, "dwell_s": 0.5, "top_load": 0.3});
     let gaps = (MockInstrument::TorqueSensor, Trouble::StreamGap, FROM_S, Some(FROM_S + 0.6));
     let (_mock, mut bench) = start([gaps]);
@@ -207,8 +207,8 @@ fn a_gap_in_the_torque_stream_is_told_and_stays_one() {
         .collect();
     assert!(!counts.is_empty() && counts.iter().all(|count| *count == 8), "{counts:?}");
     let missing: u64 = counts.iter().sum();
-    let told = format!("{missing} torque samples are missing");
-    assert!(events.iter().any(|event| matches!(event, EventKind::Warning { text } if text.contains(&told))));
+    let reported = format!("{missing} torque samples are missing");
+    assert!(events.iter().any(|event| matches!(event, EventKind::Warning { text } if text.contains(&reported))));
     // Eight samples are two rows at 250 Hz: these are missing, and the other rows are unchanged.
     let holes = times_s.windows(2).filter(|pair| (0.0061..0.1).contains(&(pair[1] - pair[0]))).count();
     assert_eq!(holes, counts.len());

@@ -26,8 +26,8 @@ fn run(bench: &mut Bench, id: &str, parameters: Value) -> Identification {
     let finds = procedure(id).unwrap().finds();
     for quantity in &found.quantities {
         println!("  {} = {:.6e} {} {:?}", quantity.name, quantity.value, quantity.unit, quantity.ci95);
-        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
-        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
+        let is_declared = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_declared, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
     }
     assert_eq!(found.verdict, Verdict::Identified);
     found
@@ -260,10 +260,10 @@ fn the_dry_run_says_nothing_of_a_brake_where_there_is_none() {
     let (_, _mock, bench) = open(1, false);
     let facts = BenchFacts::of(&bench);
     let preview = procedure("encoder_offset").unwrap().plan(&Default::default(), &facts).unwrap().preview(&facts);
-    let told: Vec<_> =
+    let reported: Vec<_> =
         preview.extremes.iter().map(|one| one.quantity).chain(preview.checks.iter().map(|one| one.name)).collect();
-    assert!(told.contains(&"motor velocity") && told.contains(&"limits"), "{told:?}");
-    assert!(!told.iter().any(|name| name.contains("brake") || name.contains("torque")), "{told:?}");
+    assert!(reported.contains(&"motor velocity") && reported.contains(&"limits"), "{reported:?}");
+    assert!(!reported.iter().any(|name| name.contains("brake") || name.contains("torque")), "{reported:?}");
 }
 
 #[test]
@@ -275,10 +275,10 @@ fn offset_and_delay_are_those_that_the_mock_was_given() {
     let effects = ["offset", "harmonic_1", "harmonic_2", "delay"].map(String::from);
     let spec = ModelSpec::new(conducted.table.kind(), &effects).unwrap();
     let model = fit(&conducted.table, &spec, &Options::default()).unwrap();
-    let told = offset.summary.split("(truncated) it is ").nth(1).and_then(|rest| rest.split(' ').next());
-    let told_rad = 1e-3 * told.unwrap().parse::<f64>().unwrap();
+    let reported = offset.summary.split("(truncated) it is ").nth(1).and_then(|rest| rest.split(' ').next());
+    let stated_rad = 1e-3 * reported.unwrap().parse::<f64>().unwrap();
     assert!(
-        (told_rad - model.parameters[0].value).abs() < POINT_RAD,
+        (stated_rad - model.parameters[0].value).abs() < POINT_RAD,
         "{}: {}",
         offset.summary,
         model.parameters[0].value

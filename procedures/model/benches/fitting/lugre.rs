@@ -34,8 +34,8 @@ pub fn measure(rows: usize) {
     let effect = find(Kind::Friction, "presliding").expect("the library has it");
     let (here_s, states) = least_s(5, || effect.columns("lugre", &SHAPE, &view));
     let of_peer = OF_PEER.min(rows);
-    let beside = peer::ask("lugre", &[&velocity[..of_peer]]);
-    let apart = beside.as_ref().map_or(String::new(), |(_, there)| {
+    let scipy = peer::ask("lugre", &[&velocity[..of_peer]]);
+    let apart = scipy.as_ref().map_or(String::new(), |(_, there)| {
         let squares: f64 = states[0].iter().zip(there).map(|(a, b)| (a - b).powi(2)).sum();
         let rms = (squares / of_peer as f64).sqrt();
         assert!(rms < 0.1, "the states differ by {rms} of the friction");
@@ -43,5 +43,5 @@ pub fn measure(rows: usize) {
     });
     let what = format!("LuGre state on noisy velocity, a sample of {rows}");
     let peer = format!("SciPy odeint (LSODA){apart}, a sample of {of_peer}");
-    line(&what, here_s / rows as f64, &peer, beside.map(|b| b.0 / of_peer as f64), 500.0);
+    line(&what, here_s / rows as f64, &peer, scipy.map(|b| b.0 / of_peer as f64), 500.0);
 }

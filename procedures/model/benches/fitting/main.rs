@@ -30,11 +30,11 @@ fn least_s<T>(times: usize, mut work: impl FnMut() -> T) -> (f64, T) {
 }
 
 /// A line of the table. The peer's duration is `None` if it is missing.
-fn line(what: &str, here_s: f64, beside: &str, beside_s: Option<f64>, bar: f64) {
-    match beside_s {
-        Some(s) => println!("| {what} | {} | {beside}: {} | {:.1} | ≥ {bar} |", show(here_s), show(s), s / here_s),
+fn line(what: &str, here_s: f64, peer: &str, peer_s: Option<f64>, bar: f64) {
+    match peer_s {
+        Some(s) => println!("| {what} | {} | {peer}: {} | {:.1} | ≥ {bar} |", show(here_s), show(s), s / here_s),
         None => {
-            println!("| {what} | {} | {beside}: skipped, python3 with SciPy is missing | – | ≥ {bar} |", show(here_s))
+            println!("| {what} | {} | {peer}: skipped, python3 with SciPy is missing | – | ≥ {bar} |", show(here_s))
         }
     }
 }

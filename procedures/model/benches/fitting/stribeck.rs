@@ -15,26 +15,26 @@ const NAMES: [&str; 6] = ["tau_0", "tau_c", "c_v", "tau_s", "omega_s", "delta"];
 pub fn measure(rows: usize) {
     let columns = columns(rows);
     let torque: Vec<f64> = columns[3].iter().map(|i| TORQUE_CONSTANT * i).collect();
-    let beside = peer::ask("stribeck", &[&columns[2], &torque]);
+    let scipy = peer::ask("stribeck", &[&columns[2], &torque]);
     let run = table(columns);
     let spec = ModelSpec::new(Kind::Friction, EFFECTS).expect("the library has these");
     let (here_s, found) = least_s(15, || fit(&run, &spec, &Options::default()).expect("the run can be fitted"));
     let prepared = prepare(&run, &Options::default()).expect("the run can be prepared");
     let (search_s, _) = least_s(15, || fit_prepared(&prepared, &spec, &Options::default()).expect("as before"));
-    for (name, there) in NAMES.iter().zip(beside.iter().flat_map(|(_, answer)| answer)) {
+    for (name, there) in NAMES.iter().zip(scipy.iter().flat_map(|(_, answer)| answer)) {
         let here = value(&found, name);
         assert!((here / there - 1.0).abs() < 0.02, "{name}: {here} here, {there} there");
     }
-    let beside_s = beside.map(|b| b.0);
+    let scipy_s = scipy.map(|b| b.0);
     let peer = "SciPy least_squares, analytic Jacobian, all rows";
     line(
         &format!("Stribeck fit with intervals from {rows} rows: steps averaged, then fitted"),
         here_s,
         peer,
-        beside_s,
+        scipy_s,
         15.0,
     );
-    line("the same of a run that is averaged already", search_s, peer, beside_s, 15.0);
+    line("the same of a run that is averaged already", search_s, peer, scipy_s, 15.0);
 }
 
 fn value(fit: &Fit, name: &str) -> f64 {

@@ -100,8 +100,8 @@ fn scipy(columns: &[Vec<f64>]) -> Option<f64> {
     let bytes: Vec<u8> = columns.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
     std::fs::write(&file, bytes).expect("the temporary folder can be written");
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/selection/peer.py");
-    let told = Command::new("python3").arg(script).arg(&file).output();
+    let output = Command::new("python3").arg(script).arg(&file).output();
     std::fs::remove_file(&file).expect("the file was written");
-    let told = told.ok().filter(|t| t.status.success())?;
-    String::from_utf8(told.stdout).ok()?.trim().parse().ok()
+    let output = output.ok().filter(|t| t.status.success())?;
+    String::from_utf8(output.stdout).ok()?.trim().parse().ok()
 }

@@ -128,10 +128,10 @@ pub fn run(effect: &str, size: Rms, dice: &mut Dice) -> RunTable {
         Rms::AugmentedGrams(size) => (size, &left_over(shape.clone(), &columns[2])),
         Rms::Whole(size) => (size, &shape),
     };
-    let factor = size / (counts.iter().map(|b| b * b).sum::<f64>() / counts.len() as f64).sqrt();
+    let coefficient = size / (counts.iter().map(|b| b * b).sum::<f64>() / counts.len() as f64).sqrt();
     // More friction near standstill and under load; the others have either sign.
     let sign = if ["stribeck", "load_linear"].contains(&effect) { 1.0 } else { dice.sign() };
-    let current = torque.iter().zip(&shape).map(|(t, s)| (t + sign * factor * s) / 0.08).collect();
+    let current = torque.iter().zip(&shape).map(|(t, s)| (t + sign * coefficient * s) / 0.08).collect();
     table(columns, current)
 }
 

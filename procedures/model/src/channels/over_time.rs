@@ -50,8 +50,8 @@ pub fn integral(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     for stretch in stretches(time_s) {
         for i in stretch.clone() {
             if i > stretch.start {
-                let piece = (values[i] + values[i - 1]) / 2.0 * (time_s[i] - time_s[i - 1]);
-                sum += if piece.is_finite() { piece } else { 0.0 };
+                let area = (values[i] + values[i - 1]) / 2.0 * (time_s[i] - time_s[i - 1]);
+                sum += if area.is_finite() { area } else { 0.0 };
             }
             sums[i] = sum;
         }

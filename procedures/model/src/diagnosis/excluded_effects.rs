@@ -22,31 +22,32 @@ pub struct ExcludedEffects {
 
 impl ExcludedEffects {
     pub fn of(selected: &ModelSelection) -> Self {
-        let ModelSelection { withdrawn, ties, silences, .. } = selected;
+        let ModelSelection { withdrawn, ties, detection_limits, .. } = selected;
         let end = selected.end();
-        let on_ramps = ramp_stage::silence(end);
-        let around_reversals = hysteresis_stage::silences(end);
-        let silences: Vec<&DetectionLimit> = silences.iter().chain(&around_reversals).chain(&on_ramps).collect();
+        let on_ramps = ramp_stage::detection_limit(end);
+        let around_reversals = hysteresis_stage::detection_limits(end);
+        let detection_limits: Vec<&DetectionLimit> =
+            detection_limits.iter().chain(&around_reversals).chain(&on_ramps).collect();
         let largest = end.prepared.main.target.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let mut others = Self::default();
         let is_out = |effect: &&dyn Effect| !end.effects.iter().any(|e| e == effect.info().id);
         for effect in end.spec.known().filter(is_out) {
             let id = effect.info().id;
-            let tied = ties.iter().find(|(_, rival)| *rival == id);
+            let tied = ties.iter().find(|(_, scored)| *scored == id);
             let tied = tied.map(|(named, _)| format!("{named} is in the model, and this run cannot distinguish them"));
             let tried = withdrawn.iter().find(|w| w.effect == id).map(|w| w.why.words().to_owned());
             let refused = selected.decided.iter().flat_map(|decided| &decided.refused).find(|r| r.effect == id);
             let tried = tried.or_else(|| refused.map(Refused::why));
-            let silence = silences.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
+            let detection_limit = detection_limits.iter().find(|s| s.effect == id && s.detectable_rms.is_finite());
             if let Some(why) = tried.or_else(|| given(effect, end).map(String::from)) {
                 others.left_out.push(LeftOut { effect: id.into(), why: tied.unwrap_or(why) });
-            } else if silence.is_some_and(|silence| silence.detectable_rms > largest) {
+            } else if detection_limit.is_some_and(|detection_limit| detection_limit.detectable_rms > largest) {
                 others.invisible.push(Invisible { effect: id.into(), why: TOO_LARGE.into() });
-            } else if let Some(silence) = silence {
+            } else if let Some(detection_limit) = detection_limit {
                 let sought = sought(effect, end);
                 others.silent.push(Silent {
                     effect: id.into(),
-                    minimum_detectable_rms: silence.detectable_rms,
+                    minimum_detectable_rms: detection_limit.detectable_rms,
                     sought,
                 });
             } else {

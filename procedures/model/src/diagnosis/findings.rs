@@ -2,7 +2,7 @@
 
 use crate::diagnosis::excluded_effects::ExcludedEffects;
 use crate::preprocess::Prepared;
-use crate::regression::cross_validation::held_out_rms;
+use crate::regression::cross_validation::validation_rms;
 use crate::regression::linear_model::LinearModel;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Imitated, Invisible, LeftOut, NoiseFloor, Silent, Verdict};
@@ -30,7 +30,7 @@ pub struct Findings<'p> {
     /// Events that do not repeat.
     pub events: Vec<Event>,
     pub floor: NoiseFloor,
-    pub end_held_out_rms: f64,
+    pub end_validation_rms: f64,
     /// Effects of the last model with the effects that are confounded with them.
     ties: Vec<(&'p str, &'p str)>,
     /// Effects of the last model that hardly reduce the error, but prevent biased coefficients.
@@ -61,7 +61,7 @@ impl<'p> Findings<'p> {
         let floor = noise_floor::noise_floor(prepared, &selected.residual, remembers, &events);
         let scatters = selected.decided.is_none()
             && lack_of_fit::is_scatter(&selected.now, &selected.maps, &selected.residual, &floor, prepared, options);
-        let end_held_out_rms = held_out_rms(&selected.end().main);
+        let end_validation_rms = validation_rms(&selected.end().main);
         let ModelSelection { start, advances, withdrawn, maps, ties, upheld, open, decided, .. } = selected;
         Ok(Self {
             start,
@@ -72,7 +72,7 @@ impl<'p> Findings<'p> {
             scatters,
             events,
             floor,
-            end_held_out_rms,
+            end_validation_rms,
             ties,
             upheld,
             open,
@@ -101,12 +101,12 @@ impl<'p> Findings<'p> {
 
     /// Effects that are confounded with an effect of the last model: the model is as good with them in its place.
     pub fn ties_of(&self, effect: &str) -> Vec<String> {
-        self.ties.iter().filter(|(e, _)| *e == effect).map(|(_, rival)| (*rival).into()).collect()
+        self.ties.iter().filter(|(e, _)| *e == effect).map(|(_, scored)| (*scored).into()).collect()
     }
 
     /// Whether the effect is confounded with an effect of the last model.
-    pub fn is_rival(&self, effect: &str) -> bool {
-        self.ties.iter().any(|(_, rival)| *rival == effect)
+    pub fn is_confounded(&self, effect: &str) -> bool {
+        self.ties.iter().any(|(_, scored)| *scored == effect)
     }
 
     /// Verdict on the last model.
@@ -134,7 +134,7 @@ impl<'p> Findings<'p> {
     /// Whether the validation error is far above the noise floor.
     pub fn exceeds_floor(&self) -> bool {
         let rounding = self.start.prepared.main.view.constants.rounding;
-        self.floor.rms.is_some_and(|floor| self.end_held_out_rms > FLOOR_RATIO * floor.hypot(rounding))
+        self.floor.rms.is_some_and(|floor| self.end_validation_rms > FLOOR_RATIO * floor.hypot(rounding))
     }
 
     /// Whether the residual is encoder quantization, even if it is repeatable.
@@ -150,7 +150,7 @@ impl<'p> Findings<'p> {
 
     /// Whether the residual is small relative to the measured signal, even if it is repeatable.
     pub fn is_negligible(&self) -> bool {
-        self.end().main.is_negligible(self.end_held_out_rms, self.start.prepared.kind)
+        self.end().main.is_negligible(self.end_validation_rms, self.start.prepared.kind)
     }
 
     /// Added effects of the last model by decreasing importance: the loss without each of them. This order is right
@@ -169,7 +169,7 @@ impl<'p> Findings<'p> {
         }
         if self.decided.is_some() {
             // In the order of addition, each with its error reduction at that time.
-            let taken = |advance: &SelectionStep| advance.added.as_ref().map_or(0.0, |rival| rival.share);
+            let taken = |advance: &SelectionStep| advance.added.as_ref().map_or(0.0, |scored| scored.share);
             return ranked.into_iter().rev().map(|(advance, _)| (advance, taken(advance))).collect();
         }
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -181,7 +181,7 @@ impl Findings<'_> {
     /// Relative reduction of the validation error by an effect of the last model.
     pub fn lost_without(&self, id: &str) -> f64 {
         let parts = parts_without(self.end(), id);
-        parts.first().map_or(0.0, |(part, without)| 1.0 - held_out_rms(part) / held_out_rms(without))
+        parts.first().map_or(0.0, |(part, without)| 1.0 - validation_rms(part) / validation_rms(without))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::fit::{report, written};
 use crate::inference::confounding;
 use crate::linear::basis::dot;
 use crate::preprocess::{Prepared, prepare};
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::report::diagnosis::{Diagnosis, Discovery, Evidence, Experiment, Step, Suggestion, Verdict};
 use crate::report::fit::Parameter;
@@ -43,8 +43,8 @@ pub fn diagnose(run: &RunTable, spec: &ModelSpec, options: &Options) -> Result<D
     let maps = of_start.as_ref().unwrap_or(&found.maps);
     let mut regions = regions(maps, &fit, &found, verdict == Verdict::Adequate && undecided.is_none());
     let remembering = found.ranking().into_iter().filter_map(|(advance, _)| advance.added.as_ref());
-    let apart = remembering.filter(|rival| found.start.is_apart(rival.term.effect));
-    let reach = apart.filter_map(|rival| rival.term.shape.first().copied());
+    let apart = remembering.filter(|scored| found.start.is_apart(scored.term.effect));
+    let reach = apart.filter_map(|scored| scored.term.shape.first().copied());
     let measure = yardstick(&fit, Some(&found.floor));
     let reversals = reach.filter_map(|reach| reversals::region(&found.start, reach, &fit, measure.as_ref()));
     regions.splice(0..0, reversals.collect::<Vec<_>>());
@@ -139,7 +139,7 @@ fn step(model: &TwoStageModel, advance: Option<&SelectionStep>) -> Step {
         confounded_with: advance.map_or_else(Vec::new, |a| a.ties.iter().map(|t| (*t).into()).collect()),
         model: model.effects.clone(),
         rms: (dot(&residual, &residual) / n).sqrt(),
-        validation_rms: (held_out(&model.main).iter().sum::<f64>() / n).sqrt(),
+        validation_rms: (validation_losses(&model.main).iter().sum::<f64>() / n).sqrt(),
     }
 }
 
@@ -152,25 +152,25 @@ fn suggestions(
 ) -> Result<Vec<Suggestion>, ModelError> {
     let mut out = Vec::new();
     for (advance, importance) in found.ranking() {
-        let Some(rival) = &advance.added else { continue };
-        let id = rival.term.id();
+        let Some(scored) = &advance.added else { continue };
+        let id = scored.term.id();
         let with = spec.with(id)?;
         let alone = TwoStageModel::new(found.start.prepared, &with, options)?;
         let with = report(&alone)?;
-        let apart = alone.is_apart(rival.term.effect);
+        let apart = alone.is_apart(scored.term.effect);
         let reduction = if apart {
-            1.0 - (1.0 - rival.share).max(0.0).sqrt()
+            1.0 - (1.0 - scored.share).max(0.0).sqrt()
         } else {
             1.0 - with.validation_rms / fit.validation_rms
         };
-        let info = rival.term.effect.info();
+        let info = scored.term.effect.info();
         let confounded_with = found.ties_of(id);
         let tie = if confounded_with.is_empty() {
             String::new()
         } else {
             let mut alike = Vec::new();
-            for rival in &confounded_with {
-                let other = spec.with(rival)?;
+            for scored in &confounded_with {
+                let other = spec.with(scored)?;
                 let other = TwoStageModel::new(found.start.prepared, &other, options)?;
                 alike.push(format!("{:.2}", evidence::correlation(&found.start.main, &alone.main, &other.main)));
             }
@@ -181,7 +181,7 @@ fn suggestions(
             )
         };
         let evidence = if apart {
-            format!("Around reversals it reduces the squared error by {}.", percent(rival.share))
+            format!("Around reversals it reduces the squared error by {}.", percent(scored.share))
         } else if let Some(upheld) = found.upheld.iter().find(|u| u.effect == id) {
             format!("Removing it hardly changes the error, but without it {}.", narrative::elsewhere(upheld, false))
         } else if found.decided.is_some() {
@@ -192,7 +192,7 @@ fn suggestions(
             format!("Removing it from the final model increases the squared error {times}-fold.")
         };
         let written = found.end().main.terms.iter().find(|term| term.id() == id).and_then(written);
-        let instead = confounding::instead(rival.term.effect, found.start.prepared);
+        let instead = confounding::instead(scored.term.effect, found.start.prepared);
         let also: String = written.into_iter().chain(instead).map(|said| format!(" {said}.")).collect();
         let why = format!("{} {evidence}{tie}{also}", info.sentence);
         let reduction_ci95 = (!apart).then(|| evidence::reduction(&found.start.main, &alone.main)).flatten();
@@ -203,9 +203,9 @@ fn suggestions(
             error_reduction: reduction,
             error_reduction_ci95: reduction_ci95,
             bic_change: (!apart).then(|| evidence::bic_change(&found.start.main, &alone.main)),
-            p_value: rival.p_value,
-            evidence: Evidence::of(rival.p_value, reduction, reduction_ci95, together),
-            p_at_most: found.decided.is_none() && rival.p_value * (options.flips + 1) as f64 <= 1.001,
+            p_value: scored.p_value,
+            evidence: Evidence::of(scored.p_value, reduction, reduction_ci95, together),
+            p_at_most: found.decided.is_none() && scored.p_value * (options.flips + 1) as f64 <= 1.001,
             error_reduction_together: together,
             parameters: complete.parameters.iter().filter(|p| p.effect == id).cloned().collect(),
             confounded_with,

@@ -20,7 +20,7 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
     let unit = Scale::of(fit.validation_rms, &fit.unit);
     let (error, floor) = (unit.figure(fit.validation_rms), floor(found, complete, &unit));
     let first = &suggestions[0];
-    let named: Vec<String> = suggestions.iter().map(or_rivals).collect();
+    let named: Vec<String> = suggestions.iter().map(with_confounded).collect();
     let with = unit.figure(first.validation_rms);
     let effect = &first.effect;
     let all = match suggestions.len() {
@@ -69,11 +69,11 @@ pub fn missing(found: &Findings, fit: &Fit, complete: &Fit, suggestions: &[Sugge
 }
 
 /// An effect with those that it is confounded with.
-fn or_rivals(suggestion: &Suggestion) -> String {
-    let Suggestion { effect, confounded_with: rivals, .. } = suggestion;
-    match rivals.is_empty() {
+fn with_confounded(suggestion: &Suggestion) -> String {
+    let Suggestion { effect, confounded_with: confounded, .. } = suggestion;
+    match confounded.is_empty() {
         true => effect.clone(),
-        false => format!("{effect} (or {}: this run cannot distinguish them)", rivals.join(" or ")),
+        false => format!("{effect} (or {}: this run cannot distinguish them)", confounded.join(" or ")),
     }
 }
 
@@ -313,36 +313,36 @@ fn unexplained(found: &Findings) -> &'static str {
 
 /// Rejected effects that would reduce the error, but whose size the run does not determine.
 fn undetermined<'f, 'p>(found: &'f Findings<'p>) -> impl Iterator<Item = &'f Withdrawn<'p>> {
-    let bound = TOLD_LOSS * found.end_held_out_rms;
-    found.withdrawn.iter().filter(move |w| w.why == RemovalReason::Unidentified && w.held_out_rms < bound)
+    let bound = TOLD_LOSS * found.end_validation_rms;
+    found.withdrawn.iter().filter(move |w| w.why == RemovalReason::Unidentified && w.validation_rms < bound)
 }
 
 /// Rejected effects with the reason.
 fn rejected(found: &Findings, unit: &str) -> String {
     // Effects that could replace an effect of the model are reported with that effect.
-    let open: Vec<&Withdrawn> = undetermined(found).filter(|w| !found.is_rival(w.effect)).collect();
+    let open: Vec<&Withdrawn> = undetermined(found).filter(|w| !found.is_confounded(w.effect)).collect();
     let rejected = |why: RemovalReason| -> Vec<&str> {
-        let of = found.withdrawn.iter().filter(|w| w.why == why && !found.is_rival(w.effect));
+        let of = found.withdrawn.iter().filter(|w| w.why == why && !found.is_confounded(w.effect));
         of.map(|w| w.effect).rev().collect()
     };
     let named: Vec<&str> = open.iter().map(|w| w.effect).rev().collect();
-    let with = open.iter().map(|w| w.held_out_rms).fold(f64::INFINITY, f64::min);
+    let with = open.iter().map(|w| w.validation_rms).fold(f64::INFINITY, f64::min);
     let open = (!open.is_empty()).then(|| {
         let (object, size) = if open.len() > 1 { ("the best of them", "their sizes") } else { ("it", "its size") };
-        let scale = Scale::of(found.end_held_out_rms, unit);
+        let scale = Scale::of(found.end_validation_rms, unit);
         format!(
             " Rejected: {}. With {object} the validation error would be {} instead of {}, but this run does not determine \
              {size}.",
             list(&named),
             scale.figure(with),
-            scale.figure(found.end_held_out_rms)
+            scale.figure(found.end_validation_rms)
         )
     });
     let for_reason = [RemovalReason::PartialExplanation, RemovalReason::Spurious].into_iter().filter_map(|why| {
         let effects = rejected(why);
         (!effects.is_empty()).then(|| format!(" Rejected: {} ({}).", list(&effects), why.words()))
     });
-    let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_rival(r.effect));
+    let refused = found.decided.iter().flat_map(|decided| &decided.refused).filter(|r| !found.is_confounded(r.effect));
     let refused = refused.map(|refused| format!(" Rejected: {} ({}).", refused.effect, refused.why()));
     open.into_iter().chain(for_reason).chain(refused).collect()
 }

@@ -8,7 +8,7 @@ pub(crate) mod simulate;
 pub(crate) mod unobserved;
 
 use crate::experiment_design::separation::{Noise, Side};
-use crate::experiment_design::simulate::imagine;
+use crate::experiment_design::simulate::simulate;
 use crate::inference::confounding;
 use crate::preprocess::{Prepared, prepare};
 use crate::regression::two_stage_model::TwoStageModel;
@@ -142,7 +142,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let gear = run.meta().gear_ratio.unwrap_or(1.0);
     let side = Side::new(&model.main, &noise);
     let known = menu.iter().filter(|choice| !choice.stretches.is_empty());
-    let mut imagined: Vec<_> = known.map(|choice| (choice, imagine(choice, &prepared, &model, gear))).collect();
+    let mut simulated: Vec<_> = known.map(|choice| (choice, simulate(choice, &prepared, &model, gear))).collect();
 
     let decided = |others: &[ModelSpec]| -> Result<Option<Bid>, ModelError> {
         let others = others.iter().map(|s| TwoStageModel::new(&prepared, s, options));
@@ -150,29 +150,30 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         let others: Vec<Side> = others.iter().map(|other| Side::new(&other.main, &noise)).collect();
         // An encoder is power-cycled only for effects that depend on it.
         let asks_for_power_ups = side.changes_by_run() || others.iter().any(Side::changes_by_run);
-        let useful = imagined.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
+        let useful = simulated.iter().filter(|(choice, _)| asks_for_power_ups || !choice.powers_anew());
         Ok(decide(useful.map(|(choice, problem)| {
             let apart = others.iter().map(|other| side.separation(other, problem, &noise));
             Bid { choice, z: apart.fold(f64::INFINITY, f64::min) }
         })))
     };
     let mut in_vain = Vec::new();
-    for (effect, rivals) in &open.ties {
-        let instead = |rival: &String| {
-            let effects: Vec<String> = open.model.iter().map(|e| if e == effect { rival } else { e }.clone()).collect();
+    for (effect, alternatives) in &open.ties {
+        let instead = |alternative: &String| {
+            let effects: Vec<String> =
+                open.model.iter().map(|e| if e == effect { alternative } else { e }.clone()).collect();
             spec(&effects)
         };
         // A candidate that no run separates does not prevent the separation of the others.
         let (mut apart, mut specs, mut alike, mut first) = (Vec::new(), Vec::new(), Vec::new(), None);
-        for rival in rivals.iter().filter(|rival| !open.model.contains(rival)) {
-            let other = [instead(rival)?];
+        for alternative in alternatives.iter().filter(|alternative| !open.model.contains(alternative)) {
+            let other = [instead(alternative)?];
             match decided(&other)? {
                 Some(bid) => {
                     first.get_or_insert(bid);
-                    apart.push(rival.clone());
+                    apart.push(alternative.clone());
                     specs.extend(other);
                 }
-                None => alike.push(rival.clone()),
+                None => alike.push(alternative.clone()),
             }
         }
         let vain = (!alike.is_empty()).then(|| format!("{effect} from {}", list(&alike)));
@@ -184,7 +185,7 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
         let bid = together.or(first);
         if let Some(bid) = bid {
             let question = format!("distinguish {effect} from {}", list(&apart));
-            let mut next = told(bid, &question, std::iter::once(effect).chain(&apart));
+            let mut next = experiment(bid, &question, std::iter::once(effect).chain(&apart));
             next.why.extend(
                 vain.map(|vain| format!("; no run within the limits of this bench is expected to distinguish {vain}")),
             );
@@ -195,11 +196,11 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     let next = if let Some(effect) = &open.imitated
         && let Some(bid) = decided(&[with_all.with(effect)?])?
     {
-        Some(told(bid, &format!("decide whether {effect} is present"), [effect]))
+        Some(experiment(bid, &format!("decide whether {effect} is present"), [effect]))
     } else if let Some((effect, spec)) = over_time(&with_all, &prepared)?
         && let Some(bid) = decided(&[spec])?
     {
-        Some(told(bid, &format!("distinguish {effect} from a drift over time"), [&effect]))
+        Some(experiment(bid, &format!("distinguish {effect} from a drift over time"), [&effect]))
     } else if !open.has_noise_floor
         && let Some(choice) = nearest(menu, &prepared)
     {
@@ -207,8 +208,8 @@ fn choose(run: &RunTable, open: &Open, menu: &[Choice], options: &Options) -> Re
     } else if open.has_structure {
         None
     } else {
-        imagined.retain(|(choice, _)| !choice.powers_anew());
-        unobserved::unseen(&model, &noise, &imagined)
+        simulated.retain(|(choice, _)| !choice.powers_anew());
+        unobserved::unseen(&model, &noise, &simulated)
     };
     let in_vain = (!in_vain.is_empty()).then(|| {
         let ties = list(&in_vain);
@@ -257,7 +258,7 @@ fn decide<'m>(bids: impl Iterator<Item = Bid<'m>>) -> Option<Bid<'m>> {
     shortest.or_else(|| bids.iter().max_by(|a, b| a.z.total_cmp(&b.z))).copied()
 }
 
-fn told<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String>) -> Experiment {
+fn experiment<'e>(bid: Bid, what: &str, separates: impl IntoIterator<Item = &'e String>) -> Experiment {
     let times = (SEPARATED_Z / bid.z).powi(2).ceil();
     let enough = if bid.z >= SEPARATED_Z {
         String::new()

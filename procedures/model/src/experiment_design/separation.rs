@@ -17,7 +17,7 @@ pub struct Noise {
 }
 
 /// Fewer replicate pairs than this do not estimate noise.
-const FEWEST_TWINS: usize = 8;
+const FEWEST_PAIRS: usize = 8;
 
 impl Noise {
     /// Estimated from repeats if there are any, otherwise from the residual of the model.
@@ -25,7 +25,7 @@ impl Noise {
         let problem = model.problem;
         let residual = model.linear().residual;
         let mut groups: Vec<((usize, usize), Vec<f64>)> = Vec::new();
-        if problem.replicate_pairs.len() >= FEWEST_TWINS {
+        if problem.replicate_pairs.len() >= FEWEST_PAIRS {
             let mut pairs: Vec<_> = problem
                 .replicate_pairs
                 .iter()
@@ -87,7 +87,7 @@ fn push(groups: &mut Vec<((usize, usize), Vec<f64>)>, key: (usize, usize), value
 /// A model on the measured run, with the information of that run about its parameters.
 pub struct Side<'a> {
     model: &'a LinearModel<'a>,
-    factors: Vec<Vec<f64>>,
+    coefficients: Vec<Vec<f64>>,
     /// Whitened columns and derivatives at the measured run.
     columns: Vec<Vec<f64>>,
     /// Information about all parameters, including nonlinear ones.
@@ -96,9 +96,9 @@ pub struct Side<'a> {
 
 impl<'a> Side<'a> {
     pub fn new(model: &'a LinearModel<'a>, noise: &Noise) -> Self {
-        let factors = model.linear().factors;
-        let columns = tangent(model, &factors, noise);
-        Self { model, gram: gram(&columns), columns, factors }
+        let coefficients = model.linear().coefficients;
+        let columns = tangent(model, &coefficients, noise);
+        Self { model, gram: gram(&columns), columns, coefficients }
     }
 
     /// Whether the model has a nuisance effect that differs in each run.
@@ -108,18 +108,18 @@ impl<'a> Side<'a> {
 
     /// Expected distance of the two models in standard deviations after the run, as the mean over both models being
     /// the true one.
-    pub fn separation(&self, rival: &Side, run: &Problem, noise: &Noise) -> f64 {
+    pub fn separation(&self, alternative: &Side, run: &Problem, noise: &Noise) -> f64 {
         let difference: Vec<f64> =
-            predict(self.model, run).iter().zip(predict(rival.model, run)).map(|(a, b)| a - b).collect();
+            predict(self.model, run).iter().zip(predict(alternative.model, run)).map(|(a, b)| a - b).collect();
         let difference = noise.whiten(&difference, run);
-        let (own, other) = (self.at(run, noise), rival.at(run, noise));
+        let (own, other) = (self.at(run, noise), alternative.at(run, noise));
         let one_way = |side: &Side, at: &There, wrong: &There| {
             // A term that only the other model has in the new run cannot be followed, unless this model has one as
             // well.
             let new = if at.new.is_empty() { wrong.new.as_slice() } else { &[] };
             std::iter::once(&difference).chain(new).map(|white| side.left_over(white, at)).sum::<f64>()
         };
-        (0.5 * (one_way(self, &own, &other) + one_way(rival, &other, &own))).max(0.0).sqrt()
+        (0.5 * (one_way(self, &own, &other) + one_way(alternative, &other, &own))).max(0.0).sqrt()
     }
 
     /// Squared norm of the remainder of a whitened column at the new run, after the model is refitted within the
@@ -163,17 +163,17 @@ impl<'a> Side<'a> {
     pub fn at(&self, run: &Problem, noise: &Noise) -> There {
         let there = elsewhere(self.model, run);
         let (mut known, mut new) = (Vec::new(), Vec::new());
-        for (term, factors) in there.terms.iter().zip(&self.factors) {
+        for (term, coefficients) in there.terms.iter().zip(&self.coefficients) {
             if !term.effect.is_nuisance() {
                 known.extend(term.columns.iter().map(|c| noise.whiten(c, run)));
                 continue;
             }
-            known.extend(factors.iter().map(|_| vec![0.0; run.rows()]));
-            let size = (dot(factors, factors) / factors.len().max(1) as f64).sqrt();
+            known.extend(coefficients.iter().map(|_| vec![0.0; run.rows()]));
+            let size = (dot(coefficients, coefficients) / coefficients.len().max(1) as f64).sqrt();
             let sized = |column: &Vec<f64>| column.iter().map(|x| size * x).collect::<Vec<f64>>();
             new.extend(term.columns.iter().map(|c| noise.whiten(&sized(c), run)));
         }
-        known.extend(there.slopes(&self.factors).into_iter().map(|(_, _, slope)| noise.whiten(&slope, run)));
+        known.extend(there.slopes(&self.coefficients).into_iter().map(|(_, _, slope)| noise.whiten(&slope, run)));
         There { known, new }
     }
 }
@@ -193,9 +193,9 @@ impl There {
 }
 
 /// Whitened columns of a model and its derivatives in the nonlinear parameters.
-fn tangent(model: &LinearModel, factors: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
+fn tangent(model: &LinearModel, coefficients: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
     let own = model.columns().into_iter().map(|c| noise.whiten(c, model.problem));
-    let slopes = model.slopes(factors).into_iter().map(|(_, _, slope)| noise.whiten(&slope, model.problem));
+    let slopes = model.slopes(coefficients).into_iter().map(|(_, _, slope)| noise.whiten(&slope, model.problem));
     own.chain(slopes).collect()
 }
 
@@ -214,10 +214,10 @@ fn elsewhere<'a>(model: &LinearModel<'a>, problem: &'a Problem) -> LinearModel<'
 pub fn predict(model: &LinearModel, problem: &Problem) -> Vec<f64> {
     let there = elsewhere(model, problem);
     let mut sum = vec![0.0; problem.rows()];
-    let terms = there.terms.iter().zip(model.linear().factors);
-    for (term, factors) in terms.filter(|(term, _)| !term.effect.is_nuisance()) {
-        for (column, factor) in term.columns.iter().zip(factors) {
-            sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+    let terms = there.terms.iter().zip(model.linear().coefficients);
+    for (term, coefficients) in terms.filter(|(term, _)| !term.effect.is_nuisance()) {
+        for (column, coefficient) in term.columns.iter().zip(coefficients) {
+            sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
         }
     }
     sum

@@ -23,7 +23,7 @@ const PAUSE_S: f64 = 60.0;
 
 /// Samples of the simulated run.
 #[derive(Default)]
-struct Laid {
+struct Samples {
     time_s: Vec<f64>,
     motor_rad: Vec<f64>,
     stretch: Vec<usize>,
@@ -34,16 +34,16 @@ struct Laid {
 /// Points and samples are spaced as in the measured run, so that periodic effects are attenuated at speed as in the
 /// data. The joint has the temperature of the end of that run, plus the warming of the choice. The run starts at the
 /// same position. `gear`: turns of the motor for each turn of the link.
-pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear: f64) -> Problem {
-    let laid = lay_out(choice, prepared);
-    let samples = signals(&laid, &choice.stretches, prepared, gear);
-    let mut points = Signals::new(laid.chunks.len());
+pub fn simulate(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear: f64) -> Problem {
+    let samples_of = sample_times(choice, prepared);
+    let samples = signals(&samples_of, &choice.stretches, prepared, gear);
+    let mut points = Signals::new(samples_of.chunks.len());
     for (signal, values) in samples.iter() {
         let mean = |c: &std::ops::Range<usize>| values[c.clone()].iter().sum::<f64>() / c.len() as f64;
-        points.set(signal, laid.chunks.iter().map(mean).collect());
+        points.set(signal, samples_of.chunks.iter().map(mean).collect());
     }
-    let rows = laid.chunks.len();
-    let mut view = View::new(points, samples, laid.chunks, vec![0], 1.0 / prepared.about.sample_rate_hz);
+    let rows = samples_of.chunks.len();
+    let mut view = View::new(points, samples, samples_of.chunks, vec![0], 1.0 / prepared.about.sample_rate_hz);
     view.constants = prepared.main.view.constants;
     let mut problem = Problem {
         view,
@@ -51,7 +51,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
         sampled: Arc::default(),
         reduce: Reduce::Same,
         blocks: choice.stretches.len(),
-        block: laid.block,
+        block: samples_of.block,
         fold: vec![0; rows],
         folds: 1,
         replicate_pairs: Vec::new(),
@@ -76,7 +76,7 @@ pub fn imagine(choice: &Choice, prepared: &Prepared, model: &TwoStageModel, gear
     problem
 }
 
-fn lay_out(choice: &Choice, prepared: &Prepared) -> Laid {
+fn sample_times(choice: &Choice, prepared: &Prepared) -> Samples {
     let about = &prepared.about;
     let sample_s = 1.0 / about.sample_rate_hz;
     // Neighbouring chunks of a long run were averaged.
@@ -84,27 +84,27 @@ fn lay_out(choice: &Choice, prepared: &Prepared) -> Laid {
     let averaged = chunks.iter().map(|c| c.len()).sum::<usize>() / chunks.len().max(1);
     let each = if about.chunk_s.is_some() { averaged.max(1) } else { 1 };
     let point_s = if about.chunk_s.is_some() { each } else { about.decimation } as f64 * sample_s;
-    let mut laid = Laid::default();
+    let mut samples_of = Samples::default();
     for (number, stretch) in choice.stretches.iter().enumerate() {
         let fits = (stretch.duration_s / point_s) as usize;
         let points = fits.clamp(1, most_points(prepared.kind));
         let stride_s = stretch.duration_s / points as f64;
         for point in 0..points {
-            laid.chunks.push(laid.time_s.len()..laid.time_s.len() + each);
-            laid.block.push(number);
+            samples_of.chunks.push(samples_of.time_s.len()..samples_of.time_s.len() + each);
+            samples_of.block.push(number);
             for sample in 0..each {
                 let t_s = point as f64 * stride_s + (sample as f64 + 0.5) * sample_s;
-                laid.time_s.push(stretch.start_s + t_s);
-                laid.motor_rad.push(stretch.from_rad + stretch.velocity_rad_s * t_s);
-                laid.stretch.push(number);
+                samples_of.time_s.push(stretch.start_s + t_s);
+                samples_of.motor_rad.push(stretch.from_rad + stretch.velocity_rad_s * t_s);
+                samples_of.stretch.push(number);
             }
         }
     }
-    laid
+    samples_of
 }
 
 /// Signals of the simulated run for the models of the kind.
-fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -> Signals {
+fn signals(samples_of: &Samples, stretches: &[Stretch], prepared: &Prepared, gear: f64) -> Signals {
     let measured = &prepared.main.view.samples;
     let at = |signal, first: bool| {
         let values = measured.find(signal)?;
@@ -117,10 +117,11 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
         Kind::Stiffness => [1.0, link],
         Kind::Brake => [link, link],
     };
-    let each = |of: &dyn Fn(&Stretch) -> f64| -> Vec<f64> { laid.stretch.iter().map(|s| of(&stretches[*s])).collect() };
-    let mut signals = Signals::new(laid.time_s.len());
+    let each =
+        |of: &dyn Fn(&Stretch) -> f64| -> Vec<f64> { samples_of.stretch.iter().map(|s| of(&stretches[*s])).collect() };
+    let mut signals = Signals::new(samples_of.time_s.len());
     let before_s = at(Signal::Time, false).unwrap_or(0.0) + PAUSE_S;
-    signals.set(Signal::Time, laid.time_s.iter().map(|t| before_s + t).collect());
+    signals.set(Signal::Time, samples_of.time_s.iter().map(|t| before_s + t).collect());
     signals.set(Signal::Direction, each(&|s| s.velocity_rad_s.signum()));
     if prepared.kind == Kind::Friction {
         signals.set(Signal::Acceleration, each(&|_| 0.0));
@@ -131,7 +132,7 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
         let before = |s: usize| s.checked_sub(1).map_or(0.0, |s| stretches[s].brake_current_a);
         let rises: Vec<f64> =
             stretches.iter().enumerate().map(|(i, s)| (s.brake_current_a - before(i)).signum()).collect();
-        signals.set(Signal::Direction, laid.stretch.iter().map(|s| rises[*s]).collect());
+        signals.set(Signal::Direction, samples_of.stretch.iter().map(|s| rises[*s]).collect());
         signals.set(Signal::Current, each(&|s| s.brake_current_a));
     }
     let mut set = |signal: Signal, values: Vec<f64>| {
@@ -141,8 +142,8 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
     };
     let from_rad = at(Signal::Position, true).unwrap_or(0.0);
     let link_rad = at(Signal::Link, true).unwrap_or(0.0);
-    set(Signal::Link, laid.motor_rad.iter().map(|q| link_rad + link * q).collect());
-    set(Signal::Position, laid.motor_rad.iter().map(|q| from_rad + turned * q).collect());
+    set(Signal::Link, samples_of.motor_rad.iter().map(|q| link_rad + link * q).collect());
+    set(Signal::Position, samples_of.motor_rad.iter().map(|q| from_rad + turned * q).collect());
     set(Signal::Velocity, each(&|s| turning * s.velocity_rad_s));
     set(Signal::Load, each(&|s| s.load_nm / prepared.load_scale));
     let temperature_c = at(Signal::Temperature, false).unwrap_or(0.0);
@@ -150,7 +151,7 @@ fn signals(laid: &Laid, stretches: &[Stretch], prepared: &Prepared, gear: f64) -
     set(Signal::Repeat, each(&|s| f64::from(s.power_ups)));
     // Columns that are not controlled keep their last value.
     for (signal, values) in measured.iter().filter(|(signal, _)| matches!(signal, Signal::Column(_))) {
-        signals.set(signal, vec![values.last().copied().unwrap_or(0.0); laid.time_s.len()]);
+        signals.set(signal, vec![values.last().copied().unwrap_or(0.0); samples_of.time_s.len()]);
     }
     signals
 }

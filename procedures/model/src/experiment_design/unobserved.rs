@@ -16,11 +16,11 @@ use jointbench_instrument::Kind;
 const FOUND_Z: f64 = 2.8;
 
 /// The run that makes most undetectable effects detectable, among equals the shortest.
-pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Problem)]) -> Option<Experiment> {
+pub fn unseen(model: &TwoStageModel, noise: &Noise, simulated: &[(&Choice, Problem)]) -> Option<Experiment> {
     let is_friction = model.spec.kind == Kind::Friction;
     let side = Side::new(&model.main, noise);
     let mut best: Option<(Bid, Vec<&str>)> = None;
-    for (choice, run) in imagined {
+    for (choice, run) in simulated {
         let mut seen: Vec<(&str, f64)> = Vec::new();
         let own = side.at(run, noise);
         for effect in model.spec.known() {
@@ -49,8 +49,8 @@ pub fn unseen(model: &TwoStageModel, noise: &Noise, imagined: &[(&Choice, Proble
                 true => WORTH_SEEING * dot(&run.target, &run.target).sqrt(),
                 false => noise.row * (run.rows() as f64).sqrt(),
             };
-            let factor = worth / size;
-            now.iter_mut().chain(&mut then).for_each(|x| *x *= factor);
+            let scale = worth / size;
+            now.iter_mut().chain(&mut then).for_each(|x| *x *= scale);
             let (now, then) = (noise.whiten(&now, model.main.problem), noise.whiten(&then, run));
             let (before, after) = side.information(&now, &then, &own);
             if before.sqrt() < FOUND_Z && after.sqrt() >= SEPARATED_Z {

@@ -51,20 +51,20 @@ pub fn joint(fit: &Fit, dialect: Dialect) -> Result<String, ModelError> {
     let attributes: Vec<String> =
         carried.iter().filter_map(|(name, a)| a.of.map(|(_, value)| format!("{name}=\"{value}\""))).collect();
     // The comment follows directly before the element and states the uncertainty of its values.
-    let beside = carried.iter().filter_map(|(name, a)| Some((name, a.of?.0)));
-    let beside =
-        beside.flat_map(|(name, told)| told.note.iter().map(move |note| format!("{name}, motor side: {note}")));
+    let uncertainties = carried.iter().filter_map(|(name, a)| Some((name, a.of?.0)));
+    let uncertainties = uncertainties
+        .flat_map(|(name, parameter)| parameter.note.iter().map(move |note| format!("{name}, motor side: {note}")));
     let mut parts = Parts::of(fit)?;
     parts.parts.retain(|part| held(part.effect));
     let mut words = about(fit, &parts, &left_out, vec![of_model(fit, &left_out)]);
     words.push(format!("At the link: torque times the gear ratio {gear}, damping and inertia times its square."));
     let comment: String = words.iter().map(|words| format!("  {}\n", plain(words))).collect();
-    let beside: String = beside.map(|words| format!("<!-- {} -->\n", plain(&words))).collect();
+    let uncertainties: String = uncertainties.map(|words| format!("<!-- {} -->\n", plain(&words))).collect();
     let element = match dialect {
         Dialect::Mujoco => format!("<joint {}/>", attributes.join(" ")),
         Dialect::Urdf => format!("<dynamics {}/>", attributes.join(" ")),
     };
-    Ok(format!("<!--\n{comment}-->\n{beside}{element}\n"))
+    Ok(format!("<!--\n{comment}-->\n{uncertainties}{element}\n"))
 }
 
 /// The effect of an attribute, with its parameter and the value at the link.

@@ -71,8 +71,8 @@ impl Alongside {
         moments.extend(rows.column("link_torque_nm").map(|load| ("load", geared(load))));
         moments.extend(rows.column("temperature_c").map(|felt| ("temperature", felt.to_vec())));
         let named = signals_with(self.fit.kind, &self.fit.own).into_iter();
-        let beside = named.filter(|s| matches!(s.signal, Signal::Column(_)));
-        moments.extend(beside.filter_map(|s| Some((s.name, rows.column(s.column)?.to_vec()))));
+        let unknown = named.filter(|s| matches!(s.signal, Signal::Column(_)));
+        moments.extend(unknown.filter_map(|s| Some((s.name, rows.column(s.column)?.to_vec()))));
         let sample_s = passed_s / rows.len() as f64;
         Some([measured, predict(&self.fit, &moments, sample_s).ok()?])
     }

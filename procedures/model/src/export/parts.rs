@@ -16,7 +16,7 @@ pub struct Part<'f> {
     pub title: &'f str,
     pub columns: Vec<PartColumn>,
     /// Name and value of every coefficient. Empty for an offset term.
-    pub factors: Vec<(&'f str, f64)>,
+    pub coefficients: Vec<(&'f str, f64)>,
     /// Name and value of every nonlinear parameter, in the order of the formula's parameter numbers.
     pub shape: Vec<(&'f str, f64)>,
 }
@@ -55,7 +55,7 @@ impl<'f> Parts<'f> {
             let title = effect.info().title;
             if effect.is_offset() {
                 let columns = vec![PartColumn::Formula(formula(fit, "load", &[])?)];
-                parts.parts.push(Part { effect: id, title, columns, factors: Vec::new(), shape: Vec::new() });
+                parts.parts.push(Part { effect: id, title, columns, coefficients: Vec::new(), shape: Vec::new() });
                 continue;
             }
             let Some(term) = fit.terms.iter().find(|t| t.effect == *id) else {
@@ -94,9 +94,9 @@ fn part<'f>(effect: &'f str, title: &'f str, term: &'f Term, columns: Vec<PartCo
         return Err(ModelError::UnknownForm { effect: effect.into(), form: term.form.clone() });
     }
     let mut names = term.names.iter().map(String::as_str);
-    let factors = names.by_ref().zip(term.linear.iter().copied()).take(term.linear.len()).collect();
+    let coefficients = names.by_ref().zip(term.linear.iter().copied()).take(term.linear.len()).collect();
     let shape = term.names[term.linear.len()..].iter().map(String::as_str).zip(term.shape.iter().copied()).collect();
-    Ok(Part { effect, title, columns, factors, shape })
+    Ok(Part { effect, title, columns, coefficients, shape })
 }
 
 /// The columns, or why a controller cannot compute them.

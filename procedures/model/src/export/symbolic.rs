@@ -176,9 +176,11 @@ fn chebyshev(degree: usize) -> String {
         let at = |c: &[i64], k: Option<usize>| k.and_then(|k| c.get(k)).copied().unwrap_or(0);
         (0..=now.len()).map(|k| 2 * at(now, k.checked_sub(1)) - at(before, Some(k))).collect()
     };
-    let (_, factors) = (1..degree).fold((vec![1], vec![0, 1]), |(before, now), _| (now.clone(), next(&before, &now)));
-    let rest = factors.iter().rev().map(i64::to_string);
-    rest.reduce(|inner, factor| format!("({inner}) * (2 * current / i_max - 1) + {factor}")).unwrap_or_default()
+    let (_, coefficients) =
+        (1..degree).fold((vec![1], vec![0, 1]), |(before, now), _| (now.clone(), next(&before, &now)));
+    let rest = coefficients.iter().rev().map(i64::to_string);
+    rest.reduce(|inner, coefficient| format!("({inner}) * (2 * current / i_max - 1) + {coefficient}"))
+        .unwrap_or_default()
 }
 
 /// Names of the orders of a term: `harmonic`, `harmonic_2` and so on.

@@ -74,9 +74,9 @@ fn check_term(term: &Term, effect: &dyn Effect, own: Option<&OwnEffect>) -> Resu
     let counts = |form: &Form| (form.linear.len(), form.shape.len());
     let is_of = |form: &&&Form| counts(form) == (term.linear.len(), term.shape.len()) && names(form) == term.names;
     let Some(form) = named.iter().find(is_of) else {
-        let (factors, shape) = counts(named[0]);
+        let (coefficients, shape) = counts(named[0]);
         return Err(format!(
-            "has {} factors, {} shape values and the names {} in the form {}: expected are {factors} and {shape}, {}",
+            "has {} factors, {} shape values and the names {} in the form {}: expected are {coefficients} and {shape}, {}",
             term.linear.len(),
             term.shape.len(),
             list(&term.names),
@@ -106,9 +106,9 @@ fn names<'e>(form: &Form<'e>) -> Vec<&'e str> {
     form.linear.iter().copied().chain(form.shape.iter().map(|s| s.name)).collect()
 }
 
-/// Every form of a library effect, with as many coefficients as `factors` if their number depends on the run.
-fn forms(effect: &dyn Effect, factors: usize) -> Vec<Form<'_>> {
-    let mut forms = effect.forms(&shown(factors + 1));
+/// Every form of a library effect, with as many coefficients as `coefficients` if their number depends on the run.
+fn forms(effect: &dyn Effect, coefficients: usize) -> Vec<Form<'_>> {
+    let mut forms = effect.forms(&shown(coefficients + 1));
     let longer = forms.iter().flat_map(|form| {
         let next = |form: &Form<'static>| effect.extended(form).map(|(_, longer)| longer);
         std::iter::successors(effect.extended(form).map(|(_, longer)| longer), next).collect::<Vec<_>>()

@@ -181,8 +181,8 @@ fn run_c(fit: &Fit) -> Option<Vec<f64>> {
     let flags = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-o"];
     let built = Command::new("cc").args(flags).arg(&program).arg(folder.join("main.c")).arg("-lm").output().unwrap();
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    let told = Command::new(&program).output().unwrap();
-    Some(String::from_utf8(told.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect())
+    let reported = Command::new(&program).output().unwrap();
+    Some(String::from_utf8(reported.stdout).unwrap().lines().map(|line| line.parse().unwrap()).collect())
 }
 
 #[test]
@@ -220,13 +220,13 @@ fn c_remembers_as_the_model_does() {
         fit.terms.retain(|t| t.effect == effect);
         let term = &mut fit.terms[0];
         (term.form, term.shape) = (form.into(), shape.into());
-        let (factors, reaches): (&[&str], &[&str]) = match kind {
+        let (coefficients, reaches): (&[&str], &[&str]) = match kind {
             Kind::Friction => (&["tau_p"], &["theta_p", "omega_s", "rho"]),
             _ => (&["eta", "eta_2", "eta_3"], &["tau_eta", "tau_eta_2", "tau_eta_3"]),
         };
-        let factors = &factors[..shape.len().min(factors.len())];
-        term.linear = (0..factors.len()).map(|k| 0.37 + 0.11 * k as f64).collect();
-        term.names = factors.iter().chain(&reaches[..shape.len()]).map(|name| (*name).to_owned()).collect();
+        let coefficients = &coefficients[..shape.len().min(coefficients.len())];
+        term.linear = (0..coefficients.len()).map(|k| 0.37 + 0.11 * k as f64).collect();
+        term.names = coefficients.iter().chain(&reaches[..shape.len()]).map(|name| (*name).to_owned()).collect();
         let Some(found) = run_c(&fit) else { return };
         let truth = predict(&fit, &moments(kind), STEP_S).unwrap();
         let largest = truth.iter().fold(0.0f64, |m, v| m.max(v.abs()));
@@ -261,18 +261,18 @@ fn little_is_left_out_and_that_is_named() {
 }
 
 #[test]
-fn only_ranges_of_inputs_are_told() {
+fn only_ranges_of_inputs_are_reported() {
     let mut fit = fit_of_all(Kind::Friction, 0, Vec::new());
     fit.effects.retain(|e| ["inertia", "coulomb", "viscous"].contains(&e.as_str()));
     fit.terms.retain(|t| fit.effects.contains(&t.effect));
-    let told = |format| -> Vec<String> {
+    let reported = |format| -> Vec<String> {
         let text = export(&fit, format).unwrap();
         let ranges = text.split("Fitted where ").skip(1);
         ranges.filter_map(|rest| rest.split(' ').next().map(str::to_owned)).collect()
     };
-    assert_eq!(told(Format::C), ["velocity", "acceleration"]);
-    assert_eq!(told(Format::Mujoco), ["velocity", "acceleration"]);
-    assert_eq!(told(Format::Urdf), ["velocity"], "URDF has no armature");
+    assert_eq!(reported(Format::C), ["velocity", "acceleration"]);
+    assert_eq!(reported(Format::Mujoco), ["velocity", "acceleration"]);
+    assert_eq!(reported(Format::Urdf), ["velocity"], "URDF has no armature");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 //! Text is parsed to a tree (winnow), names become signals and parameters, and the tree becomes a sum of coefficients
 //! times columns. Every error has a character position.
 
+pub(crate) mod coefficients;
 pub(crate) mod expression;
-pub(crate) mod factors;
 pub(crate) mod fault;
 pub(crate) mod function;
 pub(crate) mod names;
@@ -54,15 +54,15 @@ impl Formula {
             tree
         };
         let whole = Expression::resolve(tree, kind, parameters)?;
-        let factors = factors::factors(&whole, parameters.len());
-        if let Some(alone) = factors.alone {
-            let message = match factors.columns.is_empty() {
+        let coefficients = coefficients::coefficients(&whole, parameters.len());
+        if let Some(alone) = coefficients.alone {
+            let message = match coefficients.columns.is_empty() {
                 true => "no parameter scales this: multiply it by one, such as k * (…)",
                 false => "no parameter scales this part of the sum: multiply it by one",
             };
             return Err(Mistake::new(alone.at, message));
         }
-        let linear = |p: &usize| factors.columns.iter().any(|(q, _)| q == p);
+        let linear = |p: &usize| coefficients.columns.iter().any(|(q, _)| q == p);
         let periodic = |what: &What| matches!(what, What::Call(f, a) if f.is_periodic() && a.iter().any(has_signal));
         let mut columns = BTreeSet::new();
         whole.any(&mut |what| {
@@ -75,7 +75,7 @@ impl Formula {
             signals: signals(kind).iter().copied().filter(|s| whole.uses_signal(s.signal)).chain(columns).collect(),
             is_periodic: whole.any(&mut |what| periodic(what)),
             doubts: units::check(kind, text, &whole, units),
-            columns: factors.columns,
+            columns: coefficients.columns,
         })
     }
 

@@ -23,7 +23,7 @@ const OF_CORNERS: f64 = 2.05;
 /// on the grid.
 pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
     let solution = Solution::of(model)?;
-    let replicates = factors_without(&solution);
+    let replicates = coefficients_without(&solution);
     let blocks = replicates.len() as f64;
     let t = StudentsT::new(0.0, 1.0, blocks - 1.0).map_or(2.0, |law| law.inverse_cdf(0.975));
     let others: Vec<(Vec<f64>, Vec<f64>)> = model
@@ -32,13 +32,14 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
         .par_iter()
         .filter_map(|problem| {
             let other = Solution::of(&at_corner(model, problem))?;
-            Some((other.factors.clone(), other.standard_errors()))
+            Some((other.coefficients.clone(), other.standard_errors()))
         })
         .collect();
     let own = solution.standard_errors();
     let half_width = |k: usize| {
         let error = others.iter().map(|(_, errors)| errors[k]).fold(own[k], f64::max);
-        let estimates: Vec<f64> = std::iter::once(solution.factors[k]).chain(others.iter().map(|o| o.0[k])).collect();
+        let estimates: Vec<f64> =
+            std::iter::once(solution.coefficients[k]).chain(others.iter().map(|o| o.0[k])).collect();
         (t * error).hypot(OF_CORNERS * deviation(&estimates))
     };
     let mut parameters = Vec::new();
@@ -48,7 +49,7 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
         for name in &term.form.linear {
             let k = names.len();
             names.push(format!("{}.{name}", info.id));
-            let (value, half) = (solution.factors[k], half_width(k));
+            let (value, half) = (solution.coefficients[k], half_width(k));
             let slot = Slot {
                 effect: info.id,
                 name,
@@ -82,8 +83,8 @@ pub fn intervals(model: &LinearModel, motion: Motion) -> Option<Intervals> {
 }
 
 /// Coefficients of the effects, refitted without each block in turn.
-fn factors_without(solution: &Solution) -> Vec<Vec<f64>> {
-    let size = solution.factors.len();
+fn coefficients_without(solution: &Solution) -> Vec<Vec<f64>> {
+    let size = solution.coefficients.len();
     solution.ridge.replicates().map(|all| all[..size].to_vec()).collect()
 }
 

@@ -19,8 +19,8 @@ pub fn open(terms: &LinearModel, parameters: &mut [Parameter]) {
     let empty = fresh.unwrap_or_else(|| {
         let term = &terms.terms[hysteresis];
         let whole = term.effect.columns(term.form.name, &term.shape, &demagnetised());
-        let factors = &terms.linear().factors[hysteresis];
-        drag.value + whole.iter().zip(factors).map(|(column, factor)| column[0] * factor).sum::<f64>()
+        let coefficients = &terms.linear().coefficients[hysteresis];
+        drag.value + whole.iter().zip(coefficients).map(|(column, coefficient)| column[0] * coefficient).sum::<f64>()
     });
     let empty = empty.max(0.0);
     if (drag.ci95[0]..=drag.ci95[1]).contains(&empty) {

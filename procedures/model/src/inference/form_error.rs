@@ -44,23 +44,23 @@ pub fn form_error(model: &LinearModel, unit: &str) -> (Vec<FormErrorTerm>, Optio
         return (Vec::new(), None);
     };
     let mut terms = Vec::new();
-    for (at, factor) in &solution.error {
+    for (at, coefficient) in &solution.error {
         let column = &form_error.columns[*at];
         let place = form_error.columns[..*at].iter().filter(|other| other.lives == column.lives).count();
         terms.push(FormErrorTerm {
             name: column.lives.name().into(),
             form: String::new(),
             shape: vec![place as f64],
-            linear: vec![*factor],
+            linear: vec![*coefficient],
         });
     }
-    let mut factors = solution.relatives.iter();
+    let mut coefficients = solution.relatives.iter();
     for relative in model.relatives.iter() {
         terms.push(FormErrorTerm {
             name: relative.effect.info().id.into(),
             form: relative.form.name.into(),
             shape: relative.shape.clone(),
-            linear: factors.by_ref().take(relative.columns.len()).copied().collect(),
+            linear: coefficients.by_ref().take(relative.columns.len()).copied().collect(),
         });
     }
     let sum = solution.form_error(model);

@@ -9,7 +9,7 @@ use crate::thresholds::TRADE_OFF_CORRELATION;
 use crate::effect::ShapeSearch;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::gram::BlockGrams;
-use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::independent_blocks::independent_blocks;
 use crate::regression::linear_model::LinearModel;
 use crate::report::fit::{Parameter, ParameterState, TradeOff};
 use jointbench_instrument::Motion;
@@ -25,13 +25,13 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
         return found;
     }
     let linear = terms.linear();
-    let slopes = terms.slopes(&linear.factors);
+    let slopes = terms.slopes(&linear.coefficients);
     let mut columns = terms.columns();
     columns.extend(slopes.iter().map(|s| s.2.as_slice()));
-    let slots = slots(terms, &linear.factors, &slopes, motion);
+    let slots = slots(terms, &linear.coefficients, &slopes, motion);
     let p = columns.len();
-    let (piece, count) = pieces(terms.problem, p);
-    let grams = BlockGrams::new(&columns, &linear.residual, &piece, count);
+    let (block, count) = independent_blocks(terms.problem, p);
+    let grams = BlockGrams::new(&columns, &linear.residual, &block, count);
     let spd = Cholesky::new(&grams.total().0, p, 0.0);
     let replicates = grams.jackknife();
     let groups = replicates.len().max(2) as f64;
@@ -41,7 +41,7 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
     let active = active(&grams);
     let mut parameters = Vec::new();
     for (k, slot) in slots.iter().enumerate() {
-        let freedom = (resting_pieces(&grams, &active, &spd, k) - 1.0).max(1.0);
+        let freedom = (effective_blocks(&grams, &active, &spd, k) - 1.0).max(1.0);
         let t = StudentsT::new(0.0, 1.0, freedom).map_or(2.0, |t| t.inverse_cdf(0.975));
         let reach = if spd.is_dependent(k) { f64::INFINITY } else { t * variance[k].sqrt() };
         let ci95 = match slot.shape {
@@ -82,7 +82,7 @@ pub fn intervals(terms: &LinearModel, motion: Motion) -> Intervals {
 
 fn slots<'a>(
     terms: &'a LinearModel,
-    factors: &[Vec<f64>],
+    coefficients: &[Vec<f64>],
     slopes: &[(usize, usize, Vec<f64>)],
     motion: Motion,
 ) -> Vec<Slot<'a>> {
@@ -93,9 +93,9 @@ fn slots<'a>(
         Slot { effect: info.id, name, unit: motion.label(info.unit(name)), value, possible, shape }
     };
     let mut slots = Vec::new();
-    for (i, factors) in factors.iter().enumerate() {
+    for (i, coefficients) in coefficients.iter().enumerate() {
         let names = &terms.terms[i].form.linear;
-        slots.extend(names.iter().zip(factors).map(|(name, value)| slot(i, name, *value, None)));
+        slots.extend(names.iter().zip(coefficients).map(|(name, value)| slot(i, name, *value, None)));
     }
     for (i, k, _) in slopes {
         let shape = terms.terms[*i].form.shape[*k];
@@ -112,7 +112,7 @@ fn active(grams: &BlockGrams) -> Vec<Vec<usize>> {
 
 /// Effective number of blocks of a parameter: the number of equal blocks with the same accuracy, (Σ w)²/Σ w², where w
 /// is the share of each block in the variance of the parameter.
-fn resting_pieces(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: usize) -> f64 {
+fn effective_blocks(grams: &BlockGrams, active: &[Vec<usize>], spd: &Cholesky, k: usize) -> f64 {
     let p = grams.columns;
     let mut unit = vec![0.0; p];
     unit[k] = 1.0;

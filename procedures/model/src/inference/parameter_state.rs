@@ -86,8 +86,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_small_factor_beside_a_large_one_of_its_effect_is_known() {
-        let factor = |effect: &str, value: f64, ci95: [f64; 2]| {
+    fn a_small_coefficient_of_an_effect_with_a_large_one_is_identified() {
+        let coefficient = |effect: &str, value: f64, ci95: [f64; 2]| {
             let is_zero = ci95[0] < 0.0 && ci95[1] > 0.0;
             Parameter {
                 effect: effect.into(),
@@ -100,10 +100,10 @@ mod tests {
             }
         };
         let mut all = vec![
-            factor("gravity", 1e-2, [0.9e-2, 1.1e-2]),
-            factor("gravity", 1e-5, [-1e-4, 1.2e-4]),
-            factor("gravity", 1e-3, [-2e-2, 2.2e-2]),
-            factor("drift", 1e-5, [-1e-4, 1.2e-4]),
+            coefficient("gravity", 1e-2, [0.9e-2, 1.1e-2]),
+            coefficient("gravity", 1e-5, [-1e-4, 1.2e-4]),
+            coefficient("gravity", 1e-3, [-2e-2, 2.2e-2]),
+            coefficient("drift", 1e-5, [-1e-4, 1.2e-4]),
         ];
         know_the_small(&mut all);
         assert_eq!(all.iter().map(|p| p.note.is_none()).collect::<Vec<_>>(), [true, true, false, false]);

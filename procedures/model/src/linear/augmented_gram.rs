@@ -86,11 +86,11 @@ impl BlockGrams {
 const TILE: usize = 256;
 
 /// Adds the requested entries of the lower triangle of Σ xxᵀ over some rows to a row-major matrix.
-fn add_products(columns: &[&[f64]], is_asked: impl Fn(usize, usize) -> bool, rows: Range<usize>, sums: &mut [f64]) {
+fn add_products(columns: &[&[f64]], is_needed: impl Fn(usize, usize) -> bool, rows: Range<usize>, sums: &mut [f64]) {
     for start in rows.clone().step_by(TILE) {
         let tile = start..(start + TILE).min(rows.end);
         for (a, x) in columns.iter().enumerate() {
-            for b in (0..=a).filter(|b| is_asked(a, *b)) {
+            for b in (0..=a).filter(|b| is_needed(a, *b)) {
                 sums[a * columns.len() + b] += dot(&x[tile.clone()], &columns[b][tile.clone()]);
             }
         }
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn beside_each_other_they_are_what_they_are_alone() {
+    fn joint_and_separate_products_are_equal() {
         let column = |k: usize| (0..700).map(|i| (0.3 * (k + 1) as f64 * i as f64).sin() + 0.1 * k as f64).collect();
         let all: Vec<Vec<f64>> = (0..6).map(column).collect();
         let group: Vec<usize> = (0..700).map(|i| [0, 2, 1, 0][i / 175]).collect();

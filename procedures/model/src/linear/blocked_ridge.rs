@@ -34,7 +34,7 @@ pub(in crate::linear) struct Fold {
     /// Inverse of the Gram matrix of the base, because each base is solved for hundreds of columns.
     pub inverse: Vec<f64>,
     /// Coefficients of the base for the response.
-    pub factors: Vec<f64>,
+    pub coefficients: Vec<f64>,
 }
 
 /// Ridge regression of a response on a base of columns, solved without each block in turn.
@@ -78,8 +78,8 @@ impl Outside {
         let rest = |column: Vec<f64>| {
             let mut own = column.clone();
             let side: Vec<f64> = self.base.iter().map(|b| dot(b, &own)).collect();
-            for (base, factor) in self.base.iter().zip(times(&self.inverse, &side)) {
-                own.iter_mut().zip(base).for_each(|(o, b)| *o -= factor * b);
+            for (base, coefficient) in self.base.iter().zip(times(&self.inverse, &side)) {
+                own.iter_mut().zip(base).for_each(|(o, b)| *o -= coefficient * b);
             }
             (dot(&own, &own) > visible * dot(&column, &column)).then_some(own)
         };
@@ -87,9 +87,9 @@ impl Outside {
         let k = own.len();
         let products: Vec<f64> = (0..k * k).map(|at| dot(&own[at / k], &own[at % k])).collect();
         let side: Vec<f64> = own.iter().map(|own| dot(own, &self.left)).collect();
-        let factors = Cholesky::new(&products, k, 1e-12).solve(&side);
-        let taken = dot(&factors, &side);
-        Some((factors, taken))
+        let coefficients = Cholesky::new(&products, k, 1e-12).solve(&side);
+        let taken = dot(&coefficients, &side);
+        Some((coefficients, taken))
     }
 }
 
@@ -128,7 +128,7 @@ impl BlockedRidge {
         let shrinks = columns.iter().any(|c| c.shrinks);
         let loss = |strength: f64| -> f64 {
             let penalty = penalty(strength);
-            each.par_iter().map(|sums| sums.loss(&all.without(sums).factors(&penalty))).sum()
+            each.par_iter().map(|sums| sums.loss(&all.without(sums).coefficients(&penalty))).sum()
         };
         let strength = strength.unwrap_or_else(|| {
             let tried = RIDGES.iter().filter(|_| shrinks).map(|strength| (*strength, loss(*strength)));
@@ -136,7 +136,7 @@ impl BlockedRidge {
         });
         let penalty = penalty(strength);
         let folds: Vec<Fold> = each.par_iter().map(|sums| all.without(sums).fold(&penalty)).collect();
-        let losses = each.iter().zip(&folds).map(|(sums, fold)| sums.loss(&fold.factors)).collect();
+        let losses = each.iter().zip(&folds).map(|(sums, fold)| sums.loss(&fold.coefficients)).collect();
         let whole = all.fold(&penalty);
         let held = penalty.iter().map(|penalty| penalty / n).collect();
         Self { blocks, weight: weight.to_vec(), base, scale, response, held, each, folds, whole, strength, losses }
@@ -147,13 +147,13 @@ impl BlockedRidge {
     }
 
     /// Coefficients of the original columns, over all rows.
-    pub fn factors(&self) -> Vec<f64> {
-        self.whole.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect()
+    pub fn coefficients(&self) -> Vec<f64> {
+        self.whole.coefficients.iter().zip(&self.scale).map(|(f, s)| f / s).collect()
     }
 
     /// Coefficients without each block in turn.
     pub fn replicates(&self) -> impl Iterator<Item = Vec<f64>> {
-        self.folds.iter().map(|fold| fold.factors.iter().zip(&self.scale).map(|(f, s)| f / s).collect())
+        self.folds.iter().map(|fold| fold.coefficients.iter().zip(&self.scale).map(|(f, s)| f / s).collect())
     }
 
     /// The same base on only the rows that are not `near` a reversal. `None` if there are fewer of them than columns.
@@ -168,8 +168,8 @@ impl BlockedRidge {
         let sums = Sums::of(&base, &left, &(0..rows.len()));
         let penalty: Vec<f64> = self.held.iter().map(|share| share * rows.len() as f64).collect();
         let fold = sums.fold(&penalty);
-        for (base, factor) in base.iter().zip(&fold.factors) {
-            left.iter_mut().zip(base).for_each(|(e, b)| *e -= factor * b);
+        for (base, coefficient) in base.iter().zip(&fold.coefficients) {
+            left.iter_mut().zip(base).for_each(|(e, b)| *e -= coefficient * b);
         }
         Some(Outside { rows, base, weight, inverse: fold.inverse, left })
     }
@@ -201,25 +201,25 @@ impl Sums {
         rest
     }
 
-    fn factored(&self, penalty: &[f64]) -> Cholesky {
+    fn factorized(&self, penalty: &[f64]) -> Cholesky {
         let p = penalty.len();
         let mut matrix = self.bb.clone();
         penalty.iter().enumerate().for_each(|(a, penalty)| matrix[a * p + a] += penalty);
         Cholesky::new(&matrix, p, 0.0)
     }
 
-    fn factors(&self, penalty: &[f64]) -> Vec<f64> {
-        self.factored(penalty).solve(&self.by)
+    fn coefficients(&self, penalty: &[f64]) -> Vec<f64> {
+        self.factorized(penalty).solve(&self.by)
     }
 
     fn fold(&self, penalty: &[f64]) -> Fold {
-        let factored = self.factored(penalty);
-        Fold { factors: factored.solve(&self.by), inverse: factored.inverse() }
+        let factorized = self.factorized(penalty);
+        Fold { coefficients: factorized.solve(&self.by), inverse: factorized.inverse() }
     }
 
     /// Squared error with these coefficients.
-    fn loss(&self, factors: &[f64]) -> f64 {
-        (self.yy - 2.0 * dot(factors, &self.by) + dot(factors, &times(&self.bb, factors))).max(0.0)
+    fn loss(&self, coefficients: &[f64]) -> f64 {
+        (self.yy - 2.0 * dot(coefficients, &self.by) + dot(coefficients, &times(&self.bb, coefficients))).max(0.0)
     }
 }
 
@@ -232,7 +232,7 @@ pub fn fitted(columns: &[BaseColumn], response: &[f64], weight: &[f64], strength
     let n = response.len() as f64;
     let sums = Sums::of(&base, &weighted(response, 1.0), &(0..response.len()));
     let penalty: Vec<f64> = columns.iter().map(|c| if c.shrinks { strength } else { FREE } * n).collect();
-    sums.factors(&penalty).iter().zip(columns).map(|(f, c)| f / scale(c)).collect()
+    sums.coefficients(&penalty).iter().zip(columns).map(|(f, c)| f / scale(c)).collect()
 }
 
 /// A symmetric matrix times a vector.

@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_factor_that_wants_to_be_negative_is_zero() {
+    fn a_coefficient_that_would_be_negative_is_zero() {
         // Columns (1, 0), (1, 1) and the target (1, −1): the unconstrained second coefficient is −1.
         let x = non_negative(&[1.0, 1.0, 1.0, 2.0], &[1.0, 0.0]);
         assert!((x[0] - 1.0).abs() < 1e-6 && x[1] == 0.0, "{x:?}");

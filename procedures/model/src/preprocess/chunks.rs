@@ -151,8 +151,8 @@ pub fn problem(samples: &Source, layout: Layout) -> Problem {
     }
     let target = mean(&samples.target);
     let (block, blocks) = blocks::blocks(&group, 48);
-    let held_out = if settled { blocks::held_out(&condition, &group) } else { &condition };
-    let (mut fold, folds) = blocks::folds(held_out, &block, 10);
+    let left_out_unit = if settled { blocks::left_out_unit(&condition, &group) } else { &condition };
+    let (mut fold, folds) = blocks::folds(left_out_unit, &block, 10);
     // The remanence of a brake after its largest current cannot be predicted from smaller loops.
     if let Some(current) = points.find(Signal::Current) {
         blocks::share_edges(&mut fold, folds, &group, current);

@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_and_what_lies_beside_it_is_left_out() {
+    fn a_change_and_its_surroundings_are_omitted() {
         let held = held(&steps(), 4);
         let kept: Vec<usize> = (0..25).filter(|k| held[25 * 5 + k]).collect();
         assert!(kept.first().is_some_and(|k| (8..20).contains(k)), "{kept:?}");

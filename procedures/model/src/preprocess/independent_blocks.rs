@@ -10,10 +10,10 @@ const FEWEST: usize = 8;
 /// Whole segments, because an offset or tilt that differs between segments is common to all rows of one segment, so
 /// that half a segment is no independent evidence. Shorter blocks if there are too few segments for `columns`
 /// parameters.
-pub fn pieces(problem: &Problem, columns: usize) -> (Vec<usize>, usize) {
-    let piece = legs(problem);
-    let count = piece.last().map_or(0, |last| last + 1);
-    if count >= FEWEST.max(2 * columns) { (piece, count) } else { (problem.block.clone(), problem.blocks) }
+pub fn independent_blocks(problem: &Problem, columns: usize) -> (Vec<usize>, usize) {
+    let leg_of_row = legs(problem);
+    let count = leg_of_row.last().map_or(0, |last| last + 1);
+    if count >= FEWEST.max(2 * columns) { (leg_of_row, count) } else { (problem.block.clone(), problem.blocks) }
 }
 
 /// The leg of every row: consecutive rows of one segment and repeat.

@@ -41,9 +41,9 @@ pub fn find(problem: &mut Problem, signal: Signal) -> bool {
     let others = [Signal::Velocity, Signal::Temperature].into_iter().filter_map(|s| problem.view.find(s));
     let scaled = others.flat_map(|other| {
         let middle = median(other.iter().copied());
-        let beside: Vec<f64> = other.iter().map(|o| o - middle).collect();
-        let product = beside.iter().zip(&values).map(|(o, v)| o * v).collect();
-        [beside, product]
+        let centred: Vec<f64> = other.iter().map(|o| o - middle).collect();
+        let product = centred.iter().zip(&values).map(|(o, v)| o * v).collect();
+        [centred, product]
     });
     let fixed: Vec<Vec<f64>> = curves.chain(scaled).map(thin).collect();
     let fixed = Basis::of(&fixed);

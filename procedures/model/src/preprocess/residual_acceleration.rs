@@ -39,16 +39,16 @@ pub fn accelerations(
         let change = |c: &Range<usize>| Some(around(c.end, apart)? - around(c.start, apart)?);
         chunks.iter().map(|c| change(c).unwrap_or(0.0) / (c.len() as f64 * step_s)).collect()
     };
-    let (mut at_edges, beside) = (of(0), [of(2 * half as isize), of(2 * half as isize + 1)]);
+    let (mut at_edges, neighbours) = (of(0), [of(2 * half as isize), of(2 * half as isize + 1)]);
     for stretch in segments::stretches(group) {
         // An oscillation is in phase with its neighbours, or in antiphase.
         let wavers =
-            beside.iter().any(|b| correlation(&at_edges[stretch.clone()], &b[stretch.clone()]).abs() > FOLLOWS);
+            neighbours.iter().any(|b| correlation(&at_edges[stretch.clone()], &b[stretch.clone()]).abs() > FOLLOWS);
         if stretch.len() < FEWEST || !wavers {
-            let told = at_edges[stretch.clone()].iter().zip(&beside[0][stretch.clone()]);
-            let scatter = median(told.map(|(at, beside)| (*at - beside).abs()));
-            for (at, beside) in at_edges[stretch.clone()].iter_mut().zip(&beside[0][stretch]) {
-                if at.abs().min(beside.abs()) <= CLEAR * scatter || at.signum() != beside.signum() {
+            let pairs = at_edges[stretch.clone()].iter().zip(&neighbours[0][stretch.clone()]);
+            let scatter = median(pairs.map(|(at, neighbours)| (*at - neighbours).abs()));
+            for (at, neighbours) in at_edges[stretch.clone()].iter_mut().zip(&neighbours[0][stretch]) {
+                if at.abs().min(neighbours.abs()) <= CLEAR * scatter || at.signum() != neighbours.signum() {
                     *at = 0.0;
                 }
             }

@@ -112,9 +112,9 @@ fn encoder_step(angle: &[f64], torque: &[f64]) -> f64 {
         let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
         high - low
     };
-    let goes = range(&moved);
+    let travel = range(&moved);
     let mut steps =
-        (8..=24).map(|bits| std::f64::consts::TAU / f64::from(1u32 << bits)).filter(|step| 2.0 * step < goes);
+        (8..=24).map(|bits| std::f64::consts::TAU / f64::from(1u32 << bits)).filter(|step| 2.0 * step < travel);
     let is_counted = |step: &f64| on_multiples(angle, *step) > ON && on_multiples(&moved, *step) < ANYWHERE;
     steps.find(is_counted).unwrap_or(0.0)
 }
@@ -209,8 +209,8 @@ fn curve(values: &[f64]) -> Option<Vec<f64>> {
                 (0..p).for_each(|b| gram[a * p + b] += t[a] * t[b]);
             }
         }
-        let factors = Cholesky::new(&gram, p, 0.0).solve(&side);
-        let fit: Vec<f64> = all.iter().map(|t| t.iter().zip(&factors).map(|(t, f)| t * f).sum()).collect();
+        let coefficients = Cholesky::new(&gram, p, 0.0).solve(&side);
+        let fit: Vec<f64> = all.iter().map(|t| t.iter().zip(&coefficients).map(|(t, f)| t * f).sum()).collect();
         let sse: f64 = fit.iter().zip(values).map(|(f, v)| (f - v).powi(2)).sum();
         (n as f64 * sse.max(1e-300).ln() + p as f64 * (n as f64).ln(), fit)
     };
@@ -223,13 +223,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_that_lie_apart_are_taken_off_and_a_creep_is_not() {
+    fn distant_zeros_are_subtracted_and_a_creep_is_not() {
         let twist = |i: usize| 1e-3 * (i as f64 * 0.1).sin();
         let repeat: Vec<i64> = (0..900).map(|i| i / 300).collect();
         let moved = |zeros: [f64; 3]| -> Vec<f64> { (0..900).map(|i| twist(i) + zeros[i / 300]).collect() };
         let mut apart = moved([2e-3, -1e-3, -1e-3]);
-        let told = own_zeros(&mut apart, &repeat).unwrap();
-        assert!((told - 2f64.sqrt() * 1e-3).abs() < 5e-5, "{told}");
+        let reported = own_zeros(&mut apart, &repeat).unwrap();
+        assert!((reported - 2f64.sqrt() * 1e-3).abs() < 5e-5, "{reported}");
         let level = |r: usize| apart[300 * r..300 * (r + 1)].iter().sum::<f64>() / 300.0;
         assert!((level(0) - level(1)).abs() < 1e-9 && (level(1) - level(2)).abs() < 1e-9);
         let creep = moved([0.0, 2e-4, 3e-4]);

@@ -85,7 +85,7 @@ pub fn prepare(
 
 /// A loading history before the run, in a sentence.
 fn past(main: &mut Problem, kind: Kind) -> Option<String> {
-    let (signal, told) = match kind {
+    let (signal, message) = match kind {
         Kind::Brake => (
             Signal::Current,
             "the brake still remembered an earlier current when the run began, which is taken into account; demagnetise it \
@@ -98,7 +98,7 @@ fn past(main: &mut Problem, kind: Kind) -> Option<String> {
         ),
         Kind::Friction | Kind::Encoder => return None,
     };
-    initial_hysteresis_state::find(main, signal).then(|| told.into())
+    initial_hysteresis_state::find(main, signal).then(|| message.into())
 }
 
 /// Legs with the same start and end values are repeats of one condition.

@@ -15,33 +15,33 @@ const PASSES: usize = 3;
 
 /// Fits effects to the problem of `bare`: effects with a single form first, then repeatedly the effect that explains
 /// most.
-pub fn lay<'p>(
+pub fn fit_canonical<'p>(
     bare: &LinearModel<'p>,
     effects: &[&str],
     library: &CandidateSet<'p>,
     options: &Options,
 ) -> LinearModel<'p> {
-    let mut laid = LinearModel { terms: Vec::new(), ..bare.clone() };
+    let mut model = LinearModel { terms: Vec::new(), ..bare.clone() };
     let wanted = library.effects.iter().copied().filter(|e| effects.contains(&e.info().id));
-    let (fixed, mut open): (Vec<_>, Vec<_>) = wanted.partition(|e| is_fixed(*e, laid.problem));
-    fixed.into_iter().for_each(|effect| enter(&mut laid, effect));
+    let (fixed, mut open): (Vec<_>, Vec<_>) = wanted.partition(|e| is_fixed(*e, model.problem));
+    fixed.into_iter().for_each(|effect| enter(&mut model, effect));
     while !open.is_empty() {
-        let ground = PartialRegression::of(&laid);
+        let ground = PartialRegression::of(&model);
         let best: Vec<Vec<(f64, &Regressor)>> = open.iter().map(|e| best_of_forms(*e, library, &ground)).collect();
         let share = |forms: &Vec<(f64, &Regressor)>| forms.iter().map(|f| f.0).fold(0.0, f64::max);
         let most = best.iter().map(share).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |most| most.0);
         open.remove(most);
-        let terms = best[most].iter().map(|(_, candidate)| candidate.term(laid.problem)).collect();
-        laid.terms.extend(choose(terms, &ground, laid.problem));
-        laid.refine();
+        let terms = best[most].iter().map(|(_, candidate)| candidate.term(model.problem)).collect();
+        model.terms.extend(choose(terms, &ground, model.problem));
+        model.refine();
     }
     for _ in 0..PASSES {
-        if !reselect_forms(&mut laid, library) {
+        if !reselect_forms(&mut model, library) {
             break;
         }
     }
-    extend(&mut laid, library, options);
-    laid
+    extend(&mut model, library, options);
+    model
 }
 
 /// Whether the effect has only one form and one grid point.
@@ -95,7 +95,7 @@ fn choose<'p>(mut forms: Vec<Term<'p>>, ground: &PartialRegression, problem: &Pr
         let mut term = [term];
         let sse = varpro(&mut term, &ground.basis, &ground.residual, problem);
         let [term] = term;
-        (term.allows(&ground.own(&term.columns).factors()), sse, term)
+        (term.allows(&ground.own(&term.columns).coefficients()), sse, term)
     };
     let forms: Vec<(bool, f64, Term<'p>)> = forms.into_par_iter().map(polished).collect();
     let mut chosen: Option<(bool, f64, Term<'p>)> = None;

@@ -89,13 +89,15 @@ pub fn evidence<'l, 'p>(
 
 fn attempt<'l, 'p>(ridge: &BlockedRidge, form: &'l Regressor<'p>, outside: Option<&Outside>) -> Tried<'l, 'p> {
     let Some(added) = visible(ridge, form) else { return Tried::Hidden(form) };
-    let is_possible = |factors: &[f64]| allows(form.effect, &form.form, factors);
-    if !is_possible(&added.factors()) {
+    let is_possible = |coefficients: &[f64]| allows(form.effect, &form.form, coefficients);
+    if !is_possible(&added.coefficients()) {
         return Tried::Rejected;
     }
     if let Some(outside) = outside.filter(|_| form.effect.regime() == Regime::SteadyState) {
-        let Some((factors, taken)) = outside.added(&form.columns, LEAST_VISIBLE) else { return Tried::Hidden(form) };
-        if !is_possible(&factors) || taken <= DECISION_SHARE * outside.left() {
+        let Some((coefficients, taken)) = outside.added(&form.columns, LEAST_VISIBLE) else {
+            return Tried::Hidden(form);
+        };
+        if !is_possible(&coefficients) || taken <= DECISION_SHARE * outside.left() {
             return Tried::Rejected;
         }
     }
@@ -114,7 +116,7 @@ fn of_effect<'l, 'p>(ridge: &BlockedRidge, trials: &[Trial<'l, 'p>], forms: usiz
     let best = trials.iter().max_by(|a, b| a.taken.total_cmp(&b.taken))?;
     let of_block = |block: usize| {
         let chosen = trials.iter().map(|t| t.gains[block]).max_by(|a, b| a.fitted.total_cmp(&b.fitted));
-        chosen.map_or(0.0, |gain| gain.held_out)
+        chosen.map_or(0.0, |gain| gain.validation_losses)
     };
     let gains: Vec<f64> = (0..ridge.blocks.len()).map(of_block).collect();
     Some(Evidence {
@@ -136,10 +138,10 @@ pub fn errors(values: &[f64]) -> f64 {
 
 /// p-value of a Wald statistic with this number of coefficients, estimated from this number of blocks: Student's t
 /// for one coefficient, Hotelling's T² for several.
-pub fn chance(wald: f64, factors: usize, blocks: usize) -> f64 {
-    let (k, g) = (factors as f64, blocks as f64);
+pub fn chance(wald: f64, coefficients: usize, blocks: usize) -> f64 {
+    let (k, g) = (coefficients as f64, blocks as f64);
     let none = |law: Result<f64, _>| law.unwrap_or(1.0);
-    match factors {
+    match coefficients {
         1 => none(StudentsT::new(0.0, 1.0, g - 1.0).map(|law| 2.0 * law.sf(wald.max(0.0).sqrt()))),
         _ => {
             let law = FisherSnedecor::new(k, (g - k).max(1.0));

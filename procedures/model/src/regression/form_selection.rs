@@ -40,11 +40,11 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
     }
     // A candidate that explains more is added first, unless it explains something else.
     let instead = |other: &Regressor| {
-        let mut beside = ground.basis.clone();
+        let mut with_other = ground.basis.clone();
         for column in &other.term(terms.problem).columns {
-            beside.push(column);
+            with_other.push(column);
         }
-        let left = PartialRegression::new(beside.clone(), beside.rest(&ground.residual), terms.problem);
+        let left = PartialRegression::new(with_other.clone(), with_other.rest(&ground.residual), terms.problem);
         left.own(&part.columns).share * left.energy < COMPONENT_OWN_SHARE * share_of_part * ground.energy
     };
     let is_weak = share_of_part < options.practical_share || others.into_iter().any(|(_, other)| instead(other));
@@ -55,7 +55,7 @@ fn one_more<'p>(terms: &LinearModel<'p>, at: usize, library: &CandidateSet<'p>, 
     let longer = Term::new(term.effect, form, shape, terms.problem);
     let mut with = terms.clone();
     with.terms[at] = longer.clone();
-    longer.allows(&with.linear().factors[at]).then_some(longer)
+    longer.allows(&with.linear().coefficients[at]).then_some(longer)
 }
 
 /// Reselects the form or the order of each effect, given all other effects of the model. Returns whether a form
@@ -95,7 +95,7 @@ pub fn reselect_forms<'p>(terms: &mut LinearModel<'p>, library: &CandidateSet<'p
                 0.0 => 1.0,
                 more => more,
             };
-            let possible = trial.1.allows(&ground.own(&trial.1.columns).factors());
+            let possible = trial.1.allows(&ground.own(&trial.1.columns).coefficients());
             if possible && trial.0 < best.0 * (1.0 - BETTER_FORM * more) {
                 best = trial;
             }
@@ -120,7 +120,7 @@ fn two_parts<'p>(same: &[&Regressor<'p>], ground: &PartialRegression, problem: &
     for (i, one) in parts.iter().enumerate() {
         for other in &parts[..i] {
             let own = ground.own(&[&other.columns[..], &one.columns].concat());
-            if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.factors()) {
+            if best.as_ref().is_none_or(|b| own.share > b.0) && allows(one.effect, &form, &own.coefficients()) {
                 best = Some((own.share, [&other.shape[..], &one.shape].concat()));
             }
         }

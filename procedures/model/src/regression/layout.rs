@@ -13,7 +13,11 @@ use std::sync::Arc;
 /// Fits effects in addition to the offset terms of `bare`: effects with a single form first, then repeatedly the
 /// effect that explains most. The other forms of an effect are added with a ridge penalty, so that the grid need not
 /// be fine.
-pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &CandidateSet<'p>) -> LinearModel<'p> {
+pub fn fit_canonical<'p>(
+    bare: &LinearModel<'p>,
+    effects: &[&'p dyn Effect],
+    library: &CandidateSet<'p>,
+) -> LinearModel<'p> {
     let problem = bare.problem;
     let mut model = LinearModel { terms: Vec::new(), relatives: Arc::default(), ..bare.clone() };
     let forms_of = |effect: &dyn Effect| -> Vec<&Regressor<'p>> {
@@ -29,7 +33,7 @@ pub fn lay<'p>(bare: &LinearModel<'p>, effects: &[&'p dyn Effect], library: &Can
     }
     while !open.is_empty() {
         let best: Vec<(f64, usize)> = match Solution::of(&model) {
-            Some(solution) => open.iter().map(|forms| most_telling(&solution, forms)).collect(),
+            Some(solution) => open.iter().map(|forms| best_form(&solution, forms)).collect(),
             None => open.iter().map(|_| (0.0, 0)).collect(),
         };
         let most = (0..open.len()).max_by(|a, b| best[*a].0.total_cmp(&best[*b].0)).unwrap_or(0);
@@ -63,7 +67,7 @@ fn extend<'l, 'p>(
         let judged = forms.par_iter().filter(|form| !parts.iter().any(|part| std::ptr::eq(*part, **form)));
         let judged = judged.filter_map(|form| {
             let added = visible(&solution.ridge, form)?;
-            let gains: Vec<f64> = added.gains(0.0, |_| true).iter().map(|gain| gain.held_out).collect();
+            let gains: Vec<f64> = added.gains(0.0, |_| true).iter().map(|gain| gain.validation_losses).collect();
             let gain: f64 = gains.iter().sum();
             (gain > DECISION_SHARE * solution.ridge.loss() && errors(&gains) > ONE_ERROR).then_some((gain, *form))
         });
@@ -77,10 +81,10 @@ fn extend<'l, 'p>(
 }
 
 /// The form that explains most of the residual, and how much it explains. Physically possible forms are preferred.
-fn most_telling(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
+fn best_form(solution: &Solution, forms: &[&Regressor]) -> (f64, usize) {
     let taken = |form: &&Regressor| {
         let added = visible(&solution.ridge, form)?;
-        let possible = allows(form.effect, &form.form, &added.factors());
+        let possible = allows(form.effect, &form.form, &added.coefficients());
         Some((possible, added.taken()))
     };
     let taken: Vec<Option<(bool, f64)>> = forms.par_iter().map(taken).collect();

@@ -28,9 +28,9 @@ impl LinearModel<'_> {
         let side: Vec<f64> = columns.iter().map(|c| dot(c, &explained)).collect();
         let flat = Cholesky::new(&gram, p, 0.0).solve(&side);
         let mut next = flat.into_iter();
-        let factors = self.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
+        let coefficients = self.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
         let sse = dot(&residual, &residual);
-        Linear { factors, residual, sse }
+        Linear { coefficients, residual, sse }
     }
 
     /// Tangent space: the columns of the model and its derivatives in the nonlinear parameters. A new effect has to
@@ -41,8 +41,8 @@ impl LinearModel<'_> {
             return basis;
         }
         let linear = self.linear();
-        for (term, factors) in self.terms.iter().zip(&linear.factors) {
-            for slope in slopes(term, factors, self.problem) {
+        for (term, coefficients) in self.terms.iter().zip(&linear.coefficients) {
+            for slope in slopes(term, coefficients, self.problem) {
                 basis.push(&slope);
             }
         }

@@ -43,8 +43,8 @@ impl<'e> Term<'e> {
     }
 
     /// Whether the coefficients are physically possible.
-    pub fn allows(&self, factors: &[f64]) -> bool {
-        allows(self.effect, &self.form, factors)
+    pub fn allows(&self, coefficients: &[f64]) -> bool {
+        allows(self.effect, &self.form, coefficients)
     }
 
     /// Number of free parameters, linear and nonlinear.
@@ -54,9 +54,9 @@ impl<'e> Term<'e> {
 }
 
 /// Whether these coefficients of an effect are physically possible.
-pub fn allows(effect: &dyn Effect, form: &Form, factors: &[f64]) -> bool {
+pub fn allows(effect: &dyn Effect, form: &Form, coefficients: &[f64]) -> bool {
     let info = effect.info();
-    form.linear.iter().zip(factors).all(|(name, value)| {
+    form.linear.iter().zip(coefficients).all(|(name, value)| {
         info.parameters.iter().find(|p| p.name == *name).is_none_or(|p| (p.min..=p.max).contains(value))
     })
 }
@@ -90,7 +90,7 @@ pub struct Relative<'e> {
 
 /// The solution of a model: coefficients of the columns of each term, and the residual.
 pub struct Linear {
-    pub factors: Vec<Vec<f64>>,
+    pub coefficients: Vec<Vec<f64>>,
     pub residual: Vec<f64>,
     pub sse: f64,
 }
@@ -162,10 +162,10 @@ impl<'p> LinearModel<'p> {
     }
 
     /// Derivatives of the model in every free nonlinear parameter, term by term.
-    pub fn slopes(&self, factors: &[Vec<f64>]) -> Vec<(usize, usize, Vec<f64>)> {
+    pub fn slopes(&self, coefficients: &[Vec<f64>]) -> Vec<(usize, usize, Vec<f64>)> {
         let mut out = Vec::new();
-        for (i, (term, factors)) in self.terms.iter().zip(factors).enumerate() {
-            out.extend(term.free().zip(slopes(term, factors, self.problem)).map(|(k, slope)| (i, k, slope)));
+        for (i, (term, coefficients)) in self.terms.iter().zip(coefficients).enumerate() {
+            out.extend(term.free().zip(slopes(term, coefficients, self.problem)).map(|(k, slope)| (i, k, slope)));
         }
         out
     }
@@ -194,7 +194,7 @@ impl<'p> LinearModel<'p> {
 /// The reduction of columns to rows is linear, so that the sum is reduced only once.
 ///
 /// [`Shape::moved`]: crate::effect::Shape::moved
-pub(in crate::regression) fn slopes(term: &Term, factors: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
+pub(in crate::regression) fn slopes(term: &Term, coefficients: &[f64], problem: &Problem) -> Vec<Vec<f64>> {
     const STEP: f64 = 1e-4;
     let slope = |k: usize| {
         let at = |sign: f64| {
@@ -204,7 +204,7 @@ pub(in crate::regression) fn slopes(term: &Term, factors: &[f64], problem: &Prob
         };
         let (up, down) = (at(1.0), at(-1.0));
         let mut slope = vec![0.0; up.first().map_or(0, Vec::len)];
-        for ((u, d), f) in up.iter().zip(&down).zip(factors) {
+        for ((u, d), f) in up.iter().zip(&down).zip(coefficients) {
             let scale = f / (2.0 * STEP);
             slope.iter_mut().zip(u.iter().zip(d)).for_each(|(s, (u, d))| *s += scale * (u - d));
         }
@@ -216,7 +216,7 @@ pub(in crate::regression) fn slopes(term: &Term, factors: &[f64], problem: &Prob
 
 struct Reduced {
     columns: Vec<Vec<f64>>,
-    factors: Vec<f64>,
+    coefficients: Vec<f64>,
     residual: Vec<f64>,
     sse: f64,
     spd: Cholesky,
@@ -234,13 +234,13 @@ fn reduce(terms: &[Term], basis: &Basis, rest: &[f64]) -> Reduced {
     }
     let spd = Cholesky::new(&gram, p, 1e-12);
     let side: Vec<f64> = columns.iter().map(|c| dot(c, rest)).collect();
-    let factors = spd.solve(&side);
+    let coefficients = spd.solve(&side);
     let mut residual = rest.to_vec();
-    for (c, f) in columns.iter().zip(&factors) {
+    for (c, f) in columns.iter().zip(&coefficients) {
         residual.iter_mut().zip(c).for_each(|(r, c)| *r -= f * c);
     }
     let sse = dot(&residual, &residual);
-    Reduced { columns, factors, residual, sse, spd }
+    Reduced { columns, coefficients, residual, sse, spd }
 }
 
 /// Refines changepoints: tries both neighbours at a decreasing distance.
@@ -285,10 +285,10 @@ pub fn varpro(terms: &mut [Term], basis: &Basis, rest: &[f64], problem: &Problem
     let mut damping = 1e-3;
     for _ in 0..12 {
         let mut jacobian = Vec::new();
-        let mut next = best.factors.iter();
+        let mut next = best.coefficients.iter();
         for term in terms.iter() {
-            let factors: Vec<f64> = next.by_ref().take(term.columns.len()).copied().collect();
-            for slope in slopes(term, &factors, problem) {
+            let coefficients: Vec<f64> = next.by_ref().take(term.columns.len()).copied().collect();
+            for slope in slopes(term, &coefficients, problem) {
                 let mut slope = basis.rest(&slope);
                 let side: Vec<f64> = best.columns.iter().map(|c| dot(c, &slope)).collect();
                 for (c, f) in best.columns.iter().zip(best.spd.solve(&side)) {

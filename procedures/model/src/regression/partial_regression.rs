@@ -136,7 +136,7 @@ impl PartialRegression {
 
 impl Orthogonalized {
     /// Coefficients of the columns, given the basis.
-    pub fn factors(&self) -> Vec<f64> {
+    pub fn coefficients(&self) -> Vec<f64> {
         Cholesky::new(&self.gram, self.side.len(), 0.0).solve(&self.side)
     }
 
@@ -150,13 +150,13 @@ impl Orthogonalized {
 /// `squares` those with itself.
 pub fn jackknife(sums: &[f64], squares: &[f64]) -> Option<f64> {
     let (sum, square) = (sums.iter().sum::<f64>(), squares.iter().sum::<f64>());
-    let factor = sum / square;
-    let without = |(s, h): (&f64, &f64)| ((sum - s) / (square - h) - factor).powi(2);
+    let coefficient = sum / square;
+    let without = |(s, h): (&f64, &f64)| ((sum - s) / (square - h) - coefficient).powi(2);
     let n = sums.len() as f64;
     let error = ((n - 1.0) / n * sums.iter().zip(squares).map(without).sum::<f64>()).sqrt();
     let deciding = square * square / dot(squares, squares);
     let t = StudentsT::new(0.0, 1.0, deciding - 1.0).ok()?;
-    Some(2.0 * t.sf((factor / error).abs()))
+    Some(2.0 * t.sf((coefficient / error).abs()))
 }
 
 pub fn products<C: Into<f64> + Copy>(a: &[C], b: &[f64], groups: &[Range<usize>]) -> Vec<f64> {

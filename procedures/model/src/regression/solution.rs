@@ -76,7 +76,7 @@ pub struct Solution {
     pub ridge: BlockedRidge,
     pub weight: Vec<f64>,
     /// Coefficients of the effects, of the form error by its place, and of other forms.
-    pub factors: Vec<f64>,
+    pub coefficients: Vec<f64>,
     pub error: Vec<(usize, f64)>,
     pub relatives: Vec<f64>,
     pub residual: Vec<f64>,
@@ -116,12 +116,12 @@ impl Solution {
             columns[at].values = &nothing;
             ridge = BlockedRidge::new(&columns, &response, &weight, &model.problem.block, Some(ridge.strength));
         }
-        let all = ridge.factors();
+        let all = ridge.coefficients();
         let residual = left(&columns, &all, &response);
-        let (factors, rest) = all.split_at(own);
+        let (coefficients, rest) = all.split_at(own);
         let (error, relatives) = rest.split_at(nuisance.error.len());
         Self {
-            factors: factors.to_vec(),
+            coefficients: coefficients.to_vec(),
             error: nuisance.error.iter().map(|(at, _)| *at).zip(error.iter().copied()).collect(),
             relatives: relatives.to_vec(),
             residual,
@@ -139,41 +139,42 @@ impl Solution {
             let mean = replicates.iter().map(|r| r[k]).sum::<f64>() / groups;
             ((groups - 1.0) / groups * replicates.iter().map(|r| (r[k] - mean).powi(2)).sum::<f64>()).sqrt()
         };
-        (0..self.factors.len()).map(of).collect()
+        (0..self.coefficients.len()).map(of).collect()
     }
 
     /// Sum of the nuisance terms at the rows.
     pub fn form_error(&self, model: &LinearModel) -> Vec<f64> {
         let mut sum = vec![0.0; model.problem.rows()];
-        let mut add = |column: &[f64], factor: f64| sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        let mut add =
+            |column: &[f64], coefficient: f64| sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
         if let Some(form_error) = model.problem.form_error.as_deref() {
-            self.error.iter().for_each(|(at, factor)| add(&form_error.columns[*at].values, *factor));
+            self.error.iter().for_each(|(at, coefficient)| add(&form_error.columns[*at].values, *coefficient));
         }
         let columns = model.relatives.iter().flat_map(|relative| &relative.columns);
-        columns.zip(&self.relatives).for_each(|(column, factor)| add(column, *factor));
+        columns.zip(&self.relatives).for_each(|(column, coefficient)| add(column, *coefficient));
         sum
     }
 
     /// The solution as coefficients of the terms, like that of a least-squares model.
     pub fn linear(&self, model: &LinearModel) -> Linear {
-        let mut next = self.factors.iter().copied();
-        let factors = model.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
+        let mut next = self.coefficients.iter().copied();
+        let coefficients = model.terms.iter().map(|t| next.by_ref().take(t.columns.len()).collect()).collect();
         let sse = self.residual.iter().map(|e| e * e).sum();
-        Linear { factors, residual: self.residual.clone(), sse }
+        Linear { coefficients, residual: self.residual.clone(), sse }
     }
 
     /// Squared error of each block, predicted from the other blocks.
-    pub fn held_out(&self, model: &LinearModel) -> Vec<f64> {
+    pub fn validation_losses(&self, model: &LinearModel) -> Vec<f64> {
         let Some(form_error) = model.problem.form_error.as_deref() else { return Vec::new() };
         let response = model.response();
         let nuisance = nuisance(model, form_error, |_| false);
         let mut columns = effect_columns(model);
         columns.extend(nuisance.columns());
         let replicates = self.ridge.replicates().zip(&self.ridge.blocks);
-        let loss = |(factors, rows): (Vec<f64>, &std::ops::Range<usize>)| {
+        let loss = |(coefficients, rows): (Vec<f64>, &std::ops::Range<usize>)| {
             let mut left = response[rows.clone()].to_vec();
-            for (column, factor) in columns.iter().zip(factors) {
-                left.iter_mut().zip(&column.values[rows.clone()]).for_each(|(e, x)| *e -= factor * x);
+            for (column, coefficient) in columns.iter().zip(coefficients) {
+                left.iter_mut().zip(&column.values[rows.clone()]).for_each(|(e, x)| *e -= coefficient * x);
             }
             left.iter().map(|e| e * e).sum()
         };
@@ -188,17 +189,17 @@ fn beyond(model: &LinearModel, ridge: &BlockedRidge) -> Option<usize> {
     const CHANCE: f64 = 3.0;
     let names =
         model.terms.iter().flat_map(|term| term.form.linear.iter().map(move |name| term.effect.info().bounds(name).0));
-    let factors = ridge.factors();
+    let coefficients = ridge.coefficients();
     let below: Vec<usize> =
-        names.enumerate().filter(|(at, least)| *least == 0.0 && factors[*at] < 0.0).map(|(at, _)| at).collect();
+        names.enumerate().filter(|(at, least)| *least == 0.0 && coefficients[*at] < 0.0).map(|(at, _)| at).collect();
     if below.is_empty() {
         return None;
     }
     let replicates: Vec<Vec<f64>> = ridge.replicates().collect();
     let groups = replicates.len() as f64;
     let errors = |at: &usize| {
-        let square: f64 = replicates.iter().map(|r| (r[*at] - factors[*at]).powi(2)).sum();
-        factors[*at] / ((groups - 1.0) / groups * square).sqrt().max(f64::MIN_POSITIVE)
+        let square: f64 = replicates.iter().map(|r| (r[*at] - coefficients[*at]).powi(2)).sum();
+        coefficients[*at] / ((groups - 1.0) / groups * square).sqrt().max(f64::MIN_POSITIVE)
     };
     below.into_iter().filter(|at| errors(at) > -CHANCE).min_by(|a, b| errors(a).total_cmp(&errors(b)))
 }
@@ -211,8 +212,8 @@ pub fn weighed(model: &LinearModel, form_error: &FormError) -> Vec<f64> {
     let mut columns = effect_columns(model);
     columns.extend(nuisance.columns());
     for _ in 0..REWEIGHTED {
-        let factors = fitted(&columns, &response, &weight, FIRST_RIDGE);
-        weight = weights(form_error, &left(&columns, &factors, &response));
+        let coefficients = fitted(&columns, &response, &weight, FIRST_RIDGE);
+        weight = weights(form_error, &left(&columns, &coefficients, &response));
     }
     weight
 }
@@ -234,20 +235,20 @@ fn name(model: &LinearModel) -> String {
     name
 }
 
-fn left(columns: &[BaseColumn], factors: &[f64], response: &[f64]) -> Vec<f64> {
+fn left(columns: &[BaseColumn], coefficients: &[f64], response: &[f64]) -> Vec<f64> {
     let mut left = response.to_vec();
-    for (column, factor) in columns.iter().zip(factors) {
-        left.iter_mut().zip(column.values).for_each(|(e, x)| *e -= factor * x);
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        left.iter_mut().zip(column.values).for_each(|(e, x)| *e -= coefficient * x);
     }
     left
 }
 
 /// The first coefficient of an effect.
-pub fn effect_factor(model: &LinearModel, solution: &Solution, id: &str) -> Option<f64> {
+pub fn effect_coefficient(model: &LinearModel, solution: &Solution, id: &str) -> Option<f64> {
     let mut at = 0;
     for term in &model.terms {
         if term.id() == id {
-            return solution.factors.get(at).copied();
+            return solution.coefficients.get(at).copied();
         }
         at += term.columns.len();
     }

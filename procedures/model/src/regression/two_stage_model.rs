@@ -4,7 +4,7 @@
 use crate::effect::Regime;
 use crate::preprocess::{Prepared, Problem};
 use crate::regression::candidates::CandidateSet;
-use crate::regression::canonical_fit::{enter, lay};
+use crate::regression::canonical_fit::{enter, fit_canonical};
 use crate::regression::hysteresis_form::form_of;
 use crate::regression::linear_model::{LinearModel, Term, columns};
 use crate::regression::solution::PRESLIDING;
@@ -75,7 +75,7 @@ impl<'p> TwoStageModel<'p> {
         // The ramps depend on the steady-state part, and the steady-state part depends a little on the ramp effects.
         for _ in 0..2 {
             assembly.main.terms.clear();
-            assembly.main = lay(&assembly.main, &settled, &library, options);
+            assembly.main = fit_canonical(&assembly.main, &settled, &library, options);
             assembly.enter_moving();
             if !assembly.take_wavering() {
                 break;
@@ -89,7 +89,7 @@ impl<'p> TwoStageModel<'p> {
         let main = LinearModel::new(prepared.judged(&effects));
         let mut assembly =
             Self { prepared, spec, effects, main, moving: None, wavering: Vec::new(), hidden: Vec::new() };
-        let mut laid: Vec<&dyn Effect> = Vec::new();
+        let mut effects_to_fit: Vec<&dyn Effect> = Vec::new();
         let view = &prepared.main.view;
         for id in &assembly.effects {
             let effect = spec.find(id)?;
@@ -103,12 +103,12 @@ impl<'p> TwoStageModel<'p> {
                 add(&mut assembly.main.given, &given, &[1.0]);
                 assembly.main.offsets.push(effect);
             } else if id != PRESLIDING {
-                laid.push(effect);
+                effects_to_fit.push(effect);
             }
         }
-        let ids: Vec<&str> = laid.iter().map(|effect| effect.info().id).collect();
+        let ids: Vec<&str> = effects_to_fit.iter().map(|effect| effect.info().id).collect();
         let library = CandidateSet::only(spec, assembly.main.problem, prepared.regimes(), &ids);
-        assembly.main = crate::regression::layout::lay(&assembly.main, &laid, &library);
+        assembly.main = crate::regression::layout::fit_canonical(&assembly.main, &effects_to_fit, &library);
         Ok(assembly)
     }
 
@@ -127,8 +127,8 @@ impl<'p> TwoStageModel<'p> {
             }
         }
         for part in std::iter::once(&self.main).chain(&self.moving) {
-            for (term, factors) in part.terms.iter().zip(part.linear().factors) {
-                add(&mut sum, &columns(term.effect, term.form.name, &term.shape, problem), &factors);
+            for (term, coefficients) in part.terms.iter().zip(part.linear().coefficients) {
+                add(&mut sum, &columns(term.effect, term.form.name, &term.shape, problem), &coefficients);
             }
         }
         sum
@@ -146,9 +146,9 @@ impl<'p> TwoStageModel<'p> {
                 add(&mut moving.given, &columns(effect, "linear", &[], moving.problem), &[1.0]);
             }
         }
-        for (term, factors) in self.main.terms.iter().zip(self.main.linear().factors) {
+        for (term, coefficients) in self.main.terms.iter().zip(self.main.linear().coefficients) {
             let columns = columns(term.effect, term.form.name, &term.shape, moving.problem);
-            add(&mut moving.given, &columns, &factors);
+            add(&mut moving.given, &columns, &coefficients);
         }
     }
 
@@ -186,10 +186,10 @@ impl<'p> TwoStageModel<'p> {
     fn take_wavering(&mut self) -> bool {
         let mut wavering = vec![0.0; self.wavering.len()];
         if let Some(moving) = &self.moving {
-            let told = moving.terms.iter().zip(moving.linear().factors);
-            for (term, factors) in told.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
+            let fitted = moving.terms.iter().zip(moving.linear().coefficients);
+            for (term, coefficients) in fitted.filter(|(term, _)| term.effect.regime() == Regime::Transient) {
                 let columns = columns(term.effect, term.form.name, &term.shape, self.main.problem);
-                add(&mut wavering, &columns, &factors);
+                add(&mut wavering, &columns, &coefficients);
             }
         }
         add(&mut self.main.given, &[std::mem::replace(&mut self.wavering, wavering.clone())], &[-1.0]);
@@ -215,8 +215,8 @@ impl<'p> TwoStageModel<'p> {
     }
 }
 
-fn add(sum: &mut [f64], columns: &[Vec<f64>], factors: &[f64]) {
-    for (column, factor) in columns.iter().zip(factors) {
-        sum.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+fn add(sum: &mut [f64], columns: &[Vec<f64>], coefficients: &[f64]) {
+    for (column, coefficient) in columns.iter().zip(coefficients) {
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
     }
 }

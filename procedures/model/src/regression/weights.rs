@@ -48,6 +48,6 @@ fn regressed(columns: &[&Vec<f64>], values: &[f64]) -> Vec<f64> {
             }
         }
     }
-    let factors = Cholesky::new(&gram, p, 1e-9).solve(&side);
-    (0..values.len()).map(|row| (0..p).map(|k| factors[k] * about(k, row)).sum()).collect()
+    let coefficients = Cholesky::new(&gram, p, 1e-9).solve(&side);
+    (0..values.len()).map(|row| (0..p).map(|k| coefficients[k] * about(k, row)).sum()).collect()
 }

@@ -17,7 +17,7 @@ const LENGTHS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 /// The scatter of sections of one length is estimated only if there are more than this number times the length.
 const STRETCHES: usize = 16;
 /// Rows on each side of a reversal that are excluded.
-const BESIDE: usize = 2;
+const REVERSAL_ROWS: usize = 2;
 /// Largest number of events; more of them are no isolated events.
 const MOST: usize = 40;
 /// Median absolute value of a normal variable, in standard deviations.
@@ -50,7 +50,7 @@ impl<'p> Events<'p> {
         let direction = problem.view.get(Signal::Direction);
         let mut is_out = vec![false; residual.len()];
         for row in (1..direction.len().min(residual.len())).filter(|row| direction[*row] != direction[row - 1]) {
-            is_out[row.saturating_sub(BESIDE)..(row + BESIDE).min(residual.len())].fill(true);
+            is_out[row.saturating_sub(REVERSAL_ROWS)..(row + REVERSAL_ROWS).min(residual.len())].fill(true);
         }
         Self { problem, residual: residual.to_vec(), is_out, repeats }
     }
@@ -77,9 +77,9 @@ impl<'p> Events<'p> {
             if z < EVENT_ERRORS {
                 break;
             }
-            let beside = rows.start.saturating_sub(rows.len())..(rows.end + rows.len()).min(self.residual.len());
-            self.is_out[beside].fill(true);
-            if !self.comes_again(&rows, mean) && !self.begins(&rows) {
+            let surrounding = rows.start.saturating_sub(rows.len())..(rows.end + rows.len()).min(self.residual.len());
+            self.is_out[surrounding].fill(true);
+            if !self.recurs(&rows, mean) && !self.begins(&rows) {
                 found.push(Event { rows, mean });
             }
         }
@@ -120,7 +120,7 @@ impl<'p> Events<'p> {
     }
 
     /// Whether at least half of the event is present in the rows that repeat it.
-    fn comes_again(&self, rows: &Range<usize>, mean: f64) -> bool {
+    fn recurs(&self, rows: &Range<usize>, mean: f64) -> bool {
         let (mut sum, mut count) = (0.0, 0.0);
         for other in rows.clone().filter_map(|row| self.repeats.get(&row)).flatten() {
             (sum, count) = (sum + self.residual[*other], count + 1.0);

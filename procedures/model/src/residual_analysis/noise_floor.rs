@@ -1,6 +1,6 @@
 //! Noise floor (pure error) from pairs of rows of the same condition in different repeats.
 
-use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::independent_blocks::independent_blocks;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::diagnosis::NoiseFloor;
 use crate::residual_analysis::events::Event;
@@ -27,15 +27,15 @@ pub fn noise_floor(prepared: &Prepared, residual: &[f64], remembers: bool, event
     if replicate_pairs.len() < FEWEST {
         return NoiseFloor { source: unknown(prepared), ..NoiseFloor::default() };
     }
-    let (all, of_piece) = Pairs::sums(problem, residual, &replicate_pairs);
+    let (all, of_block) = Pairs::sums(problem, residual, &replicate_pairs);
     // Structure over an angle repeats only at the same angle.
     let met: Vec<_> = replicate_pairs.iter().copied().filter(|pair| !problem.different_angle.contains(pair)).collect();
     let elsewhere = replicate_pairs.len() - met.len();
     let of_met = (elsewhere > 0 && met.len() >= FEWEST).then(|| Pairs::sums(problem, residual, &met));
-    let (again, again_of) = of_met.as_ref().map_or((&all, &of_piece), |(again, of)| (again, of));
+    let (again, again_of) = of_met.as_ref().map_or((&all, &of_block), |(again, of)| (again, of));
     NoiseFloor {
         rms: Some((all.noise / all.count).sqrt()),
-        ci95: interval(&all, &of_piece),
+        ci95: interval(&all, &of_block),
         source: format!(
             "residuals of the complete model in {} pairs of the same condition and phase in different repeats ({}{})",
             replicate_pairs.len(),
@@ -64,16 +64,16 @@ struct Pairs {
 impl Pairs {
     /// Sums over all pairs, and over the pairs that include each block of the run.
     fn sums(problem: &Problem, residual: &[f64], replicate_pairs: &[(usize, usize)]) -> (Self, Vec<Self>) {
-        let (piece, count) = pieces(problem, 1);
-        let (mut all, mut of_piece) = (Pairs::default(), vec![Pairs::default(); count]);
+        let (block, count) = independent_blocks(problem, 1);
+        let (mut all, mut of_block) = (Pairs::default(), vec![Pairs::default(); count]);
         for (a, b) in replicate_pairs {
             let half = (residual[*a] - residual[*b]).powi(2) / 2.0;
             let pair = Pairs { noise: half, common: residual[*a] * residual[*b], count: 1.0 };
             all.add(&pair, 1.0);
-            [a, b].into_iter().for_each(|row| of_piece[piece[*row]].add(&pair, 1.0));
+            [a, b].into_iter().for_each(|row| of_block[block[*row]].add(&pair, 1.0));
         }
-        of_piece.retain(|pairs| pairs.count > 0.0);
-        (all, of_piece)
+        of_block.retain(|pairs| pairs.count > 0.0);
+        (all, of_block)
     }
 
     fn add(&mut self, other: &Pairs, times: f64) {
@@ -82,9 +82,9 @@ impl Pairs {
         self.count += times * other.count;
     }
 
-    fn without(&self, piece: &Pairs) -> Pairs {
+    fn without(&self, block: &Pairs) -> Pairs {
         let mut rest = self.clone();
-        rest.add(piece, -1.0);
+        rest.add(block, -1.0);
         rest
     }
 
@@ -96,9 +96,9 @@ impl Pairs {
 }
 
 /// 95 % interval of the common share, by a jackknife over blocks.
-fn share_interval(all: &Pairs, of_piece: &[Pairs]) -> [f64; 2] {
+fn share_interval(all: &Pairs, of_block: &[Pairs]) -> [f64; 2] {
     let whole = all.share();
-    let reach = reach(of_piece.iter().map(|piece| all.without(piece).share() - whole));
+    let reach = reach(of_block.iter().map(|block| all.without(block).share() - whole));
     [(whole - reach).max(0.0), (whole.max(0.0) + reach).min(1.0)]
 }
 
@@ -140,13 +140,13 @@ fn unknown(prepared: &Prepared) -> String {
 /// computed on the logarithm, because a variance has a skewed distribution. It is at least as wide as for so many
 /// independent pairs of normal noise, whose log variance scatters by 2/n: a few blocks can agree by chance. `None` if
 /// a few blocks contain all the noise, because then its accuracy is unknown.
-fn interval(all: &Pairs, of_piece: &[Pairs]) -> Option<[f64; 2]> {
+fn interval(all: &Pairs, of_block: &[Pairs]) -> Option<[f64; 2]> {
     let whole = all.noise / all.count;
-    let without = |piece: &Pairs| {
-        let rest = all.without(piece);
+    let without = |block: &Pairs| {
+        let rest = all.without(block);
         (rest.noise.max(0.0) / rest.count.max(1.0)).max(1e-12 * whole)
     };
-    let reach = reach(of_piece.iter().map(|piece| (without(piece) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
-    let factor = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
-    (factor <= FLOOR_INTERVAL_RATIO).then(|| [whole.sqrt() / factor, whole.sqrt() * factor])
+    let reach = reach(of_block.iter().map(|block| (without(block) / whole).ln())).max(1.96 * (2.0 / all.count).sqrt());
+    let ratio = if whole > 0.0 { (0.5 * reach).min(50.0).exp() } else { 1.0 };
+    (ratio <= FLOOR_INTERVAL_RATIO).then(|| [whole.sqrt() / ratio, whole.sqrt() * ratio])
 }

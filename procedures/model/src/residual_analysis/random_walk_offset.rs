@@ -136,7 +136,7 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
     }
 
     /// The residual of a model without the drifting offset.
-    pub fn taken_off(&self, residual: &[f64]) -> Vec<f64> {
+    pub fn without_offset(&self, residual: &[f64]) -> Vec<f64> {
         let problem = self.now.problem;
         let smooth = Filter::new(self.memory, &self.gaps).smooth(&means(residual, problem));
         let mut block = 0;
@@ -157,7 +157,7 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
 
     /// Whether a coefficient of the model has a changepoint: with a step at one moment the blocks are significantly
     /// more likely, corrected for all tested steps.
-    pub fn leaps(&self, options: &Options) -> bool {
+    pub fn has_changepoint(&self, options: &Options) -> bool {
         let columns = self.now.columns();
         let figures: Vec<Vec<f64>> = columns.iter().map(|column| means(column, self.now.problem)).collect();
         let places: Vec<usize> = (1..self.gaps.len()).step_by(self.gaps.len().div_ceil(MOST_PLACES)).collect();
@@ -166,8 +166,9 @@ impl<'t, 'p> Ar1Offset<'t, 'p> {
             let filter = Filter::new(memory, &self.gaps);
             let (basis, left) = self.left(&filter);
             let taken = |figure: &[f64], place: usize| {
-                let leap: Vec<f64> = (0..figure.len()).map(|i| if i < place { 0.0 } else { figure[i] }).collect();
-                let own = basis.rest(&filter.innovations(&leap));
+                let step_column: Vec<f64> =
+                    (0..figure.len()).map(|i| if i < place { 0.0 } else { figure[i] }).collect();
+                let own = basis.rest(&filter.innovations(&step_column));
                 dot(&own, &left).powi(2) / dot(&own, &own).max(f64::MIN_POSITIVE)
             };
             let all = figures.iter().flat_map(|figure| places.iter().map(|place| taken(figure, *place)));

@@ -74,7 +74,9 @@ fn taken(ridge: &BlockedRidge, axis: &Functions) -> Vec<f64> {
     let scale = |c: &Vec<f32>| c.iter().map(|v| v * v).sum::<f32>() > 0.0;
     let columns: Vec<&Vec<f32>> = axis.columns.iter().filter(|c| scale(c)).collect();
     let added = Added::new(ridge, &columns);
-    let of = |strength: &f64| added.gains(*strength, |_| true).iter().map(|gain| gain.held_out).collect::<Vec<f64>>();
+    let of = |strength: &f64| {
+        added.gains(*strength, |_| true).iter().map(|gain| gain.validation_losses).collect::<Vec<f64>>()
+    };
     let all = RIDGES.iter().map(of);
     all.max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum())).unwrap_or_default()
 }
@@ -151,9 +153,12 @@ fn line(values: &[f64], problem: &Problem, row_s: f64) -> (f64, f64) {
         let all = sums.iter().fold([0.0; 5], |a, b| std::array::from_fn(|k| a[k] + b[k]));
         let gains = sums.iter().map(|own| {
             let rest: [f64; 5] = std::array::from_fn(|k| all[k] - own[k]);
-            let factors = Cholesky::new(&[rest[0], rest[1], rest[1], rest[2]], 2, 1e-9).solve(&rest[3..]);
-            let there = [own[0] * factors[0] + own[1] * factors[1], own[1] * factors[0] + own[2] * factors[1]];
-            2.0 * (factors[0] * own[3] + factors[1] * own[4]) - dot(&factors, &there)
+            let coefficients = Cholesky::new(&[rest[0], rest[1], rest[1], rest[2]], 2, 1e-9).solve(&rest[3..]);
+            let there = [
+                own[0] * coefficients[0] + own[1] * coefficients[1],
+                own[1] * coefficients[0] + own[2] * coefficients[1],
+            ];
+            2.0 * (coefficients[0] * own[3] + coefficients[1] * own[4]) - dot(&coefficients, &there)
         });
         let gains: Vec<f64> = gains.collect();
         (gains.iter().sum::<f64>() / square.max(f64::MIN_POSITIVE), errors(&gains))

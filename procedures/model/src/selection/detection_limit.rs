@@ -18,14 +18,14 @@ pub struct DetectionLimit<'p> {
 }
 
 impl<'p> FloatingSearch<'_, 'p> {
-    pub fn silences(&self) -> Vec<DetectionLimit<'p>> {
-        silences(&self.now, self.library, &self.withdrawn, self.bar())
+    pub fn detection_limits(&self) -> Vec<DetectionLimit<'p>> {
+        detection_limits(&self.now, self.library, &self.withdrawn, self.bar())
     }
 }
 
 /// Detection limit of each effect that is not in the model. It is the largest over the forms of the effect, at the
 /// median of the tested nonlinear parameters.
-fn silences<'p>(
+fn detection_limits<'p>(
     end: &LinearModel<'p>,
     library: &CandidateSet<'p>,
     withdrawn: &[&'p str],

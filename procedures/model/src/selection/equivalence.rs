@@ -18,12 +18,12 @@ pub fn is_tie(a: &[f64], b: &[f64]) -> bool {
 /// test of Davidson and MacKinnon (1981), by sign flips of blocks. Two effects can differ significantly in only a few
 /// folds.
 pub fn encompasses(now: &LinearModel, one: &Term, other: &Term, options: &Options) -> bool {
-    let left_for = |beside: &Term, there: &Term| {
+    let left_for = |tested: &Term, included: &Term| {
         let mut with = now.clone();
-        with.terms.push(there.clone());
+        with.terms.push(included.clone());
         with.refine();
         let ground = PartialRegression::of(&with);
-        (ground.own(&beside.columns).share, alone(beside, &ground, options))
+        (ground.own(&tested.columns).share, alone(tested, &ground, options))
     };
     let ((needed, p_value), (needless, _)) = (left_for(one, other), left_for(other, one));
     needed >= options.practical_share && p_value <= options.alpha && needless < options.practical_share

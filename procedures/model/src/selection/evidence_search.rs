@@ -11,7 +11,7 @@ use crate::preprocess::form_error::Lives;
 use crate::regression::candidates::{CandidateSet, Regressor};
 use crate::regression::evidence::{Evidence, chance, errors, evidence};
 use crate::regression::linear_model::{LinearModel, Term};
-use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_columns, effect_factor, nuisance, without};
+use crate::regression::solution::{DELAY, PRESLIDING, Solution, effect_coefficient, effect_columns, nuisance, without};
 use crate::regression::two_stage_model::TwoStageModel;
 use crate::residual_analysis::maps::Maps;
 use crate::residual_analysis::structure::{self, Left};
@@ -75,7 +75,7 @@ pub fn search<'p>(
         search.remove(id)?;
     }
     let left = search.left()?;
-    search.told(left, refused)
+    search.finish(left, refused)
 }
 
 impl<'p> Search<'_, 'p> {
@@ -105,15 +105,15 @@ impl<'p> Search<'_, 'p> {
                 return Ok(large.map(|e| Refused::of(e, self.options.alpha)).collect());
             };
             let id = best.best.id();
-            let ties = all.iter().filter(|e| e.id() != id && is_rival(best, e)).map(|e| e.best.id()).collect();
-            let rival = ScoredCandidate {
+            let ties = all.iter().filter(|e| e.id() != id && is_tied(best, e)).map(|e| e.best.id()).collect();
+            let scored = ScoredCandidate {
                 term: best.best.term(now.main.problem),
                 share: best.gain,
-                held_out: best.losses.iter().sum(),
+                validation_losses: best.losses.iter().sum(),
                 p_value: best.p_value,
                 losses: best.losses.clone(),
             };
-            self.path.push(SelectionStep { added: Some(rival), removed: None, ties, after });
+            self.path.push(SelectionStep { added: Some(scored), removed: None, ties, after });
         }
     }
 
@@ -141,17 +141,22 @@ impl<'p> Search<'_, 'p> {
         Ok(of(self).or(left))
     }
 
-    fn told(self, left: Option<Left>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
+    fn finish(self, left: Option<Left>, refused: Vec<Refused<'p>>) -> Result<ModelSelection<'p>, ModelError> {
         let end = self.path.end();
         let now = end.main.clone();
-        let silences = Solution::of(&now).map_or_else(Vec::new, |solution| {
-            block_limits::silences(end, &solution, self.libraries.of(&now, self.prepared, self.spec), self.options)
+        let detection_limits = Solution::of(&now).map_or_else(Vec::new, |solution| {
+            block_limits::detection_limits(
+                end,
+                &solution,
+                self.libraries.of(&now, self.prepared, self.spec),
+                self.options,
+            )
         });
         let residual = now.linear().residual;
         let is_in = |id: &str| end.effects.iter().any(|e| e == id);
         let named = self.path.advances.iter().filter_map(|a| Some((a.added.as_ref()?.term.id(), &a.ties)));
-        let ties = named.flat_map(|(id, rivals)| rivals.iter().map(move |rival| (id, *rival)));
-        let ties = ties.filter(|(id, rival)| is_in(id) && !is_in(rival)).collect();
+        let ties = named.flat_map(|(id, ids)| ids.iter().map(move |scored| (id, *scored)));
+        let ties = ties.filter(|(id, scored)| is_in(id) && !is_in(scored)).collect();
         let maps = Maps::new(self.prepared, residual.clone(), self.options);
         Ok(ModelSelection {
             start: self.path.start,
@@ -160,7 +165,7 @@ impl<'p> Search<'_, 'p> {
             now,
             residual,
             maps,
-            silences,
+            detection_limits,
             ties,
             upheld: Vec::new(),
             open: None,
@@ -189,17 +194,17 @@ fn candidates<'l, 'p>(
     let regime = |regime: Regime| move |c: &Regressor| c.effect.regime() == regime;
     let (mut all, mut hidden) = evidence(&solution.ridge, &of(&regime(Regime::SteadyState)), &near, forms);
     // A candidate is judged without the form-error columns that represent the same effect.
-    let late = of(&|c| c.id() == DELAY);
-    if !late.is_empty() && is_late(now, solution) {
-        all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &late, &near, forms).0);
+    let delays = of(&|c| c.id() == DELAY);
+    if !delays.is_empty() && is_delayed(now, solution) {
+        all.extend(evidence(&without(&now.main, solution, Lives::Jerk), &delays, &near, forms).0);
     }
-    let bent = of(&regime(Regime::Hysteresis));
-    if !bent.is_empty() {
-        all.extend(evidence(&without(&now.main, solution, Lives::Bristle), &bent, &near, forms).0);
+    let presliding_candidates = of(&regime(Regime::Hysteresis));
+    if !presliding_candidates.is_empty() {
+        all.extend(evidence(&without(&now.main, solution, Lives::Bristle), &presliding_candidates, &near, forms).0);
     }
     let inertia = of(&|c| c.effect.regime() == Regime::Transient && c.id() != DELAY);
-    let (beside, imitated) = evidence(&solution.ridge, &inertia, &near, forms);
-    all.extend(beside);
+    let (visible, imitated) = evidence(&solution.ridge, &inertia, &near, forms);
+    all.extend(visible);
     hidden.extend(imitated);
     // On one sine the snap is the acceleration with the opposite sign, and the jerk is the velocity.
     for lives in free_error(now, solution) {
@@ -228,23 +233,23 @@ fn follows(now: &TwoStageModel, solution: &Solution, after: &TwoStageModel) -> b
 fn in_turn<'e, 'l, 'p>(passing: &[&'e Evidence<'l, 'p>]) -> Vec<&'e Evidence<'l, 'p>> {
     let mut in_turn = passing.to_vec();
     if let Some(first) = passing.first() {
-        let ties = passing.iter().take_while(|e| is_rival(first, e)).count();
+        let ties = passing.iter().take_while(|e| is_tied(first, e)).count();
         in_turn[..ties].sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
     }
     in_turn
 }
 
 /// Whether two candidates reduce the error about equally, compared over the blocks.
-fn is_rival(best: &Evidence, other: &Evidence) -> bool {
+fn is_tied(best: &Evidence, other: &Evidence) -> bool {
     other.gain > SIMPLER_GAIN * best.gain && is_tie(&best.losses, &other.losses)
 }
 
 /// Whether torque and motion are shifted by more than a sample. Below that, the moment of a reading within its sample
 /// is unknown.
-fn is_late(now: &TwoStageModel, solution: &Solution) -> bool {
+fn is_delayed(now: &TwoStageModel, solution: &Solution) -> bool {
     let model = &now.main;
     let Some(form_error) = model.problem.form_error.as_deref() else { return false };
-    let inertia = effect_factor(model, solution, "inertia");
+    let inertia = effect_coefficient(model, solution, "inertia");
     let jerk = solution.error.iter().find(|(at, _)| form_error.columns[*at].lives == Lives::Jerk).map(|(_, f)| *f);
     let (Some(inertia), Some(jerk)) = (inertia, jerk) else { return false };
     (jerk / inertia).abs() > DELAY_ROWS * form_error.sample_s
@@ -262,8 +267,8 @@ fn idle<'p>(end: &TwoStageModel<'p>, spec: &'p ModelSpec) -> Option<&'p str> {
     let mut plain = end.main.clone();
     plain.relatives = Default::default();
     let weight = Solution::of(&plain)?.weight.clone();
-    let loss = |model: &LinearModel, is_late: bool| {
-        if !is_late {
+    let loss = |model: &LinearModel, is_delayed: bool| {
+        if !is_delayed {
             return Solution::weighted(model, form_error, weight.clone(), None).ridge.loss();
         }
         let mut columns = effect_columns(model);
@@ -292,7 +297,7 @@ fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionS
     let effects: Vec<String> = start.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
     let after = TwoStageModel::decided(start.prepared, start.spec, effects).ok()?;
     let (was, is) = (Solution::of(&start.main)?, Solution::of(&after.main)?);
-    let (was, is) = (was.held_out(&start.main), is.held_out(&after.main));
+    let (was, is) = (was.validation_losses(&start.main), is.validation_losses(&after.main));
     let gains: Vec<f64> = was.iter().zip(&is).map(|(was, is)| was - is).collect();
     let gain = gains.iter().sum::<f64>() / was.iter().sum::<f64>();
     let standard_errors = errors(&gains);
@@ -300,7 +305,7 @@ fn offset<'p>(start: &TwoStageModel<'p>, options: &Options) -> Option<SelectionS
     if gain < DECISION_SHARE || p_value > options.alpha {
         return None;
     }
-    let held_out = is.iter().sum();
-    let rival = ScoredCandidate { term, share: gain, held_out, p_value, losses: is };
-    Some(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after })
+    let validation_losses = is.iter().sum();
+    let scored = ScoredCandidate { term, share: gain, validation_losses, p_value, losses: is };
+    Some(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after })
 }

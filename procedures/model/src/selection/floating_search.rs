@@ -3,8 +3,8 @@
 use crate::Options;
 use crate::effect::{Effect, Form};
 use crate::regression::candidates::{CandidateSet, Regressor};
-use crate::regression::canonical_fit::lay;
-use crate::regression::cross_validation::held_out;
+use crate::regression::canonical_fit::fit_canonical;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::selection::acceptance::formula_error::AcceptanceThreshold;
@@ -15,10 +15,10 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Effects of a model with their forms and nonlinear parameters.
-type Laid<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
+type CachedTerms<'p> = Vec<(&'p dyn Effect, Arc<Form<'p>>, Vec<f64>)>;
 
 pub enum Move<'p> {
-    Added { rival: Box<ScoredCandidate<'p>>, ties: Vec<&'p str> },
+    Added { scored: Box<ScoredCandidate<'p>>, ties: Vec<&'p str> },
     Removed(&'p str),
 }
 
@@ -47,7 +47,7 @@ pub struct FloatingSearch<'l, 'p> {
     /// The effect that replaces the one that was just removed.
     pending_swap: Option<Found<'p>>,
     /// Cache of canonical models, without their columns.
-    laid: Mutex<BTreeMap<Vec<&'p str>, Laid<'p>>>,
+    cache: Mutex<BTreeMap<Vec<&'p str>, CachedTerms<'p>>>,
     /// Structure from outside the library was found. Any effect that is added now would only imitate it.
     pub unmodelled_structure: bool,
 }
@@ -82,7 +82,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
             left: most,
             exchanges: MOST_EXCHANGES as usize,
             pending_swap: None,
-            laid: Mutex::default(),
+            cache: Mutex::default(),
             unmodelled_structure: false,
         }
     }
@@ -98,22 +98,22 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
     /// Removes an effect that was found to be wrong.
     pub fn withdraw(&mut self, id: &'p str) -> Move<'p> {
         self.withdrawn.push(id);
-        self.rejected_losses.push(held_out(&self.now));
+        self.rejected_losses.push(validation_losses(&self.now));
         self.remove(id)
     }
 
     /// Adds an effect that hardly changes the error, and keeps it.
-    pub fn uphold(&mut self, rival: ScoredCandidate<'p>) -> Move<'p> {
-        self.retained_for_bias.push(rival.term.id());
-        self.add(rival, Vec::new())
+    pub fn uphold(&mut self, scored: ScoredCandidate<'p>) -> Move<'p> {
+        self.retained_for_bias.push(scored.term.id());
+        self.add(scored, Vec::new())
     }
 
-    fn add(&mut self, rival: ScoredCandidate<'p>, ties: Vec<&'p str>) -> Move<'p> {
+    fn add(&mut self, scored: ScoredCandidate<'p>, ties: Vec<&'p str>) -> Move<'p> {
         self.left -= 1;
-        let id = rival.term.id();
+        let id = scored.term.id();
         self.now = self.model_with(id);
         self.last = Some(id);
-        Move::Added { rival: rival.into(), ties }
+        Move::Added { scored: scored.into(), ties }
     }
 
     fn remove(&mut self, id: &'p str) -> Move<'p> {
@@ -132,7 +132,9 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         if !self.now.terms.iter().any(|term| self.bends(term)) {
             return plain;
         }
-        let than = plain.as_ref().map_or_else(|| held_out(&self.now), |p| held_out(&self.model_with(p.0.term.id())));
+        let than = plain
+            .as_ref()
+            .map_or_else(|| validation_losses(&self.now), |p| validation_losses(&self.model_with(p.0.term.id())));
         self.behind_bent(&self.now, None, &than).or(plain)
     }
 
@@ -143,7 +145,7 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
         now.terms.iter().filter(|term| self.bends(term)).find_map(|given| {
             let out: Vec<&str> = self.withdrawn.iter().copied().chain([given.id()]).chain(but).collect();
             let found = step(&now.without(given.id()), self.library, &out, self.bar())?;
-            let losses = held_out(&self.lay(now.terms.iter().map(Term::id).chain([found.0.term.id()])));
+            let losses = validation_losses(&self.canonical(now.terms.iter().map(Term::id).chain([found.0.term.id()])));
             let less = 1.0 - losses.iter().sum::<f64>() / than.iter().sum::<f64>();
             (less > self.options.practical_share && !is_tie(&losses, than)).then_some(found)
         })
@@ -156,39 +158,39 @@ impl<'l, 'p> FloatingSearch<'l, 'p> {
 
     /// The model with one additional effect.
     pub fn model_with(&self, id: &'p str) -> LinearModel<'p> {
-        self.lay(self.now.terms.iter().map(Term::id).chain([id]))
+        self.canonical(self.now.terms.iter().map(Term::id).chain([id]))
     }
 
     pub(crate) fn model_without(&self, id: &str) -> LinearModel<'p> {
-        self.lay(self.now.terms.iter().map(Term::id).filter(|other| *other != id))
+        self.canonical(self.now.terms.iter().map(Term::id).filter(|other| *other != id))
     }
 
     /// The canonical model of these effects, from the cache if it was built before.
-    fn lay(&self, effects: impl Iterator<Item = &'p str>) -> LinearModel<'p> {
+    fn canonical(&self, effects: impl Iterator<Item = &'p str>) -> LinearModel<'p> {
         let mut effects: Vec<&str> = effects.collect();
         effects.sort_unstable();
-        let known = |laid: &BTreeMap<Vec<&str>, Laid<'p>>| laid.get(&effects).cloned();
-        if let Some(terms) = known(&self.laid.lock().unwrap_or_else(PoisonError::into_inner)) {
+        let known = |cache: &BTreeMap<Vec<&str>, CachedTerms<'p>>| cache.get(&effects).cloned();
+        if let Some(terms) = known(&self.cache.lock().unwrap_or_else(PoisonError::into_inner)) {
             let problem = self.now.problem;
             let terms =
                 terms.into_iter().map(|(effect, form, shape)| Term::new(effect, form, shape, problem)).collect();
             return LinearModel { terms, ..self.now.clone() };
         }
-        let made = lay(&self.now, &effects, self.library, self.options);
+        let made = fit_canonical(&self.now, &effects, self.library, self.options);
         let shapes = made.terms.iter().map(|term| (term.effect, term.form.clone(), term.shape.clone())).collect();
-        self.laid.lock().unwrap_or_else(PoisonError::into_inner).insert(effects, shapes);
+        self.cache.lock().unwrap_or_else(PoisonError::into_inner).insert(effects, shapes);
         made
     }
 
-    /// Whether `rival` replaces an effect without loss and with physically possible coefficients.
-    pub fn ties(&self, effect: &str, rival: &'p str) -> bool {
+    /// Whether `scored` replaces an effect without loss and with physically possible coefficients.
+    pub fn ties(&self, effect: &str, scored: &'p str) -> bool {
         let others = self.now.terms.iter().map(Term::id).filter(|id| *id != effect);
-        let other = self.lay(others.chain([rival]));
-        let mut sized = other.terms.iter().zip(other.linear().factors);
-        let is_possible = sized.all(|(term, factors)| term.id() != rival || term.allows(&factors));
+        let other = self.canonical(others.chain([scored]));
+        let mut sized = other.terms.iter().zip(other.linear().coefficients);
+        let is_possible = sized.all(|(term, coefficients)| term.id() != scored || term.allows(&coefficients));
         // The replacement of an effect that is kept for its bias must not bias the others.
-        let is_elsewhere = self.retained_for_bias.contains(&effect) && self.is_wrong_beside(&other);
-        is_possible && !is_elsewhere && is_tie(&held_out(&self.now), &held_out(&other))
+        let is_elsewhere = self.retained_for_bias.contains(&effect) && self.is_biased_by(&other);
+        is_possible && !is_elsewhere && is_tie(&validation_losses(&self.now), &validation_losses(&other))
     }
 
     /// Effects that explain nearly as much in place of a term, and are confounded with it.
@@ -243,16 +245,17 @@ impl<'p> Iterator for FloatingSearch<'_, 'p> {
             return None;
         }
         // A candidate that explains clearly less than a removed effect is only a substitute for it.
-        let stands_in = |rival: &ScoredCandidate| {
+        let stands_in = |scored: &ScoredCandidate| {
             let clearly = |losses: &Vec<f64>| {
                 let rejected: f64 = losses.iter().sum();
-                rejected < STAND_IN_LOSS * rival.held_out || rejected < rival.held_out && !is_tie(losses, &rival.losses)
+                rejected < STAND_IN_LOSS * scored.validation_losses
+                    || rejected < scored.validation_losses && !is_tie(losses, &scored.losses)
             };
             self.rejected_losses.iter().any(clearly)
         };
         let found = self.pending_swap.take().or_else(|| if self.left > 0 { self.best() } else { None });
-        let found = found.filter(|(rival, _)| !stands_in(rival));
-        let Some((rival, ties)) = found else {
+        let found = found.filter(|(scored, _)| !stands_in(scored));
+        let Some((scored, ties)) = found else {
             if let Some(id) = self.impossible(&self.now).or_else(|| self.mutually_cancelling()).or_else(|| self.idle())
             {
                 self.withdrawn.push(id);
@@ -263,6 +266,6 @@ impl<'p> Iterator for FloatingSearch<'_, 'p> {
             self.pending_swap = Some(better);
             return Some(self.remove(id));
         };
-        Some(self.add(rival, ties))
+        Some(self.add(scored, ties))
     }
 }

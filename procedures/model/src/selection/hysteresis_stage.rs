@@ -24,7 +24,7 @@ pub fn memory<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<ScoredCa
 }
 
 /// Detection limits of the hysteresis effects that are not in the model, relative to the residual around reversals.
-pub fn silences<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> {
+pub fn detection_limits<'p>(now: &TwoStageModel<'p>) -> Vec<DetectionLimit<'p>> {
     let is_meant = |id: &str| now.spec.find(id).is_ok_and(|e| now.is_apart(e)) && !now.effects.iter().any(|e| e == id);
     let Some(problem) = now.prepared.memory.as_ref() else { return Vec::new() };
     let Reversals { ground, library, .. } = Reversals::new(problem, now.predict(problem), now.spec, is_meant);

@@ -20,7 +20,7 @@ pub struct ModelSelection<'p> {
     pub residual: Vec<f64>,
     /// Maps of that residual.
     pub maps: Maps,
-    pub silences: Vec<DetectionLimit<'p>>,
+    pub detection_limits: Vec<DetectionLimit<'p>>,
     /// Effects of the last model with the effects that are confounded with them.
     pub ties: Vec<(&'p str, &'p str)>,
     /// Effects of the last model that hardly reduce the error, but prevent biased coefficients.

@@ -2,7 +2,7 @@
 
 use crate::Options;
 use crate::regression::candidates::CandidateSet;
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::Term;
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
@@ -29,7 +29,7 @@ pub fn advance<'p>(
         with.given.iter_mut().zip(column).for_each(|(g, c)| *g += c);
     }
     with.refine();
-    let (was, is) = (held_out(&start.main), held_out(&with));
+    let (was, is) = (validation_losses(&start.main), validation_losses(&with));
     let share = 1.0 - with.linear().sse / start.main.linear().sse;
     let p_value = significance(&term, library, &PartialRegression::of(&start.main), options);
     if share < options.practical_share || p_value > options.alpha || is_tie(&is, &was) {

@@ -3,7 +3,7 @@
 
 use crate::linear::basis::dot;
 use crate::regression::candidates::Regressor;
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::regression::partial_regression::PartialRegression;
 use crate::regression::significance::significance;
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 /// An effect that hardly changes the error, with the model that includes it.
 pub struct Imitated<'p> {
-    pub rival: ScoredCandidate<'p>,
+    pub scored: ScoredCandidate<'p>,
     pub with: LinearModel<'p>,
     /// The validation error confirms the effect.
     pub is_clear: bool,
@@ -44,44 +44,45 @@ impl<'p> FloatingSearch<'_, 'p> {
                 None => alike.push((own.share, candidate)),
             }
         }
-        let (present, sse) = (held_out(&self.now), self.now.linear().sse);
+        let (present, sse) = (validation_losses(&self.now), self.now.linear().sse);
         let least_share = self.bar().least_share(sse);
         let is_at_edge = self.added().any(Term::is_at_edge);
         let imitated = alike.into_par_iter().filter_map(|(_, candidate)| {
             let mut near = self.now.clone();
             near.terms.push(candidate.term(near.problem));
             near.refine();
-            if !self.is_wrong_beside(&near) {
+            if !self.is_biased_by(&near) {
                 return None;
             }
             let with = self.model_with(candidate.id());
             let term = with.terms.iter().find(|term| term.id() == candidate.id())?.clone();
             let linear = with.linear();
-            let is_possible = with.terms.iter().zip(&linear.factors).all(|(term, factors)| term.allows(factors));
+            let is_possible =
+                with.terms.iter().zip(&linear.coefficients).all(|(term, coefficients)| term.allows(coefficients));
             // A reduction within the formula error was rejected before. It counts only if the formula of an added
             // effect has reached its bound.
             let share = 1.0 - linear.sse / sse;
             let is_remainder = (self.options.practical_share..least_share).contains(&share) && !is_at_edge;
-            if !is_possible || is_remainder || !self.is_wrong_beside(&with) || !decides(&with, &term) {
+            if !is_possible || is_remainder || !self.is_biased_by(&with) || !decides(&with, &term) {
                 return None;
             }
             // The score uses the nonlinear parameters of the model with this effect; refitted without it, the other
             // terms would imitate it.
-            let mut beside = with.clone();
-            beside.terms.retain(|other| other.id() != candidate.id());
-            let p_value = significance(&term, self.library, &PartialRegression::of(&beside), self.options);
-            let losses = held_out(&with);
-            let held_out = losses.iter().sum();
-            let is_clear = held_out < present.iter().sum() && !is_tie(&losses, &present);
-            let rival = ScoredCandidate { term, share, held_out, p_value, losses };
-            (p_value <= self.options.alpha).then_some(Imitated { rival, with, is_clear })
+            let mut without = with.clone();
+            without.terms.retain(|other| other.id() != candidate.id());
+            let p_value = significance(&term, self.library, &PartialRegression::of(&without), self.options);
+            let losses = validation_losses(&with);
+            let validation_losses = losses.iter().sum();
+            let is_clear = validation_losses < present.iter().sum() && !is_tie(&losses, &present);
+            let scored = ScoredCandidate { term, share, validation_losses, p_value, losses };
+            (p_value <= self.options.alpha).then_some(Imitated { scored, with, is_clear })
         });
-        let better = |a: &Imitated, b: &Imitated| a.rival.held_out.total_cmp(&b.rival.held_out);
+        let better = |a: &Imitated, b: &Imitated| a.scored.validation_losses.total_cmp(&b.scored.validation_losses);
         imitated.min_by(|a, b| b.is_clear.cmp(&a.is_clear).then(better(a, b)))
     }
 
     /// Whether a coefficient of the given model differs from its value in another model.
-    pub(crate) fn is_wrong_beside(&self, other: &LinearModel<'p>) -> bool {
+    pub(crate) fn is_biased_by(&self, other: &LinearModel<'p>) -> bool {
         moved(&self.now, other, &self.initial_terms).is_some()
     }
 }
@@ -89,7 +90,7 @@ impl<'p> FloatingSearch<'_, 'p> {
 /// A coefficient in two models.
 pub struct Moved<'p> {
     pub term: Term<'p>,
-    pub factor: &'p str,
+    pub coefficient: &'p str,
     pub was: f64,
     pub is: f64,
 }
@@ -102,12 +103,12 @@ pub fn moved<'p>(was: &LinearModel<'p>, is: &LinearModel<'p>, effects: &[impl As
     let same = |a: &Term, b: &Term| a.id() == b.id() && a.form.linear == b.form.linear;
     let mut both = both.filter_map(|(at, term)| Some((at, term, is.terms.iter().position(|t| same(t, term))?)));
     both.find_map(|(at, term, there)| {
-        let mut pairs = (0..term.columns.len()).map(|k| (k, then.factors[at][k], now.factors[there][k]));
+        let mut pairs = (0..term.columns.len()).map(|k| (k, then.coefficients[at][k], now.coefficients[there][k]));
         let is_wrong = |k: usize, was: f64, is: f64| {
             let size = (is - was).powi(2) * dot(&term.columns[k], &term.columns[k]);
             (is - was).abs() > BIASED_COEFFICIENT * is.abs() && size > then.sse
         };
         let (k, was, is) = pairs.find(|(k, was, is)| is_wrong(*k, *was, *is))?;
-        Some(Moved { term: term.clone(), factor: term.form.linear[k], was, is })
+        Some(Moved { term: term.clone(), coefficient: term.form.linear[k], was, is })
     })
 }

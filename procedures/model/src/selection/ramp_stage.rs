@@ -20,8 +20,8 @@ const DELAY: &str = "signal_delay";
 const INERTIA: &str = "inertia";
 
 /// The delay that this run supports, with the model that includes it.
-pub fn late<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
-    let Delayed { after, factor, half, by_s } = with_delay(now)?;
+pub fn delay<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCandidate<'p>, TwoStageModel<'p>)> {
+    let Delayed { after, coefficient, half, by_s } = with_delay(now)?;
     let moving = after.moving.as_ref()?;
     let term = moving.terms.iter().find(|term| term.id() == DELAY)?.clone();
     let without = moving.without(DELAY);
@@ -32,15 +32,15 @@ pub fn late<'p>(now: &TwoStageModel<'p>, options: &Options) -> Option<(ScoredCan
     };
     let share = 1.0 - asked(moving.linear().residual) / asked(without.linear().residual);
     let p_value = alone(&term, &PartialRegression::of(&without), options);
-    let is_late = factor < -DELAY_HALF_WIDTHS * half
+    let is_delayed = coefficient < -DELAY_HALF_WIDTHS * half
         && by_s > DELAY_ROWS * moving.problem.view.sample_s
         && share >= options.practical_share
         && p_value <= options.alpha;
-    is_late.then(|| (ScoredCandidate::alone(term, share, p_value), after))
+    is_delayed.then(|| (ScoredCandidate::alone(term, share, p_value), after))
 }
 
 /// The detection limit of the delay, if none was found and one could have been.
-pub fn silence<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
+pub fn detection_limit<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
     let Delayed { after, half, .. } = with_delay(now)?;
     let column = after.moving.as_ref()?.terms.iter().find(|term| term.id() == DELAY)?.columns.first()?.clone();
     let rms = (dot(&column, &column) / column.len() as f64).sqrt();
@@ -50,26 +50,26 @@ pub fn silence<'p>(now: &TwoStageModel<'p>) -> Option<DetectionLimit<'p>> {
 /// A model with a delay on its ramps, the coefficient of the delay with half its 95 % interval, and the delay time.
 struct Delayed<'p> {
     after: TwoStageModel<'p>,
-    factor: f64,
+    coefficient: f64,
     half: f64,
     by_s: f64,
 }
 
 fn with_delay<'p>(now: &TwoStageModel<'p>) -> Option<Delayed<'p>> {
-    let effect = now.spec.find(DELAY).ok().filter(|effect| is_asked(*effect, now))?;
+    let effect = now.spec.find(DELAY).ok().filter(|effect| is_testable(*effect, now))?;
     let effects = now.effects.iter().cloned().chain([effect.info().id.to_owned()]).collect();
     let after = now.of(now.main.clone(), effects);
     let moving: &LinearModel = after.moving.as_ref()?;
     let parameters = intervals(moving, now.prepared.motion).parameters;
     let of = |id: &str| parameters.iter().find(|p| p.effect == id);
-    let (inertia, delay) = (of(INERTIA)?, of(DELAY)?);
-    let (factor, half) = (delay.value, (delay.ci95[1] - delay.ci95[0]) / 2.0);
-    let by_s = -factor / inertia.value;
-    (inertia.value > 0.0 && half.is_finite()).then_some(Delayed { after, factor, half, by_s })
+    let (inertia, delay_parameter) = (of(INERTIA)?, of(DELAY)?);
+    let (coefficient, half) = (delay_parameter.value, (delay_parameter.ci95[1] - delay_parameter.ci95[0]) / 2.0);
+    let by_s = -coefficient / inertia.value;
+    (inertia.value > 0.0 && half.is_finite()).then_some(Delayed { after, coefficient, half, by_s })
 }
 
 /// Whether only ramps can show the delay and the model has an inertia, which scales the delay to a time.
-fn is_asked(effect: &dyn Effect, now: &TwoStageModel) -> bool {
+fn is_testable(effect: &dyn Effect, now: &TwoStageModel) -> bool {
     let is_in = |id: &str| now.effects.iter().any(|effect| effect == id);
     now.is_apart(effect) && is_in(INERTIA) && !is_in(DELAY)
 }

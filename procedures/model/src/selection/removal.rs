@@ -1,13 +1,13 @@
 //! Effects that were added and removed again.
 
-use crate::regression::cross_validation::held_out_rms;
+use crate::regression::cross_validation::validation_rms;
 use crate::selection::floating_search::FloatingSearch;
 
 /// An effect that was added and removed again, with the validation RMS that the last model has with it.
 pub struct Withdrawn<'p> {
     pub effect: &'p str,
     pub why: RemovalReason,
-    pub held_out_rms: f64,
+    pub validation_rms: f64,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -43,13 +43,13 @@ impl RemovalReason {
 pub fn all<'p>(search: &FloatingSearch<'_, 'p>, reasons: &[(&'p str, RemovalReason)]) -> Vec<Withdrawn<'p>> {
     let of = |effect: &'p str| {
         let with = search.model_with(effect);
-        let mut sized = with.terms.iter().zip(with.linear().factors);
-        let of_search = match sized.all(|(term, factors)| term.id() != effect || term.allows(&factors)) {
+        let mut sized = with.terms.iter().zip(with.linear().coefficients);
+        let of_search = match sized.all(|(term, coefficients)| term.id() != effect || term.allows(&coefficients)) {
             true => RemovalReason::Insignificant,
             false => RemovalReason::Infeasible,
         };
         let why = reasons.iter().find(|(id, _)| *id == effect).map_or(of_search, |(_, why)| *why);
-        Withdrawn { effect, why, held_out_rms: held_out_rms(&with) }
+        Withdrawn { effect, why, validation_rms: validation_rms(&with) }
     };
     search.given_back().map(of).collect()
 }

@@ -17,7 +17,7 @@ use crate::selection::omitted_variable_bias::{Imitated as Found, moved};
 use crate::selection::pruning::partial_explanation::{bump, half_explained};
 use crate::selection::pruning::spurious::borrowing;
 use crate::selection::pruning::unidentified::{Doubt, is_decided, undecided};
-use crate::selection::ramp_stage::late;
+use crate::selection::ramp_stage::delay;
 use crate::selection::removal::{self, RemovalReason};
 use crate::{ModelError, ModelSpec, Options};
 
@@ -55,7 +55,7 @@ pub fn search<'p>(
         last.after = last.after.clone().settled(options)?;
     }
     let moves = |id: &str, was: &LinearModel<'p>, is: &LinearModel<'p>| imitated(id, was, is, spec, prepared);
-    let open = open.and_then(|open| moves(open.rival.term.id(), &search.now, &open.with));
+    let open = open.and_then(|open| moves(open.scored.term.id(), &search.now, &open.with));
     let upheld = search.retained_for_bias.iter().filter(|id| search.now.contains(id));
     let upheld = upheld.filter_map(|id| moves(id, &search.now.without(id), &search.now)).collect();
     let withdrawn = removal::all(&search, &taken_back);
@@ -64,10 +64,22 @@ pub fn search<'p>(
         ramps(&mut path, most, options)?;
         reversals(&mut path, most, prepared, options)?;
     }
-    let silences = search.silences();
+    let detection_limits = search.detection_limits();
     let Path { start, advances, .. } = path;
     let now = search.now;
-    Ok(ModelSelection { start, advances, withdrawn, now, residual, maps, silences, ties, upheld, open, decided: None })
+    Ok(ModelSelection {
+        start,
+        advances,
+        withdrawn,
+        now,
+        residual,
+        maps,
+        detection_limits,
+        ties,
+        upheld,
+        open,
+        decided: None,
+    })
 }
 
 /// First stage: effects that show in steady-state motion, or in the whole of a trajectory.
@@ -102,7 +114,7 @@ fn steady_state<'p>(
                     let nothing_shows = axis.is_none();
                     let is_all = |with: &LinearModel| nothing_shows || leaves_nothing(with, prepared, options);
                     match search.imitated(is_decided) {
-                        Some(found) if found.is_clear && is_all(&found.with) => search.uphold(found.rival),
+                        Some(found) if found.is_clear && is_all(&found.with) => search.uphold(found.scored),
                         open => {
                             let open = open.filter(|_| nothing_shows);
                             return SteadyState { maps, residual, open, taken_back };
@@ -112,9 +124,9 @@ fn steady_state<'p>(
             }
         };
         let (added, removed, ties) = match made {
-            Move::Added { rival, ties } => {
-                effects.push(rival.term.id().into());
-                (Some(*rival), None, ties)
+            Move::Added { scored, ties } => {
+                effects.push(scored.term.id().into());
+                (Some(*scored), None, ties)
             }
             Move::Removed(id) => {
                 effects.retain(|e| e != id);
@@ -147,10 +159,10 @@ fn may_grow(path: &Path, most: usize) -> bool {
 /// Second stage: a torque delay, on the ramps of a run in steps.
 fn ramps<'p>(path: &mut Path<'_, 'p>, most: usize, options: &Options) -> Result<(), ModelError> {
     if may_grow(path, most)
-        && let Some((rival, after)) = late(path.end(), options)
+        && let Some((scored, after)) = delay(path.end(), options)
     {
         let after = after.settled(options)?;
-        path.push(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after });
+        path.push(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after });
     }
     Ok(())
 }
@@ -164,13 +176,13 @@ fn reversals<'p>(
 ) -> Result<(), ModelError> {
     let now = path.end();
     if may_grow(path, most)
-        && let Some(rival) = memory(now, options)
-        && let effects = now.effects.iter().map(String::as_str).chain([rival.term.id()]).map(String::from).collect()
+        && let Some(scored) = memory(now, options)
+        && let effects = now.effects.iter().map(String::as_str).chain([scored.term.id()]).map(String::from).collect()
         && let after = now.of(now.main.clone(), effects).settled(options)?
         && let Some(moving) = &after.moving
-        && !Doubt::of(&rival.term, moving, &intervals(moving, prepared.motion).parameters, prepared).is_there()
+        && !Doubt::of(&scored.term, moving, &intervals(moving, prepared.motion).parameters, prepared).is_there()
     {
-        path.push(SelectionStep { added: Some(rival), removed: None, ties: Vec::new(), after });
+        path.push(SelectionStep { added: Some(scored), removed: None, ties: Vec::new(), after });
     }
     Ok(())
 }
@@ -191,15 +203,17 @@ fn taken_back<'p>(
 fn open_ties<'p>(search: &FloatingSearch<'_, 'p>, advances: &[SelectionStep<'p>]) -> Vec<(&'p str, &'p str)> {
     let mut open = Vec::new();
     for advance in advances {
-        let Some(effect) = advance.added.as_ref().map(|rival| rival.term.id()) else { continue };
-        let is_new = |rival: &&&'p str| !search.now.contains(rival) && !open.contains(&(effect, **rival));
+        let Some(effect) = advance.added.as_ref().map(|scored| scored.term.id()) else { continue };
+        let is_new = |scored: &&&'p str| !search.now.contains(scored) && !open.contains(&(effect, **scored));
         if search.now.contains(effect) {
-            let rivals: Vec<&'p str> = advance.ties.iter().filter(is_new).copied().collect();
-            open.extend(rivals.into_iter().filter(|rival| search.ties(effect, rival)).map(|rival| (effect, rival)));
+            let confounded: Vec<&'p str> = advance.ties.iter().filter(is_new).copied().collect();
+            open.extend(
+                confounded.into_iter().filter(|scored| search.ties(effect, scored)).map(|scored| (effect, scored)),
+            );
         }
     }
     for term in search.added() {
-        let stand_ins = search.stand_ins(term).into_iter().map(|rival| (term.id(), rival));
+        let stand_ins = search.stand_ins(term).into_iter().map(|scored| (term.id(), scored));
         let new: Vec<_> = stand_ins.filter(|tie| !open.contains(tie)).collect();
         open.extend(new);
     }
@@ -229,8 +243,8 @@ fn imitated(
     let info = found.term.effect.info();
     Some(Imitated {
         effect: id.into(),
-        parameter: format!("{}.{}", info.id, found.factor),
-        unit: prepared.motion.label(info.unit(found.factor)),
+        parameter: format!("{}.{}", info.id, found.coefficient),
+        unit: prepared.motion.label(info.unit(found.coefficient)),
         without: found.was,
         with: found.is,
     })

@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_factor_that_is_so_many_times_its_noise_reaches_the_score() {
+    fn a_coefficient_at_the_required_multiple_of_its_noise_reaches_the_score() {
         for columns in [1, 3] {
             let noise: Vec<Vec<f64>> = (0..columns).map(|c| sums(1000, 1.0 + c as f64)).collect();
             let first = &noise[0];

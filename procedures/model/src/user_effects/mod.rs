@@ -154,9 +154,9 @@ impl Effect for OwnEffect {
 
     /// Starting points at which the formula is finite and not zero.
     fn forms(&self, view: &View) -> Vec<Form<'_>> {
-        let tells = |columns: &Columns| is_finite(columns) && columns.iter().all(|c| c.iter().any(|x| *x != 0.0));
+        let is_usable = |columns: &Columns| is_finite(columns) && columns.iter().all(|c| c.iter().any(|x| *x != 0.0));
         let mut grid = self.grid(&self.shapes(view));
-        grid.retain(|start| tells(&self.evaluate(start, view)));
+        grid.retain(|start| is_usable(&self.evaluate(start, view)));
         if grid.is_empty() {
             return Vec::new();
         }

@@ -89,7 +89,7 @@ fn changed(run: &RunTable, change: impl Fn(&str, &[f64]) -> Vec<f64>) -> RunTabl
 
 /// A column in another unit or with the opposite sign, in turn, so that every check is triggered.
 fn contradictory(run: &RunTable) -> RunTable {
-    let (name, factor) = match (run.kind(), run.len() % 3) {
+    let (name, scale) = match (run.kind(), run.len() % 3) {
         (Kind::Friction, 0) => ("motor_current_a", 1e3),
         (Kind::Friction, 1) => ("link_torque_nm", -1.0),
         (Kind::Friction, _) => ("motor_velocity_rad_s", 180.0 / std::f64::consts::PI),
@@ -100,8 +100,8 @@ fn contradictory(run: &RunTable) -> RunTable {
         (Kind::Brake, _) => ("brake_torque_nm", 1e3),
     };
     changed(run, |column, values| {
-        let factor = if column == name { factor } else { 1.0 };
-        values.iter().map(|v| factor * v).collect()
+        let scale = if column == name { scale } else { 1.0 };
+        values.iter().map(|v| scale * v).collect()
     })
 }
 

@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_that_takes_no_current_beside_a_velocity_is_told_before_anything_moves() {
+    fn a_drive_without_feedforward_is_reported_before_anything_moves() {
         let bench = BenchFacts { feeds_forward: false, ..joint_a() };
         let preview = Compensation.plan(json!({}).as_object().unwrap(), &bench).unwrap().preview(&bench);
         let refused: Vec<_> = preview.checks.iter().filter(|check| !check.ok).collect();

@@ -24,7 +24,7 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 mod identify;
-mod left_open;
+mod inconclusive;
 
 pub(super) struct Friction;
 

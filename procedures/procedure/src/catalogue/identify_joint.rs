@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_another_procedure_is_told_apart() {
+    fn a_run_of_another_procedure_is_recognised() {
         let mut trace = Trace::new(["time_s", "motor_position_rad", "motor_current_a"].map(Channel::new).into());
         (0..20).for_each(|i| trace.push_row(&[f64::from(i), 0.0, 0.0]));
         let run = RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap();

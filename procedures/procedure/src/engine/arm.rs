@@ -86,7 +86,7 @@ impl Session<'_> {
         }
         let now_s = self.bench.clock.now_s();
         for (instrument, port, identity) in found {
-            self.journal.tell(now_s, EventKind::Identified { instrument, port, identity });
+            self.journal.log(now_s, EventKind::Identified { instrument, port, identity });
         }
         Ok(())
     }

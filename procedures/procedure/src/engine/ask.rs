@@ -15,7 +15,7 @@ pub(super) struct Trouble {
 pub(super) fn ask<I: Instrument + ?Sized, T>(
     instrument: &mut I,
     mut request: impl FnMut(&mut I) -> Result<T, Fault>,
-    mut tell: impl FnMut(Trouble),
+    mut log: impl FnMut(Trouble),
 ) -> Result<T, Fault> {
     let fault = match request(instrument) {
         Ok(reply) => return Ok(reply),
@@ -25,7 +25,7 @@ pub(super) fn ask<I: Instrument + ?Sized, T>(
         if fault.is_retryable() { instrument.recover().and_then(|_| request(instrument)) } else { Err(fault.clone()) };
     tracing::warn!(instrument = instrument.name(), recovered = reply.is_ok(), "{fault}");
     let exchanged = reply.as_ref().err().filter(|found| found.is_wrong_instrument() && **found != fault).cloned();
-    tell(Trouble { fault, recovered: reply.is_ok() });
-    exchanged.into_iter().for_each(|fault| tell(Trouble { fault, recovered: false }));
+    log(Trouble { fault, recovered: reply.is_ok() });
+    exchanged.into_iter().for_each(|fault| log(Trouble { fault, recovered: false }));
     reply
 }

@@ -55,7 +55,7 @@ impl<'a> Journal<'a> {
         self.rows = empty;
     }
 
-    pub fn tell(&mut self, now_s: f64, kind: impl Into<Option<EventKind>>) {
+    pub fn log(&mut self, now_s: f64, kind: impl Into<Option<EventKind>>) {
         if let Some(kind) = kind.into() {
             self.events.push(Event { at_s: now_s - self.started_s, kind });
         }
@@ -65,7 +65,7 @@ impl<'a> Journal<'a> {
     pub fn enter(&mut self, now_s: f64, transition: Transition, reason: Option<String>) -> Result<(), Ending> {
         self.state = self.state.after(transition).map_err(Ending::Illegal)?;
         tracing::info!(run.id = self.run, state = %self.state, "run state");
-        self.tell(now_s, EventKind::State { state: self.state, reason });
+        self.log(now_s, EventKind::State { state: self.state, reason });
         Ok(self.commit(now_s)?)
     }
 

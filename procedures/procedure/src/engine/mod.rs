@@ -24,7 +24,7 @@ use crate::event::{Demand, EventKind, Safe};
 use crate::plan::Plan;
 use crate::recorder::{Recorder, RunId};
 use crate::state::{RunState, Transition};
-use encoders::Stood;
+use encoders::PoseDeviation;
 use ending::Ending;
 use jointbench_instrument::Bench;
 pub use safe_state::{Secured, secure};
@@ -77,22 +77,22 @@ impl Session<'_> {
 
     fn finish(&mut self, mut ending: Ending) -> RunEnd {
         let now_s = self.bench.clock.now_s();
-        self.journal.tell(now_s, ending.event());
+        self.journal.log(now_s, ending.event());
         // Rows that this commit cannot store are lost, so that the run is not complete.
         if let Err(unkept) = self.enter(Transition::Secure)
             && matches!(ending, Ending::Completed)
         {
             ending = unkept;
         }
-        let told = [self.skews.and_then(Skews::told), self.stood.map(Stood::told)];
-        told.into_iter().flatten().for_each(|told| self.note(told));
+        let notes = [self.skews.and_then(Skews::note), self.pose_deviation.map(PoseDeviation::note)];
+        notes.into_iter().flatten().for_each(|note| self.note(note));
         let safe = self.make_safe(&ending);
-        std::mem::take(&mut self.shaft).told().into_iter().for_each(|told| self.note(told));
-        let _told = self.caught(Session::stop_torque_stream);
+        std::mem::take(&mut self.shaft).notes().into_iter().for_each(|note| self.note(note));
+        let _stopped = self.caught(Session::stop_torque_stream);
         self.look_behind(&mut ending);
         self.identify_again(&mut ending);
         let now_s = self.bench.clock.now_s();
-        self.journal.tell(now_s, Some(EventKind::Safe { safe }));
+        self.journal.log(now_s, Some(EventKind::Safe { safe }));
         if let Err(unkept) = self.end(&ending) {
             tracing::error!(run.id = self.journal.run, "the end of the run was not kept: {unkept}");
             if matches!(ending, Ending::Completed) {

@@ -61,7 +61,7 @@ impl Session<'_> {
                 Ok(identity) => {
                     let (instrument, port) = (encoder.name().to_owned(), encoder.port().to_owned());
                     let now_s = self.bench.clock.now_s();
-                    self.journal.tell(now_s, EventKind::Identified { instrument, port, identity });
+                    self.journal.log(now_s, EventKind::Identified { instrument, port, identity });
                     return Ok(lost);
                 }
                 Err(Fault { kind: FaultKind::Reported { .. }, .. }) if !lost => lost = true,

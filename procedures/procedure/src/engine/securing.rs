@@ -72,7 +72,7 @@ impl Session<'_> {
             && found.is_wrong_instrument()
         {
             *gone = found.clone();
-            self.journal.tell(clock.now_s(), EventKind::Fault { fault: found, recovered: false });
+            self.journal.log(clock.now_s(), EventKind::Fault { fault: found, recovered: false });
         }
     }
 
@@ -88,7 +88,7 @@ impl Session<'_> {
         let now_s = self.bench.clock.now_s();
         for fault in exchanged {
             let name = fault.instrument.clone();
-            self.journal.tell(now_s, EventKind::Fault { fault: fault.clone(), recovered: false });
+            self.journal.log(now_s, EventKind::Fault { fault: fault.clone(), recovered: false });
             self.warn(format!("{name} was exchanged during the run: its readings may come from either instrument"));
             if matches!(ending, Ending::Completed) {
                 *ending = Ending::OtherFault(fault);

@@ -1,7 +1,7 @@
 //! The state of one run.
 
 use super::ask::{Trouble, ask};
-use super::encoders::Stood;
+use super::encoders::PoseDeviation;
 use super::ending::Ending;
 use super::journal::Journal;
 use super::learning::Learning;
@@ -63,7 +63,7 @@ pub(super) struct Session<'a> {
     pub lost: Lost,
     /// Commanded pose of the stage, for a plan that moves it.
     pub pose: Option<Pose>,
-    pub stood: Option<Stood>,
+    pub pose_deviation: Option<PoseDeviation>,
     pub learning: Learning,
     /// Whether the encoder under test was consistent since this was last set.
     pub consistent: bool,
@@ -114,7 +114,7 @@ pub(super) struct Held {
 pub(super) struct Beat {
     pub period_s: f64,
     pub next_s: f64,
-    pub late: u64,
+    pub late_ticks: u64,
 }
 
 /// Instruments that failed permanently: they are not read while the joint comes to rest.
@@ -154,7 +154,7 @@ impl<'a> Session<'a> {
             felt_c: Vec::new(),
             felt_at_s: now_s,
             felt_next_s: now_s,
-            beat: Beat { period_s: 1.0 / plan.rate_hz, next_s: now_s, late: 0 },
+            beat: Beat { period_s: 1.0 / plan.rate_hz, next_s: now_s, late_ticks: 0 },
             wish: None,
             armed: false,
             joint: None,
@@ -167,7 +167,7 @@ impl<'a> Session<'a> {
             next_segment: plan.steps.iter().map(|step| step.segment + 1).max().unwrap_or(0),
             lost: Lost::default(),
             pose: None,
-            stood: None,
+            pose_deviation: None,
             learning: Learning::default(),
             consistent: true,
             recoveries: 0,
@@ -186,13 +186,13 @@ impl<'a> Session<'a> {
 
     pub fn note(&mut self, text: impl Into<String>) {
         let now_s = self.bench.clock.now_s();
-        self.journal.tell(now_s, EventKind::Note { text: text.into() });
+        self.journal.log(now_s, EventKind::Note { text: text.into() });
     }
 
     /// Reports that a precondition of the result is violated.
     pub fn warn(&mut self, text: impl Into<String>) {
         let now_s = self.bench.clock.now_s();
-        self.journal.tell(now_s, EventKind::Warning { text: text.into() });
+        self.journal.log(now_s, EventKind::Warning { text: text.into() });
     }
 
     /// Work that may panic: afterwards only securing uses this state, and it verifies everything.
@@ -206,7 +206,7 @@ impl<'a> Session<'a> {
     ) -> Result<T, Ending> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, .. } = self;
-        ask(bench.joint.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble))
+        ask(bench.joint.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble))
             .map_err(Ending::JointFault)
     }
 
@@ -218,7 +218,7 @@ impl<'a> Session<'a> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, lost, .. } = self;
         let Some(brake) = &mut bench.brake else { return Ok(None) };
-        ask(brake.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
+        ask(brake.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
             lost.brake = true;
             Ending::OtherFault(fault)
         })
@@ -232,7 +232,7 @@ impl<'a> Session<'a> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, lost, .. } = self;
         let Some(sensor) = &mut bench.torque_sensor else { return Ok(None) };
-        ask(sensor.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
+        ask(sensor.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(|fault| {
             lost.sensor = true;
             Ending::OtherFault(fault)
         })
@@ -246,7 +246,7 @@ impl<'a> Session<'a> {
         let now_s = self.bench.clock.now_s();
         let Self { bench, journal, recoveries, lost, .. } = self;
         let Some(thermometer) = &mut bench.thermometer else { return Ok(None) };
-        ask(thermometer.as_mut(), request, |trouble| tell(journal, recoveries, now_s, trouble)).map(Some).map_err(
+        ask(thermometer.as_mut(), request, |trouble| log(journal, recoveries, now_s, trouble)).map(Some).map_err(
             |fault| {
                 lost.thermometer = true;
                 Ending::OtherFault(fault)
@@ -255,9 +255,9 @@ impl<'a> Session<'a> {
     }
 }
 
-pub(super) fn tell(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, trouble: Trouble) {
+pub(super) fn log(journal: &mut Journal<'_>, recoveries: &mut u32, now_s: f64, trouble: Trouble) {
     *recoveries += u32::from(trouble.recovered);
-    journal.tell(now_s, EventKind::Fault { fault: trouble.fault, recovered: trouble.recovered });
+    journal.log(now_s, EventKind::Fault { fault: trouble.fault, recovered: trouble.recovered });
 }
 
 pub(super) fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {

@@ -5,7 +5,7 @@
 
 use super::skew::Skews;
 use crate::encoder_columns::Encoders;
-use crate::findings::{Lag, Told, lag};
+use crate::findings::{Lag, ReadingPair, lag};
 use jointbench_instrument::roles::JointReading;
 use jointbench_instrument::skew::Skew;
 
@@ -15,7 +15,7 @@ const MOST_ROWS: usize = 50_000;
 /// One instrument compared with the reference encoder.
 #[derive(Debug, Clone, Default)]
 struct Pair {
-    told: Vec<Told>,
+    readings: Vec<ReadingPair>,
     skews: Option<Skews>,
 }
 
@@ -31,22 +31,23 @@ impl Shaft {
         let motor = (joint.at_s, joint.uncertainty_s, joint.motor_position.0);
         let test = (test.at_s, test.uncertainty_s, test.position.0);
         for (pair, (at_s, uncertainty_s, rad)) in [(&mut self.motor, motor), (&mut self.test, test)] {
-            if pair.told.len() == MOST_ROWS {
+            if pair.readings.len() == MOST_ROWS {
                 continue;
             }
             let skew = Skew { s: at_s - reference.at_s, uncertainty_s: uncertainty_s + reference.uncertainty_s };
             pair.skews = Some(Skews::add(pair.skews, skew));
             let (first_s, first_rad) = (reference.at_s, reference.position.0);
-            pair.told.push(Told { stretch, first_s, first_rad, second_s: at_s, second_rad: rad });
+            pair.readings.push(ReadingPair { stretch, first_s, first_rad, second_s: at_s, second_rad: rad });
         }
     }
 
     /// Texts for users. Empty without two instruments on one shaft.
-    pub fn told(&self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<String> {
         let motor = ("the motor's own encoder", &self.motor, UNKNOWN);
         let test = ("the encoder under test", &self.test, OWN);
-        let told = |(name, pair, beyond): (&str, &Pair, &str)| Some(told(name, pair.skews?, lag(&pair.told), beyond));
-        [motor, test].into_iter().filter_map(told).collect()
+        let note =
+            |(name, pair, beyond): (&str, &Pair, &str)| Some(note(name, pair.skews?, lag(&pair.readings), beyond));
+        [motor, test].into_iter().filter_map(note).collect()
     }
 }
 
@@ -54,7 +55,7 @@ impl Shaft {
 const UNKNOWN: &str = "Unrecorded latency: check filters, buffers and adapters";
 const OWN: &str = "Cause: delay of this encoder (measure it with encoder_delay) or an unrecorded latency";
 
-fn told(name: &str, skews: Skews, lag: Option<Lag>, beyond: &str) -> String {
+fn note(name: &str, skews: Skews, lag: Option<Lag>, beyond: &str) -> String {
     let by_clock = format!("Skew of {name} by time stamps: {} than the reference encoder.", skews.span());
     let Some(Lag { s, reach_s }) = lag else {
         return format!("{by_clock} The signals do not determine it, because the motion is too small or too uniform.");

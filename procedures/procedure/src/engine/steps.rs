@@ -27,7 +27,7 @@ impl Session<'_> {
             };
             self.run_step(index, &step)?;
             if step.phase == Phase::WarmUp {
-                self.tell_warmth(index);
+                self.note_warmth(index);
             }
         }
         Ok(())
@@ -60,13 +60,13 @@ impl Session<'_> {
             self.place(pose)?;
         }
         let start_s = self.beat.next_s.max(self.bench.clock.now_s());
-        (self.beat.late, self.recoveries) = (0, 0);
+        (self.beat.late_ticks, self.recoveries) = (0, 0);
         let rows_before = self.journal.rows();
         self.pace.step_started(index, &step.label, start_s);
         let label = step.label.clone();
-        self.journal.tell(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
+        self.journal.log(start_s, EventKind::StepStarted { step: index, segment, repeat: step.repeat, label });
         if let Place::Edge(edge) = &step.place {
-            return match self.hunt(step, segment, edge)? {
+            return match self.search_edge(step, segment, edge)? {
                 Left::Done => self.checkpoint(index, segment, rows_before),
                 paused => Ok(paused),
             };
@@ -107,13 +107,13 @@ impl Session<'_> {
     fn checkpoint(&mut self, index: usize, segment: u32, rows_before: u64) -> Result<Left, Ending> {
         let now_s = self.bench.clock.now_s();
         self.pace.step_done(now_s);
-        let (rows, late_ticks) = (self.journal.rows() - rows_before, self.beat.late);
-        self.journal.tell(now_s, EventKind::StepFinished { step: index, segment, rows, late_ticks });
+        let (rows, late_ticks) = (self.journal.rows() - rows_before, self.beat.late_ticks);
+        self.journal.log(now_s, EventKind::StepFinished { step: index, segment, rows, late_ticks });
         self.journal.commit(now_s)?;
         Ok(Left::Done)
     }
 
-    fn tell_warmth(&mut self, index: usize) {
+    fn note_warmth(&mut self, index: usize) {
         let Some(watch) = &mut self.warm else { return };
         watch.step_done();
         let Some(drift) = watch.drift() else { return };

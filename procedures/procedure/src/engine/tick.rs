@@ -37,7 +37,7 @@ impl Session<'_> {
         self.bench.clock.sleep_until_s(self.beat.next_s);
         let now_s = self.bench.clock.now_s();
         if now_s > self.beat.next_s + self.beat.period_s {
-            self.beat.late += 1;
+            self.beat.late_ticks += 1;
         }
         self.beat.next_s = (self.beat.next_s + self.beat.period_s).max(now_s);
         now_s
@@ -79,7 +79,7 @@ impl Session<'_> {
                 Err(TryRecvError::Disconnected) if self.journal.state() == RunState::Securing => return Ok(()),
                 Err(TryRecvError::Disconnected) => return Err(Ending::Abandoned),
             };
-            self.journal.tell(now_s, EventKind::Control { control, by });
+            self.journal.log(now_s, EventKind::Control { control, by });
             match control {
                 Control::EStop => return Err(Ending::EStopped),
                 Control::Abort => return Err(Ending::Aborted),

@@ -2,7 +2,7 @@
 
 use super::ask::Trouble;
 use super::ending::Ending;
-use super::session::{RECOVERIES_PER_STEP, Session, tell};
+use super::session::{RECOVERIES_PER_STEP, Session, log};
 use super::skew::{self, Skews};
 use crate::columns::TorqueMoment;
 use jointbench_instrument::clock::{Timed, timed};
@@ -128,7 +128,7 @@ impl Session<'_> {
             streaming.missing += count;
         }
         let now_s = self.bench.clock.now_s();
-        tell(&mut self.journal, &mut self.recoveries, now_s, Trouble { fault: gap.clone(), recovered: true });
+        log(&mut self.journal, &mut self.recoveries, now_s, Trouble { fault: gap.clone(), recovered: true });
         if self.recoveries > RECOVERIES_PER_STEP {
             self.lost.sensor = true;
             return Err(Ending::OtherFault(gap));

@@ -9,7 +9,7 @@ use super::solve::{solve, t95};
 
 /// Readings of both instruments in one tick, each with its time by the bench's clock.
 #[derive(Debug, Clone, Copy)]
-pub struct Told {
+pub struct ReadingPair {
     /// Readings of one stretch are consecutive.
     pub stretch: u32,
     pub first_s: f64,
@@ -38,10 +38,10 @@ const PARTS: usize = 10;
 const TURNED_RAD: f64 = 1.0;
 
 /// `None` if the motion does not determine the lag to half a reading period.
-pub fn lag(told: &[Told]) -> Option<Lag> {
-    let stretches: Vec<&[Told]> = told.chunk_by(|a, b| a.stretch == b.stretch).collect();
+pub fn lag(readings: &[ReadingPair]) -> Option<Lag> {
+    let stretches: Vec<&[ReadingPair]> = readings.chunk_by(|a, b| a.stretch == b.stretch).collect();
     let turned_rad =
-        |stretch: &&[Told]| stretch.windows(2).map(|w| (w[1].first_rad - w[0].first_rad).abs()).sum::<f64>();
+        |stretch: &&[ReadingPair]| stretch.windows(2).map(|w| (w[1].first_rad - w[0].first_rad).abs()).sum::<f64>();
     if stretches.iter().map(turned_rad).sum::<f64>() < TURNED_RAD {
         return None;
     }
@@ -52,26 +52,26 @@ pub fn lag(told: &[Told]) -> Option<Lag> {
         lag_s += step_s;
         if step_s.abs() < FOUND_S {
             let reach_s = reach(&rows, &y)?;
-            return (reach_s < 0.5 * period_s(told)?).then_some(Lag { s: lag_s, reach_s });
+            return (reach_s < 0.5 * period_s(readings)?).then_some(Lag { s: lag_s, reach_s });
         }
     }
     None
 }
 
-fn period_s(told: &[Told]) -> Option<f64> {
-    let mut steps_s: Vec<f64> = told.windows(2).map(|w| w[1].first_s - w[0].first_s).collect();
+fn period_s(readings: &[ReadingPair]) -> Option<f64> {
+    let mut steps_s: Vec<f64> = readings.windows(2).map(|w| w[1].first_s - w[0].first_s).collect();
     steps_s.sort_by(f64::total_cmp);
     steps_s.get(steps_s.len() / 2).copied()
 }
 
 /// The remaining difference for a lag of the second instrument.
-fn equations(stretches: &[&[Told]], lag_s: f64) -> (Vec<Row>, Vec<f64>) {
+fn equations(stretches: &[&[ReadingPair]], lag_s: f64) -> (Vec<Row>, Vec<f64>) {
     let (mut rows, mut y) = (Vec::new(), Vec::new());
     for stretch in stretches {
         let start = rows.len();
         let mut behind = 1;
-        for told in *stretch {
-            let moment_s = told.second_s - lag_s;
+        for pair in *stretch {
+            let moment_s = pair.second_s - lag_s;
             while behind < stretch.len() && stretch[behind].first_s < moment_s {
                 behind += 1;
             }
@@ -83,7 +83,7 @@ fn equations(stretches: &[&[Told]], lag_s: f64) -> (Vec<Row>, Vec<f64>) {
             let angle_rad = a.first_rad + speed_rad_s * (moment_s - a.first_s);
             let twice_rad = 2.0 * angle_rad;
             rows.push([-speed_rad_s, angle_rad.cos(), angle_rad.sin(), twice_rad.cos(), twice_rad.sin()]);
-            y.push(told.second_rad - angle_rad);
+            y.push(pair.second_rad - angle_rad);
         }
         about_their_mean(&mut rows[start..], &mut y[start..]);
     }
@@ -120,7 +120,7 @@ mod tests {
 
     /// Strokes back and forth at 250 Hz, with a once-per-turn error and counts. The second instrument has a lag of
     /// `lag_s` against its time stamps, which are 0.8 ms after those of the first.
-    fn strokes(lag_s: f64, top_rad_s: f64) -> Vec<Told> {
+    fn strokes(lag_s: f64, top_rad_s: f64) -> Vec<ReadingPair> {
         let counted = |rad: f64, counts: f64| (rad / TAU * counts).floor() / counts * TAU;
         let shaft = |t_s: f64| -top_rad_s / 3.0 * (3.0 * t_s).cos();
         let tick = |i: u32| {
@@ -128,7 +128,13 @@ mod tests {
             let second_s = first_s + 0.8e-3;
             let truly_rad = shaft(second_s - lag_s);
             let second_rad = counted(truly_rad + 4e-3 * (truly_rad + 1.0).sin() + 0.3, 262_144.0);
-            Told { stretch: i / 500, first_s, first_rad: counted(shaft(first_s), 16_384.0), second_s, second_rad }
+            ReadingPair {
+                stretch: i / 500,
+                first_s,
+                first_rad: counted(shaft(first_s), 16_384.0),
+                second_s,
+                second_rad,
+            }
         };
         (0..3000).map(tick).collect()
     }
@@ -143,15 +149,19 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_move_tells_no_lag() {
+    fn without_motion_there_is_no_lag() {
         for top_rad_s in [0.0, 1e-4, 1e-2] {
             assert_eq!(lag(&strokes(1e-3, top_rad_s)), None, "{top_rad_s} rad/s");
         }
         assert_eq!(lag(&[]), None);
         // At one speed a lag and a zero offset are identical.
-        let even: Vec<Told> = strokes(0.0, 0.0)
+        let even: Vec<ReadingPair> = strokes(0.0, 0.0)
             .iter()
-            .map(|told| Told { first_rad: 40.0 * told.first_s, second_rad: 40.0 * told.second_s - 0.01, ..*told })
+            .map(|pair| ReadingPair {
+                first_rad: 40.0 * pair.first_s,
+                second_rad: 40.0 * pair.second_s - 0.01,
+                ..*pair
+            })
             .collect();
         assert_eq!(lag(&even), None);
     }

@@ -10,7 +10,7 @@ mod say;
 mod solve;
 
 pub(crate) use holds::{Hold, holds};
-pub(crate) use lag::{Lag, Told, lag};
+pub(crate) use lag::{Lag, ReadingPair, lag};
 pub(crate) use line::{Line, Mean};
 pub(crate) use part::{Leg, keep, keep_rows, legs};
 pub(crate) use plateaus::{Plateau, plateaus, settled};

@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_curve_ends_where_it_is_told_to() {
+    fn a_curve_ends_at_its_given_end() {
         for i in 0..1000 {
             let top = 160.0 + f64::from(i) * 0.0137;
             let drawn = curve("model, negative", [-top, 0.0], 200, |v| (-v).powf(0.8));

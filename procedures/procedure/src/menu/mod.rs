@@ -1,15 +1,15 @@
 //! Possible next runs of a bench for the model: plans within its limits, as steady-state stretches.
 
 mod friction;
-mod laid;
-mod shown;
+mod from_run;
+mod segments;
 
 use crate::catalogue::procedure;
 use crate::parameter::Parameter;
 use crate::plan::BenchFacts;
 use jointbench_instrument::{Kind, RunTable};
 use jointbench_model::Choice;
-use laid::choice;
+use segments::choice;
 use serde_json::{Map, Value, json};
 
 /// Margin to the limits.

@@ -37,24 +37,27 @@ fn abort_comes_to_rest_within_its_ramp() {
         // No supply answers in time for a fall during rotation: the remanence of the brake is reported.
         let brake = done.world.commands(|call| matches!(call, Call::SetCurrent(_) | Call::Disarm));
         let held = brake.iter().take_while(|(_, call)| *call != Call::Disarm).last();
-        let told = match held {
+        let reported = match held {
             Some((_, Call::SetCurrent(a))) if *a > 0.0 => format!("fell from {a:.3} A with the drive off. Demagnetise"),
             _ => String::new(),
         };
         let falls = brake.iter().filter(|(sent_s, call)| *sent_s > 100.0 + at_s + 0.1 && *call != Call::Disarm).count();
         let notes = done.ledger.notes().join("; ");
-        assert!(notes.contains(&told) && told.is_empty() != notes.contains("Demagnetise"), "step {step}: {notes}");
-        assert_eq!(falls, if told.is_empty() { 0 } else { 5 }, "step {step}: {brake:?}");
+        assert!(
+            notes.contains(&reported) && reported.is_empty() != notes.contains("Demagnetise"),
+            "step {step}: {notes}"
+        );
+        assert_eq!(falls, if reported.is_empty() { 0 } else { 5 }, "step {step}: {brake:?}");
     }
 }
 
 #[test]
-fn a_daemon_that_is_told_to_end_aborts_and_says_so() {
+fn a_daemon_that_is_terminated_aborts_and_says_so() {
     let at_s = middles_s(&loaded_plan())[2];
-    let [told, asked] = [Control::Quit, Control::Abort].map(|control| play_controlled(&[(at_s, control)]));
-    told.check_safe(RunState::Aborted).check_no_cogging();
-    assert_eq!(moved_on_s(&told, at_s), moved_on_s(&asked, at_s));
-    assert_eq!(told.end.reason.as_deref(), Some("aborted because the daemon was shut down"));
+    let [reported, asked] = [Control::Quit, Control::Abort].map(|control| play_controlled(&[(at_s, control)]));
+    reported.check_safe(RunState::Aborted).check_no_cogging();
+    assert_eq!(moved_on_s(&reported, at_s), moved_on_s(&asked, at_s));
+    assert_eq!(reported.end.reason.as_deref(), Some("aborted because the daemon was shut down"));
 }
 
 fn speed_of(call: &Call) -> f64 {
@@ -95,14 +98,14 @@ fn an_abort_on_the_way_to_rest_drops_no_current_at_standstill() {
 }
 
 #[test]
-fn a_control_that_does_not_fit_is_told_and_changes_nothing() {
+fn a_control_that_does_not_fit_is_reported_and_changes_nothing() {
     let done = play_controlled(&[(0.5, Control::Resume)]);
     done.check_safe(RunState::Completed);
     assert!(done.ledger.notes().contains(&"a run that is running cannot resume"));
 }
 
 #[test]
-fn nobody_left_to_control_is_a_stop() {
+fn a_dropped_sender_of_controls_is_a_stop() {
     let (fakes, mut bench) = crate::fakes::Fakes::quiet();
     let (sender, controls) = std::sync::mpsc::channel();
     drop(sender);

@@ -83,7 +83,7 @@ fn a_ramp_is_made_again_from_its_rest_after_a_pause_and_left_by_an_abort() {
 }
 
 #[test]
-fn what_is_fed_forward_is_kept_beside_the_velocity() {
+fn feedforward_current_is_recorded_with_the_velocity() {
     let (fakes, mut bench) = Fakes::new(|_, _| Ok(()));
     let mut plan = loaded_plan();
     plan.steps.truncate(1);

@@ -123,8 +123,8 @@ fn nothing_answers() {
     let done = scripted(|_, world| if world.now_s >= 102.0 { Err(lost()) } else { Ok(()) });
     assert_eq!((done.end.state, done.end.safe), (RunState::Failed, Safe::UnsafeUnknown));
     assert!(done.end.duration_s < 10.0, "{} s", done.end.duration_s);
-    let told = done.ledger.events().any(|event| event.kind == EventKind::Safe { safe: Safe::UnsafeUnknown });
-    assert!(told);
+    let reported = done.ledger.events().any(|event| event.kind == EventKind::Safe { safe: Safe::UnsafeUnknown });
+    assert!(reported);
 }
 
 #[test]

@@ -35,11 +35,11 @@ fn every_limit_trips_in_mid_run() {
     ];
     for (quantity, show) in cases {
         let done = check_trips(quantity.name(), show);
-        let told = done
+        let reported = done
             .ledger
             .events()
             .any(|event| matches!(event.kind, EventKind::Breach { breach } if breach.quantity == quantity));
-        assert!(told, "{}", quantity.name());
+        assert!(reported, "{}", quantity.name());
         // Drive torque off first: no set-point between the violation and the disarming.
         let last = done.world.commands(|call| matches!(call, Call::SetVelocity(_) | Call::Disarm));
         let disarmed_s = last.iter().find(|(_, call)| *call == Call::Disarm).map(|(at_s, _)| *at_s);

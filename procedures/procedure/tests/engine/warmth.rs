@@ -12,7 +12,7 @@ fn felt(script: impl FnMut(Call, &mut World) -> Result<(), FaultKind> + Send + '
 }
 
 #[test]
-fn every_channel_is_a_column_beside_the_joints_own_temperature() {
+fn every_channel_is_a_column_next_to_the_joints_own_temperature() {
     let done = felt(|_, world| {
         world.warmth_c = [world.now_s - 100.0, 20.0];
         Ok(())
@@ -38,7 +38,7 @@ fn every_channel_is_a_column_beside_the_joints_own_temperature() {
 }
 
 #[test]
-fn the_first_channel_stands_for_a_joint_that_tells_no_temperature() {
+fn the_first_channel_replaces_the_temperature_of_a_joint_without_one() {
     let done = felt(|_, world| {
         world.temperature_c = None;
         Ok(())

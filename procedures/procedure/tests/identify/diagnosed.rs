@@ -75,7 +75,7 @@ fn a_stiff_joint_lacks_nothing_and_a_soft_one_hardens() {
 }
 
 #[test]
-fn a_joint_that_starts_from_rest_shows_its_contacts_and_nothing_that_stands_for_them() {
+fn a_joint_that_starts_from_rest_shows_its_contacts_and_no_substitute() {
     for joint in [Joint::JointA, Joint::JointB] {
         // It explains 49 % there for joint B, where half is required: it is reported, but not named.
         let rest = run(joint, &[], "presliding", json!({}));
@@ -99,7 +99,7 @@ fn a_joint_that_starts_from_rest_shows_its_contacts_and_nothing_that_stands_for_
 }
 
 #[test]
-fn teeth_on_the_way_from_rest_are_told_without_what_is_impossible() {
+fn teeth_on_the_way_from_rest_are_named_without_an_impossible_effect() {
     // A Stribeck effect of −20 mNm had stayed after the removal of the effect that made it possible.
     let run = seeded(9314, Joint::JointB, &["cogging"], "breakaway", json!({}));
     let found: Vec<String> = diagnosis(&run).suggestions.into_iter().map(|s| s.effect).collect();
@@ -108,7 +108,7 @@ fn teeth_on_the_way_from_rest_are_told_without_what_is_impossible() {
 }
 
 #[test]
-fn teeth_over_which_the_drive_gives_way_are_all_that_is_told() {
+fn teeth_under_a_soft_drive_are_the_only_finding() {
     // Two waves had caused a friction ripple, three and five a structure that was the rotor's own acceleration.
     for seed in [32003, 32005, 32009] {
         let run = seeded(seed, Joint::JointA, &["cogging"], "friction", json!({}));
@@ -119,7 +119,7 @@ fn teeth_over_which_the_drive_gives_way_are_all_that_is_told() {
 }
 
 #[test]
-fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_told() {
+fn a_square_of_speed_that_a_stribeck_effect_imitates_is_named_or_left_open() {
     let quadratic = |seed| seeded(seed, Joint::JointA, &["stribeck", "viscous_quadratic"], "friction", json!({}));
     // A Stribeck effect with the exponent 0.5 has a squared error that is 1 % larger, with 12 mNm of Coulomb friction
     // instead of 30.
@@ -154,7 +154,7 @@ fn an_arm_is_heavy_and_its_directions_differ() {
 }
 
 #[test]
-fn teeth_bear_what_an_arm_weighs_beside_its_load() {
+fn teeth_transmit_the_weight_of_an_arm_and_its_load() {
     // With the load alone, a load_quadratic and a friction_ripple remained at twice the noise floor, and were
     // reported as an explanation.
     for hidden in [["gravity", "load_linear"], ["gravity", "load_quadratic"]] {
@@ -164,7 +164,7 @@ fn teeth_bear_what_an_arm_weighs_beside_its_load() {
 }
 
 #[test]
-fn what_an_arm_cannot_tell_apart_is_told() {
+fn confounded_effects_of_an_arm_are_reported() {
     // Around the upright pose gravity's cosine is a constant torque: the difference of the directions, 27 mNm, could
     // be gravity.
     let alone = diagnosis(&run(Joint::Puma, &[], "puma_friction", json!({})));

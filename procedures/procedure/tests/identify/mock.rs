@@ -15,8 +15,8 @@ fn found(settings: MockSettings, id: &str, parameters: Value) -> (MockBench, Ide
     let found = done.identification.unwrap();
     let finds = procedure(id).unwrap().finds();
     for quantity in &found.quantities {
-        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
-        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
+        let is_declared = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_declared, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
     }
     (mock, found)
 }
@@ -79,8 +79,8 @@ fn the_inverse_of_the_hysteresis_holds_on_a_history_that_it_has_not_seen() {
         let figure = found.figures.iter().find(|figure| figure.name == name).unwrap();
         let [measured, model] = &figure.series[..] else { panic!("{figure:?}") };
         for (current_a, torque_nm) in measured.x.iter().zip(&measured.y) {
-            let beside = model.x.iter().zip(&model.y).filter(|(x, _)| (*x - current_a).abs() < 1e-9);
-            let off = beside.map(|(_, y)| (y - torque_nm).abs()).fold(f64::INFINITY, f64::min);
+            let predicted = model.x.iter().zip(&model.y).filter(|(x, _)| (*x - current_a).abs() < 1e-9);
+            let off = predicted.map(|(_, y)| (y - torque_nm).abs()).fold(f64::INFINITY, f64::min);
             assert!(off < 0.04 * rated_nm, "{name} at {current_a} A: {off} Nm");
         }
     }
@@ -138,7 +138,7 @@ fn a_stribeck_part_that_may_be_a_square_of_speed_is_not_identified() {
 }
 
 #[test]
-fn friction_under_load_is_told_apart_from_a_rise_towards_standstill() {
+fn friction_under_load_is_distinguished_from_a_rise_towards_standstill() {
     let settings = MockSettings::new(Joint::JointA, 1).hiding(&["stribeck", "load_linear"]);
     let (mock, found) = found(settings, "friction_load", json!({"load_levels": 4, "sample_rate_hz": 100.0}));
     assert!(found.summary.contains("in proportion to the load"), "{}", found.summary);
@@ -186,7 +186,7 @@ fn a_joint_that_breaks_away_in_the_swings_decides_nothing() {
 }
 
 #[test]
-fn a_warm_up_and_a_cool_down_tell_what_oil_does_and_what_does_not_change() {
+fn a_warm_up_and_a_cool_down_separate_viscous_and_constant_friction() {
     let mut settings = MockSettings::new(Joint::JointA, 21);
     let (_, cold) = found(settings.clone(), "friction_temperature", json!({}));
     assert!(cold.quantity("c_t").is_none() && cold.summary.contains("change by less than"), "{}", cold.summary);
@@ -272,7 +272,7 @@ fn an_arm_gives_a_line_for_each_direction_and_its_stiction() {
 }
 
 #[test]
-fn a_soft_start_is_seen_beside_its_curve_its_table_and_its_loop() {
+fn a_soft_start_is_shown_with_its_curve_its_table_and_its_loop() {
     let given = json!({"load_levels": 8, "repeats": 2});
     let (_, found) = found(MockSettings::new(Joint::JointB, 3), "stiffness", given);
     assert!(found.summary.contains("Stiffness decreases at low torque"), "{}", found.summary);
@@ -290,7 +290,7 @@ fn a_soft_start_is_seen_beside_its_curve_its_table_and_its_loop() {
 }
 
 #[test]
-fn table_4_7_is_drawn_as_bars_beside_a_trajectory() {
+fn table_4_7_is_drawn_as_bars_with_a_trajectory() {
     let (_, found) = found(MockSettings::new(Joint::JointA, 2).hiding(&["stribeck"]), "compensation", json!({}));
     let figure = |name: &str| found.figures.iter().find(|figure| figure.name == name).unwrap();
     let bars = &figure("ratio").series;

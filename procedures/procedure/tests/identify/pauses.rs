@@ -157,8 +157,8 @@ fn check(settings: &MockSettings, id: &str, given: Value) {
     let unbroken = conduct_knowing(&mut bench, &facts, procedure, given).unwrap().identification.unwrap();
     let finds = procedure.finds();
     for quantity in &unbroken.quantities {
-        let is_told = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
-        assert!(is_told, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
+        let is_declared = finds.iter().any(|findable| findable.is(&quantity.name) && findable.unit == quantity.unit);
+        assert!(is_declared, "{id} does not say that it finds {} [{}]", quantity.name, quantity.unit);
     }
 
     let (_mock, mut bench) = open();
@@ -312,7 +312,7 @@ fn a_campaign_feeds_forward_the_friction_that_it_has_found() {
 }
 
 #[test]
-fn a_campaign_that_cannot_tell_the_friction_feeds_none_forward() {
+fn a_campaign_without_identified_friction_feeds_none_forward() {
     let settings = MockSettings::new(Joint::JointA, 1);
     let (_mock, mut bench, mut plan, _) = campaign(&settings);
     // Friction that was never measured.

@@ -84,7 +84,7 @@ fn friction_finds_every_figure_of_the_document() {
 }
 
 #[test]
-fn directions_that_differ_are_told_apart() {
+fn directions_that_differ_are_distinguished() {
     let found = identified("friction", &staircase(|v| joint_a(v) + 0.002));
     assert!(found.summary.contains("directions differ"), "{}", found.summary);
     let positive = found.quantity("tau_c_positive").unwrap().value;
@@ -112,7 +112,7 @@ fn a_rise_that_could_hide_is_not_decided() {
 }
 
 #[test]
-fn what_speed_does_not_explain_is_told() {
+fn scatter_that_speed_does_not_explain_is_reported() {
     // A different torque in every leg.
     let sample = Cell::new(0_u32);
     let found = identified(

@@ -139,7 +139,7 @@ fn record(joint: &Joint, steps: &[Step], dice: &mut Dice) -> RunTable {
                 let end = carries * v.signum();
                 bristle = end + (bristle - end) * (-stiffness * v.abs() * dt / carries).exp();
                 let bending = damping * (bristle - before) / (dt * stiffness);
-                let rest = drive - load / joint.gear - bristle - bending - joint.beside(&at, last_s);
+                let rest = drive - load / joint.gear - bristle - bending - joint.without_hysteresis(&at, last_s);
                 // Implicit while the bristles stick, because their stiffness requires a shorter time step otherwise.
                 let sticks = if bristle.abs() < 0.98 * carries { dt * (damping + stiffness * dt) } else { 0.0 };
                 v += rest / (joint.inertia + sticks) * dt;

@@ -146,7 +146,7 @@ impl Joint {
     }
 
     /// Torque without hysteresis [Nm].
-    pub fn beside(&self, m: &Moment, last_s: f64) -> f64 {
+    pub fn without_hysteresis(&self, m: &Moment, last_s: f64) -> f64 {
         let side = 1.0 + 0.5 * self.oil_one_sided * m.velocity.signum();
         let oil = self.oil * side * (-self.oil_warm * m.warmth).exp() + self.windage * m.velocity.abs();
         let magnets: f64 = self.teeth.iter().map(|(h, a, p)| a * (h * m.motor + p).cos()).sum();

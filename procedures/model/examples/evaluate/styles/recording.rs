@@ -22,7 +22,7 @@ pub struct Recording {
     pub hidden: Vec<Part>,
     pub outside: Option<Part>,
     /// Alternative causes with their contributions in this run: several shapes of each.
-    pub rivals: Vec<Part>,
+    pub alternatives: Vec<Part>,
     /// Parameters with the same meaning in the library.
     pub truth: BTreeMap<String, f64>,
     /// Effects that are accepted, but not required.

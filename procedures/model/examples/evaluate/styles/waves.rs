@@ -32,7 +32,7 @@ pub fn multisine(lasts_s: f64, rate_hz: f64, dice: &mut Dice) -> Vec<f64> {
 }
 
 /// Corners at random levels.
-pub fn wander(lasts_s: f64, rate_hz: f64, dice: &mut Dice) -> Vec<f64> {
+pub fn random_walk(lasts_s: f64, rate_hz: f64, dice: &mut Dice) -> Vec<f64> {
     let (mut corners, mut time) = (vec![(0.01, 0.0)], 0.0);
     while time < lasts_s {
         let step = dice.uniform(0.8, 3.0);

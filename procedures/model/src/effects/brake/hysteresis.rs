@@ -72,8 +72,8 @@ impl Effect for Hysteresis {
     fn columns(&self, form: &str, shape: &[f64], view: &View) -> Columns {
         let current = view.samples.find(Signal::Current).unwrap_or_default();
         match form {
-            "stop" => vec![view.average(beside_rest(hysteresis_operators::stop(current, shape[0], &view.starts)))],
-            "dahl" => vec![view.average(beside_rest(hysteresis_operators::dahl(current, shape[0], &view.starts)))],
+            "stop" => vec![view.average(relative_to_rest(hysteresis_operators::stop(current, shape[0], &view.starts)))],
+            "dahl" => vec![view.average(relative_to_rest(hysteresis_operators::dahl(current, shape[0], &view.starts)))],
             _ => {
                 let bands = FORMS.iter().find(|known| known.0 == form).map_or(BANDS.len(), |known| known.1);
                 density(current, shape[0], bands, view)
@@ -84,7 +84,7 @@ impl Effect for Hysteresis {
 
 /// A hysteresis state relative to the one after the current has fallen to zero: the torque in that state counts as
 /// drag.
-fn beside_rest(mut state: Vec<f64>) -> Vec<f64> {
+fn relative_to_rest(mut state: Vec<f64>) -> Vec<f64> {
     state.iter_mut().for_each(|z| *z += 1.0);
     state
 }
@@ -96,7 +96,7 @@ fn density(current: &[f64], reach: f64, bands: usize, view: &View) -> Columns {
     for k in 1..=stops {
         let place = k as f64 / STOPS as f64;
         let stop = hysteresis_operators::stop(current, reach * k as f64 / stops as f64, &view.starts);
-        let stop = view.average(beside_rest(stop));
+        let stop = view.average(relative_to_rest(stop));
         for (band, column) in columns.iter_mut().enumerate() {
             let weight = (1.0 - (place - (band + 1) as f64).abs()).max(0.0);
             if weight > 0.0 {

@@ -15,8 +15,8 @@ pub fn usual(view: &View, signal: Signal, of: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The usual value is stored with the fit, because another run has another one.
-pub fn form<'e>(factor: &'e str, origin: &'e str, usual: f64) -> Form<'e> {
+pub fn form<'e>(coefficient: &'e str, origin: &'e str, usual: f64) -> Form<'e> {
     // Fixed; `Signed`, because a temperature may be negative.
     let shape = vec![Shape { name: origin, min: usual, max: usual, search: ShapeSearch::Signed }];
-    Form { name: "scaled", linear: vec![factor], shape, grid: vec![vec![usual]] }
+    Form { name: "scaled", linear: vec![coefficient], shape, grid: vec![vec![usual]] }
 }

@@ -59,6 +59,6 @@ impl Effect for FrictionRipple {
     }
 
     fn same_as(&self, view: &View) -> Option<&'static str> {
-        (view.goes_one_way() && view.is_direct()).then_some("cogging")
+        (view.is_one_directional() && view.is_direct()).then_some("cogging")
     }
 }

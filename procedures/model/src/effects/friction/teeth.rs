@@ -16,15 +16,15 @@ const REACH: f64 = 2.0;
 
 /// Forms of an effect with one coefficient over the load, and over load and weight together if there is such a
 /// weight.
-pub fn forms(view: &View, factor: &'static str) -> Vec<Form<'static>> {
+pub fn forms(view: &View, coefficient: &'static str) -> Vec<Form<'static>> {
     if !view.bears_load() {
         return Vec::new();
     }
-    let plain = Form::linear(&[factor]);
+    let plain = Form::linear(&[coefficient]);
     let Some(weight) = view.constants.weight.filter(|_| !view.constants.slides) else { return vec![plain] };
     let most = REACH * weight[0].hypot(weight[1]);
     let shape = ["g_c", "g_s"].map(|name| Shape { name, min: -most, max: most, search: ShapeSearch::Signed });
-    let form = Form { name: WITH_WEIGHT, linear: vec![factor], shape: shape.into(), grid: vec![weight.into()] };
+    let form = Form { name: WITH_WEIGHT, linear: vec![coefficient], shape: shape.into(), grid: vec![weight.into()] };
     vec![plain, form]
 }
 

@@ -41,9 +41,9 @@ impl Body {
             body.statements
                 .push(format!("/* {} */", suffix::ascii(if part.title.is_empty() { part.effect } else { part.title })));
             for (i, column) in part.columns.iter().enumerate() {
-                match part.factors.get(i) {
+                match part.coefficients.get(i) {
                     Some((name, _)) => body.column(part, i, &format!("p->{}_{name}", part.effect), column),
-                    None if part.factors.is_empty() => body.column(part, i, "1.0", column),
+                    None if part.coefficients.is_empty() => body.column(part, i, "1.0", column),
                     None => {}
                 }
             }
@@ -65,14 +65,14 @@ impl Body {
         named.map_or_else(String::new, |s| format!("u->{}", self.field(s)))
     }
 
-    fn column(&mut self, part: &Part, place: usize, factor: &str, column: &PartColumn) {
+    fn column(&mut self, part: &Part, place: usize, coefficient: &str, column: &PartColumn) {
         let effect = part.effect;
         let parameter = |p: usize| part.shape.get(p).map(|(name, _)| format!("p->{effect}_{name}"));
         let shape = |p: usize| parameter(p).unwrap_or_default();
         match column {
             PartColumn::Formula(formula) => {
                 let formula = c(formula, &|signal| self.input(signal), &shape);
-                self.statements.push(format!("sum += {factor} * {formula};"));
+                self.statements.push(format!("sum += {coefficient} * {formula};"));
             }
             PartColumn::Memory { rule, signal, reach, end, formula } => {
                 let state = if place == 0 { format!("{effect}_z") } else { format!("{effect}_z_{}", place + 1) };
@@ -83,7 +83,7 @@ impl Body {
                 let z = self.remember(effect, *rule, *signal, &state, &shape(*reach), &end);
                 let of = |p: usize| parameter(p).unwrap_or_else(|| z.clone());
                 let formula = c(formula, &|signal| self.input(signal), &of);
-                self.statements.push(format!("sum += {factor} * {formula};"));
+                self.statements.push(format!("sum += {coefficient} * {formula};"));
             }
             PartColumn::Band { stops, bands, band } => {
                 let state = format!("{effect}_z");
@@ -94,7 +94,7 @@ impl Body {
                 self.statements.push(format!("for (int k = 1; k <= {stops}; k++) {{"));
                 let place = format!("fabs(k * {} / {} - {})", number(*bands as f64), number(*stops as f64), band + 1);
                 self.statements
-                    .push(format!("    sum += {factor} * fmax(0.0, 1.0 - {place}) * (s->{state}[k - 1] + 1.0);"));
+                    .push(format!("    sum += {coefficient} * fmax(0.0, 1.0 - {place}) * (s->{state}[k - 1] + 1.0);"));
                 self.statements.push("}".into());
             }
         }

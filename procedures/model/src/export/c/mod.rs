@@ -80,9 +80,9 @@ fn parameters(fit: &Fit, parts: &Parts) -> Vec<(String, f64, String)> {
     let mut all = Vec::new();
     for part in &parts.parts {
         let effect = part.effect;
-        for (name, value) in part.factors.iter().chain(&part.shape) {
-            let told = fit.parameters.iter().find(|p| p.effect == effect && p.name == *name);
-            all.push((format!("{effect}_{name}"), *value, told.map(comment).unwrap_or_default()));
+        for (name, value) in part.coefficients.iter().chain(&part.shape) {
+            let parameter = fit.parameters.iter().find(|p| p.effect == effect && p.name == *name);
+            all.push((format!("{effect}_{name}"), *value, parameter.map(comment).unwrap_or_default()));
         }
         if let Some(band) = dead_band_of(fit, part) {
             let words = format!(

@@ -133,8 +133,8 @@ impl<'f> Layout<'f> {
                  most"
             ));
         }
-        let goes_by_velocity = self.axes.iter().any(|axis| axis.signal.signal == Signal::Velocity);
-        if goes_by_velocity && self.parts.uses(Signal::Direction) {
+        let has_velocity_axis = self.axes.iter().any(|axis| axis.signal.signal == Signal::Velocity);
+        if has_velocity_axis && self.parts.uses(Signal::Direction) {
             lines.push(
                 "The direction is the sign of the velocity: noise about standstill turns it round and round".to_owned(),
             );

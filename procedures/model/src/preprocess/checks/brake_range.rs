@@ -78,7 +78,7 @@ mod tests {
     use jointbench_instrument::{Channel, Meta, Trace};
 
     /// A brake with the torque `nm` at its rated current, with columns in other units.
-    fn told(nm: f64, rated_a: f64, current: f64, torque: f64, is_rated: bool) -> Option<String> {
+    fn reported(nm: f64, rated_a: f64, current: f64, torque: f64, is_rated: bool) -> Option<String> {
         let names = ["time_s", "position_rad", "brake_current_a", "brake_torque_nm"];
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
         for i in 0..800 {
@@ -91,30 +91,30 @@ mod tests {
     }
 
     #[test]
-    fn what_no_brake_reaches_is_told_and_what_brakes_reach_is_not() {
+    fn only_values_beyond_all_brakes_are_reported() {
         // HB-140M, HB-3500M, and the latter behind a gear of 1:10.
         for (nm, rated_a) in [(1.0, 0.253), (26.0, 1.2), (260.0, 1.2)] {
             for is_rated in [true, false] {
-                let told = |current, torque| told(nm, rated_a, current, torque, is_rated);
-                assert_eq!(told(1.0, 1.0), None);
+                let reported = |current, torque| reported(nm, rated_a, current, torque, is_rated);
+                assert_eq!(reported(1.0, 1.0), None);
                 for slip in [1e3, 1e-3] {
-                    assert!(told(slip, 1.0).is_some(), "{nm} Nm, a current {slip} times as large");
+                    assert!(reported(slip, 1.0).is_some(), "{nm} Nm, a current {slip} times as large");
                 }
                 assert!(
-                    told(1.0, 1e3).is_some_and(|said| said.contains("hysteresis brakes hold 0.1 to 220 Nm")),
+                    reported(1.0, 1e3).is_some_and(|said| said.contains("hysteresis brakes hold 0.1 to 220 Nm")),
                     "{nm} Nm"
                 );
             }
         }
-        assert!(told(13.0, 0.6, 1.0, 1e-3, false).is_some(), "a torque in kNm");
-        let said = told(13.0, 0.6, 1e3, 1.0, true).unwrap();
+        assert!(reported(13.0, 0.6, 1.0, 1e-3, false).is_some(), "a torque in kNm");
+        let said = reported(13.0, 0.6, 1e3, 1.0, true).unwrap();
         assert!(said.starts_with("brake_current_a reaches 600 A, and the brake is rated for 0.6 A"), "{said}");
-        let said = told(13.0, 0.6, 1e3, 1.0, false).unwrap();
+        let said = reported(13.0, 0.6, 1e3, 1.0, false).unwrap();
         assert!(said.starts_with("brake_current_a reaches 600 A, and hysteresis brakes take about one"), "{said}");
     }
 
     #[test]
-    fn a_drag_without_current_tells_nothing_of_units() {
+    fn a_drag_without_current_does_not_determine_units() {
         let names = ["time_s", "brake_current_a", "brake_torque_nm"];
         let mut trace = Trace::new(names.map(Channel::new).to_vec());
         let mut warming = trace.clone();

@@ -20,7 +20,7 @@ const ALONE_RANGE: f64 = 0.15;
 const AGREE: f64 = 0.2;
 /// A pulse is no fault if the speed over this number of samples before and after it changes by more than this share of
 /// the largest speed: the drive accelerates.
-const BESIDE: usize = 5;
+const SPEED_SAMPLES: usize = 5;
 const PUSHED: f64 = 0.02;
 
 /// Columns of measured torque and current, which always contain noise, and the angle that shows whether the joint
@@ -75,11 +75,11 @@ fn clipped(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>]) -
 
 fn stuck(run: &RunTable, name: &str, values: &[f64], same: &[&Range<usize>], angle: &str) -> Option<String> {
     let (time_s, angle) = (run.column("time_s")?, run.column(angle)?);
-    let goes_on = |range: &Range<usize>| {
+    let is_moving = |range: &Range<usize>| {
         let angle = &angle[range.clone()];
         2 * angle.windows(2).filter(|pair| pair[0] != pair[1]).count() > range.len()
     };
-    let range = same.iter().filter(|range| goes_on(range)).max_by_key(|range| range.len())?;
+    let range = same.iter().filter(|range| is_moving(range)).max_by_key(|range| range.len())?;
     let (from_s, to_s) = (time_s[range.start], time_s[range.end - 1]);
     (range.len() >= STUCK_SAMPLES && to_s - from_s >= STUCK_S).then(|| {
         let unit = run.meta().motion.label(unit_of(name).unwrap_or_default());
@@ -97,8 +97,8 @@ pub fn spikes(run: &RunTable) -> Option<String> {
     let way = |i: usize, j: usize| angle[j.min(angle.len() - 1)] - angle[i];
     // Whether the drive accelerates at this sample.
     let is_pushed = |i: usize, fastest: f64| {
-        let before = way((i - 1).saturating_sub(BESIDE), i - 1);
-        (way(i + 1, i + 1 + BESIDE) - before).abs() > PUSHED * fastest
+        let before = way((i - 1).saturating_sub(SPEED_SAMPLES), i - 1);
+        (way(i + 1, i + 1 + SPEED_SAMPLES) - before).abs() > PUSHED * fastest
     };
     torques.iter().chain(&["motor_velocity_rad_s", "velocity_rad_s", "temperature_c"]).find_map(|name| {
         let values = run.column(name)?;
@@ -113,7 +113,7 @@ pub fn spikes(run: &RunTable) -> Option<String> {
         };
         let mut found: Vec<usize> = (1..).zip(values.windows(3)).filter(|(_, w)| is_alone(w)).map(|(i, _)| i).collect();
         if !found.is_empty() {
-            let fastest = (BESIDE..angle.len()).map(|i| way(i - BESIDE, i).abs()).fold(0.0, f64::max);
+            let fastest = (SPEED_SAMPLES..angle.len()).map(|i| way(i - SPEED_SAMPLES, i).abs()).fold(0.0, f64::max);
             found.retain(|i| !is_pushed(*i, fastest));
         }
         let first = *found.first()?;
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sensor_that_sticks_clips_or_spikes_is_told() {
+    fn a_stuck_saturated_or_spiking_sensor_is_reported() {
         let whole = run(|_, current| current);
         assert_eq!((failed(&whole), spikes(&whole)), (Vec::new(), None));
         let clipped = failed(&run(|_, current| current.clamp(-1.4, 1.4)));
@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn a_pulse_that_begins_a_step_is_no_spike() {
         let names = ["time_s", "motor_position_rad", "motor_current_a", "temperature_c"];
-        let told = |pulse: f64, warmest: f64| {
+        let reported = |pulse: f64, warmest: f64| {
             let mut trace = Trace::new(names.map(Channel::new).to_vec());
             let mut position = 0.0;
             for i in 0..4000u32 {
@@ -185,8 +185,8 @@ mod tests {
             }
             spikes(&RunTable::new(Meta { kind: Some(Kind::Friction), ..Meta::default() }, trace).unwrap())
         };
-        assert_eq!(told(3.0, 25.0), None);
-        assert!(told(3.0, 1e30).is_some_and(|told| told.starts_with("temperature_c has one sample")));
+        assert_eq!(reported(3.0, 25.0), None);
+        assert!(reported(3.0, 1e30).is_some_and(|reported| reported.starts_with("temperature_c has one sample")));
     }
 
     #[test]

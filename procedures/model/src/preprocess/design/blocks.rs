@@ -65,7 +65,7 @@ pub fn folds(condition: &[usize], block: &[usize], most: usize) -> (Vec<usize>, 
 /// The unit that is left out together: a condition with its repeats. With few conditions it is a stretch of
 /// consecutive rows (`group`), which its repeats predict. The rest of a stretch would predict a part of it by the
 /// individual error of that stretch.
-pub fn held_out<'a>(condition: &'a [usize], group: &'a [usize]) -> &'a [usize] {
+pub fn left_out_unit<'a>(condition: &'a [usize], group: &'a [usize]) -> &'a [usize] {
     let count = |of: &[usize]| of.iter().max().map_or(0, |c| c + 1);
     let is_few = count(condition) < NEIGHBOURS && count(group) >= NEIGHBOURS.max(2 * count(condition));
     if is_few { group } else { condition }
@@ -93,7 +93,7 @@ pub fn share_edges(fold: &mut [usize], folds: usize, group: &[usize], values: &[
 }
 
 /// Largest number of pairs for each row: more pairs of the same repeats add no information.
-const MOST_TWINS: usize = 8;
+const MOST_REPLICATES: usize = 8;
 
 /// Pairs of rows of the same condition in different repeats whose phases differ by `apart` rows.
 ///
@@ -107,9 +107,9 @@ pub fn replicate_pairs(condition: &[usize], phase: &[usize], repeat: &[i64], apa
     let mut pairs = Vec::new();
     for row in 0..condition.len() {
         let Some(others) = seen.get(&(condition[row], phase[row] + apart)) else { continue };
-        let twin = |r: &&usize| repeat[**r] != repeat[row] && (apart > 0 || **r > row);
+        let is_replicate = |r: &&usize| repeat[**r] != repeat[row] && (apart > 0 || **r > row);
         let (before, after) = others.split_at(others.partition_point(|r| *r <= row));
-        pairs.extend(after.iter().chain(before).filter(twin).take(MOST_TWINS).map(|r| (row, *r)));
+        pairs.extend(after.iter().chain(before).filter(is_replicate).take(MOST_REPLICATES).map(|r| (row, *r)));
     }
     pairs
 }
@@ -141,18 +141,18 @@ mod tests {
     }
 
     #[test]
-    fn legs_are_held_out_whole_where_conditions_are_few() {
+    fn legs_are_left_out_whole_with_few_conditions() {
         let of = |conditions: usize, legs: usize| {
             let group: Vec<usize> = (0..10 * legs).map(|row| row / 10).collect();
             let condition: Vec<usize> = group.iter().map(|g| g % conditions).collect();
-            held_out(&condition, &group) == group
+            left_out_unit(&condition, &group) == group
         };
         assert!(of(4, 12) && of(6, 24));
         assert!(!of(4, 8) && !of(8, 12) && !of(12, 36), "too few legs, hardly a repeat, conditions enough");
     }
 
     #[test]
-    fn a_stretch_that_goes_beyond_all_others_is_held_out_in_parts() {
+    fn a_stretch_beyond_the_range_of_all_others_is_left_out_in_parts() {
         let group: Vec<usize> = (0..120).map(|row| row / 20).collect();
         let given: Vec<usize> = group.iter().map(|g| g % 3).collect();
         let loops = |largest: f64| -> Vec<f64> {
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn twins_are_of_different_repeats() {
+    fn replicates_are_of_different_repeats() {
         assert_eq!(replicate_pairs(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 0), vec![(0, 2), (1, 3)]);
         assert_eq!(replicate_pairs(&[0, 0, 0, 0], &[0, 1, 0, 1], &[0, 0, 1, 1], 1), vec![(0, 3), (2, 1)]);
     }

@@ -92,17 +92,17 @@ const ANGLES: usize = 90;
 const FEWEST: f64 = 0.25;
 
 /// Pairs of rows.
-type Twins = Vec<(usize, usize)>;
+type RowPairs = Vec<(usize, usize)>;
 
 /// For repeats of a condition that start at different angles: pairs of rows at the same angle if there are enough,
 /// and the set of all pairs at different angles. Pairs are thinned, so that every condition counts with the same
 /// number of pairs for each row.
 pub fn by_angle(
-    replicate_pairs: Twins,
+    replicate_pairs: RowPairs,
     condition: &[usize],
     repeat: &[i64],
     link: &[f64],
-) -> (Twins, HashSet<(usize, usize)>) {
+) -> (RowPairs, HashSet<(usize, usize)>) {
     // For a dwell at an angle, rows are paired by their number within the dwell.
     let mut dwelt: HashMap<(usize, i64, usize), usize> = HashMap::new();
     let place = |row: usize| {
@@ -112,24 +112,24 @@ pub fn by_angle(
         angle + ANGLES * *nth
     };
     let places: Vec<usize> = (0..link.len()).map(place).collect();
-    let of_condition = |replicate_pairs: Twins| {
-        let mut pairs: BTreeMap<usize, Twins> = BTreeMap::new();
+    let of_condition = |replicate_pairs: RowPairs| {
+        let mut pairs: BTreeMap<usize, RowPairs> = BTreeMap::new();
         replicate_pairs.into_iter().for_each(|pair| pairs.entry(condition[pair.0]).or_default().push(pair));
         pairs
     };
     let mut rows: HashMap<usize, f64> = HashMap::new();
     condition.iter().for_each(|c| *rows.entry(*c).or_default() += 1.0);
-    let for_each_row = |(c, pairs): (&usize, &Twins)| pairs.len() as f64 / rows[c];
+    let for_each_row = |(c, pairs): (&usize, &RowPairs)| pairs.len() as f64 / rows[c];
     let mut met = of_condition(blocks::replicate_pairs(condition, &places, repeat, 0));
     met.retain(|c, pairs| for_each_row((c, pairs)) >= FEWEST);
     let mut all = of_condition(replicate_pairs);
     let elsewhere = all.iter().filter(|(c, _)| !met.contains_key(c)).flat_map(|(_, pairs)| pairs.clone()).collect();
     all.extend(met);
     let fewest = all.iter().map(for_each_row).fold(f64::INFINITY, f64::min).max(FEWEST);
-    let thinned = |of: (&usize, &Twins)| {
+    let thinned = |of: (&usize, &RowPairs)| {
         let share = fewest / for_each_row(of);
         let is_kept = |i: &usize| ((i + 1) as f64 * share).floor() > (*i as f64 * share).floor();
-        (0..of.1.len()).filter(is_kept).map(|i| of.1[i]).collect::<Twins>()
+        (0..of.1.len()).filter(is_kept).map(|i| of.1[i]).collect::<RowPairs>()
     };
     (all.iter().flat_map(thinned).collect(), elsewhere)
 }

@@ -176,8 +176,8 @@ fn phases(repeat: &[i64], run_of: &[usize]) -> Vec<usize> {
     let mut phase = 0;
     (0..repeat.len())
         .map(|i| {
-            let goes_on = i > 0 && repeat[i] == repeat[i - 1] && run_of[i] == run_of[i - 1];
-            phase = if goes_on { phase + 1 } else { 0 };
+            let continues = i > 0 && repeat[i] == repeat[i - 1] && run_of[i] == run_of[i - 1];
+            phase = if continues { phase + 1 } else { 0 };
             phase
         })
         .collect()

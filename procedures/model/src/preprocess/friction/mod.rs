@@ -90,7 +90,7 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
             (Signal::Direction, direction),
         ]
     };
-    let beside = || {
+    let other_columns = || {
         let gear = run.meta().gear_ratio.unwrap_or(1.0);
         let mut signals = Signals::new(run.len());
         signals.set(Signal::Time, time_s.iter().map(|t| t - time_s[0]).collect());
@@ -110,7 +110,7 @@ fn read(run: &RunTable, options: &Options) -> Result<Source, ModelError> {
         let torque_nm: Vec<f64> = column("motor_current_a").iter().map(|i| km * i).collect();
         (signals, torque_nm, segments::numbered(run), segments::integers(run, "repeat"))
     };
-    let (of_motion, (mut signals, target, segment, repeat)) = rayon::join(motion, beside);
+    let (of_motion, (mut signals, target, segment, repeat)) = rayon::join(motion, other_columns);
     of_motion.into_iter().for_each(|(signal, values)| signals.set(signal, values));
     let slides = run.meta().motion == Motion::Linear;
     Ok(Source {
@@ -140,8 +140,8 @@ fn drive(signals: &Signals, torque_nm: &[f64]) -> Vec<f64> {
     let mut drive = explained(torque_nm);
     for _ in 0..2 {
         let cube: Vec<f64> = drive.iter().map(|t| t * t * t).collect();
-        let beside = linear.rest(&cube);
-        let share = dot(&beside, torque_nm) / dot(&beside, &beside).max(f64::MIN_POSITIVE);
+        let cube_rest = linear.rest(&cube);
+        let share = dot(&cube_rest, torque_nm) / dot(&cube_rest, &cube_rest).max(f64::MIN_POSITIVE);
         let rest: Vec<f64> = torque_nm.iter().zip(&cube).map(|(y, c)| y - share * c).collect();
         drive = explained(&rest);
     }

@@ -70,12 +70,12 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     }
     let step_s = sample_s(time_s);
     let starts = segments::recordings(time_s, position, step_s);
-    let mut beside = Signals::new(run.len());
-    crate::preprocess::unknown_columns::keep(&mut beside, run);
+    let mut unknown = Signals::new(run.len());
+    crate::preprocess::unknown_columns::keep(&mut unknown, run);
     let known =
         [("link_position_rad", Signal::Link), ("link_torque_nm", Signal::Load), ("temperature_c", Signal::Temperature)];
     let known = known.into_iter().filter_map(|(name, signal)| Some((signal, run.column(name)?)));
-    let named: Vec<(Signal, &[f64])> = known.chain(beside.iter()).collect();
+    let named: Vec<(Signal, &[f64])> = known.chain(unknown.iter()).collect();
     let columns: Vec<&[f64]> =
         [position, column("motor_current_a")].into_iter().chain(named.iter().map(|(_, values)| *values)).collect();
     let mut even = even(&columns, time_s, &starts, step_s);
@@ -93,8 +93,8 @@ pub fn read(run: &RunTable) -> Result<Work, ModelError> {
     let mut smooth = smooth.into_iter();
     let (position, current) = (smooth.next().unwrap_or_default(), smooth.next().unwrap_or_default());
     for (signal, values) in all.into_iter().skip(2).zip(smooth) {
-        let factor = if signal == Signal::Load { 1.0 / gear } else { 1.0 };
-        signals.set(signal, values.into_iter().map(|v| factor * v).collect());
+        let scale = if signal == Signal::Load { 1.0 / gear } else { 1.0 };
+        signals.set(signal, values.into_iter().map(|v| scale * v).collect());
     }
     if signals.find(Signal::Link).is_none() {
         signals.set(Signal::Link, position.iter().map(|q| q / gear).collect());

@@ -60,10 +60,10 @@ fn settled(
     if speed.len() < 6 {
         return None;
     }
-    let late = speed.len() / 2..speed.len() - 1;
-    let target = median(speed[late.clone()].iter().copied());
-    let scatter = 1.5 * median(speed[late.clone()].iter().map(|v| (v - target).abs()));
-    let crossings = speed[late.clone()].windows(2).filter(|w| (w[0] > target) != (w[1] > target)).count();
+    let second_half = speed.len() / 2..speed.len() - 1;
+    let target = median(speed[second_half.clone()].iter().copied());
+    let scatter = 1.5 * median(speed[second_half.clone()].iter().map(|v| (v - target).abs()));
+    let crossings = speed[second_half.clone()].windows(2).filter(|w| (w[0] > target) != (w[1] > target)).count();
     let steady = if crossings >= WAVERS { STEADY / 2.0 } else { STEADY };
     if target.abs() < steady * scatter || target == 0.0 {
         return None;
@@ -72,14 +72,14 @@ fn settled(
     let mut steady: Vec<bool> = speed.iter().map(|v| (v - target).abs() <= within).collect();
     let load = load.map(means);
     if let Some(load) = &load {
-        let held = median(load[late.clone()].iter().copied());
-        let scatter = 1.5 * median(load[late.clone()].iter().map(|v| (v - held).abs()));
+        let held = median(load[second_half.clone()].iter().copied());
+        let scatter = 1.5 * median(load[second_half.clone()].iter().map(|v| (v - held).abs()));
         let within = (SETTLED_SHARE * heaviest).max(5.0 * scatter);
         steady.iter_mut().zip(load).for_each(|(s, l)| *s &= (l - held).abs() <= within);
     }
     let longest = segments::stretches(&steady).into_iter().filter(|r| steady[r.start]).max_by_key(Range::len)?;
     // Before that the speed may still approach its set point.
-    let kept = longest.start.max(late.start).min(longest.end)..longest.end;
+    let kept = longest.start.max(second_half.start).min(longest.end)..longest.end;
     let changes = |of: &[f64]| {
         let (first, second) = of[kept.clone()].split_at(kept.len() / 2);
         let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
@@ -138,10 +138,10 @@ pub fn prepare(
         main
     };
     let apart = |fastest| apart(&samples, &plateaus, fastest);
-    let told =
+    let checks =
         || (crate::preprocess::checks::unit_mismatch::clashes(run), crate::preprocess::checks::metadata::doubts(run));
     let ((main, (clashes, doubts)), (moving, memory)) =
-        rayon::join(|| rayon::join(settled, told), || rayon::join(|| apart(f64::INFINITY), || apart(slowest)));
+        rayon::join(|| rayon::join(settled, checks), || rayon::join(|| apart(f64::INFINITY), || apart(slowest)));
     let repeats = main.repeat.iter().max().copied().unwrap_or(0) > main.repeat.iter().min().copied().unwrap_or(0);
     let about = Preparation {
         residual: ResidualKind::PlateauMean,

@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn a_weight_is_told_where_the_load_does_not_hold_it() {
+    fn a_weight_outside_of_the_load_is_found() {
         let (known, torque) = signals(false);
         let [c, s] = unmeasured(&known, &torque).unwrap();
         assert!((c - 0.02).abs() < 0.01 && (s + 0.05).abs() < 0.01, "{c} {s}");

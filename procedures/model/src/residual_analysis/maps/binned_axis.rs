@@ -48,22 +48,22 @@ pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
         Signal::Drive,
         Signal::Direction,
     ] {
-        let tells = signal != Signal::Load || prepared.kind != Kind::Friction || problem.view.bears_load();
-        let Some(values) = problem.view.find(signal).filter(|_| tells) else {
+        let is_informative = signal != Signal::Load || prepared.kind != Kind::Friction || problem.view.bears_load();
+        let Some(values) = problem.view.find(signal).filter(|_| is_informative) else {
             continue;
         };
-        let factor = prepared.column_scale(signal);
-        let values: Vec<f64> = problem.reduce.apply(values.to_vec()).into_iter().map(|v| v * factor).collect();
+        let unit_scale = prepared.column_scale(signal);
+        let values: Vec<f64> = problem.reduce.apply(values.to_vec()).into_iter().map(|v| v * unit_scale).collect();
         let (name, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
         let scale = match signal {
             Signal::Velocity | Signal::Load if problem.settled => {
-                let held = piece_means(&values, problem);
+                let held = block_means(&values, problem);
                 BinnedAxis::new(name, unit, levels(&held), held).held()
             }
             // The residual contains the noise of the response, so that bins of the response itself would show a false
             // line. The mean over a block has little noise.
             Signal::Drive if problem.settled => {
-                let held = piece_means(&values, problem);
+                let held = block_means(&values, problem);
                 BinnedAxis::new(name, unit, quantiles(&held, BINS), held).held()
             }
             Signal::Link | Signal::Position => {
@@ -88,7 +88,7 @@ pub fn scales(prepared: &Prepared) -> Vec<BinnedAxis> {
         let (column, unit) = (prepared.column_name(signal), prepared.column_unit(signal));
         let as_read = BinnedAxis::new(column, unit.clone(), quantiles(&values, BINS), values);
         // An unknown sensor may share the noise of the response; the mean over a block has little noise.
-        let held = piece_means(&as_read.values, problem);
+        let held = block_means(&as_read.values, problem);
         let scale = BinnedAxis::new(column, unit, quantiles(&held, BINS), held);
         if scale.bins.len() > 1 && !scales.iter().any(|s| s.says_the_same(&as_read)) {
             scales.push(scale);
@@ -132,7 +132,7 @@ impl BinnedAxis {
     }
 
     /// Whether the axis is the time, or correlates with it nearly perfectly.
-    pub fn goes_with_time(&self) -> bool {
+    pub fn correlates_with_time(&self) -> bool {
         const NEARLY: f64 = 0.9;
         let middle = 0.5 * (self.bin.len() as f64 - 1.0);
         let mean = self.bin.iter().sum::<usize>() as f64 / self.bin.len() as f64;
@@ -159,7 +159,7 @@ fn turned(values: Vec<f64>) -> Vec<f64> {
 
 /// Replaces each value by the mean of its block. The residual contains the noise of the load sensor, so that bins of
 /// the noisy load would show a false line.
-fn piece_means(values: &[f64], problem: &Problem) -> Vec<f64> {
+fn block_means(values: &[f64], problem: &Problem) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); problem.blocks];
     for (v, b) in values.iter().zip(&problem.block) {
         sums[*b].0 += v;

@@ -9,7 +9,7 @@ use crate::residual_analysis::maps::regions::ReferenceMagnitude;
 use crate::thresholds::{AXIS_FUNCTION, SCATTER_BAND};
 
 use crate::Options;
-use crate::preprocess::independent_blocks::pieces;
+use crate::preprocess::independent_blocks::independent_blocks;
 use crate::preprocess::{Prepared, Problem};
 use crate::report::maps::{PairMap, Region};
 use crate::residual_analysis::maps::binned_axis::{BinnedAxis, scales};
@@ -23,7 +23,7 @@ pub struct Maps {
     /// Maps of position, load, temperature and unknown columns by direction. Friction changes its sign with the
     /// direction, so that structure can cancel in a map over both directions.
     by_direction: Vec<Map>,
-    piece: Vec<usize>,
+    block: Vec<usize>,
     residual: Vec<f64>,
     alpha: f64,
     cells: usize,
@@ -39,9 +39,9 @@ impl Maps {
     /// `residual` is the residual of the model at the rows of the main problem.
     pub fn new(prepared: &Prepared, residual: Vec<f64>, options: &Options) -> Self {
         let problem = &prepared.main;
-        let (piece, _) = pieces(problem, 1);
+        let (block, _) = independent_blocks(problem, 1);
         let scales = scales(prepared);
-        let map = |x: &BinnedAxis, y: Option<&BinnedAxis>| Map::new(x.clone(), y.cloned(), problem, &piece, &residual);
+        let map = |x: &BinnedAxis, y: Option<&BinnedAxis>| Map::new(x.clone(), y.cloned(), problem, &block, &residual);
         let axes: Vec<Map> = scales.iter().map(|s| map(s, None)).collect();
         let known = ["link_torque_nm", "brake_current_a", "temperature_c"];
         let unknown: Vec<&str> = problem.view.points.unknown().map(|s| prepared.column_name(s)).collect();
@@ -51,7 +51,7 @@ impl Maps {
             None => Vec::new(),
         };
         let cells = axes.iter().chain(&by_direction).map(|m| m.cells.len()).sum();
-        Self { scales, axes, by_direction, piece, residual, alpha: options.alpha, cells, kind: prepared.kind }
+        Self { scales, axes, by_direction, block, residual, alpha: options.alpha, cells, kind: prepared.kind }
     }
 
     /// Cross-validated R² of the best map, with its axis.
@@ -66,7 +66,7 @@ impl Maps {
     }
 
     fn best(&self) -> Option<&Map> {
-        self.axes.iter().chain(&self.by_direction).max_by(|a, b| a.telling().total_cmp(&b.telling()))
+        self.axes.iter().chain(&self.by_direction).max_by(|a, b| a.ranking_score().total_cmp(&b.ranking_score()))
     }
 
     /// Cross-validated R² of a free function of an axis on this residual. `None` if `contribution` is not a function
@@ -97,18 +97,18 @@ impl Maps {
     }
 
     /// Whether a part of an axis is significant against the scatter of the blocks.
-    pub fn stand_out(&self) -> bool {
-        self.axes.iter().chain(&self.by_direction).any(|map| self.stands_out(map))
+    pub fn is_significant(&self) -> bool {
+        self.axes.iter().chain(&self.by_direction).any(|map| self.map_is_significant(map))
     }
 
     /// The same for axes that do not correlate with time. Along time the blocks of one bin are neighbours and may be
     /// correlated.
-    pub fn stand_out_beside_time(&self) -> bool {
+    pub fn is_significant_beyond_time(&self) -> bool {
         let maps = self.axes.iter().chain(&self.by_direction);
-        maps.filter(|map| !map.x.goes_with_time()).any(|map| self.stands_out(map))
+        maps.filter(|map| !map.x.correlates_with_time()).any(|map| self.map_is_significant(map))
     }
 
-    fn stands_out(&self, map: &Map) -> bool {
+    fn map_is_significant(&self, map: &Map) -> bool {
         let half_width = |cell: &Cell| cell.half_width(SCATTER_BAND * self.alpha, self.cells);
         map.cells.iter().any(|cell| half_width(cell).is_some_and(|half_width| cell.mean.abs() > half_width))
     }
@@ -116,7 +116,7 @@ impl Maps {
     /// RMS of the block means, weighted by their rows.
     pub fn between_rms(&self) -> f64 {
         let mut at = 0;
-        let squares = self.piece.chunk_by(|a, b| a == b).map(|rows| {
+        let squares = self.block.chunk_by(|a, b| a == b).map(|rows| {
             at += rows.len();
             self.residual[at - rows.len()..at].iter().sum::<f64>().powi(2) / rows.len() as f64
         });
@@ -137,12 +137,12 @@ impl Maps {
     /// largest cross-validated R².
     pub fn structure(&self, problem: &Problem) -> Option<PairMap> {
         // An axis is ranked by its map or by its map by direction, because structure of both directions can cancel.
-        let telling = |axis: &Map| {
+        let ranking_score = |axis: &Map| {
             let sides = self.by_direction.iter().filter(|m| m.x.name == axis.x.name);
-            sides.map(Map::telling).fold(axis.telling(), f64::max)
+            sides.map(Map::ranking_score).fold(axis.ranking_score(), f64::max)
         };
         let mut ranked: Vec<&Map> = self.axes.iter().filter(|m| m.x.name != "direction").collect();
-        ranked.sort_by(|a, b| telling(b).total_cmp(&telling(a)));
+        ranked.sort_by(|a, b| ranking_score(b).total_cmp(&ranking_score(a)));
         ranked.truncate(PARTNERS);
         let direction = self.scales.iter().find(|s| s.name == "direction");
         let (mut best, mut cells): (Option<Map>, usize) = (None, self.cells);
@@ -152,7 +152,7 @@ impl Maps {
             for y in partners.chain(direction.filter(|_| !a.x.name.contains("velocity"))) {
                 let pair = self.pair(&a.x, y, problem);
                 cells += pair.cells.len();
-                if best.as_ref().is_none_or(|b| pair.telling() > b.telling()) {
+                if best.as_ref().is_none_or(|b| pair.ranking_score() > b.ranking_score()) {
                     best = Some(pair);
                 }
             }
@@ -163,6 +163,6 @@ impl Maps {
     fn pair(&self, x: &BinnedAxis, y: &BinnedAxis, problem: &Problem) -> Map {
         // An angle keeps its fine bins if the second axis is the direction: structure over an angle can be narrow.
         let x = if y.bins.len() > 2 { x.coarse(PAIR_BINS) } else { x.clone() };
-        Map::new(x, Some(y.coarse(PAIR_BINS)), problem, &self.piece, &self.residual)
+        Map::new(x, Some(y.coarse(PAIR_BINS)), problem, &self.block, &self.residual)
     }
 }

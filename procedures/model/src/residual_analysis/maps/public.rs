@@ -23,13 +23,14 @@ pub fn maps(run: &RunTable, fit: &Fit, options: &Options) -> Result<ResidualMaps
     let speed = axis("velocity").map(|v| v.size("speed"));
     let mut chosen = vec![(speed.as_ref(), axis("direction"))];
     chosen.extend(["link_torque", "temperature", "brake_current"].map(|x| (axis(x), axis("velocity"))));
-    let beside: Vec<Map> = chosen.into_iter().filter_map(|(x, y)| Some(maps.pair(x?, y?, &prepared.main))).collect();
-    maps.cells += beside.iter().map(|m| m.cells.len()).sum::<usize>();
+    let chosen_pairs: Vec<Map> =
+        chosen.into_iter().filter_map(|(x, y)| Some(maps.pair(x?, y?, &prepared.main))).collect();
+    maps.cells += chosen_pairs.iter().map(|m| m.cells.len()).sum::<usize>();
     let unit = prepared.unit();
     Ok(ResidualMaps {
         residual: prepared.about.residual,
         axes: maps.axes.iter().map(|m| maps.public_axis(m)).collect(),
-        pairs: maps.by_direction.iter().chain(&beside).map(|m| maps.public_pair(m, maps.cells)).collect(),
+        pairs: maps.by_direction.iter().chain(&chosen_pairs).map(|m| maps.public_pair(m, maps.cells)).collect(),
         regions: maps.regions(&unit, yardstick(fit, None).as_ref()),
         unit,
     })

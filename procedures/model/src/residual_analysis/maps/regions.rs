@@ -60,19 +60,19 @@ pub fn regions(maps: &Maps, unit: &str, yardstick: Option<&ReferenceMagnitude>) 
     stretches.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
     // A region over time usually follows from another axis, which is reported first.
     stretches.sort_by_key(|stretch| stretch.map.x.name == "time_s");
-    let mut told: Vec<(&Stretch, Vec<usize>)> = Vec::new();
+    let mut reported: Vec<(&Stretch, Vec<usize>)> = Vec::new();
     for stretch in &stretches {
         let rows = stretch.rows();
         let again = |(other, known): &(&Stretch, Vec<usize>)| {
             let no_worse = stretch.mean / other.mean < REGION_WORSE && stretch.mean * other.mean > 0.0;
             no_worse && inside(&rows, known) >= REGION_OVERLAP
         };
-        if told.len() < MOST && !told.iter().any(again) {
-            told.push((stretch, rows));
+        if reported.len() < MOST && !reported.iter().any(again) {
+            reported.push((stretch, rows));
         }
     }
-    told.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
-    told.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
+    reported.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
+    reported.iter().map(|(stretch, _)| stretch.region(maps.kind, unit, yardstick)).collect()
 }
 
 /// The dominating map, if none of the bins of its axis has enough blocks for a band. Regions over other axes are then
@@ -110,7 +110,7 @@ pub fn nowhere(maps: &Maps, unit: &str) -> String {
         "; closest to significance, {} (±{} from {} independent blocks)",
         of(map, cell, half_width).sentence,
         figure(half_width, unit),
-        cell.pieces,
+        cell.blocks,
     )
 }
 
@@ -127,8 +127,8 @@ fn join<'m>(maps: &Maps, map: &'m Map) -> Vec<Stretch<'m>> {
     cells.sort_by_key(|c| (c.y, c.x));
     for cell in cells {
         let Some(half_width) = maps.half_width(cell).filter(|h| cell.mean.abs() > *h) else { continue };
-        let beside = |s: &&mut Stretch| s.y == cell.y && s.last + 1 == cell.x && s.mean * cell.mean > 0.0;
-        match out.last_mut().filter(beside) {
+        let adjacent = |s: &&mut Stretch| s.y == cell.y && s.last + 1 == cell.x && s.mean * cell.mean > 0.0;
+        match out.last_mut().filter(adjacent) {
             Some(s) => {
                 let (n, more) = (s.count as f64, cell.rows as f64);
                 s.mean = (s.mean * n + cell.mean * more) / (n + more);

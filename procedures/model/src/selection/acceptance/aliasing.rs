@@ -37,23 +37,23 @@ pub fn is_none(term: &Term, now: &LinearModel, ground: &PartialRegression) -> bo
 /// A candidate wave, orthogonal to the model, with its least-squares coefficients.
 struct Part {
     stretches: Vec<Range<usize>>,
-    factors: Vec<f64>,
+    coefficients: Vec<f64>,
     /// Error reduction in each stretch, and the reduction that is expected if the wave is present with the same
     /// amplitude.
     found: Vec<f64>,
-    asked: Vec<f64>,
+    expected: Vec<f64>,
 }
 
 impl Part {
     fn of(term: &Term, problem: &Problem, ground: &PartialRegression) -> Self {
         let stretches = stretches(&problem.segment);
-        let factors = ground.own(&term.columns).factors();
+        let coefficients = ground.own(&term.columns).coefficients();
         let mut wave = vec![0.0; problem.rows()];
-        for (column, factor) in term.columns.iter().zip(&factors) {
-            wave.iter_mut().zip(ground.basis.rest(column)).for_each(|(w, c)| *w += factor * c);
+        for (column, coefficient) in term.columns.iter().zip(&coefficients) {
+            wave.iter_mut().zip(ground.basis.rest(column)).for_each(|(w, c)| *w += coefficient * c);
         }
-        let (found, asked) = (products(&wave, &ground.residual, &stretches), products(&wave, &wave, &stretches));
-        Self { stretches, factors, found, asked }
+        let (found, expected) = (products(&wave, &ground.residual, &stretches), products(&wave, &wave, &stretches));
+        Self { stretches, coefficients, found, expected }
     }
 
     /// Whether the wave shows only at the speed at which it explains most, although other speeds would show it too.
@@ -71,8 +71,8 @@ impl Part {
         let Some((main, _)) = by_speed.iter().max_by(|a, b| gain(a.0).total_cmp(&gain(b.0))) else { return false };
         let (here, end) = (near(*main), slower(COMPARABLE_SPEED * main));
         let others = by_speed[..here.start].iter().chain(&by_speed[here.end..end.max(here.end)]);
-        let (found, asked): (Vec<f64>, Vec<f64>) = others.map(|(_, k)| (self.found[*k], self.asked[*k])).unzip();
-        is_missing(&found, &asked)
+        let (found, expected): (Vec<f64>, Vec<f64>) = others.map(|(_, k)| (self.found[*k], self.expected[*k])).unzip();
+        is_missing(&found, &expected)
     }
 
     /// Whether the wave shows only where the means follow it too slowly, and the samples behind those means do not
@@ -96,10 +96,10 @@ impl Part {
             rows += self.stretches[*k].len();
             rows <= MOST_ROWS
         });
-        let asked: Vec<f64> = swift.iter().map(|k| self.asked[*k]).collect();
+        let expected: Vec<f64> = swift.iter().map(|k| self.expected[*k]).collect();
         let share = swift.iter().map(|k| self.share_of_samples(term, problem, &self.stretches[*k]));
-        let found: Vec<f64> = share.zip(&asked).map(|(share, asked)| share * asked).collect();
-        is_missing(&found, &asked)
+        let found: Vec<f64> = share.zip(&expected).map(|(share, expected)| share * expected).collect();
+        is_missing(&found, &expected)
     }
 
     /// Found amplitude in the samples of a stretch, relative to the expected amplitude.
@@ -113,8 +113,10 @@ impl Part {
         let trend = (0..range.len()).map(|i| i as f64).collect();
         let basis = Basis::of([vec![1.0; range.len()], trend].iter().chain(&load));
         let mut wave = vec![0.0; range.len()];
-        for (column, factor) in term.effect.columns(term.form.name, &term.shape, &at).iter().zip(&self.factors) {
-            wave.iter_mut().zip(basis.rest(column)).for_each(|(w, c)| *w += factor * c);
+        for (column, coefficient) in
+            term.effect.columns(term.form.name, &term.shape, &at).iter().zip(&self.coefficients)
+        {
+            wave.iter_mut().zip(basis.rest(column)).for_each(|(w, c)| *w += coefficient * c);
         }
         dot(&wave, &problem.sampled[range]) / dot(&wave, &wave).max(f64::MIN_POSITIVE)
     }
@@ -122,12 +124,12 @@ impl Part {
 
 /// Whether less than `ALIAS_SHARE` of the expected reduction was found, and the difference to all of it is
 /// significant.
-fn is_missing(found: &[f64], asked: &[f64]) -> bool {
-    let (sum, all) = (found.iter().sum::<f64>(), asked.iter().sum::<f64>());
+fn is_missing(found: &[f64], expected: &[f64]) -> bool {
+    let (sum, all) = (found.iter().sum::<f64>(), expected.iter().sum::<f64>());
     if all <= 0.0 {
         return false;
     }
     let share = sum / all;
-    let error = found.iter().zip(asked).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
+    let error = found.iter().zip(expected).map(|(f, a)| (f - share * a).powi(2)).sum::<f64>().sqrt() / all;
     share < ALIAS_SHARE && 1.0 - share > ALIAS_ERRORS * error
 }

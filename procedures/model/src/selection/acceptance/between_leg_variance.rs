@@ -87,8 +87,8 @@ fn shows_between(
     options: &Options,
 ) -> bool {
     let mut taken = vec![0.0; ground.residual.len()];
-    for (column, factor) in own.iter().zip(ground.own(&term.columns).factors()) {
-        taken.iter_mut().zip(column).for_each(|(t, v)| *t += factor * v);
+    for (column, coefficient) in own.iter().zip(ground.own(&term.columns).coefficients()) {
+        taken.iter_mut().zip(column).for_each(|(t, v)| *t += coefficient * v);
     }
     let (sums, squares) = (products(&taken, &ground.residual, legs), products(&taken, &taken, legs));
     jackknife(&sums, &squares).is_some_and(|chance| chance <= options.alpha)

@@ -13,7 +13,7 @@ impl AcceptanceThreshold<'_> {
         }
         let mut with = now.clone();
         with.terms.push(term.clone());
-        let (was, is) = (now.linear().factors, with.linear().factors);
+        let (was, is) = (now.linear().coefficients, with.linear().coefficients);
         let mut changes = now.terms.iter().zip(was.iter().zip(&is));
         changes.all(|(t, (was, is))| !t.allows(was) || t.allows(is))
     }

@@ -44,12 +44,12 @@ fn least_whole<'s, 'p: 's>(
     options: &Options,
 ) -> Option<&'p str> {
     let now = &search.now;
-    let (full, factors) = (now.linear().sse, now.linear().factors);
+    let (full, coefficients) = (now.linear().sse, now.linear().coefficients);
     let share = |term: &Term<'p>| {
         let at = now.terms.iter().position(|t| t.id() == term.id())?;
         let mut contribution = vec![0.0; now.problem.rows()];
-        for (column, factor) in term.columns.iter().zip(&factors[at]) {
-            contribution.iter_mut().zip(column).for_each(|(s, c)| *s += factor * c);
+        for (column, coefficient) in term.columns.iter().zip(&coefficients[at]) {
+            contribution.iter_mut().zip(column).for_each(|(s, c)| *s += coefficient * c);
         }
         let residual = search.now.without(term.id()).linear().residual;
         let own = 1.0 - full / dot(&residual, &residual);

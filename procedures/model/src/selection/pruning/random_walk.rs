@@ -11,10 +11,10 @@ impl<'p> FloatingSearch<'_, 'p> {
     /// does.
     pub(crate) fn follows_random_walk(&self) -> Option<&'p str> {
         self.added().next()?;
-        let wander = Ar1Offset::of(&self.now, self.options)?;
+        let random_walk = Ar1Offset::of(&self.now, self.options)?;
         let mut open: Vec<&str> = self.library.candidates.iter().map(Regressor::id).collect();
         open.dedup();
-        let explained = |term: &&Term<'p>| Some((wander.gain(term, open.len(), self.options)?, term.id()));
+        let explained = |term: &&Term<'p>| Some((random_walk.gain(term, open.len(), self.options)?, term.id()));
         let within = |term: &&Term<'p>| shows_within_blocks(term, &self.now, self.options);
         let explained = self.added().filter(|term| !within(term)).filter_map(|term| explained(&term));
         explained.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)

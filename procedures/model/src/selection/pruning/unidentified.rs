@@ -2,7 +2,7 @@
 
 use crate::inference::intervals::intervals;
 use crate::preprocess::Prepared;
-use crate::regression::cross_validation::held_out;
+use crate::regression::cross_validation::validation_losses;
 use crate::regression::linear_model::{LinearModel, Term};
 use crate::report::fit::{Parameter, ParameterState};
 use crate::selection::floating_search::FloatingSearch;
@@ -12,7 +12,7 @@ use crate::thresholds::{NEEDED_WHERE_OPEN, NEEDED_WITHOUT_SIZE, NEEDED_WITHOUT_S
 #[derive(Clone, Copy, Default)]
 pub struct Doubt {
     /// All its coefficients can be zero, even if only because of a trade-off with its nonlinear parameters.
-    of_factors: bool,
+    of_coefficients: bool,
     /// All its coefficients can be zero with fixed nonlinear parameters, too. Otherwise the trade-off alone is no
     /// reason to doubt the effect.
     of_size: bool,
@@ -27,12 +27,13 @@ impl Doubt {
         let mut others = parameters.iter().filter(own).filter(|p| sudden != Some(p.name.as_str()));
         // One of the two coefficients of a wave may be zero.
         let is_there = |parameters: &[Parameter]| {
-            let mut factors = parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
-            factors.any(|p| p.state != ParameterState::Unidentified)
+            let mut coefficients =
+                parameters.iter().filter(own).filter(|p| term.form.linear.contains(&p.name.as_str()));
+            coefficients.any(|p| p.state != ParameterState::Unidentified)
         };
         let held = || intervals(&terms.held(term.id()), prepared.motion).parameters;
         Self {
-            of_factors: !is_there(parameters),
+            of_coefficients: !is_there(parameters),
             of_size: !is_there(parameters) && !is_there(&held()),
             of_shape: others.any(|p| p.state == ParameterState::AtBound),
         }
@@ -46,7 +47,7 @@ impl Doubt {
 /// Whether a model identifies the size and shape of an effect.
 pub fn is_decided<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Prepared) -> bool {
     let doubt = Doubt::of(term, with, &intervals(with, prepared.motion).parameters, prepared);
-    !doubt.of_factors && !doubt.of_shape
+    !doubt.of_coefficients && !doubt.of_shape
 }
 
 /// An added effect whose size or shape the data does not determine, and whose removal hardly increases the validation
@@ -55,17 +56,17 @@ pub fn is_decided<'p>(with: &LinearModel<'p>, term: &Term<'p>, prepared: &Prepar
 /// identified, because a part of that structure can be in it.
 pub fn undecided<'p>(search: &FloatingSearch<'_, 'p>, prepared: &Prepared) -> Option<&'p str> {
     let parameters = intervals(&search.now, prepared.motion).parameters;
-    let present: f64 = held_out(&search.now).iter().sum();
+    let present: f64 = validation_losses(&search.now).iter().sum();
     let open = search.added().filter_map(|term| {
         let doubt = Doubt::of(term, &search.now, &parameters, prepared);
-        let more = held_out(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
-        let goes = match doubt.of_factors && doubt.of_shape {
+        let more = validation_losses(&search.now.without(term.id())).iter().sum::<f64>() / present - 1.0;
+        let is_removed = match doubt.of_coefficients && doubt.of_shape {
             // Of two confounded effects, the one with open size and shape is removed.
             true => more < NEEDED_WITHOUT_SIZE_AND_SHAPE || !search.stand_ins(term).is_empty(),
             false if doubt.of_size => more < NEEDED_WITHOUT_SIZE,
             false => (search.unmodelled_structure || doubt.is_there()) && more < NEEDED_WHERE_OPEN,
         };
-        goes.then_some((term.id(), more))
+        is_removed.then_some((term.id(), more))
     });
     open.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }

@@ -120,7 +120,7 @@ impl Procedure for EncoderAlignment {
         let mut quantities: Vec<Quantity> = found.iter().filter_map(|(way, found)| way.quantity(found)).collect();
         let map = Map::of(run);
         let judged = Judgement::of(&found);
-        let mut summary = format!("{} {}", judged.said, told(&found));
+        let mut summary = format!("{} {}", judged.said, description(&found));
         if let Some(best) = map.as_ref().and_then(Map::best) {
             summary.push_str(&format!(
                 " The eccentricity error has its minimum of {:.0} µrad at a radial shift of {:.3} mm.",
@@ -157,7 +157,7 @@ impl Procedure for EncoderAlignment {
     }
 }
 
-fn told(found: &[(&Way, Found)]) -> String {
+fn description(found: &[(&Way, Found)]) -> String {
     let (lost, kept): (Vec<_>, Vec<_>) = found.iter().partition(|(_, found)| found.bad.is_some());
     let names = |ways: &[&(&Way, Found)]| ways.iter().map(|(way, _)| way.title).collect::<Vec<_>>().join(", ");
     match (lost.len(), kept.len()) {

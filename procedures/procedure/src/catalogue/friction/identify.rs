@@ -1,7 +1,7 @@
 //! Coulomb, viscous and Stribeck friction of the joint without load, for each direction (seed-facts, tables 4.5 and
 //! 4.6).
 
-use super::left_open::{Side, hidden_rise_nm, is_small, rest};
+use super::inconclusive::{Side, hidden_rise_nm, is_small, rest};
 use crate::findings::{
     Leg, Line, Plateau, Unusable, combined, curve, interval_of, keep, legs, parameter, plateaus, quantity, scatter,
     settled,
@@ -82,7 +82,7 @@ fn fit_with(run: &Prepared, more: &[&str]) -> Result<Fit, ModelError> {
 /// decays slowly looks like both.
 const ELSEWHERE: f64 = 0.15;
 
-fn beside_a_square(run: &Prepared, whole: &FreeFriction) -> Option<f64> {
+fn coulomb_with_quadratic_drag(run: &Prepared, whole: &FreeFriction) -> Option<f64> {
     whole.stribeck.as_ref()?;
     let square = fit_with(run, &["stribeck", "viscous_quadratic"]).ok()?;
     parameter(&square, "viscous_quadratic", "c_2")?;
@@ -110,7 +110,7 @@ pub(super) fn identify(expected_rad_s: f64, run: &RunTable) -> Result<Identifica
         let whole = || -> Result<_, Unusable> {
             let both = settled(&keep(run, &free)?)?;
             let whole = FreeFriction::of(&both)?;
-            let square = beside_a_square(&both, &whole);
+            let square = coulomb_with_quadratic_drag(&both, &whole);
             Ok((whole, square, plateaus(&both)))
         };
         (whole(), sides.join())

@@ -90,7 +90,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     let nm_per_v = km * scale;
     quantities.extend(at_motor(&forward, &backward, nm_per_v, nm_per_v * gear.recip().to_degrees()));
 
-    let told = match (differ(f_difference), differ(b_difference)) {
+    let comparison = match (differ(f_difference), differ(b_difference)) {
         (true, true) => "Coulomb and viscous friction differ between directions (95 %)",
         (true, false) => "Coulomb friction differs between directions (95 %); viscous friction does not",
         (false, true) => "Viscous friction differs between directions (95 %); Coulomb friction does not",
@@ -101,7 +101,7 @@ pub(super) fn identify(values: &Values, run: &RunTable) -> Result<Identification
     Ok(Identification {
         verdict: if complete { Verdict::Identified } else { Verdict::Inconclusive },
         summary: format!(
-            "Coulomb friction (motor side): {} in positive, {} in negative direction. {told}.",
+            "Coulomb friction (motor side): {} in positive, {} in negative direction. {comparison}.",
             words::figure(nm_per_v * forward.offset, "Nm"),
             words::figure(nm_per_v * backward.offset, "Nm"),
         ),

@@ -32,9 +32,9 @@ pub fn torque(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
             rows.map(|i| size * run.velocity[i] / run.fastest * if of_current { run.current[i] } else { 1.0 }).collect()
         }
         "cogging" => {
-            let (size, phase, beside) = (full * dice.size(0.008, 0.04), dice.phase(), dice.phase());
+            let (size, phase, second_phase) = (full * dice.size(0.008, 0.04), dice.phase(), dice.phase());
             let (order, second) = (f64::from(run.poles), dice.uniform(0.0, 0.3));
-            let wave = |a: f64| (order * a + phase).sin() + second * (2.0 * order * a + beside).sin();
+            let wave = |a: f64| (order * a + phase).sin() + second * (2.0 * order * a + second_phase).sin();
             let excited = dice.coin();
             rows.map(|i| size * wave(run.angle[i]) * if excited { run.current[i] } else { 0.5 }).collect()
         }

@@ -44,7 +44,7 @@ pub fn make(dice: &mut Dice) -> Recording {
     let hidden: Vec<Part> = plan.hidden.iter().map(&mut part).collect();
     let outside = plan.outside.as_ref().map(&mut part);
     let shapes: Vec<&str> = EFFECTS.iter().flat_map(|id| [*id; SHAPES]).collect();
-    let rivals = if hidden.is_empty() { Vec::new() } else { shapes.iter().map(&mut part).collect() };
+    let alternatives = if hidden.is_empty() { Vec::new() } else { shapes.iter().map(&mut part).collect() };
     let truth = truth(&base, &plan, &run);
     let (columns, response, meta) = shown(&run, base.iter().chain(&hidden).chain(&outside), repeats, dice);
     let facts = json!({"fs": rate_hz, "repeats": repeats, "duration_s": run.time.last()});
@@ -56,7 +56,7 @@ pub fn make(dice: &mut Dice) -> Recording {
         base,
         hidden,
         outside,
-        rivals,
+        alternatives,
         truth,
         optional: if plan.hides("hysteresis") || ids.contains(&"hysteresis") { vec!["saturation"] } else { Vec::new() },
         facts: facts.as_object().cloned().unwrap_or_default(),

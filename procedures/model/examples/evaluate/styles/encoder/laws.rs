@@ -25,11 +25,11 @@ pub fn error(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
     let of_angle = |law: &dyn Fn(f64) -> f64| run.angle.iter().map(|a| law(*a)).collect::<Vec<f64>>();
     match id {
         "delay" => {
-            let late = size / run.fastest;
-            let after = lag(&run.angle, (1.0 / (run.rate_hz * late)).min(1.0));
-            if 1.0 / (run.rate_hz * late) > 1.0 {
+            let delay_s = size / run.fastest;
+            let after = lag(&run.angle, (1.0 / (run.rate_hz * delay_s)).min(1.0));
+            if 1.0 / (run.rate_hz * delay_s) > 1.0 {
                 // Shorter than a row: the filter has settled within it.
-                return run.velocity.iter().map(|v| -late * v).collect();
+                return run.velocity.iter().map(|v| -delay_s * v).collect();
             }
             after.iter().zip(&run.angle).map(|(a, q)| a - q).collect()
         }

@@ -154,7 +154,7 @@ fn of_load(id: &str, joint: &Scale, dice: &mut Dice) -> Law {
 }
 
 fn of_angle(id: &str, joint: &Scale, dice: &mut Dice) -> Law {
-    let (dry, phase, beside) = (joint.dry, dice.phase(), dice.phase());
+    let (dry, phase, second_phase) = (joint.dry, dice.phase(), dice.phase());
     match id {
         "gravity" => {
             let size = dry * dice.uniform(0.1, 0.7);
@@ -164,14 +164,14 @@ fn of_angle(id: &str, joint: &Scale, dice: &mut Dice) -> Law {
             let (order, size) = (*dice.pick(&[4.0, 6.0, 7.0, 12.0, 14.0, 24.0]), dry * dice.uniform(0.08, 0.4));
             let second = dice.uniform(0.0, 0.3);
             Box::new(move |m| {
-                size * ((order * m.motor + phase).sin() + second * (2.0 * order * m.motor + beside).sin())
+                size * ((order * m.motor + phase).sin() + second * (2.0 * order * m.motor + second_phase).sin())
             })
         }
         _ => {
             let (order, size) = (*dice.pick(&[1.0, 2.0, 3.0, 5.0, 8.0]), dry * dice.uniform(0.08, 0.35));
             let band = dice.uniform(0.0, 0.25);
             Box::new(move |m| {
-                let wave = (order * m.link + phase).sin() + band * ((order + 1.0) * m.link + beside).sin();
+                let wave = (order * m.link + phase).sin() + band * ((order + 1.0) * m.link + second_phase).sin();
                 size * wave * m.bristle
             })
         }

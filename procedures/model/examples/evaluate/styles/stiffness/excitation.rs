@@ -1,7 +1,7 @@
 //! Torques and angles of stiffness runs.
 
 use crate::made::Dice;
-use crate::styles::waves::{lines, multisine, sine, stairs, wander};
+use crate::styles::waves::{lines, multisine, random_walk, sine, stairs};
 
 pub const STYLES: &[&str] = &[
     "locked_sine",
@@ -54,7 +54,7 @@ pub fn draw(style: &str, rate_hz: f64, dice: &mut Dice) -> Program {
         }
         "turning_sine" => sine(slow, 5.0, rate_hz),
         _ if dice.coin() => multisine(dice.uniform(20.0, 40.0), rate_hz, dice),
-        _ => wander(dice.uniform(20.0, 40.0), rate_hz, dice),
+        _ => random_walk(dice.uniform(20.0, 40.0), rate_hz, dice),
     };
     torque.push(torque.last().copied().unwrap_or(0.0));
     let speed = speed(style, torque.len(), slow, rate_hz, dice);

@@ -38,17 +38,18 @@ pub fn twist(id: &str, run: &Run, dice: &mut Dice) -> Vec<f64> {
         }
         "directional_offset" => bouc_wen(&run.link, dice.size(2e-4, 2e-3), 1.0).iter().map(|d| size * d).collect(),
         "transmission_error" => {
-            let (order, phase, beside) = (*dice.pick(&[1.0, 2.0, 3.0, 6.0, 11.0, 20.0]), dice.phase(), dice.phase());
+            let (order, phase, second_phase) =
+                (*dice.pick(&[1.0, 2.0, 3.0, 6.0, 11.0, 20.0]), dice.phase(), dice.phase());
             let band = dice.uniform(0.0, 0.3);
             run.link
                 .iter()
-                .map(|q| size * ((order * q + phase).sin() + band * (2.0 * order * q + beside).sin()))
+                .map(|q| size * ((order * q + phase).sin() + band * (2.0 * order * q + second_phase).sin()))
                 .collect()
         }
         "delay" => {
             // The motor encoder passes a filter, the link encoder does not.
-            let late = dice.size(0.3, 4.0) * 0.5 * size / run.speed.max(1e-6);
-            let after = lag(&run.link, (1.0 / (run.rate_hz * late)).min(1.0));
+            let delay_s = dice.size(0.3, 4.0) * 0.5 * size / run.speed.max(1e-6);
+            let after = lag(&run.link, (1.0 / (run.rate_hz * delay_s)).min(1.0));
             after.iter().zip(&run.link).map(|(a, q)| a - q).collect()
         }
         "tooth_at_angle" => {

@@ -50,11 +50,11 @@ pub fn make(dice: &mut Dice) -> Recording {
     }
     let hidden: Vec<Part> = plan.hidden.iter().map(|id| base(id, twist(id, &run, dice))).collect();
     let outside = plan.outside.map(|id| base(id, twist(id, &run, dice)));
-    let rivals = OF_TORQUE.iter().chain(OF_MOTION).flat_map(|id| [*id; SHAPES]);
-    let mut rivals: Vec<Part> =
-        rivals.filter(|id| turns || !OF_MOTION.contains(id)).map(|id| base(id, twist(id, &run, dice))).collect();
+    let alternatives = OF_TORQUE.iter().chain(OF_MOTION).flat_map(|id| [*id; SHAPES]);
+    let mut alternatives: Vec<Part> =
+        alternatives.filter(|id| turns || !OF_MOTION.contains(id)).map(|id| base(id, twist(id, &run, dice))).collect();
     if hidden.is_empty() {
-        rivals.clear();
+        alternatives.clear();
     }
     let truth = truth(&parts, &plan, &run);
     let (columns, response, meta) = shown(&run, &parts, hidden.iter().chain(&outside), repeats, dice);
@@ -68,7 +68,7 @@ pub fn make(dice: &mut Dice) -> Recording {
         base: parts,
         hidden,
         outside,
-        rivals,
+        alternatives,
         truth,
         optional,
         facts: facts.as_object().cloned().unwrap_or_default(),

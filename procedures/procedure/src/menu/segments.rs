@@ -56,9 +56,9 @@ pub fn choice(
 fn constant_current(step: &Step, from_s: f64, to_s: f64, kind: Kind) -> Vec<(f64, f64)> {
     let within = step.brake.knots().iter().map(|(t_s, _)| *t_s).filter(|t_s| from_s < *t_s && *t_s < to_s);
     let edges: Vec<f64> = std::iter::once(from_s).chain(within).chain([to_s]).collect();
-    let pieces = edges.windows(2).map(|edge| (edge[0], edge[1]));
+    let intervals = edges.windows(2).map(|edge| (edge[0], edge[1]));
     let still =
         |(from_s, to_s): &(f64, f64)| to_s > from_s && step.brake.at(*from_s) == step.brake.at(0.5 * (from_s + to_s));
-    let still: Vec<_> = pieces.filter(still).collect();
+    let still: Vec<_> = intervals.filter(still).collect();
     if kind != Kind::Brake && edges.len() > 2 { Vec::new() } else { still }
 }

@@ -8,7 +8,7 @@ use crate::formula::syntax::Operator;
 
 /// A sum of parameters times expressions without these parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Factors {
+pub struct LinearParts {
     /// Linear parameters, each with its regressor.
     pub columns: Vec<(usize, Expression)>,
     /// The part without a linear parameter.
@@ -17,7 +17,7 @@ pub struct Factors {
 
 /// Finds the largest set of parameters in which the formula is linear; among equals the first in the order of the
 /// list.
-pub fn factors(formula: &Expression, parameters: usize) -> Factors {
+pub fn coefficients(formula: &Expression, parameters: usize) -> LinearParts {
     let mut sets: Vec<u32> = (0..1u32 << parameters).collect();
     sets.sort_by_key(|set| (std::cmp::Reverse(set.count_ones()), *set));
     // Every formula is linear in the empty set.
@@ -27,16 +27,16 @@ pub fn factors(formula: &Expression, parameters: usize) -> Factors {
 }
 
 /// The formula as a sum over the parameters of a set, if it is linear in them.
-fn split(e: &Expression, set: u32) -> Option<Factors> {
-    let is_factor = |what: &What| matches!(what, What::Parameter(p) if set & (1 << p) != 0);
-    if !e.any(&mut |what| is_factor(what)) {
-        return Some(Factors { columns: Vec::new(), alone: Some(e.clone()) });
+fn split(e: &Expression, set: u32) -> Option<LinearParts> {
+    let is_coefficient = |what: &What| matches!(what, What::Parameter(p) if set & (1 << p) != 0);
+    if !e.any(&mut |what| is_coefficient(what)) {
+        return Some(LinearParts { columns: Vec::new(), alone: Some(e.clone()) });
     }
-    let constant = |e: &Expression| !e.any(&mut |what| is_factor(what));
+    let constant = |e: &Expression| !e.any(&mut |what| is_coefficient(what));
     match &e.what {
         What::Parameter(p) => {
             let one = Expression { at: e.at.clone(), what: What::Number(1.0) };
-            Some(Factors { columns: vec![(*p, one)], alone: None })
+            Some(LinearParts { columns: vec![(*p, one)], alone: None })
         }
         What::Negate(a) => Some(split(a, set)?.map(negated)),
         What::Binary(Operator::Add, a, b) => Some(split(a, set)?.plus(split(b, set)?)),
@@ -51,12 +51,12 @@ fn split(e: &Expression, set: u32) -> Option<Factors> {
     }
 }
 
-impl Factors {
-    fn map(self, f: impl Fn(Expression) -> Expression) -> Factors {
-        Factors { columns: self.columns.into_iter().map(|(p, e)| (p, f(e))).collect(), alone: self.alone.map(f) }
+impl LinearParts {
+    fn map(self, f: impl Fn(Expression) -> Expression) -> LinearParts {
+        LinearParts { columns: self.columns.into_iter().map(|(p, e)| (p, f(e))).collect(), alone: self.alone.map(f) }
     }
 
-    fn plus(mut self, other: Factors) -> Factors {
+    fn plus(mut self, other: LinearParts) -> LinearParts {
         self.alone = match (self.alone, other.alone) {
             (Some(a), Some(b)) => Some(joined(Operator::Add, a, b)),
             (a, b) => a.or(b),
