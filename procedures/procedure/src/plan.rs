@@ -99,8 +99,8 @@ pub enum Drive {
 pub enum Feed {
     /// Over the time of the step [A].
     Planned(Profile),
-    /// A share of the measured friction (motor torque less link torque, low-pass filtered), with the sign of the
-    /// velocity set-point and linear in it below `ramp_rad_s` (motor).
+    /// A share of the measured friction: motor torque less link torque, low-pass filtered. It has the sign of the
+    /// velocity set-point and is linear in it below `ramp_rad_s` (motor).
     Observed { share: f64, corner_hz: f64, ramp_rad_s: f64 },
 }
 

@@ -27,7 +27,7 @@ pub struct Live<'a> {
 }
 
 /// Accepts the data of a run and makes it durable. It is called on the thread that owns the bench, between two
-/// commands to a turning drive, so that it must not wait for a disk or another process.
+/// commands to a turning drive. It must not wait for a disk or another process.
 pub trait Recorder {
     /// Why the bench must not move until a person has acknowledged it. Called once, before any command.
     fn blocked(&mut self) -> Result<Option<String>, RecorderFault>;

@@ -2,12 +2,12 @@
 //!
 //! The run demagnetises the brake first. Then it measures the major loop, first-order reversal curves from every
 //! current of a grid down to zero, and nested minor loops. A random history is left out of the model and validates
-//! it. Each of these is one uninterrupted step at constant speed that starts and ends at zero current, because a fall
+//! it. Each of these is one uninterrupted step at constant speed. It starts and ends at zero current, because a fall
 //! to zero during rotation erases the history.
 //!
-//! The model is the Preisach model in Everett's form. The reversal curves measure by how much a fall between two
-//! currents reduces the torque, and every history is a sum of such falls and rises (Mayergoyz, *Mathematical Models
-//! of Hysteresis*, chapter 1). No function shape is assumed. The inverse gives the current for a torque after any
+//! The model is the Preisach model in Everett's form. The reversal curves measure the torque reduction by a fall
+//! between two currents. Every history is a sum of such falls and rises (Mayergoyz, *Mathematical Models of
+//! Hysteresis*, chapter 1). No function shape is assumed. The inverse gives the current for a torque after any
 //! history.
 
 mod everett;

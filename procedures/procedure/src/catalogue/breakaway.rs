@@ -2,7 +2,7 @@
 //!
 //! Document 000 raises the current until the encoder increases in five consecutive samples. Each position is one step
 //! that includes the approach: the joint always arrives in the direction in which it will break away. A joint whose
-//! friction falls with speed creeps before it breaks away, and a faster torque ramp gives a lower breakaway torque
+//! friction falls with speed creeps before it breaks away. A faster torque ramp then gives a lower breakaway torque
 //! (Canudas de Wit, Olsson, Åström, Lischinsky 1995). Only a slow ramp approximates the friction at rest.
 
 use super::legs::{ACCELERATION, Legs, sample_rate, stroke};

@@ -1,8 +1,8 @@
 //! Presliding friction: the motor current oscillates below breakaway, at several amplitudes.
 //!
-//! Every oscillation begins after a stroke that ends in the same direction and a rest without torque, so that the
-//! contacts start from the same state. The torque is commanded, and the motor encoder measures the displacement. The
-//! joint moves by only a few counts, so that the times at which a reading changes are evaluated.
+//! Every oscillation begins after a stroke in the same direction and a rest without torque. The contacts then start
+//! from the same state. The torque is commanded, and the motor encoder measures the displacement. The joint moves by
+//! only a few counts, so that the times at which a reading changes are evaluated.
 
 use super::legs::{ACCELERATION, Legs, sample_rate};
 use super::{Findable, Procedure, findable};

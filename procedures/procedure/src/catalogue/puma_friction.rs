@@ -4,12 +4,12 @@
 //! until the encoder increases five times in a row.
 //!
 //! The run begins at the encoder position 0, with the link upright. Every speed is held over the same arc in both
-//! directions, from end to end, so that the remaining gravity torque is the same in both and has a zero mean.
+//! directions, from end to end. The remaining gravity torque is then the same in both, with a zero mean.
 //!
 //! The document's stiction is the current of the first increase. The joint creeps before its encoder shows it, while
-//! the current still rises. On the mock bench the figure therefore exceeds the friction at rest by 1.0 to 3.1 % at
-//! the default ramp (30 arms), and by 2.1 to 5.7 % at three times the ramp (20 arms). Its interval is the scatter
-//! between tries.
+//! the current still rises. The figure therefore exceeds the friction at rest. On the mock bench the excess is 1.0 to
+//! 3.1 % at the default ramp (30 arms), and 2.1 to 5.7 % at three times the ramp (20 arms). Its interval is the
+//! scatter between tries.
 
 use super::legs::{ACCELERATION, Legs, friction_meta, stroke};
 use super::{Findable, Procedure, findable};

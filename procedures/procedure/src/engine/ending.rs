@@ -26,7 +26,7 @@ pub(super) enum Ending {
     /// The guard rejected a sample.
     SampleRefused(Refusal),
     JointFault(Fault),
-    /// Of any other instrument: the joint still obeys.
+    /// A fault of another instrument: the joint still obeys.
     OtherFault(Fault),
     Unrecorded(RecorderFault),
     Panicked(String),
@@ -46,7 +46,7 @@ impl Ending {
 /// Time that securing may take, from most to least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Urgency {
-    /// Unloads the brake during rotation, then comes to rest.
+    /// Unloads the brake during rotation, then stops the shaft.
     Orderly,
     /// The shaft ramps down, and the brake current is removed after that.
     Quick,

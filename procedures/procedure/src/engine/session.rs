@@ -117,7 +117,7 @@ pub(super) struct Beat {
     pub late_ticks: u64,
 }
 
-/// Instruments that failed permanently: they are not read while the joint comes to rest.
+/// Instruments that failed permanently: they are not read while the joint stops.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lost {
     pub sensor: bool,

@@ -28,7 +28,7 @@ const CHANGES_FOR_S: f64 = 1.0;
 /// its reply takes several ticks.
 const WARMTH_EVERY_S: f64 = 2.0;
 /// Longest time without regulation of the supply. CV for more than 0.5 s at a commanded CC is a fault (bench-physics,
-/// section 5), and a rising current needs the full voltage for a moment.
+/// section 5). A rising current needs the full voltage for a moment.
 const UNREGULATED_S: f64 = 1.0;
 
 impl Session<'_> {

@@ -16,8 +16,8 @@ pub(crate) fn interval_of(parameter: &Parameter, scale: f64) -> (f64, [f64; 2]) 
     (parameter.value * scale, [ends[0].min(ends[1]), ends[0].max(ends[1])])
 }
 
-/// The sum of two figures. Their estimates share the noise of the same points with opposite signs, so that the
-/// interval of the sum, computed for independent estimates, is rather too wide than too narrow.
+/// The sum of two figures. Their estimates share the noise of the same points with opposite signs. The interval
+/// assumes independent estimates, so that it is rather too wide than too narrow.
 pub(crate) fn combined(a: (f64, [f64; 2]), b: (f64, [f64; 2]), sign: f64) -> (f64, [f64; 2]) {
     let value = a.0 + sign * b.0;
     let reach = (0.5 * (a.1[1] - a.1[0])).hypot(0.5 * (b.1[1] - b.1[0]));

@@ -183,8 +183,8 @@ fn with_steps((value, ci95): (f64, [f64; 2]), run: &RunTable, gear: f64) -> (f64
     (value, [value - reach, value + reach])
 }
 
-/// The section from the middle of a hold at the highest load through the reversal to the middle of the next one, and
-/// back to that of the one after it.
+/// A reversal in both directions: from the middle of a hold at the highest load to the middle of the next one, and
+/// back to the one after it.
 struct Reversal {
     course: Vec<Point>,
     /// Rows of the first half.
@@ -240,8 +240,8 @@ impl Reversal {
     }
 }
 
-/// Torque range of the lost motion to either side, as a share of the highest torque (catalogues of strain wave gears
-/// use 3 or 4 % of the rated torque).
+/// Torque range of the lost motion to either side, as a share of the highest torque. Catalogues of strain wave gears
+/// use 3 or 4 % of the rated torque.
 const LOST_MOTION: f64 = 0.03;
 
 /// Mean torsion where a branch crosses a torque, because noise causes several crossings. `None` without a crossing.
